@@ -1,0 +1,147 @@
+#!/usr/bin/env python3
+"""Gradus against Mitsuba 3 on the same scene, size, samples and depth: the ratio of their samples per second.
+
+    python3 bench/peers/compare.py [SCENE.xml:WxH ...] [--python PYTHON-WITH-MITSUBA] [--gradus build/gradus]
+
+The two renderers take turns (A B A B), so that a machine that slows down slows both; each pair gives a ratio and the
+median counts. Russian roulette is off in both. Loading and compiling are left out in both: Mitsuba renders once before
+it is measured, and gradus once before the first pair, into its kernel cache. Where Mitsuba is missing this says how to
+get it, prints "skipped" and exits with 0; a renderer that fails makes it exit with 1.
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+sys.path.insert(0, str(HERE))
+import mitsuba_setup  # noqa: E402
+
+RR_DEPTH_OFF = 1_000_000
+
+
+def default_jobs():
+    """The scenes by others where the checkout has them beside it, else our own."""
+    shared = ROOT.parent / "shared" / "scenes"
+    jobs = [(shared / "cornell-box" / "scene.xml", (512, 512)), (shared / "torus" / "scene.xml", (512, 384))]
+    if all(path.exists() for path, _ in jobs):
+        return jobs
+    own = ROOT / "scenes"
+    return [(own / "cornell-box.xml", (512, 512)), (own / "torus-rough-glass.xml", (512, 384))]
+
+
+def parse_job(text):
+    path, separator, size = text.rpartition(":")
+    if not separator:
+        return pathlib.Path(text), (512, 512)
+    width, height = (int(part) for part in size.lower().split("x"))
+    return pathlib.Path(path), (width, height)
+
+
+def find_python(named):
+    """The Python that has Mitsuba: the named one, GRADUS_MITSUBA_PYTHON, or this one. None where it has not."""
+    python = named or os.environ.get("GRADUS_MITSUBA_PYTHON") or sys.executable
+    try:
+        probe = subprocess.run([python, "-c", "import mitsuba"], capture_output=True, timeout=120)
+    except (OSError, subprocess.TimeoutExpired):
+        return None
+    return python if probe.returncode == 0 else None
+
+
+def run(command):
+    """The command's standard output. Exits with 1 and what the command said where it failed."""
+    result = subprocess.run([str(part) for part in command], capture_output=True, text=True)
+    if result.returncode != 0:
+        sys.stderr.write(result.stderr)
+        sys.exit(f"failed with exit code {result.returncode}: {' '.join(str(part) for part in command)}")
+    return result.stdout
+
+
+def gradus_rate(arguments, scene, size, spp, folder):
+    """Samples per second of one render by gradus, from the statistics that it writes."""
+    file = pathlib.Path(folder) / "statistics.json"
+    command = [arguments.gradus, "render", scene, "-o", pathlib.Path(folder) / "image.exr", "--stats", file, "--quiet"]
+    command += ["--size", f"{size[0]}x{size[1]}", "--spp", spp, "--max-depth", arguments.max_depth]
+    command += ["--rr-depth", RR_DEPTH_OFF, "--nthreads", arguments.nthreads]
+    run(command + (["--device", arguments.device] if arguments.device else []))
+    record = json.loads(file.read_text())
+    if record["samples"] != size[0] * size[1] * spp:
+        sys.exit(f"{scene}: gradus took {record['samples']} samples, not {size[0] * size[1] * spp}")
+    return record["samples"] / record["render_seconds"]
+
+
+def mitsuba_record(arguments, python, scene, size):
+    command = [python, HERE / "mitsuba_rate.py", scene, "--size", f"{size[0]}x{size[1]}", "--spp", arguments.spp]
+    command += ["--max-depth", arguments.max_depth, "--repeats", 1, "--nthreads", arguments.nthreads]
+    # Mitsuba may print warnings before the JSON, which is its last line.
+    return json.loads(run(command).strip().splitlines()[-1])
+
+
+def compare(arguments, python, scene, size, folder):
+    gradus_rate(arguments, scene, size, 1, folder)  # fills the kernel cache
+    pairs = []
+    for number in range(arguments.pairs):
+        ours = gradus_rate(arguments, scene, size, arguments.spp, folder)
+        record = mitsuba_record(arguments, python, scene, size)
+        theirs = record["samples_per_second"]["median"]
+        pairs.append({"gradus": ours, "mitsuba": theirs, "ratio": ours / theirs})
+        if not arguments.json:
+            rates = f"gradus {ours / 1e6:.2f} M samples/s, mitsuba {theirs / 1e6:.2f} M samples/s"
+            print(f"  pair {number + 1}: {rates}, ratio {ours / theirs:.2f}", flush=True)
+    return {
+        "scene": str(scene),
+        "width": size[0],
+        "height": size[1],
+        "spp": arguments.spp,
+        "max_depth": arguments.max_depth,
+        "pairs": pairs,
+        "median_ratio": statistics.median(pair["ratio"] for pair in pairs),
+        "mitsuba_version": record["version"],
+        "mitsuba_threads": record["threads"],
+    }
+
+
+def main():
+    parser = argparse.ArgumentParser(description="gradus against Mitsuba 3: ratio of samples per second")
+    parser.add_argument("jobs", nargs="*", type=parse_job, metavar="SCENE.xml:WxH", help="default: two known scenes")
+    parser.add_argument("--gradus", type=pathlib.Path, default=ROOT / "build" / "gradus")
+    parser.add_argument("--python", help="a Python that has Mitsuba (default: GRADUS_MITSUBA_PYTHON, then this one)")
+    parser.add_argument("--spp", type=int, default=64)
+    parser.add_argument("--max-depth", type=int, default=13)
+    parser.add_argument("--pairs", type=int, default=5)
+    parser.add_argument("--nthreads", type=int, default=0, help="processor threads of both; 0: all")
+    parser.add_argument("--device", help="OpenCL device of gradus")
+    parser.add_argument("--json", action="store_true", help="print JSON only")
+    arguments = parser.parse_args()
+    if arguments.pairs < 1:
+        parser.error("--pairs must be at least 1")
+
+    python = find_python(arguments.python)
+    if python is None:
+        print(mitsuba_setup.HOW_TO_GET, file=sys.stderr)
+        print(json.dumps({"skipped": "Mitsuba 3 is missing"}) if arguments.json else "skipped: Mitsuba 3 is missing")
+        return
+    if not arguments.gradus.exists():
+        sys.exit(f"{arguments.gradus}: no such program; build it, or name it with --gradus")
+
+    results = []
+    with tempfile.TemporaryDirectory() as folder:
+        for scene, size in arguments.jobs or default_jobs():
+            if not arguments.json:
+                depth = f"max depth {arguments.max_depth}, no Russian roulette"
+                print(f"{scene} at {size[0]}x{size[1]}, {arguments.spp} spp, {depth}", flush=True)
+            results.append(compare(arguments, python, scene, size, folder))
+            if not arguments.json:
+                print(f"  median ratio gradus / mitsuba: {results[-1]['median_ratio']:.2f}", flush=True)
+    if arguments.json:
+        print(json.dumps(results, indent=2))
+
+
+if __name__ == "__main__":
+    main()

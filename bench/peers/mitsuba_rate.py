@@ -1,0 +1,92 @@
+#!/usr/bin/env python3
+"""Measures Mitsuba 3's path tracer on a scene: samples per second, as JSON on stdout.
+
+    PYTHON-WITH-MITSUBA bench/peers/mitsuba_rate.py SCENE.xml --size 512x512 --spp 64
+
+Russian roulette is off. Loading and compiling are left out: a render of another seed comes first. A time ends when the
+image has been computed (evaluated and synchronised), not when it has been asked for. A sample is one path of a pixel.
+"""
+
+import argparse
+import json
+import pathlib
+import statistics
+import sys
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import mitsuba_setup  # noqa: E402
+
+RR_DEPTH_OFF = 1_000_000
+
+
+def parse_size(text):
+    width, height = (int(part) for part in text.lower().split("x"))
+    return width, height
+
+
+def measure(mitsuba, arguments):
+    import drjit
+
+    if arguments.nthreads:
+        drjit.set_thread_count(arguments.nthreads)
+    width, height = arguments.size
+    scene = mitsuba_setup.load_scene(mitsuba, arguments.scene, resx=width, resy=height, spp=arguments.spp)
+    sensor = scene.sensors()[0]
+    if tuple(sensor.film().size()) != (width, height):
+        # The file has no $resx and $resy: set the film itself. update() resizes its buffers and the projection.
+        parameters = mitsuba.traverse(sensor)
+        parameters["film.size"] = [width, height]
+        parameters.update()
+    if tuple(sensor.film().crop_size()) != (width, height):
+        raise ValueError(f"{arguments.scene}: cannot be rendered at {width}x{height}")
+    integrator = mitsuba.load_dict({"type": "path", "max_depth": arguments.max_depth, "rr_depth": RR_DEPTH_OFF})
+
+    def render(seed):
+        started = time.perf_counter()
+        image = mitsuba.render(scene, integrator=integrator, spp=arguments.spp, seed=seed)
+        drjit.eval(image)
+        drjit.sync_thread()
+        return time.perf_counter() - started
+
+    render(1_000_000)
+    samples = width * height * arguments.spp
+    rates = [samples / render(seed) for seed in range(arguments.repeats)]
+    return {
+        "scene": str(arguments.scene),
+        "width": width,
+        "height": height,
+        "spp": arguments.spp,
+        "max_depth": arguments.max_depth,
+        "repeats": arguments.repeats,
+        "samples_per_second": {
+            "median": statistics.median(rates),
+            "min": min(rates),
+            "max": max(rates),
+        },
+        "version": mitsuba.__version__,
+        "variant": arguments.variant,
+        "threads": drjit.thread_count(),
+    }
+
+
+def main():
+    parser = argparse.ArgumentParser(description="measures Mitsuba 3's path tracer: samples per second, as JSON")
+    parser.add_argument("scene", type=pathlib.Path)
+    parser.add_argument("--size", type=parse_size, default=(512, 512), metavar="WxH")
+    parser.add_argument("--spp", type=int, default=64)
+    parser.add_argument("--max-depth", type=int, default=13)
+    parser.add_argument("--repeats", type=int, default=5)
+    parser.add_argument("--nthreads", type=int, default=0, help="processor threads; 0: all")
+    parser.add_argument("--variant", default="llvm_ad_rgb")
+    parser.add_argument("--llvm", help="path of libLLVM (default: DRJIT_LIBLLVM_PATH, then the newest found)")
+    arguments = parser.parse_args()
+    try:
+        mitsuba = mitsuba_setup.start_mitsuba(arguments.variant, arguments.llvm)
+    except ImportError:
+        sys.exit(mitsuba_setup.HOW_TO_GET)
+    print(json.dumps(measure(mitsuba, arguments)))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,50 @@
+"""Starts Mitsuba 3 for the scripts that use it: bench/peers/mitsuba_rate.py and tests/references/make.py."""
+
+import glob
+import os
+import pathlib
+import re
+
+HOW_TO_GET = """Mitsuba 3 is not at hand for this Python. To get it, in a virtual environment:
+    python3 -m venv mitsuba-venv && mitsuba-venv/bin/pip install mitsuba
+and LLVM 19 or later for its llvm variants (Debian: apt install libllvm19, from backports where need be).
+Then run this script with that Python, or name it in GRADUS_MITSUBA_PYTHON or with --python."""
+
+
+def find_llvm():
+    """The path of the newest libLLVM of version 19 or later, or None. Older ones fail on machines with AVX-512."""
+    candidates = []
+    for pattern in ("/usr/lib/*/libLLVM*.so*", "/usr/lib/llvm-*/lib/libLLVM*.so*", "/usr/local/lib/libLLVM*.so*"):
+        for path in glob.glob(pattern):
+            version = re.search(r"libLLVM(?:-|\.so\.)(\d+)", os.path.basename(path))
+            if version and int(version.group(1)) >= 19:
+                candidates.append((int(version.group(1)), path))
+    return max(candidates)[1] if candidates else None
+
+
+def start_mitsuba(variant="llvm_ad_rgb", llvm=None):
+    """Imports Mitsuba and sets its variant. llvm: path of libLLVM; else DRJIT_LIBLLVM_PATH; else the newest found.
+
+    Raises ImportError where Mitsuba is missing."""
+    path = llvm or os.environ.get("DRJIT_LIBLLVM_PATH") or find_llvm()
+    if path:
+        os.environ["DRJIT_LIBLLVM_PATH"] = str(path)
+    import mitsuba
+
+    mitsuba.set_variant(variant)
+    return mitsuba
+
+
+def load_scene(mitsuba, path, **parameters):
+    """Loads a scene file with parameters, each given as $name in the file; names that it lacks are left out.
+
+    Mitsuba 3.9 reads files of version 0.6, but for the spelling lookAt: such a file is given to it as a string, with
+    that one tag respelt. It must then not name any file beside it."""
+    text = pathlib.Path(path).read_text(encoding="utf-8")
+    known = set(re.findall(r'<default\s+name="([^"]+)"', text))
+    given = {name: str(value) for name, value in parameters.items() if name in known}
+    if "<lookAt" in text:
+        if 'name="filename"' in text:
+            raise ValueError(f"{path}: uses lookAt and names other files; Mitsuba 3 cannot be given both")
+        return mitsuba.load_string(text.replace("<lookAt", "<lookat"), **given)
+    return mitsuba.load_file(str(path), **given)

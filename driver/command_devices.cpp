@@ -1,0 +1,68 @@
+#include "driver/commands.h"
+#include "runtime/error.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <memory>
+
+namespace gradus {
+namespace {
+
+constexpr const char *advice =
+    "No OpenCL device was found. For the processor install PoCL, on Debian with\n"
+    "  apt install pocl-opencl-icd\n"
+    "and for a graphics card the OpenCL driver of its maker. The folder /etc/OpenCL/vendors, or the one that\n"
+    "OCL_ICD_VENDORS names, must hold an .icd file for each.\n";
+
+void print_table(const std::vector<DeviceDescription> &devices) {
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+        const DeviceDescription &device = devices[i];
+        fmt::print("{}  {}\n", i, device.name);
+        fmt::print("   platform     {}\n", device.platform);
+        fmt::print("   type         {}, {} compute units\n", device.type, device.compute_units);
+        fmt::print("   version      {}, driver {}\n", device.version, device.driver);
+        fmt::print("   memory       {:.1f} GiB, {:.1f} GiB in one piece, as it reports\n",
+                   double(device.memory_bytes) / double(1 << 30), double(device.allocation_bytes) / double(1 << 30));
+        fmt::print("   double       {}\n", device.has_double ? "yes" : "no");
+    }
+}
+
+void print_json(const std::vector<DeviceDescription> &devices) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const DeviceDescription &device : devices)
+        list.push_back({{"name", device.name},
+                        {"platform", device.platform},
+                        {"vendor", device.vendor},
+                        {"version", device.version},
+                        {"driver", device.driver},
+                        {"type", device.type},
+                        {"compute_units", device.compute_units},
+                        {"memory_bytes", device.memory_bytes},
+                        {"allocation_bytes", device.allocation_bytes},
+                        {"double", device.has_double}});
+    fmt::print("{}\n", list.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+} // namespace
+
+void add_devices_command(CLI::App &app, const Services &services, std::function<int()> &chosen) {
+    CLI::App &command = *app.add_subcommand("devices", "List the OpenCL devices; exit code 4 where there is none");
+    const auto as_json = std::make_shared<bool>(false);
+    command.add_flag("--json", *as_json, "Print JSON");
+    command.callback([as_json, &services, &chosen] {
+        chosen = [as_json, &services] {
+            const std::vector<DeviceDescription> devices = services.list_devices();
+            if (*as_json)
+                print_json(devices);
+            else
+                print_table(devices);
+            if (devices.empty())
+                fmt::print(stderr, "{}", advice);
+            return static_cast<int>(devices.empty() ? ExitCode::device : ExitCode::success);
+        };
+    });
+}
+
+} // namespace gradus

@@ -1,0 +1,262 @@
+#include "driver/comparison.h"
+
+#include "runtime/error.h"
+#include "runtime/io/image_io.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <cstdlib>
+#include <map>
+
+namespace gradus {
+namespace {
+
+Image read_selected(const std::string &path, const std::string &layer) {
+    Image image = read_image(path);
+    if (layer.empty())
+        return image;
+    try {
+        return select_layer(image, layer);
+    } catch (const Error &error) {
+        throw Error(error.code, fmt::format("{}: {}", path, error.what()));
+    }
+}
+
+/// Samples a pixel as our own files state them; 0 where the file does not say.
+double stated_samples(const Image &image) {
+    const auto at = image.metadata.find("spp");
+    return at == image.metadata.end() ? 0.0 : std::max(0.0, std::strtod(at->second.c_str(), nullptr));
+}
+
+Comparison::Figures figures_of(const std::string &name, const Image &image, const Image &reference) {
+    Comparison::Figures figures;
+    figures.name = name;
+    try {
+        figures.relative_mse = relative_mse(image, reference);
+    } catch (const Error &error) {
+        throw Error(error.code, fmt::format("{}: {}", name, error.what()));
+    }
+    figures.trimmed_relative_mse = trimmed_relative_mse(image, reference);
+    figures.psnr = psnr(image, reference);
+    figures.mean = compare_means(image, reference);
+    Image judged;
+    judged.width = image.width;
+    judged.height = image.height;
+    for (const Channel *channel : compared_channels(image, reference))
+        judged.channels.push_back(*channel);
+    figures.non_finite = count_non_finite(judged);
+    return figures;
+}
+
+/// The same seed twice is one sample, not two.
+void check_independence(const std::vector<Image> &images, const std::vector<std::string> &names, Comparison &result) {
+    std::map<std::string, std::size_t> seen;
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        const auto at = images[i].metadata.find("seed");
+        if (at == images[i].metadata.end())
+            continue;
+        const auto [first, fresh] = seen.emplace(at->second, i);
+        if (!fresh)
+            result.failures.push_back(fmt::format("'{}' and '{}' have the same seed {}: they are not independent",
+                                                  names[first->second], names[i], at->second));
+    }
+}
+
+void find_sample_counts(const CompareRequest &request, const std::vector<Image> &images, const Image &reference,
+                        Comparison &result) {
+    result.samples_per_pixel = request.samples_per_pixel;
+    if (result.samples_per_pixel <= 0) {
+        double least = stated_samples(images[0]), most = least;
+        for (const Image &image : images) {
+            least = std::min(least, stated_samples(image));
+            most = std::max(most, stated_samples(image));
+        }
+        if (least != most)
+            result.notes.push_back(fmt::format("the images have from {:g} to {:g} samples a pixel; all count as {:g}",
+                                               least, most, least));
+        result.samples_per_pixel = least;
+    }
+    result.reference_spp = request.reference_spp > 0 ? request.reference_spp : stated_samples(reference);
+    if (result.variance_given && (result.samples_per_pixel <= 0 || result.reference_spp <= 0))
+        result.notes.push_back(fmt::format("the reference's variance is no floor for ours: {} not known (give {})",
+                                           result.reference_spp <= 0 ? "its sample count is" : "our sample count is",
+                                           result.reference_spp <= 0 ? "--reference-spp" : "--spp"));
+}
+
+void judge_test(const char *where, const BlockTest &test, double limit, bool count_too, Comparison &result) {
+    if (test.non_finite > 0)
+        result.failures.push_back(fmt::format("{}: {} are not finite", where, test.non_finite));
+    if (test.tested == 0)
+        result.failures.push_back(fmt::format("{}: nothing to test", where));
+    if (test.largest > limit)
+        result.failures.push_back(fmt::format("{}: largest |z| {:.2f} is over {:.2f}", where, test.largest, limit));
+    if (count_too && test.over_three > test.over_three_limit)
+        result.failures.push_back(fmt::format("{}: {} scores are over 3, at most {} by chance", where, test.over_three,
+                                              test.over_three_limit));
+}
+
+void run_tests(const CompareRequest &request, const std::vector<Image> &images, const Image &reference,
+               const Image &variance, Comparison &result) {
+    const bool known =
+        images.size() > 1 || (result.variance_given && result.samples_per_pixel > 0 && result.reference_spp > 0);
+    if (!known)
+        return;
+    const auto test = [&](int block) {
+        return block_z_test(images, reference, variance, result.samples_per_pixel, result.reference_spp, block,
+                            request.reference_batches);
+    };
+    result.whole = test(0);
+    result.blocks = test(request.block);
+    result.pixels = test(1);
+    judge_test("whole image", *result.whole, result.whole->largest_limit, false, result);
+    judge_test("blocks", *result.blocks, request.threshold > 0 ? request.threshold : result.blocks->largest_limit,
+               request.threshold <= 0, result);
+}
+
+std::string figures_line(const Comparison::Figures &figures) {
+    return fmt::format(
+        "{}\n  relMSE {:.4e}   trimmed {:.4e}   PSNR {:.2f} dB   mean ratio {:.6f}   bias {:+.3e}{}\n", figures.name,
+        figures.relative_mse, figures.trimmed_relative_mse, figures.psnr, figures.mean.ratio, figures.mean.bias,
+        figures.non_finite > 0
+            ? fmt::format("\n  {} values are NaN or infinite; their pixels are left out", figures.non_finite)
+            : "");
+}
+
+std::string test_line(const char *name, const BlockTest &test) {
+    std::string where = "none";
+    if (test.tested > 0) {
+        const std::size_t per_channel = std::size_t(test.blocks_x) * test.blocks_y;
+        const std::size_t at = test.largest_index % per_channel;
+        where = fmt::format("{:.2f} at ({}, {}) in {}", test.largest, at % test.blocks_x, at / test.blocks_x,
+                            test.channels[test.largest_index / per_channel]);
+    }
+    return fmt::format("  {:<12} {} scores, largest |z| {} (limit {:.2f}); over 3: {}, by chance {:.1f} (limit {})\n",
+                       name, test.tested, where, test.largest_limit, test.over_three, test.expected_over_three,
+                       test.over_three_limit);
+}
+
+nlohmann::json figures_json(const Comparison::Figures &figures) {
+    return {{"name", figures.name},
+            {"relative_mse", figures.relative_mse},
+            {"trimmed_relative_mse", figures.trimmed_relative_mse},
+            {"psnr", figures.psnr},
+            {"mean", figures.mean.image},
+            {"reference_mean", figures.mean.reference},
+            {"mean_ratio", figures.mean.ratio},
+            {"bias", figures.mean.bias},
+            {"non_finite", figures.non_finite}};
+}
+
+nlohmann::json test_json(const BlockTest &test, bool with_scores) {
+    nlohmann::json json{{"tested", test.tested},
+                        {"non_finite", test.non_finite},
+                        {"largest", test.largest},
+                        {"largest_limit", test.largest_limit},
+                        {"over_three", test.over_three},
+                        {"expected_over_three", test.expected_over_three},
+                        {"over_three_limit", test.over_three_limit},
+                        {"blocks_x", test.blocks_x},
+                        {"blocks_y", test.blocks_y},
+                        {"channels", test.channels}};
+    if (with_scores) {
+        json["z"] = test.z;
+        json["difference"] = test.difference;
+        json["standard_error"] = test.standard_error;
+    }
+    return json;
+}
+
+} // namespace
+
+Comparison compare_images(const CompareRequest &request) {
+    Comparison result;
+    result.reference = request.reference;
+    result.block = request.block;
+    result.variance_given = !request.variance.empty();
+    const Image reference = read_selected(request.reference, request.layer);
+    const Image variance = result.variance_given ? read_selected(request.variance, request.layer) : Image();
+    std::vector<Image> images;
+    for (const std::string &path : request.images) {
+        images.push_back(read_selected(path, request.layer));
+        result.images.push_back(figures_of(path, images.back(), reference));
+        if (result.images.back().non_finite > 0)
+            result.failures.push_back(
+                fmt::format("'{}' holds {} values that are not finite", path, result.images.back().non_finite));
+    }
+    result.reference_peak = reference_peak(reference);
+    result.reference_non_finite = count_non_finite(reference);
+    if (result.reference_non_finite > 0)
+        result.failures.push_back(
+            fmt::format("the reference holds {} values that are not finite", result.reference_non_finite));
+    check_independence(images, request.images, result);
+    find_sample_counts(request, images, reference, result);
+    result.mean_image = mean_image(images);
+    if (images.size() > 1)
+        result.mean = figures_of(fmt::format("mean of {} images", images.size()), result.mean_image, reference);
+    run_tests(request, images, reference, variance, result);
+    const double judged = result.mean ? result.mean->relative_mse : result.images[0].relative_mse;
+    // Negated, so that NaN fails.
+    if (request.largest_relative_mse > 0 && !(judged <= request.largest_relative_mse))
+        result.failures.push_back(fmt::format("relMSE {:.4e} is over {:.4e}", judged, request.largest_relative_mse));
+    result.reference_image = reference;
+    return result;
+}
+
+std::string comparison_text(const Comparison &comparison) {
+    std::string text;
+    for (const Comparison::Figures &figures : comparison.images)
+        text += figures_line(figures);
+    if (comparison.mean)
+        text += figures_line(*comparison.mean);
+    text += fmt::format("reference {}, PSNR peak {:.6g}\n", comparison.reference, comparison.reference_peak);
+    for (const std::string &note : comparison.notes)
+        text += "note: " + note + "\n";
+    if (comparison.blocks) {
+        text += fmt::format("z scores against the reference{}\n",
+                            comparison.variance_given ? " and its variance" : " (its own variance taken as 0)");
+        for (std::size_t c = 0; c < comparison.whole->channels.size(); ++c)
+            text += fmt::format("  {:<12} bias {:+.3e} +- {:.3e}   z {:+.2f}\n", comparison.whole->channels[c],
+                                comparison.whole->difference[c], comparison.whole->standard_error[c],
+                                comparison.whole->z[c]);
+        text += test_line("whole image", *comparison.whole);
+        text += test_line(fmt::format("blocks of {}", comparison.block).c_str(), *comparison.blocks);
+        text += test_line("pixels", *comparison.pixels);
+        text += "  pixels are not judged: single pixels are far from normal\n";
+    }
+    for (const std::string &failure : comparison.failures)
+        text += "FAILED: " + failure + "\n";
+    if (comparison.failures.empty())
+        text += comparison.blocks ? "verdict: equal within the noise\n"
+                                  : "verdict: none on bias (it needs several seeds, or --variance and sample counts)\n";
+    else
+        text += "verdict: not equal\n";
+    return text;
+}
+
+nlohmann::json comparison_json(const Comparison &comparison) {
+    nlohmann::json images = nlohmann::json::array();
+    for (const Comparison::Figures &figures : comparison.images)
+        images.push_back(figures_json(figures));
+    nlohmann::json json{{"images", images},
+                        {"reference", comparison.reference},
+                        {"reference_peak", comparison.reference_peak},
+                        {"reference_non_finite", comparison.reference_non_finite},
+                        {"samples_per_pixel", comparison.samples_per_pixel},
+                        {"reference_samples_per_pixel", comparison.reference_spp},
+                        {"notes", comparison.notes},
+                        {"failures", comparison.failures},
+                        {"holds", comparison.failures.empty()}};
+    if (comparison.mean)
+        json["mean"] = figures_json(*comparison.mean);
+    if (comparison.blocks) {
+        json["block"] = comparison.block;
+        json["z"] = {{"whole", test_json(*comparison.whole, true)},
+                     {"blocks", test_json(*comparison.blocks, true)},
+                     {"pixels", test_json(*comparison.pixels, false)}};
+    }
+    return json;
+}
+
+} // namespace gradus

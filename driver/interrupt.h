@@ -1,0 +1,19 @@
+// Ctrl-C and its like as a flag, so that a render ends with a valid image.
+#pragma once
+
+namespace gradus {
+
+/// While an object of it lives, the first SIGINT, SIGTERM or SIGHUP only sets a flag; the second ends the process at
+/// once, as it would without the object. Signals that the process was started to ignore stay ignored (nohup, a shell's
+/// background jobs). One object at a time.
+class InterruptWatch {
+  public:
+    InterruptWatch();
+    ~InterruptWatch();
+    InterruptWatch(const InterruptWatch &) = delete;
+    InterruptWatch &operator=(const InterruptWatch &) = delete;
+
+    bool requested() const;
+};
+
+} // namespace gradus

@@ -1,0 +1,52 @@
+#include "driver/method_request.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <map>
+
+namespace gradus {
+
+void add_method_options(CLI::App &command, const Services &services, MethodRequest &request) {
+    const char *group = "Method and machine";
+    command.add_option("--method", request.method, "Rendering method")
+        ->check(CLI::IsMember(services.method_names()))
+        ->capture_default_str()
+        ->group(group);
+    command.add_option("--device", request.device, "OpenCL device: a number of `gradus devices` or a part of its name")
+        ->group(group);
+    command.add_option("--nthreads", request.options.threads, "Processor threads; 0: all")
+        ->check(CLI::Range(0, 4096))
+        ->capture_default_str()
+        ->group(group);
+    command
+        .add_option("--batch-size", request.options.batch_size,
+                    "Paths in flight at once; 0: the device's default. The image does not depend on it")
+        ->check(CLI::Range(std::uint32_t(0), std::uint32_t(1) << 28))
+        ->capture_default_str()
+        ->group(group);
+    command.add_flag("--aov", request.options.aov, "Also write albedo, normal, depth and variance layers")
+        ->group(group);
+    const char *measuring = "For measuring";
+    command
+        .add_option("--dump-kernels", request.options.dump_kernels, "Write the source of each kernel to this folder")
+        ->type_name("DIR")
+        ->group(measuring);
+    command
+        .add_flag("--all-traits", request.options.all_traits,
+                  "Compile the kernels for everything, as if the scene had it")
+        ->group(measuring);
+    const std::map<std::string, RenderOptions::Strategy> strategies{{"mis", RenderOptions::Strategy::mis},
+                                                                    {"light", RenderOptions::Strategy::light},
+                                                                    {"bsdf", RenderOptions::Strategy::bsdf}};
+    command
+        .add_option_function<std::string>(
+            "--strategy",
+            [&request, strategies](const std::string &name) { request.options.strategy = strategies.at(name); },
+            "How light is found: mis (both, weighted), light or bsdf sampling alone")
+        ->check(CLI::IsMember({"mis", "light", "bsdf"}))
+        ->default_str("mis")
+        ->group(measuring);
+}
+
+} // namespace gradus

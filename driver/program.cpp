@@ -1,0 +1,83 @@
+#include "driver/program.h"
+
+#include "driver/commands.h"
+#include "runtime/error.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <csignal>
+#include <cstdio>
+#include <new>
+
+namespace gradus {
+namespace {
+
+constexpr const char *description = "gradus renders Mitsuba scene files with OpenCL kernels.";
+
+constexpr const char *examples = R"(Examples:
+  gradus render scene.xml -o out.exr                      as the file says
+  gradus render scene.xml -o out.exr --spp 256 --png      more samples, and a PNG to look at
+  gradus render scene.xml -o out.exr --time 60            as good as it gets in a minute
+  gradus inspect scene.xml                                what the scene holds
+  gradus compare out.exr reference.exr                    how far from the truth
+  gradus warm scene.xml                                   compile the kernels ahead
+  gradus devices                                          the OpenCL devices of this machine
+
+`gradus COMMAND --help` explains the options of a command.
+
+Exit codes: 0 success, 1 failure (also: a comparison with --check that does not hold), 2 command line,
+3 scene file, 4 device or memory, 5 output that cannot be written, 6 input image, 130 interrupted (a valid
+image of the samples so far was written).)";
+
+int run_chosen(const std::function<int()> &chosen) {
+    try {
+        return chosen();
+    } catch (const Error &error) {
+        fmt::print(stderr, "gradus: error: {}\n", error.what());
+        return static_cast<int>(error.code);
+    } catch (const std::bad_alloc &) {
+        fmt::print(stderr, "gradus: error: out of memory: try a smaller --size, a --crop, or a smaller --batch-size\n");
+        return static_cast<int>(ExitCode::device);
+    } catch (const std::exception &error) {
+        fmt::print(stderr, "gradus: error: {}\n", error.what());
+    } catch (...) {
+        fmt::print(stderr, "gradus: error: an exception of unknown type\n");
+    }
+    return static_cast<int>(ExitCode::failure);
+}
+
+} // namespace
+
+const char *version() { return GRADUS_VERSION; }
+
+int run_program(int argc, const char *const *argv, const Services &services) {
+    // A file over the size limit and a reader that went away shall be errors of the call, not the end of the process.
+    std::signal(SIGXFSZ, SIG_IGN);
+    std::signal(SIGPIPE, SIG_IGN);
+
+    std::function<int()> chosen;
+    try {
+        CLI::App app{description, "gradus"};
+        app.set_version_flag("--version", fmt::format("gradus {}", version()));
+        app.require_subcommand(1);
+        app.footer(examples);
+        add_render_command(app, services, chosen);
+        add_inspect_command(app, services, chosen);
+        add_devices_command(app, services, chosen);
+        add_compare_command(app, chosen);
+        add_warm_command(app, services, chosen);
+        try {
+            app.parse(argc, argv);
+        } catch (const CLI::ParseError &error) {
+            return app.exit(error) == 0 ? static_cast<int>(ExitCode::success) : static_cast<int>(ExitCode::usage);
+        }
+        // Run after parsing, while the options that the command refers to are alive.
+        return run_chosen(chosen);
+    } catch (const std::exception &error) {
+        fmt::print(stderr, "gradus: error: {}\n", error.what());
+        return static_cast<int>(ExitCode::failure);
+    }
+}
+
+} // namespace gradus

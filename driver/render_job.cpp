@@ -1,0 +1,197 @@
+#include "driver/render_job.h"
+
+#include "driver/interrupt.h"
+#include "driver/program.h"
+#include "driver/progress.h"
+#include "driver/statistics_json.h"
+#include "runtime/error.h"
+#include "runtime/film/metrics.h"
+#include "runtime/io/atomic_file.h"
+#include "runtime/io/image_io.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+
+namespace gradus {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// The sampler's count where only the time ends a render: more than any render takes, and far from overflow.
+constexpr std::uint64_t endless_samples_per_pixel = std::uint64_t(1) << 30;
+
+void check_outputs(const RenderRequest &request) {
+    if (std::filesystem::path(request.output).extension() != ".exr")
+        throw Error(ExitCode::usage,
+                    fmt::format("the output '{}' must end in .exr; --png writes a PNG beside it", request.output));
+    check_writable(request.output);
+    if (request.png)
+        check_writable(png_path(request.output));
+    if (!request.statistics.empty() && request.statistics != "-") {
+        if (request.statistics == request.output)
+            throw Error(ExitCode::usage, "--stats and --output name the same file");
+        check_writable(request.statistics);
+    }
+}
+
+/// The render while it runs: the method and what is written of it.
+class RenderJob {
+  public:
+    RenderJob(const RenderRequest &request, const Services &services)
+        : request_(request), services_(services), progress_(Progress::choose_mode(request.quiet, stderr)) {}
+
+    int run() {
+        prepare();
+        const InterruptWatch watch;
+        render(watch);
+        record_.interrupted = watch.requested();
+        write_results();
+        return static_cast<int>(record_.interrupted ? ExitCode::interrupted : ExitCode::success);
+    }
+
+  private:
+    void prepare() {
+        Scene scene = load_requested_scene(request_.scene, services_, [this](const std::string &warning) {
+            progress_.message("gradus: warning: " + warning);
+        });
+        if (request_.time_limit > 0 && !request_.scene.samples_per_pixel)
+            scene.settings.samples_per_pixel = endless_samples_per_pixel;
+        crop_ = scene.film.crop_width > 0 ? fmt::format("{},{},{},{}", scene.film.crop_x, scene.film.crop_y,
+                                                        scene.film.crop_width, scene.film.crop_height)
+                                          : std::string();
+        const auto [width, height] = image_size(scene.film);
+        record_.width = width;
+        record_.height = height;
+        record_.scene = request_.scene.path;
+        record_.method = request_.method.method;
+        record_.seed = request_.method.options.seed;
+
+        RenderOptions options = request_.method.options;
+        options.on_compiled = [this](const std::string &kernel, std::size_t ready, std::size_t total, double seconds) {
+            progress_.compiled(kernel, ready, total, seconds);
+        };
+        const auto start = Clock::now();
+        prepared_ = services_.prepare(request_.method.method, request_.method.device, scene, options);
+        record_.prepare_seconds = seconds_since(start);
+        record_.device = prepared_.description;
+        const std::string aim = request_.time_limit > 0 && !request_.scene.samples_per_pixel
+                                    ? fmt::format("{} s", request_.time_limit)
+                                    : fmt::format("{} samples a pixel", scene.settings.samples_per_pixel);
+        progress_.message(fmt::format("rendering {} at {}x{}, {}, on {}", request_.scene.path, width, height, aim,
+                                      record_.device.name));
+    }
+
+    ProgressState state() const {
+        ProgressState state;
+        state.done = prepared_.method->done_samples();
+        state.total = prepared_.method->total_samples();
+        state.elapsed = seconds_since(render_start_);
+        state.time_limit = request_.time_limit;
+        state.sample_limit = request_.time_limit <= 0 || request_.scene.samples_per_pixel.has_value();
+        return state;
+    }
+
+    void render(const InterruptWatch &watch) {
+        render_start_ = Clock::now();
+        auto last_partial = render_start_;
+        progress_.update(state());
+        bool more = true;
+        while (more) {
+            more = prepared_.method->render_batch();
+            const ProgressState now = state();
+            progress_.update(now);
+            if (watch.requested() || (request_.time_limit > 0 && now.elapsed >= request_.time_limit))
+                break;
+            if (more && request_.partial_interval > 0 && seconds_since(last_partial) >= request_.partial_interval) {
+                write_partial();
+                last_partial = Clock::now();
+            }
+        }
+        progress_.finish(state());
+    }
+
+    /// A partial image that cannot be written is no reason to lose the render: the disk may have room again at the end.
+    void write_partial() {
+        try {
+            write_image(current_image(true), request_.output);
+        } catch (const Error &error) {
+            progress_.message(fmt::format("gradus: warning: {}; the render goes on", error.what()));
+        }
+    }
+
+    Image current_image(bool partial) {
+        Image image = prepared_.method->image();
+        const std::uint64_t done = prepared_.method->done_samples();
+        const double pixels = double(image.width) * double(image.height);
+        record_.samples_per_pixel = pixels > 0 ? double(done) / pixels : 0;
+        image.metadata["version"] = version();
+        image.metadata["scene"] = record_.scene;
+        image.metadata["method"] = record_.method;
+        image.metadata["seed"] = std::to_string(record_.seed);
+        image.metadata["samples"] = std::to_string(done);
+        image.metadata["spp"] = fmt::format("{}", record_.samples_per_pixel);
+        image.metadata["device"] = record_.device.name;
+        image.metadata["seconds"] = fmt::format("{:.3f}", seconds_since(render_start_));
+        image.metadata["partial"] = partial ? "true" : "false";
+        if (!crop_.empty())
+            image.metadata["crop"] = crop_;
+        return image;
+    }
+
+    void write_results() {
+        const Image image = current_image(record_.interrupted);
+        write_image(image, request_.output);
+        if (request_.png)
+            write_png(image, png_path(request_.output));
+        const Statistics statistics = prepared_.method->statistics();
+        record_.wall_seconds = seconds_since(job_start_);
+        if (!request_.statistics.empty())
+            write_statistics(statistics);
+        if (statistics.non_finite > 0)
+            progress_.message(fmt::format("gradus: warning: {} samples were NaN or infinite and were left out",
+                                          statistics.non_finite));
+        if (const std::uint64_t count = count_non_finite(image); count > 0)
+            progress_.message(fmt::format("gradus: warning: {} values of the image are NaN or infinite", count));
+        progress_.message(fmt::format("{}wrote {}: {:.6g} samples a pixel", record_.interrupted ? "interrupted; " : "",
+                                      request_.output, record_.samples_per_pixel));
+    }
+
+    void write_statistics(const Statistics &statistics) const {
+        // A path in the file system need not be UTF-8.
+        const std::string text =
+            statistics_to_json(record_, statistics).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
+            "\n";
+        if (request_.statistics == "-")
+            fmt::print("{}", text);
+        else
+            write_file_atomically(request_.statistics, text.data(), text.size());
+    }
+
+    const RenderRequest &request_;
+    const Services &services_;
+    const Clock::time_point job_start_ = Clock::now();
+    Clock::time_point render_start_ = job_start_;
+    Progress progress_;
+    PreparedMethod prepared_;
+    RenderRecord record_;
+    std::string crop_;
+};
+
+} // namespace
+
+std::string png_path(const std::string &output) {
+    return std::filesystem::path(output).replace_extension(".png").string();
+}
+
+int run_render(const RenderRequest &request, const Services &services) {
+    check_outputs(request);
+    return RenderJob(request, services).run();
+}
+
+} // namespace gradus

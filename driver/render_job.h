@@ -1,0 +1,28 @@
+// One render from the scene file to the image: the loop over batches, time limit, interrupts and partial images.
+#pragma once
+
+#include "driver/method_request.h"
+#include "driver/scene_request.h"
+
+#include <string>
+
+namespace gradus {
+
+struct RenderRequest {
+    SceneRequest scene;
+    MethodRequest method;
+    std::string output;          ///< must end in .exr
+    std::string statistics;      ///< path of the JSON; "-": stdout; empty: none
+    double time_limit = 0;       ///< seconds of rendering; 0: none
+    double partial_interval = 0; ///< seconds between images so far; 0: none
+    bool png = false, quiet = false;
+};
+
+/// Renders and writes. Returns ExitCode::success, or ExitCode::interrupted after a signal, when the image of the
+/// samples so far was written. Throws Error. That the outputs can be written is checked before anything else.
+int run_render(const RenderRequest &request, const Services &services);
+
+/// The path of the picture beside an image: its extension replaced by .png.
+std::string png_path(const std::string &output);
+
+} // namespace gradus

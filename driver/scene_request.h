@@ -1,0 +1,50 @@
+// A scene as the command line asks for it: the file, its parameters, and what replaces the file's settings.
+#pragma once
+
+#include "driver/services.h"
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace gradus {
+
+struct SceneRequest {
+    std::string path;
+    std::vector<std::string> definitions; ///< "name=value"
+    bool strict = false;
+    std::optional<std::array<std::uint32_t, 2>> size; ///< width, height
+    std::optional<std::array<std::uint32_t, 4>> crop; ///< x, y, width, height
+    std::optional<std::uint64_t> samples_per_pixel;
+    std::optional<int> max_depth, rr_depth;
+};
+
+/// "WxH" with both from 1 to 65536. Throws Error(ExitCode::usage).
+std::array<std::uint32_t, 2> parse_size(const std::string &text);
+/// "X,Y,W,H" with W and H at least 1. Throws Error(ExitCode::usage).
+std::array<std::uint32_t, 4> parse_crop(const std::string &text);
+/// "name=value"; the value may be empty and may hold '='. Throws Error(ExitCode::usage).
+std::pair<std::string, std::string> parse_definition(const std::string &text);
+
+/// Adds SCENE and the options that fill `request` to a command.
+void add_scene_options(CLI::App &command, SceneRequest &request);
+
+/// Replaces the scene's settings by those asked for. A size drops the file's crop, which was for another size.
+/// Throws Error(ExitCode::usage) for a crop that is not inside the film.
+void apply_request(const SceneRequest &request, Scene &scene);
+
+/// Loads the scene, hands each warning to `warn`, and applies the request.
+Scene load_requested_scene(const SceneRequest &request, const Services &services,
+                           const std::function<void(const std::string &)> &warn);
+
+/// Width and height of the image to render: the crop's, or the film's where there is none.
+std::array<std::uint32_t, 2> image_size(const FilmSettings &film);
+
+} // namespace gradus

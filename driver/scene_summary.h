@@ -1,0 +1,31 @@
+// What a scene holds, counted.
+#pragma once
+
+#include "runtime/scene/scene.h"
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+
+namespace gradus {
+
+struct SceneSummary {
+    std::uint64_t meshes = 0, spheres = 0, triangles = 0, vertices = 0; ///< meshes and spheres as shapes
+    std::map<std::string, std::uint64_t> materials; ///< by kind; "twosided KIND" for both sides alike
+    std::map<std::string, std::uint64_t> emitters;  ///< by kind
+    std::array<double, 3> lower{}, upper{};         ///< of all shapes, world space; 0 without any
+    std::uint64_t geometry_bytes = 0;               ///< vertices and indices
+    std::uint64_t tree_bytes = 0;                   ///< Embree's, estimated
+    std::uint64_t film_bytes = 0;                   ///< one sum and one count of each pixel
+};
+
+/// The names that Mitsuba files have for them.
+const char *name_of(BsdfKind kind);
+const char *name_of(Emitter::Kind kind);
+const char *name_of(FilmSettings::Filter filter);
+const char *name_of(Camera::FovAxis axis);
+
+SceneSummary summarize(const Scene &scene);
+
+} // namespace gradus

@@ -1,0 +1,35 @@
+// What the program asks of the runtime, as functions, so that tests can run the program with a method of their own.
+#pragma once
+
+#include "runtime/device/device.h"
+#include "runtime/io/load_scene.h"
+#include "runtime/methods/method.h"
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace gradus {
+
+/// A method that is ready to render, and the device that it renders on.
+struct PreparedMethod {
+    std::shared_ptr<void> device; ///< outlives the method
+    DeviceDescription description;
+    std::unique_ptr<Method> method;
+};
+
+struct Services {
+    std::function<LoadedScene(const std::string &path, const LoadOptions &)> load_scene;
+    std::function<std::vector<DeviceDescription>()> list_devices;
+    std::function<std::vector<std::string>()> method_names;
+    /// Opens the device (Device's selector) and prepares the method on it.
+    std::function<PreparedMethod(const std::string &method, const std::string &device, const Scene &,
+                                 const RenderOptions &)>
+        prepare;
+    /// The traits that specialise the kernels of a scene, by name.
+    std::function<std::vector<std::pair<std::string, int>>(const Scene &)> traits;
+};
+
+} // namespace gradus

@@ -1,0 +1,69 @@
+#include "driver/statistics_json.h"
+
+#include "driver/program.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <sys/resource.h>
+
+namespace gradus {
+
+std::uint64_t peak_memory_bytes() {
+    struct rusage usage = {};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024; // Linux counts in KiB
+}
+
+nlohmann::json statistics_to_json(const RenderRecord &record, const Statistics &statistics) {
+    using nlohmann::json;
+    const double seconds = statistics.render_seconds;
+    const auto rate = [seconds](double count) { return seconds > 0 ? count / seconds : 0.0; };
+
+    json stages = json::array();
+    for (const Statistics::Stage &stage : statistics.stages)
+        stages.push_back({{"name", stage.name},
+                          {"seconds", stage.seconds},
+                          {"share", seconds > 0 ? stage.seconds / seconds : 0.0},
+                          {"items", stage.items},
+                          {"launches", stage.launches}});
+    json rays = json::object();
+    std::uint64_t ray_count = 0;
+    for (const auto &[kind, count] : statistics.rays) {
+        rays[kind] = {{"count", count}, {"per_second", rate(double(count))}};
+        ray_count += count;
+    }
+    double compile_total = 0;
+    for (const auto &[kernel, kernel_seconds] : statistics.compile_seconds)
+        compile_total += kernel_seconds;
+
+    return {{"version", version()},
+            {"scene", record.scene},
+            {"method", record.method},
+            {"device",
+             {{"name", record.device.name},
+              {"platform", record.device.platform},
+              {"version", record.device.version},
+              {"driver", record.device.driver},
+              {"type", record.device.type}}},
+            {"seed", record.seed},
+            {"width", record.width},
+            {"height", record.height},
+            {"spp", record.samples_per_pixel},
+            {"interrupted", record.interrupted},
+            {"samples", statistics.samples},
+            {"samples_per_second", rate(double(statistics.samples))},
+            {"stages", stages},
+            {"rays", rays},
+            {"rays_per_second", rate(double(ray_count))},
+            {"non_finite", statistics.non_finite},
+            {"compile_seconds", {{"total", compile_total}, {"kernels", statistics.compile_seconds}}},
+            {"memory",
+             {{"peak_host_bytes", std::max(statistics.peak_host_bytes, peak_memory_bytes())},
+              {"device_bytes", statistics.device_bytes}}},
+            {"prepare_seconds", record.prepare_seconds},
+            {"render_seconds", seconds},
+            {"wall_seconds", record.wall_seconds}};
+}
+
+} // namespace gradus

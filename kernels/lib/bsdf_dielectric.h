@@ -1,0 +1,47 @@
+/* A smooth dielectric interface: mirror reflection or refraction, the lobe chosen by Fresnel. The normal points
+ * outside; ior is the index inside over the index outside. */
+#ifndef GRADUS_LIB_BSDF_DIELECTRIC_H
+#define GRADUS_LIB_BSDF_DIELECTRIC_H
+#include "kernels/lib/bsdf_sample.h"
+#include "kernels/lib/fresnel.h"
+
+GRADUS_LIB_BEGIN
+
+GRADUS_FN real dielectric_pdf(material m, vec3 wi, vec3 wo) {
+    (void)m, (void)wi, (void)wo;
+    return R(0);
+}
+
+GRADUS_FN rgb dielectric_eval(material m, vec3 wi, vec3 wo) {
+    (void)m, (void)wi, (void)wo;
+    return rgb_gray(R(0));
+}
+
+GRADUS_FN bsdf_sample dielectric_sample(material m, vec3 wi, real u_lobe, real u1, real u2) {
+    (void)u1, (void)u2;
+    bsdf_sample sample;
+    const real side = r_copysign1(wi.z);
+    const real eta = side > R(0) ? m.ior : R(1) / m.ior;
+    const real inverse_eta = R(1) / eta;
+    const fresnel_dielectric_result fresnel = fresnel_dielectric(r_min(r_abs(wi.z), R(1)), eta);
+    const int is_reflected = u_lobe < fresnel.reflectance;
+    sample.wo = v3(is_reflected ? -wi.x : -wi.x * inverse_eta, is_reflected ? -wi.y : -wi.y * inverse_eta,
+                   is_reflected ? wi.z : -side * fresnel.cosine_transmitted);
+    const rgb reflected = material_specular_reflectance(m);
+    const rgb transmitted = rgb_scale(material_specular_transmittance(m), inverse_eta * inverse_eta);
+    sample.weight = rgb3(is_reflected ? reflected.r : transmitted.r, is_reflected ? reflected.g : transmitted.g,
+                         is_reflected ? reflected.b : transmitted.b);
+    sample.pdf = is_reflected ? fresnel.reflectance : R(1) - fresnel.reflectance;
+    sample.eta = is_reflected ? R(1) : eta;
+    return sample;
+}
+
+/* Reflected and transmitted light together, at normal incidence and on average. */
+GRADUS_FN rgb dielectric_albedo(material m) {
+    const real reflectance = fresnel_mean(fresnel_dielectric(R(1), m.ior).reflectance);
+    return rgb_add(rgb_scale(material_specular_reflectance(m), reflectance),
+                   rgb_scale(material_specular_transmittance(m), R(1) - reflectance));
+}
+
+GRADUS_LIB_END
+#endif

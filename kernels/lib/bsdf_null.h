@@ -1,0 +1,34 @@
+/* An invisible surface: the path goes straight on. */
+#ifndef GRADUS_LIB_BSDF_NULL_H
+#define GRADUS_LIB_BSDF_NULL_H
+#include "kernels/lib/bsdf_sample.h"
+
+GRADUS_LIB_BEGIN
+
+GRADUS_FN real null_pdf(material m, vec3 wi, vec3 wo) {
+    (void)m, (void)wi, (void)wo;
+    return R(0);
+}
+
+GRADUS_FN rgb null_eval(material m, vec3 wi, vec3 wo) {
+    (void)m, (void)wi, (void)wo;
+    return rgb_gray(R(0));
+}
+
+GRADUS_FN bsdf_sample null_sample(material m, vec3 wi, real u_lobe, real u1, real u2) {
+    (void)m, (void)u_lobe, (void)u1, (void)u2;
+    bsdf_sample sample;
+    sample.wo = v3_neg(wi);
+    sample.weight = rgb_gray(R(1));
+    sample.pdf = R(1);
+    sample.eta = R(1);
+    return sample;
+}
+
+GRADUS_FN rgb null_albedo(material m) {
+    (void)m;
+    return rgb_gray(R(1));
+}
+
+GRADUS_LIB_END
+#endif

@@ -1,0 +1,105 @@
+/* A rough dielectric interface (Walter et al. 2007, eqs. 20 and 21), sampled by visible normals and then by Fresnel.
+ * The normal points outside; ior is the index inside over the index outside.
+ *
+ * With eta = (index on wo's side) / (index on wi's side), 1 for reflection, and h = wi + eta wo, both lobes are
+ *     pdf = P D(m) |wi.m| / sigma(wi)  eta^2 |wo.m| / |h|^2,   weight = G1(wo) (1 / eta^2 for transmitted radiance),
+ * where P is Fresnel's R or 1 - R, for |wi.m + eta wo.m| = |h|. A path from below is turned by a point reflection,
+ * which leaves D unchanged, so that wi is always above.
+ *
+ * Indices that differ by less than 1e-4 would make transmission a delta lobe: the ratio is then taken as 1.0001. */
+#ifndef GRADUS_LIB_BSDF_ROUGHDIELECTRIC_H
+#define GRADUS_LIB_BSDF_ROUGHDIELECTRIC_H
+#include "kernels/lib/bsdf_dielectric.h"
+#include "kernels/lib/microfacet.h"
+
+GRADUS_LIB_BEGIN
+
+/* Index below over index above, as seen by a path that comes from the given side (+1 or -1). */
+GRADUS_FN real roughdielectric_eta(material m, real side) {
+    const real ior = r_abs(m.ior - R(1)) < R(1e-4) ? R(1.0001) : m.ior;
+    return side > R(0) ? ior : R(1) / ior;
+}
+
+GRADUS_FN bsdf_terms roughdielectric_terms(material m, vec3 wi, vec3 wo, int distribution) {
+    bsdf_terms terms;
+    const real alpha_u = microfacet_alpha(m.alpha_u), alpha_v = microfacet_alpha(m.alpha_v);
+    const real side = r_copysign1(wi.z);
+    const real eta_below = roughdielectric_eta(m, side);
+    const vec3 from = v3_scale(wi, side), to = v3_scale(wo, side);
+    const int is_reflected = to.z > R(0);
+    const real eta = is_reflected ? R(1) : eta_below;
+    const vec3 sum = v3_mad(from, eta, to);
+    const vec3 h = v3_scale(sum, r_copysign1(sum.z)); /* on the upper side */
+    const real length_squared = v3_dot(h, h);
+    const real inverse_length = R(1) / r_sqrt(r_max(length_squared, R(1e-30)));
+    const real from_cosine = v3_dot(from, h) * inverse_length;
+    const real to_cosine = v3_dot(to, h) * inverse_length;
+    const real reflectance = fresnel_dielectric(r_clamp(from_cosine, R(0), R(1)), eta_below).reflectance;
+    const real probability = is_reflected ? reflectance : R(1) - reflectance;
+    /* |wi.m| |wo.m| eta^2 / |h|^2, which is 1/4 exactly for reflection. */
+    const real refracted_jacobian = eta * eta * from_cosine * -to_cosine * inverse_length * inverse_length;
+    const real jacobian = is_reflected ? R(0.25) : refracted_jacobian;
+    const real density = microfacet_density(distribution, h, length_squared, alpha_u, alpha_v);
+    const real area = microfacet_projected_area(distribution, from, alpha_u, alpha_v);
+    const real pdf = probability * density * jacobian / area;
+    /* wi and the microfacet's front are on one side; wo is on the side that its lobe says. */
+    const int is_valid = (from_cosine > R(0)) & ((to_cosine > R(0)) == is_reflected) & (to_cosine != R(0)) &
+                         (to.z != R(0)) & (pdf > R(0));
+    const vec3 above = v3(to.x, to.y, r_abs(to.z));
+    const real masking = above.z / microfacet_projected_area(distribution, above, alpha_u, alpha_v);
+    const real scale = is_valid ? masking / (eta * eta) : R(0);
+    const rgb reflected = material_specular_reflectance(m), transmitted = material_specular_transmittance(m);
+    terms.pdf = is_valid ? pdf : R(0);
+    terms.weight =
+        rgb3(scale * (is_reflected ? reflected.r : transmitted.r), scale * (is_reflected ? reflected.g : transmitted.g),
+             scale * (is_reflected ? reflected.b : transmitted.b));
+    return terms;
+}
+
+GRADUS_FN rgb roughdielectric_eval(material m, vec3 wi, vec3 wo, int distribution) {
+    const bsdf_terms terms = roughdielectric_terms(m, wi, wo, distribution);
+    return rgb_scale(terms.weight, terms.pdf);
+}
+
+GRADUS_FN real roughdielectric_pdf(material m, vec3 wi, vec3 wo, int distribution) {
+    return roughdielectric_terms(m, wi, wo, distribution).pdf;
+}
+
+GRADUS_FN bsdf_sample roughdielectric_sample(material m, vec3 wi, real u_lobe, real u1, real u2, int distribution) {
+    bsdf_sample sample;
+    const real side = r_copysign1(wi.z);
+    const real eta = roughdielectric_eta(m, side);
+    const real inverse_eta = R(1) / eta;
+    const vec3 from = v3_scale(wi, side);
+    const vec3 normal =
+        microfacet_sample_visible(distribution, from, microfacet_alpha(m.alpha_u), microfacet_alpha(m.alpha_v), u1, u2);
+    const real cosine = r_clamp(v3_dot(from, normal), R(0), R(1));
+    const fresnel_dielectric_result fresnel = fresnel_dielectric(cosine, eta);
+    const int is_reflected = u_lobe < fresnel.reflectance;
+    /* wo = along normal - from_scale from */
+    const real along = is_reflected ? R(2) * cosine : cosine * inverse_eta - fresnel.cosine_transmitted;
+    const real from_scale = is_reflected ? R(1) : inverse_eta;
+    const vec3 to = v3_sub(v3_scale(normal, along), v3_scale(from, from_scale));
+    sample.wo = v3_scale(to, side);
+    const bsdf_terms terms = roughdielectric_terms(m, wi, sample.wo, distribution);
+    /* The lobe that was chosen may leave on the wrong side: then there is no sample. */
+    const int is_valid = (to.z > R(0)) == is_reflected;
+    sample.pdf = is_valid ? terms.pdf : R(0);
+    sample.weight = rgb_scale(terms.weight, is_valid ? R(1) : R(0));
+    sample.eta = is_reflected ? R(1) : eta;
+    return sample;
+}
+
+#define GRADUS_ROUGHDIELECTRIC(name, distribution)                                                                     \
+    GRADUS_FN rgb name##_eval(material m, vec3 wi, vec3 wo) { return roughdielectric_eval(m, wi, wo, distribution); }  \
+    GRADUS_FN real name##_pdf(material m, vec3 wi, vec3 wo) { return roughdielectric_pdf(m, wi, wo, distribution); }   \
+    GRADUS_FN bsdf_sample name##_sample(material m, vec3 wi, real u_lobe, real u1, real u2) {                          \
+        return roughdielectric_sample(m, wi, u_lobe, u1, u2, distribution);                                            \
+    }                                                                                                                  \
+    GRADUS_FN rgb name##_albedo(material m) { return dielectric_albedo(m); }
+GRADUS_ROUGHDIELECTRIC(roughdielectric_ggx, microfacet_ggx)
+GRADUS_ROUGHDIELECTRIC(roughdielectric_beckmann, microfacet_beckmann)
+#undef GRADUS_ROUGHDIELECTRIC
+
+GRADUS_LIB_END
+#endif

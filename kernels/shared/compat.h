@@ -1,0 +1,84 @@
+/* One source, three compilers: OpenCL C for the device, host C++ in double for the reference, host C++ in
+ * float for the sanitizers. Everything that differs between them is in this file.
+ *
+ * `real` is float, or double where GRADUS_DOUBLE is defined. Write constants as R(0.5), never as 0.5. */
+#ifndef GRADUS_SHARED_COMPAT_H
+#define GRADUS_SHARED_COMPAT_H
+
+#ifdef GRADUS_DOUBLE
+#ifdef __OPENCL_VERSION__
+#pragma OPENCL EXTENSION cl_khr_fp64 : enable
+#endif
+typedef double real;
+#else
+typedef float real;
+#endif
+#define R(constant) ((real)(constant))
+
+#ifdef __OPENCL_VERSION__
+
+#define GRADUS_LIB_BEGIN
+#define GRADUS_LIB_END
+#define GRADUS_FN static inline __attribute__((always_inline))
+#define GRADUS_GLOBAL __global
+
+#else /* host C++ */
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+/* A translation unit sees one precision; a program may hold both, so each has its namespace. */
+#ifdef GRADUS_DOUBLE
+#define GRADUS_LIB_BEGIN                                                                                               \
+    namespace gradus {                                                                                                 \
+    namespace lib_double {
+#else
+#define GRADUS_LIB_BEGIN                                                                                               \
+    namespace gradus {                                                                                                 \
+    namespace lib_float {
+#endif
+#define GRADUS_LIB_END                                                                                                 \
+    }                                                                                                                  \
+    }
+#define GRADUS_FN static inline __attribute__((unused))
+#define GRADUS_GLOBAL
+
+typedef std::uint32_t uint;
+typedef std::uint64_t ulong;
+
+static inline __attribute__((unused)) uint as_uint(float x) {
+    uint bits;
+    std::memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+static inline __attribute__((unused)) float as_float(uint bits) {
+    float x;
+    std::memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+#endif
+
+/* The only built-ins that kernels/lib may call: each vectorises on every CPU implementation and is one
+ * instruction on GPUs. Transcendental functions are in kernels/lib/approximation.h. */
+#ifdef __OPENCL_VERSION__
+#define r_sqrt(x) sqrt((real)(x))
+#define r_abs(x) fabs((real)(x))
+#define r_floor(x) floor((real)(x))
+#else
+#define r_sqrt(x) std::sqrt((real)(x))
+#define r_abs(x) std::fabs((real)(x))
+#define r_floor(x) std::floor((real)(x))
+#endif
+/* Ternaries, not fmin and fmax: those must treat NaN, which costs instructions. */
+#define r_min(a, b) ((a) < (b) ? (a) : (b))
+#define r_max(a, b) ((a) > (b) ? (a) : (b))
+#define r_clamp(x, low, high) r_min(r_max(x, low), high)
+#define r_copysign1(x) ((x) < R(0) ? R(-1) : R(1))
+
+#define GRADUS_PI R(3.14159265358979323846)
+#define GRADUS_INV_PI R(0.31830988618379067154)
+
+#endif

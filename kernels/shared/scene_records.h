@@ -1,0 +1,112 @@
+/* How a scene lies in device memory: records of reals, one after the other, in the order of these lists.
+ *
+ * Primitives are numbered triangles first, then spheres. Random access into a record touches one or two cache
+ * lines, which is why these are records and not columns. Materials: kernels/shared/material.h. */
+#ifndef GRADUS_SHARED_SCENE_RECORDS_H
+#define GRADUS_SHARED_SCENE_RECORDS_H
+#include "kernels/shared/compat.h"
+
+#define GRADUS_TRIANGLE_FIELDS(FIELD)                                                                                  \
+    FIELD(triangle, p0_x, "first vertex")                                                                              \
+    FIELD(triangle, p0_y, "")                                                                                          \
+    FIELD(triangle, p0_z, "")                                                                                          \
+    FIELD(triangle, e1_x, "second vertex minus first")                                                                 \
+    FIELD(triangle, e1_y, "")                                                                                          \
+    FIELD(triangle, e1_z, "")                                                                                          \
+    FIELD(triangle, e2_x, "third vertex minus first")                                                                  \
+    FIELD(triangle, e2_y, "")                                                                                          \
+    FIELD(triangle, e2_z, "")                                                                                          \
+    FIELD(triangle, offset, "how far rays start off the surface")                                                      \
+    FIELD(triangle, padding_0, "to 48 bytes in float")                                                                 \
+    FIELD(triangle, padding_1, "")
+
+/* Shading normals at the three vertices of a triangle, only with TRAIT_SHADING_NORMALS. */
+#define GRADUS_TRIANGLE_NORMALS_FIELDS(FIELD)                                                                          \
+    FIELD(normals, n0_x, "")                                                                                           \
+    FIELD(normals, n0_y, "")                                                                                           \
+    FIELD(normals, n0_z, "")                                                                                           \
+    FIELD(normals, n1_x, "")                                                                                           \
+    FIELD(normals, n1_y, "")                                                                                           \
+    FIELD(normals, n1_z, "")                                                                                           \
+    FIELD(normals, n2_x, "")                                                                                           \
+    FIELD(normals, n2_y, "")                                                                                           \
+    FIELD(normals, n2_z, "")
+
+/* dp/du of a triangle, only with TRAIT_ANISOTROPIC. */
+#define GRADUS_TRIANGLE_TANGENT_FIELDS(FIELD)                                                                          \
+    FIELD(triangle_tangent, along_x, "")                                                                               \
+    FIELD(triangle_tangent, along_y, "")                                                                               \
+    FIELD(triangle_tangent, along_z, "")
+
+#define GRADUS_SPHERE_FIELDS(FIELD)                                                                                    \
+    FIELD(sphere, center_x, "")                                                                                        \
+    FIELD(sphere, center_y, "")                                                                                        \
+    FIELD(sphere, center_z, "")                                                                                        \
+    FIELD(sphere, radius, "")                                                                                          \
+    FIELD(sphere, facing, "1: the normal points out; -1: to the center")                                               \
+    FIELD(sphere, offset, "how far rays start off the surface")
+
+/* A light is one emitting triangle or sphere, a point, a direction or the constant environment. Which members of p
+ * and the edges mean what is said by kind: triangle: p0, e1, e2; sphere: center, radius in e1_x, facing in e1_y;
+ * point: position; directional: the unit vector towards the light. */
+#define GRADUS_LIGHT_FIELDS(FIELD)                                                                                     \
+    FIELD(light, alias_threshold, "a draw below it keeps this light, above it takes its alias")                        \
+    FIELD(light, probability, "with which the light is chosen, by power")                                              \
+    FIELD(light, value_r, "radiance, intensity or irradiance")                                                         \
+    FIELD(light, value_g, "")                                                                                          \
+    FIELD(light, value_b, "")                                                                                          \
+    FIELD(light, p_x, "")                                                                                              \
+    FIELD(light, p_y, "")                                                                                              \
+    FIELD(light, p_z, "")                                                                                              \
+    FIELD(light, e1_x, "")                                                                                             \
+    FIELD(light, e1_y, "")                                                                                             \
+    FIELD(light, e1_z, "")                                                                                             \
+    FIELD(light, e2_x, "")                                                                                             \
+    FIELD(light, e2_y, "")                                                                                             \
+    FIELD(light, e2_z, "")                                                                                             \
+    FIELD(light, inverse_area, "triangles and spheres")                                                                \
+    FIELD(light, offset, "how far connections end before the surface")
+
+#define GRADUS_CAMERA_FIELDS(FIELD)                                                                                    \
+    FIELD(camera, origin_x, "")                                                                                        \
+    FIELD(camera, origin_y, "")                                                                                        \
+    FIELD(camera, origin_z, "")                                                                                        \
+    FIELD(camera, corner_x, "direction, not normalised, through the top left corner of the full film")                 \
+    FIELD(camera, corner_y, "")                                                                                        \
+    FIELD(camera, corner_z, "")                                                                                        \
+    FIELD(camera, right_x, "change of that direction by one pixel to the right")                                       \
+    FIELD(camera, right_y, "")                                                                                         \
+    FIELD(camera, right_z, "")                                                                                         \
+    FIELD(camera, down_x, "change of that direction by one pixel down")                                                \
+    FIELD(camera, down_y, "")                                                                                          \
+    FIELD(camera, down_z, "")                                                                                          \
+    FIELD(camera, filter_radius, "tent, gaussian: half the support, in pixels")                                        \
+    FIELD(camera, filter_stddev, "gaussian, in pixels")
+
+GRADUS_LIB_BEGIN
+
+#define GRADUS_RECORD_INDEX(record, field, text) record##_##field,
+enum triangle_field { GRADUS_TRIANGLE_FIELDS(GRADUS_RECORD_INDEX) triangle_stride };
+enum normals_field { GRADUS_TRIANGLE_NORMALS_FIELDS(GRADUS_RECORD_INDEX) normals_stride };
+enum triangle_tangent_field { GRADUS_TRIANGLE_TANGENT_FIELDS(GRADUS_RECORD_INDEX) triangle_tangent_stride };
+enum sphere_field { GRADUS_SPHERE_FIELDS(GRADUS_RECORD_INDEX) sphere_stride };
+enum light_field { GRADUS_LIGHT_FIELDS(GRADUS_RECORD_INDEX) light_stride };
+enum camera_field { GRADUS_CAMERA_FIELDS(GRADUS_RECORD_INDEX) camera_stride };
+#undef GRADUS_RECORD_INDEX
+
+enum light_kind { light_kind_triangle, light_kind_sphere, light_kind_point, light_kind_directional, light_kind_constant };
+
+/* primitive_light of a primitive that does not emit. */
+#define no_light 0xFFFFFFFFu
+
+/* Bits of material_flags. */
+#define material_flag_two_sided 1u
+
+/* Members of a record: FIELD_OF(light, lights, 3, value_r) */
+#define FIELD_OF(record, array, index, field) ((array)[(size_t)(index) * record##_stride + record##_##field])
+#define FIELD_V3(record, array, index, field)                                                                          \
+    v3(FIELD_OF(record, array, index, field##_x), FIELD_OF(record, array, index, field##_y),                           \
+       FIELD_OF(record, array, index, field##_z))
+
+GRADUS_LIB_END
+#endif

@@ -1,0 +1,55 @@
+/* accumulate: adds one sample to each of `count` pixels: slots `first_slot` on, whose pixels follow `first_pixel`
+ * cyclically. A sample with a NaN or an infinity is left out and counted. */
+//! traits: TRAIT_AOV
+#include "kernels/lib/compensated.h"
+#include "kernels/shared/stage.h"
+
+/* By the bits: relaxed arithmetic may remove isfinite(). */
+GRADUS_FN int is_finite(real x) { return (as_uint((float)x) & 0x7F800000u) != 0x7F800000u; }
+
+#define ADD(table, column, correction_column, x)                                                                       \
+    {                                                                                                                  \
+        compensated s;                                                                                                 \
+        s.sum = AT(table, column, pixel);                                                                              \
+        s.correction = AT(table, correction_column, pixel);                                                            \
+        s = compensated_add(s, x);                                                                                     \
+        AT(table, column, pixel) = s.sum;                                                                              \
+        AT(table, correction_column, pixel) = s.correction;                                                            \
+    }
+
+STAGE accumulate(uint count, uint batch_capacity, uint pixels, uint first_slot, uint first_pixel,
+                 __global const real *radiance, __global const real *feature, __global real *film,
+                 __global real *feature_film) {
+    const size_t i = get_global_id(0);
+    if (i >= count)
+        return;
+    const uint slot = first_slot + (uint)i;
+    const uint unwrapped = first_pixel + (uint)i;
+    const uint pixel = unwrapped >= pixels ? unwrapped - pixels : unwrapped;
+    uint capacity = batch_capacity;
+    rgb value = AT_RGB(radiance, value, slot);
+#if TRAIT_AOV
+    const rgb albedo = AT_RGB(feature, albedo, slot);
+    const vec3 normal = AT_V3(feature, normal, slot);
+    const real depth = AT(feature, depth, slot);
+#endif
+    capacity = pixels;
+    const int finite = is_finite(value.r) && is_finite(value.g) && is_finite(value.b);
+    value = rgb3(finite ? value.r : R(0), finite ? value.g : R(0), finite ? value.b : R(0));
+    ADD(film, sum_r, correction_r, value.r)
+    ADD(film, sum_g, correction_g, value.g)
+    ADD(film, sum_b, correction_b, value.b)
+    AT_UINT(film, rejected, pixel) += finite ? 0u : 1u;
+#if TRAIT_AOV
+    ADD(feature_film, square_r, square_correction_r, value.r * value.r)
+    ADD(feature_film, square_g, square_correction_g, value.g * value.g)
+    ADD(feature_film, square_b, square_correction_b, value.b * value.b)
+    AT(feature_film, albedo_r, pixel) += albedo.r;
+    AT(feature_film, albedo_g, pixel) += albedo.g;
+    AT(feature_film, albedo_b, pixel) += albedo.b;
+    AT(feature_film, normal_x, pixel) += normal.x;
+    AT(feature_film, normal_y, pixel) += normal.y;
+    AT(feature_film, normal_z, pixel) += normal.z;
+    AT(feature_film, depth, pixel) += depth;
+#endif
+}

@@ -1,0 +1,62 @@
+/* camera: begins one path a row. Leaves its first ray, its random key, throughput 1 and radiance 0.
+ *
+ * Samples are numbered pixel first: number = sample * pixels + pixel of the crop. This batch starts at pixel
+ * `first_pixel` of sample `first_sample`. Random numbers go by the pixel of the full film, so that a crop equals
+ * the same part of the full image. */
+//! traits: TRAIT_REFRACTION TRAIT_FILTER_TENT TRAIT_FILTER_GAUSSIAN TRAIT_AOV
+#include "kernels/lib/random.h"
+#include "kernels/lib/warp.h"
+#include "kernels/shared/stage.h"
+
+/* Filter importance sampling (Ernst et al. 2006): the offset from the pixel's center is drawn from the filter. */
+GRADUS_FN real filter_offset(__global const real *camera, real u) {
+#if TRAIT_FILTER_TENT
+    return FIELD_OF(camera, camera, 0, filter_radius) * warp_tent(u);
+#elif TRAIT_FILTER_GAUSSIAN
+    return warp_gaussian(u, FIELD_OF(camera, camera, 0, filter_radius), FIELD_OF(camera, camera, 0, filter_stddev));
+#else
+    return u - R(0.5);
+#endif
+}
+
+STAGE camera(uint count, uint capacity, __global real *ray, __global real *vertex, __global real *radiance,
+             __global real *feature, __global const real *camera, uint first_pixel, uint first_sample_low, uint first_sample_high, uint pixels,
+             uint crop_x, uint crop_y, uint crop_width, uint film_width, uint seed_low, uint seed_high) {
+    const size_t row = get_global_id(0);
+    if (row >= count)
+        return;
+    const uint number = first_pixel + (uint)row;
+    const uint more_samples = number / pixels;
+    const uint pixel = number - more_samples * pixels;
+    const uint sample_low = first_sample_low + more_samples;
+    const uint sample_high = first_sample_high + (sample_low < first_sample_low ? 1u : 0u);
+    const uint y = pixel / crop_width + crop_y;
+    const uint x = pixel % crop_width + crop_x;
+
+    const random_bits key = random_key(seed_low, seed_high, y * film_width + x, sample_low, sample_high);
+    const random4 u = random_draw(key.x, key.y, random_dimension_camera);
+    const real film_x = (real)x + R(0.5) + filter_offset(camera, u.a);
+    const real film_y = (real)y + R(0.5) + filter_offset(camera, u.b);
+    const vec3 direction =
+        v3_normalize(v3_mad(v3_mad(FIELD_V3(camera, camera, 0, corner), film_x, FIELD_V3(camera, camera, 0, right)),
+                            film_y, FIELD_V3(camera, camera, 0, down)));
+    const vec3 origin = FIELD_V3(camera, camera, 0, origin);
+    SET_V3(ray, origin, row, origin);
+    SET_V3(ray, direction, row, direction);
+    AT_UINT(ray, primitive, row) = ray_pending;
+
+    AT_UINT(vertex, slot, row) = (uint)row;
+    AT_UINT(vertex, key_0, row) = key.x;
+    AT_UINT(vertex, key_1, row) = key.y;
+    SET_RGB(vertex, throughput, row, rgb_gray(R(1)));
+    AT(vertex, pdf, row) = R(0);
+#if TRAIT_REFRACTION
+    AT(vertex, eta, row) = R(1);
+#endif
+    SET_RGB(radiance, value, row, rgb_gray(R(0)));
+#if TRAIT_AOV
+    SET_RGB(feature, albedo, row, rgb_gray(R(0)));
+    SET_V3(feature, normal, row, v3(R(0), R(0), R(0)));
+    AT(feature, depth, row) = R(0);
+#endif
+}

@@ -1,0 +1,15 @@
+/* connect: adds to each path what its newest vertex gained: the emission found there, and the light sampled from it
+ * where nothing is in between. */
+#include "kernels/shared/stage.h"
+
+STAGE connect(uint count, uint capacity, __global const real *vertex, __global const real *shadow,
+              __global real *radiance) {
+    const size_t row = get_global_id(0);
+    if (row >= count)
+        return;
+    const uint slot = AT_UINT(vertex, slot, row);
+    const int open = AT_UINT(shadow, open, row) != 0u;
+    AT(radiance, value_r, slot) += AT(vertex, emitted_r, row) + (open ? AT(shadow, value_r, row) : R(0));
+    AT(radiance, value_g, slot) += AT(vertex, emitted_g, row) + (open ? AT(shadow, value_g, row) : R(0));
+    AT(radiance, value_b, slot) += AT(vertex, emitted_b, row) + (open ? AT(shadow, value_b, row) : R(0));
+}

@@ -1,0 +1,78 @@
+#include "runtime/device/buffer.h"
+
+#include "runtime/device/opencl.h"
+#include "runtime/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace gradus {
+
+struct Buffer::Handle {
+    Handle(Device::Implementation &device, cl::Buffer memory, std::size_t bytes)
+        : device(device), memory(std::move(memory)), bytes(bytes) {
+        device.allocated_bytes += bytes;
+        device.peak_bytes = std::max(device.peak_bytes, device.allocated_bytes);
+    }
+    ~Handle() { device.allocated_bytes -= bytes; }
+
+    Device::Implementation &device;
+    cl::Buffer memory;
+    std::size_t bytes;
+};
+
+Buffer::Buffer(Device &device, const std::string &name, std::size_t bytes)
+    : name_(name), bytes_(std::max<std::size_t>(bytes, 16)) {
+    Device::Implementation &d = device.implementation();
+    if (bytes_ > d.description.allocation_bytes)
+        throw Error(ExitCode::device,
+                    fmt::format("{} needs {} MB, more than the {} MB that {} allocates at once; try a smaller "
+                                "--batch-size, --size or scene",
+                                name, bytes_ >> 20, d.description.allocation_bytes >> 20, d.description.name));
+    opencl_call(fmt::format("allocating {} MB for {}", bytes_ >> 20, name), [&] {
+        handle_ = std::make_shared<Handle>(
+            d, cl::Buffer(d.context, CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR, bytes_), bytes_);
+    });
+}
+
+Buffer::Buffer(Device &device, const std::string &name, const void *data, std::size_t bytes)
+    : Buffer(device, name, bytes) {
+    opencl_call("filling " + name, [&] {
+        if (bytes > 0)
+            handle_->device.queue.enqueueWriteBuffer(handle_->memory, CL_TRUE, 0, bytes, data);
+        else
+            clear();
+    });
+}
+
+const void *Buffer::argument() const { return &handle_->memory(); }
+
+void Buffer::clear() {
+    opencl_call("clearing " + name_,
+                [&] { handle_->device.queue.enqueueFillBuffer(handle_->memory, cl_uchar(0), 0, bytes_); });
+}
+
+void Buffer::read(void *data, std::size_t bytes) const {
+    opencl_call("reading " + name_,
+                [&] { handle_->device.queue.enqueueReadBuffer(handle_->memory, CL_TRUE, 0, bytes, data); });
+}
+
+Buffer::Mapping::Mapping(const Buffer &buffer, Access access) : buffer_(buffer) {
+    const cl_map_flags flags = access == Access::read    ? CL_MAP_READ
+                               : access == Access::write ? CL_MAP_WRITE
+                                                         : CL_MAP_READ | CL_MAP_WRITE;
+    pointer_ = opencl_call("mapping " + buffer.name_, [&] {
+        return buffer.handle_->device.queue.enqueueMapBuffer(buffer.handle_->memory, CL_TRUE, flags, 0, buffer.bytes_);
+    });
+}
+
+Buffer::Mapping::~Mapping() {
+    try {
+        buffer_.handle_->device.queue.enqueueUnmapMemObject(buffer_.handle_->memory, pointer_);
+    } catch (const cl::Error &) {
+        // Nothing can be done here; the next call on the queue reports the error.
+    }
+}
+
+} // namespace gradus

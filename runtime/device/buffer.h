@@ -1,0 +1,60 @@
+// Device memory, and the short time in which the host may touch it.
+#pragma once
+
+#include "runtime/device/device.h"
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+namespace gradus {
+
+enum class Access { read, write, read_write };
+
+/// An array in device memory. On a CPU device it is host memory, and mapping it copies nothing.
+class Buffer {
+  public:
+    Buffer() = default;
+    /// `name` is for messages and for the arguments of kernels that bear it. An empty buffer holds one element, for
+    /// OpenCL has none of size 0. Throws Error where there is no memory.
+    Buffer(Device &device, const std::string &name, std::size_t bytes);
+    /// The same with its content.
+    Buffer(Device &device, const std::string &name, const void *data, std::size_t bytes);
+
+    const std::string &name() const { return name_; }
+    std::size_t bytes() const { return bytes_; }
+    bool valid() const { return handle_ != nullptr; }
+    /// The cl_mem, as a pointer that clSetKernelArg takes.
+    const void *argument() const;
+
+    /// Sets all bytes to zero.
+    void clear();
+    /// Waits for all work on the queue, then copies the content.
+    void read(void *data, std::size_t bytes) const;
+
+    /// The host's view of the buffer, until it is destroyed. Waits for all work on the queue.
+    class Mapping {
+      public:
+        Mapping(const Buffer &buffer, Access access);
+        ~Mapping();
+        Mapping(const Mapping &) = delete;
+        Mapping &operator=(const Mapping &) = delete;
+        template <class T>
+        T *as() const {
+            return static_cast<T *>(pointer_);
+        }
+
+      private:
+        const Buffer &buffer_;
+        void *pointer_;
+    };
+    Mapping map(Access access) const { return Mapping(*this, access); }
+
+  private:
+    struct Handle;
+    std::string name_;
+    std::size_t bytes_ = 0;
+    std::shared_ptr<Handle> handle_;
+};
+
+} // namespace gradus

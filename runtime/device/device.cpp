@@ -1,0 +1,136 @@
+#include "runtime/device/device.h"
+
+#include "runtime/device/opencl.h"
+#include "runtime/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace gradus {
+
+namespace {
+
+std::string trimmed(std::string text) {
+    while (!text.empty() && (text.back() == '\0' || text.back() == ' '))
+        text.pop_back();
+    return text;
+}
+
+std::string lower(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+    return text;
+}
+
+DeviceDescription describe(const cl::Platform &platform, const cl::Device &device) {
+    DeviceDescription d;
+    d.platform = trimmed(platform.getInfo<CL_PLATFORM_NAME>());
+    d.name = trimmed(device.getInfo<CL_DEVICE_NAME>());
+    d.vendor = trimmed(device.getInfo<CL_DEVICE_VENDOR>());
+    d.version = trimmed(device.getInfo<CL_DEVICE_VERSION>());
+    d.driver = trimmed(device.getInfo<CL_DRIVER_VERSION>());
+    const cl_device_type type = device.getInfo<CL_DEVICE_TYPE>();
+    d.type = type & CL_DEVICE_TYPE_CPU ? "cpu" : type & CL_DEVICE_TYPE_GPU ? "gpu" : "accelerator";
+    d.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+    d.memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
+    d.allocation_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
+    d.has_double = device.getInfo<CL_DEVICE_EXTENSIONS>().find("cl_khr_fp64") != std::string::npos;
+    return d;
+}
+
+struct Found {
+    cl::Device device;
+    DeviceDescription description;
+};
+
+std::vector<Found> find_devices() {
+    std::vector<Found> found;
+    std::vector<cl::Platform> platforms;
+    try {
+        cl::Platform::get(&platforms);
+    } catch (const cl::Error &) {
+        return found; // the loader reports "no platform" as an error
+    }
+    for (const cl::Platform &platform : platforms) {
+        std::vector<cl::Device> devices;
+        try {
+            platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
+            for (const cl::Device &device : devices)
+                found.push_back({device, describe(platform, device)});
+        } catch (const cl::Error &) {
+            continue; // a platform without a device says so by an error
+        }
+    }
+    return found;
+}
+
+bool is_pocl_cpu(const DeviceDescription &d) {
+    return d.type == "cpu" && lower(d.platform).find("portable computing language") != std::string::npos;
+}
+
+std::string list_of(const std::vector<Found> &found) {
+    std::string text;
+    for (std::size_t i = 0; i < found.size(); ++i)
+        text += fmt::format("\n  {}: {} ({})", i, found[i].description.name, found[i].description.platform);
+    return text;
+}
+
+std::size_t choose(const std::vector<Found> &found, const std::string &selector) {
+    if (found.empty())
+        throw Error(ExitCode::device, "no OpenCL device was found; install one, for example PoCL for the CPU: "
+                                      "apt install pocl-opencl-icd");
+    if (selector.empty()) {
+        for (std::size_t i = 0; i < found.size(); ++i)
+            if (is_pocl_cpu(found[i].description))
+                return i;
+        return 0;
+    }
+    if (std::all_of(selector.begin(), selector.end(), [](unsigned char c) { return std::isdigit(c); })) {
+        const unsigned long number = selector.size() < 6 ? std::stoul(selector) : found.size();
+        if (number < found.size())
+            return number;
+    }
+    for (std::size_t i = 0; i < found.size(); ++i)
+        if (lower(found[i].description.platform + " " + found[i].description.name).find(lower(selector)) !=
+            std::string::npos)
+            return i;
+    throw Error(ExitCode::device, fmt::format("no OpenCL device matches \"{}\"; there are:{}", selector, list_of(found)));
+}
+
+} // namespace
+
+std::vector<DeviceDescription> list_devices() {
+    std::vector<DeviceDescription> descriptions;
+    for (const Found &found : find_devices())
+        descriptions.push_back(found.description);
+    return descriptions;
+}
+
+Device::Device(const std::string &selector, int threads) : implementation_(std::make_unique<Implementation>()) {
+    // PoCL reads its worker count once, when the platform is first asked for.
+    if (threads > 0)
+        setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(threads).c_str(), 1);
+    const std::vector<Found> found = find_devices();
+    const Found &chosen = found[choose(found, selector)];
+    implementation_->description = chosen.description;
+    implementation_->device = chosen.device;
+    opencl_call("opening the device " + chosen.description.name, [&] {
+        implementation_->context = cl::Context(chosen.device);
+        implementation_->queue = cl::CommandQueue(implementation_->context, chosen.device, CL_QUEUE_PROFILING_ENABLE);
+    });
+}
+
+Device::~Device() = default;
+
+const DeviceDescription &Device::description() const { return implementation_->description; }
+
+void throw_opencl_error(const std::string &doing, const cl::Error &error) {
+    const bool memory = error.err() == CL_MEM_OBJECT_ALLOCATION_FAILURE || error.err() == CL_OUT_OF_RESOURCES ||
+                        error.err() == CL_OUT_OF_HOST_MEMORY || error.err() == CL_INVALID_BUFFER_SIZE;
+    throw Error(ExitCode::device,
+                fmt::format("{}: OpenCL error {} in {}{}", doing, error.err(), error.what(),
+                            memory ? " (out of memory: try a smaller --batch-size, --size or scene)" : ""));
+}
+
+} // namespace gradus

@@ -1,0 +1,43 @@
+// OpenCL: choosing a device. runtime/device is the only place that includes OpenCL headers.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace gradus {
+
+struct DeviceDescription {
+    std::string platform, name, vendor, version, driver;
+    std::string type; ///< "cpu", "gpu" or "accelerator"
+    unsigned compute_units = 0;
+    std::uint64_t memory_bytes = 0;     ///< as the implementation reports it, which is not always true
+    std::uint64_t allocation_bytes = 0; ///< largest single allocation
+    bool has_double = false;
+};
+
+/// Every OpenCL device of every platform, in a stable order; empty where there is none.
+std::vector<DeviceDescription> list_devices();
+
+/// One OpenCL device with its context and in-order queue.
+class Device {
+  public:
+    /// `selector`: empty (PoCL's CPU device, else the first one), a number from list_devices(), or a part of the
+    /// platform's or device's name in any case. `threads`: how many cores a CPU device may use, 0 for all; takes
+    /// effect only for the first device of a process. Throws Error with the list of what there is.
+    explicit Device(const std::string &selector = "", int threads = 0);
+    ~Device();
+    Device(const Device &) = delete;
+    Device &operator=(const Device &) = delete;
+
+    const DeviceDescription &description() const;
+
+    struct Implementation; ///< runtime/device/opencl.h
+    Implementation &implementation() { return *implementation_; }
+
+  private:
+    std::unique_ptr<Implementation> implementation_;
+};
+
+} // namespace gradus

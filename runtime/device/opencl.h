@@ -1,0 +1,37 @@
+// The OpenCL side of Device, for the files of runtime/device only.
+#pragma once
+
+#include "runtime/device/device.h"
+
+#define CL_TARGET_OPENCL_VERSION 120
+#define CL_HPP_TARGET_OPENCL_VERSION 120
+#define CL_HPP_MINIMUM_OPENCL_VERSION 120
+#define CL_HPP_ENABLE_EXCEPTIONS
+#include <CL/opencl.hpp>
+
+namespace gradus {
+
+struct Device::Implementation {
+    DeviceDescription description;
+    cl::Device device;
+    cl::Context context;
+    cl::CommandQueue queue;
+    std::uint64_t allocated_bytes = 0, peak_bytes = 0;
+};
+
+/// Runs a function and turns an OpenCL error into an Error that says what was being done.
+template <class Function>
+auto opencl_call(const std::string &doing, Function function) -> decltype(function());
+
+[[noreturn]] void throw_opencl_error(const std::string &doing, const cl::Error &error);
+
+template <class Function>
+auto opencl_call(const std::string &doing, Function function) -> decltype(function()) {
+    try {
+        return function();
+    } catch (const cl::Error &error) {
+        throw_opencl_error(doing, error);
+    }
+}
+
+} // namespace gradus

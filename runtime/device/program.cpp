@@ -1,0 +1,214 @@
+#include "runtime/device/program.h"
+
+#include "runtime/device/kernel_source.h"
+#include "runtime/device/opencl.h"
+#include "runtime/error.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+
+namespace gradus {
+
+struct Kernel::Handle {
+    KernelRequest request;
+    Device::Implementation *device = nullptr;
+    Precision precision = Precision::single;
+    std::uint32_t work_group_size = 64;
+    cl::Program program;
+    cl::Kernel kernel;
+    std::map<std::string, cl_uint> arguments; ///< index by name
+    std::vector<bool> is_set;
+    Usage usage;
+    std::vector<cl::Event> pending;
+
+    void collect() {
+        for (const cl::Event &event : pending) {
+            event.wait();
+            usage.seconds += 1e-9 * static_cast<double>(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
+                                                        event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
+        }
+        pending.clear();
+    }
+
+    void set(const std::string &argument, std::size_t bytes, const void *value) {
+        const auto found = arguments.find(argument);
+        if (found == arguments.end())
+            return;
+        opencl_call("setting " + argument + " of " + request.name,
+                    [&] { kernel.setArg(found->second, bytes, value); });
+        is_set[found->second] = true;
+    }
+};
+
+const std::string &Kernel::name() const { return handle_->request.name; }
+
+void Kernel::bind(const std::string &argument, const Buffer &buffer) {
+    handle_->set(argument, sizeof(cl_mem), buffer.argument());
+}
+
+void Kernel::set(const std::string &argument, std::uint32_t value) { handle_->set(argument, sizeof value, &value); }
+
+void Kernel::set_real(const std::string &argument, double value) {
+    const float single = static_cast<float>(value);
+    if (handle_->precision == Precision::double_)
+        handle_->set(argument, sizeof value, &value);
+    else
+        handle_->set(argument, sizeof single, &single);
+}
+
+void Kernel::launch(std::size_t items) {
+    for (const auto &[argument, index] : handle_->arguments)
+        if (!handle_->is_set[index])
+            throw std::logic_error("kernel " + name() + ": argument " + argument + " was not set");
+    const std::size_t group = handle_->work_group_size;
+    const std::size_t padded = (items + group - 1) / group * group;
+    if (padded == 0)
+        return;
+    opencl_call("launching " + name(), [&] {
+        cl::Event event;
+        handle_->device->queue.enqueueNDRangeKernel(handle_->kernel, cl::NullRange, cl::NDRange(padded),
+                                                    cl::NDRange(group), nullptr, &event);
+        handle_->pending.push_back(std::move(event));
+    });
+    handle_->usage.launches += 1;
+    handle_->usage.items += items;
+    if (handle_->pending.size() >= 256)
+        opencl_call("timing " + name(), [&] { handle_->collect(); });
+}
+
+Kernel::Usage Kernel::usage() const {
+    opencl_call("timing " + name(), [&] { handle_->collect(); });
+    return handle_->usage;
+}
+
+void Kernel::reset_usage() {
+    opencl_call("timing " + name(), [&] { handle_->collect(); });
+    handle_->usage = {};
+}
+
+KernelLibrary::KernelLibrary(Device &device, TraitValues traits, Precision precision)
+    : device_(device), traits_(std::move(traits)), precision_(precision) {}
+
+std::uint32_t KernelLibrary::work_group_size() const { return 64; }
+
+namespace {
+
+std::string options_for(const KernelRequest &request, const KernelSource &source, const TraitValues &traits,
+                        Precision precision, std::uint32_t work_group_size) {
+    std::string options = fmt::format("-cl-std=CL1.2 -cl-kernel-arg-info -D WORK_GROUP_SIZE={}", work_group_size);
+    if (precision == Precision::double_)
+        options += " -D GRADUS_DOUBLE";
+    else
+        options += " -cl-single-precision-constant -cl-denorms-are-zero";
+    if (precision == Precision::relaxed)
+        options += " -cl-fast-relaxed-math";
+    for (const std::string &name : source.traits) {
+        const auto found = traits.find(name);
+        options += fmt::format(" -D {}={}", name, found == traits.end() ? 0 : found->second);
+    }
+    for (const auto &[name, value] : request.definitions)
+        options += fmt::format(" -D {}={}", name, value);
+    return options;
+}
+
+void dump(const std::string &folder, const KernelRequest &request, const std::string &options,
+          const std::string &text) {
+    std::string file = request.name;
+    for (char &c : file)
+        c = c == ' ' ? '-' : c;
+    std::filesystem::create_directories(folder);
+    std::ofstream out(std::filesystem::path(folder) / (file + ".cl"));
+    out << "// options: " << options << "\n" << text;
+    if (!out)
+        throw Error(ExitCode::output, "cannot write kernel sources to " + folder);
+}
+
+} // namespace
+
+std::vector<Kernel> KernelLibrary::build(const std::vector<KernelRequest> &requests, const Progress &progress,
+                                         const std::string &dump_folder) {
+    std::vector<Kernel> kernels(requests.size());
+    std::mutex reporting;
+    std::size_t built = 0;
+    std::exception_ptr failure;
+    std::atomic<std::size_t> next{0};
+
+    const auto build_one = [&](const KernelRequest &request) {
+        Device::Implementation &d = device_.implementation();
+        const auto start = std::chrono::steady_clock::now();
+        const KernelSource source = kernel_source(request.file);
+        const std::string options = options_for(request, source, traits_, precision_, work_group_size());
+        if (!dump_folder.empty())
+            dump(dump_folder, request, options, source.text);
+        auto handle = std::make_shared<Kernel::Handle>();
+        handle->request = request;
+        handle->device = &d;
+        handle->precision = precision_;
+        handle->work_group_size = work_group_size();
+        opencl_call("compiling kernel " + request.name, [&] {
+            handle->program = cl::Program(d.context, source.text);
+            try {
+                handle->program.build({d.device}, options.c_str());
+            } catch (const cl::Error &) {
+                throw Error(ExitCode::device,
+                            fmt::format("kernel {} does not compile for {}:\n{}", request.name, d.description.name,
+                                        handle->program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(d.device)));
+            }
+            handle->kernel = cl::Kernel(handle->program, request.entry.c_str());
+            const cl_uint count = handle->kernel.getInfo<CL_KERNEL_NUM_ARGS>();
+            for (cl_uint i = 0; i < count; ++i) {
+                std::string name = handle->kernel.getArgInfo<CL_KERNEL_ARG_NAME>(i);
+                while (!name.empty() && name.back() == '\0')
+                    name.pop_back();
+                handle->arguments[name] = i;
+            }
+            handle->is_set.assign(count, false);
+        });
+        Kernel kernel;
+        kernel.handle_ = handle;
+        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        const std::lock_guard lock(reporting);
+        ++built;
+        if (progress)
+            progress(request.name, built, requests.size(), seconds);
+        return kernel;
+    };
+
+    const auto work = [&] {
+        for (std::size_t i = next++; i < requests.size(); i = next++) {
+            try {
+                kernels[i] = build_one(requests[i]);
+            } catch (...) {
+                const std::lock_guard lock(reporting);
+                failure = std::current_exception();
+                next = requests.size();
+            }
+        }
+    };
+    std::vector<std::thread> threads;
+    const std::size_t count = std::min<std::size_t>(std::max(1u, std::thread::hardware_concurrency()), requests.size());
+    for (std::size_t i = 1; i < count; ++i)
+        threads.emplace_back(work);
+    work();
+    for (std::thread &thread : threads)
+        thread.join();
+    if (failure)
+        std::rethrow_exception(failure);
+    return kernels;
+}
+
+void finish(Device &device) {
+    opencl_call("waiting for the device", [&] { device.implementation().queue.finish(); });
+}
+
+std::uint64_t peak_device_bytes(Device &device) { return device.implementation().peak_bytes; }
+
+} // namespace gradus

@@ -1,0 +1,87 @@
+// Kernels: compiled for the traits that they declare, launched by name, their arguments set by name.
+#pragma once
+
+#include "runtime/device/buffer.h"
+#include "runtime/device/device.h"
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace gradus {
+
+/// Values of the names that kernels declare in their "//! traits:" lines.
+using TraitValues = std::map<std::string, int>;
+
+/// One kernel of a program: which file, which entry, and what it is compiled for.
+struct KernelRequest {
+    std::string name;  ///< its row in the profile: "scatter diffuse"
+    std::string file;  ///< "kernels/stages/scatter.cl"
+    std::string entry; ///< "scatter"
+    std::map<std::string, std::string> definitions; ///< more macros, such as BSDF=diffuse
+};
+
+enum class Precision { single, relaxed, double_ };
+
+constexpr std::size_t real_bytes(Precision precision) { return precision == Precision::double_ ? 8 : 4; }
+
+/// A compiled kernel with its arguments.
+class Kernel {
+  public:
+    const std::string &name() const;
+
+    /// Gives every argument whose name is the buffer's name that buffer. Arguments of other names stay as they are.
+    void bind(const Buffer &buffer) { bind(buffer.name(), buffer); }
+    void bind(const std::string &argument, const Buffer &buffer);
+    /// Sets an argument by value; one that the kernel does not have is left out in silence, so that a stage need not
+    /// know which variant it launches.
+    void set(const std::string &argument, std::uint32_t value);
+    void set_real(const std::string &argument, double value);
+
+    /// Enqueues `items` work-items. Every argument must have been set: throws std::logic_error that names it.
+    void launch(std::size_t items);
+
+    /// What all launches so far took on the device. Waits for them.
+    struct Usage {
+        double seconds = 0;
+        std::uint64_t launches = 0, items = 0;
+    };
+    Usage usage() const;
+    void reset_usage();
+
+  private:
+    friend class KernelLibrary;
+    struct Handle;
+    std::shared_ptr<Handle> handle_;
+};
+
+/// Builds kernels and keeps them; equal requests share a program.
+class KernelLibrary {
+  public:
+    KernelLibrary(Device &device, TraitValues traits, Precision precision = Precision::single);
+
+    /// Called after each program was built: its name, how many are built, of how many, and its seconds.
+    using Progress = std::function<void(const std::string &, std::size_t, std::size_t, double)>;
+    /// Builds several kernels, several at a time. Where `dump_folder` is not empty, the final source of each goes
+    /// there. Throws Error with the compiler's log.
+    std::vector<Kernel> build(const std::vector<KernelRequest> &requests, const Progress &progress = {},
+                              const std::string &dump_folder = "");
+
+    std::uint32_t work_group_size() const;
+
+  private:
+    Device &device_;
+    TraitValues traits_;
+    Precision precision_;
+};
+
+/// Waits until the device has done all that was asked of it.
+void finish(Device &device);
+
+/// The most bytes that were allocated on the device at one time.
+std::uint64_t peak_device_bytes(Device &device);
+
+} // namespace gradus

@@ -1,0 +1,31 @@
+// An image of named float channels with metadata, as the film gives it and image files hold it.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace gradus {
+
+/// One plane of an image: width * height floats, row by row from the top left.
+struct Channel {
+    std::string name; ///< "R", "G", "B", or "layer.R" as OpenEXR names layers
+    std::vector<float> values;
+};
+
+struct Image {
+    std::uint32_t width = 0, height = 0;
+    std::vector<Channel> channels;
+    std::map<std::string, std::string> metadata;
+
+    /// The channel of that name, or nullptr.
+    const Channel *find(const std::string &name) const {
+        for (const Channel &channel : channels)
+            if (channel.name == name)
+                return &channel;
+        return nullptr;
+    }
+};
+
+} // namespace gradus

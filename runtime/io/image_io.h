@@ -1,0 +1,26 @@
+// Image files in and out. The only file that includes OpenImageIO.
+#pragma once
+
+#include "runtime/film/image.h"
+
+#include <string>
+
+namespace gradus {
+
+/// Reads an image of any format that OpenImageIO knows, all channels as float, row by row from the top left.
+/// Channels keep their names ("R", "layer.R"); their order is the file's, so look them up by name. Colour channels of
+/// formats that hold sRGB values (PNG, JPEG) are decoded to linear. Parts of a file after the first have their channel
+/// names led by "NAME." with the part's name. Metadata that write_image() wrote is read back under the same keys;
+/// other attributes keep their names. Throws Error(ExitCode::image).
+Image read_image(const std::string &path);
+
+/// Writes all channels as 32-bit float to an OpenEXR file (zip), with the metadata as string attributes "gradus:KEY".
+/// Infinities and NaN are kept. The file is written in whole or not at all (write_file_atomically). Equal images give
+/// equal bytes: the attribute DateTime, which OpenImageIO would set to now, is fixed. Throws Error(ExitCode::output).
+void write_image(const Image &image, const std::string &path);
+
+/// Writes R, G, B as an 8-bit PNG as tonemap.h says. Throws Error(ExitCode::output), or Error(ExitCode::image) where a
+/// channel is missing.
+void write_png(const Image &image, const std::string &path);
+
+} // namespace gradus

@@ -1,0 +1,27 @@
+// <bsdf type="twosided">: gives a one-sided BSDF a back. One nested BSDF serves both sides; of two, the first is the
+// front and the second the back.
+#include "runtime/io/plugins/plugin.h"
+
+namespace gradus {
+
+Material bsdf_twosided(Properties &properties, SceneBuilder &builder) {
+    const auto nested = properties.objects("bsdf");
+    if (nested.empty() || nested.size() > 2)
+        throw SceneError(properties.location(),
+                         "twosided needs one nested BSDF or two, not " + std::to_string(nested.size()));
+    Material sides[2];
+    for (std::size_t i = 0; i < nested.size(); ++i) {
+        sides[i] = builder.build_object<Material>(*nested[i].element);
+        const BsdfKind kind = sides[i].front.kind;
+        if (kind == BsdfKind::dielectric || kind == BsdfKind::roughdielectric || kind == BsdfKind::null)
+            throw SceneError(nested[i].location, "twosided cannot hold a BSDF that lets light through");
+        if (sides[i].two_sided)
+            throw SceneError(nested[i].location, "twosided inside twosided");
+    }
+    Material material = sides[0];
+    material.back = sides[nested.size() - 1].front;
+    material.two_sided = true;
+    return material;
+}
+
+} // namespace gradus

@@ -1,0 +1,45 @@
+// What a plugin of each category turns its properties into.
+#pragma once
+
+#include "runtime/io/plugins/plugin_list.h"
+#include "runtime/io/properties.h"
+#include "runtime/io/scene_builder.h"
+#include "runtime/scene/mesh_builder.h"
+#include "runtime/scene/scene.h"
+
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace gradus {
+
+struct ReconstructionFilter {
+    FilmSettings::Filter filter = FilmSettings::Filter::gaussian;
+    float radius = 2.0f, stddev = 0.5f; ///< in pixels
+};
+
+using ShapeGeometry = std::variant<BuiltMesh, Sphere>;
+
+using bsdf_result = Material;
+using emitter_result = Emitter;
+using film_result = FilmSettings;
+using integrator_result = RenderSettings;
+using rfilter_result = ReconstructionFilter;
+using sensor_result = Camera;
+using shape_result = ShapeGeometry;
+
+#define GRADUS_PLUGIN_DECLARATION(category, name)                                                                      \
+    category##_result category##_##name(Properties &properties, SceneBuilder &builder);
+GRADUS_PLUGINS(GRADUS_PLUGIN_DECLARATION)
+#undef GRADUS_PLUGIN_DECLARATION
+
+template <typename Result>
+using PluginFunction = Result (*)(Properties &, SceneBuilder &);
+
+/// The plugin that the element names, or nullptr. The category is the element's tag.
+template <typename Result>
+PluginFunction<Result> find_plugin(const std::string &name);
+/// Names of a category's plugins, sorted.
+std::vector<std::string> plugin_names(const std::string &category);
+
+} // namespace gradus

@@ -1,0 +1,19 @@
+// <shape type="rectangle">: [-1, 1]^2 in the plane z = 0, its front towards +z.
+//   to_world, flip_normals
+#include "runtime/io/plugins/plugin.h"
+#include "runtime/io/plugins/shape_parameters.h"
+
+namespace gradus {
+
+ShapeGeometry shape_rectangle(Properties &properties, SceneBuilder &) {
+    Mesh mesh;
+    mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+    mesh.texcoords = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    MeshOptions options;
+    options.front_from_local_winding = true;
+    options.compute_normals = false; // flat
+    return build_shape_mesh(properties, std::move(mesh), options);
+}
+
+} // namespace gradus

@@ -1,0 +1,54 @@
+// <shape type="sphere">, its front outside.
+//   center (0, 0, 0), radius (1), to_world (applied to both; no stretching), flip_normals
+#include "runtime/io/plugins/plugin.h"
+#include "runtime/io/plugins/shape_parameters.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gradus {
+
+namespace {
+
+/// The factor by which a map stretches all directions alike, or 0 if it does not.
+double uniform_scale(const Matrix4 &matrix) {
+    std::array<Double3, 3> columns;
+    for (int i = 0; i < 3; ++i)
+        columns[i] = {matrix.m[i], matrix.m[4 + i], matrix.m[8 + i]};
+    const double factor = std::cbrt(std::fabs(determinant(matrix)));
+    // Files carry five or six digits; anything beyond that is meant.
+    const double tolerance = 1e-3 * factor * factor;
+    for (int i = 0; i < 3; ++i)
+        for (int j = i; j < 3; ++j)
+            if (!(std::fabs(dot(columns[i], columns[j]) - (i == j ? factor * factor : 0)) <= tolerance))
+                return 0;
+    return factor;
+}
+
+} // namespace
+
+ShapeGeometry shape_sphere(Properties &properties, SceneBuilder &) {
+    claim_attachments(properties);
+    const Double3 center = properties.point("center", {0, 0, 0});
+    const double radius = properties.number("radius", 1);
+    const Matrix4 to_world = properties.transform("to_world");
+    const double factor = uniform_scale(to_world);
+    if (!(factor > 0))
+        throw properties.error("to_world", "a sphere's to_world must scale all directions alike: no other scale, no "
+                                           "shear; an ellipsoid needs a mesh");
+    const bool is_legacy = properties.element().is_legacy();
+    if (!(std::isnormal(float(radius * factor))) || (radius < 0 && is_legacy))
+        throw properties.error("radius", "a sphere needs a positive radius of moderate size");
+    Sphere sphere;
+    sphere.center = to_float(transform_point(to_world, center));
+    sphere.radius = float(std::fabs(radius) * factor);
+    // Mitsuba 3 turns a sphere inside out when it is mirrored or its radius is negative; 0.x does not.
+    const bool is_mirrored = (determinant(to_world) < 0) != (radius < 0);
+    sphere.flip_normals = properties.boolean("flip_normals", false) != (is_mirrored && !is_legacy);
+    properties.ignore({"face_normals"});
+    if (!std::isfinite(sphere.center.x) || !std::isfinite(sphere.center.y) || !std::isfinite(sphere.center.z))
+        throw properties.error("center", "the sphere's center is out of range");
+    return sphere;
+}
+
+} // namespace gradus

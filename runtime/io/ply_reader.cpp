@@ -1,0 +1,317 @@
+// PLY, the Stanford polygon format: a text header that lists elements and their properties, then their values.
+#include "runtime/io/diagnostics.h"
+#include "runtime/io/file_search.h"
+#include "runtime/io/mesh_files.h"
+#include "runtime/io/text.h"
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace gradus {
+
+namespace {
+
+enum class Scalar { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+
+std::optional<Scalar> scalar_type(std::string_view name) {
+    if (name == "char" || name == "int8")
+        return Scalar::int8;
+    if (name == "uchar" || name == "uint8")
+        return Scalar::uint8;
+    if (name == "short" || name == "int16")
+        return Scalar::int16;
+    if (name == "ushort" || name == "uint16")
+        return Scalar::uint16;
+    if (name == "int" || name == "int32")
+        return Scalar::int32;
+    if (name == "uint" || name == "uint32")
+        return Scalar::uint32;
+    if (name == "float" || name == "float32")
+        return Scalar::float32;
+    if (name == "double" || name == "float64")
+        return Scalar::float64;
+    return std::nullopt;
+}
+
+std::size_t size_of(Scalar type) {
+    constexpr std::size_t sizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
+    return sizes[int(type)];
+}
+
+struct Property {
+    std::string name;
+    Scalar type = Scalar::float32;
+    std::optional<Scalar> count_type; // a list where it has one
+};
+
+struct ElementDeclaration {
+    std::string name;
+    std::uint64_t count = 0;
+    std::vector<Property> properties;
+
+    /// Bytes of one in a binary file at least, or characters in ASCII.
+    std::uint64_t least_size(bool ascii) const {
+        std::uint64_t size = 0;
+        for (const Property &property : properties)
+            size += ascii ? 2 : size_of(property.count_type.value_or(property.type));
+        return std::max<std::uint64_t>(size, 1);
+    }
+};
+
+template <typename T>
+T load(const char *at, bool swap) {
+    char bytes[sizeof(T)];
+    std::memcpy(bytes, at, sizeof(T));
+    if (swap)
+        std::reverse(bytes, bytes + sizeof(T));
+    T value;
+    std::memcpy(&value, bytes, sizeof(T));
+    return value;
+}
+
+double load_scalar(const char *at, Scalar type, bool swap) {
+    switch (type) {
+    case Scalar::int8:
+        return load<std::int8_t>(at, swap);
+    case Scalar::uint8:
+        return load<std::uint8_t>(at, swap);
+    case Scalar::int16:
+        return load<std::int16_t>(at, swap);
+    case Scalar::uint16:
+        return load<std::uint16_t>(at, swap);
+    case Scalar::int32:
+        return load<std::int32_t>(at, swap);
+    case Scalar::uint32:
+        return load<std::uint32_t>(at, swap);
+    case Scalar::float32:
+        return load<float>(at, swap);
+    case Scalar::float64:
+        return load<double>(at, swap);
+    }
+    return 0;
+}
+
+class PlyReader {
+  public:
+    PlyReader(const std::string &data, const std::string &file_name)
+        : at_(data.data()), end_(data.data() + data.size()), file_name_(file_name) {}
+
+    Mesh read() {
+        read_header();
+        for (const ElementDeclaration &element : elements_) {
+            if (element.count > std::uint64_t(end_ - at_) / element.least_size(ascii_) + 1)
+                fail("truncated: " + std::to_string(element.count) + " of \"" + element.name +
+                     "\" are announced, more than the file holds");
+            if (element.name == "vertex")
+                read_vertices(element);
+            else if (element.name == "face")
+                read_faces(element);
+            else
+                for (std::uint64_t i = 0; i < element.count; ++i)
+                    for (const Property &property : element.properties)
+                        skip(property);
+        }
+        for (const auto &triangle : mesh_.triangles)
+            for (std::uint32_t index : triangle)
+                if (index >= mesh_.positions.size())
+                    fail("face index " + std::to_string(index) + " is out of range: there are " +
+                         std::to_string(mesh_.positions.size()) + " vertices");
+        return std::move(mesh_);
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string &message) const {
+        throw SceneError({std::make_shared<const std::string>(file_name_), line_}, message);
+    }
+    std::string_view header_line();
+    void read_header();
+    double value(Scalar type);
+    std::uint64_t list_length(const Property &property);
+    void skip(const Property &property);
+    void read_vertices(const ElementDeclaration &element);
+    void read_faces(const ElementDeclaration &element);
+
+    const char *at_, *const end_;
+    const std::string &file_name_;
+    std::size_t line_ = 0; // counted in the header alone; 0 after it
+    bool ascii_ = false, swap_ = false;
+    std::vector<ElementDeclaration> elements_;
+    Mesh mesh_;
+};
+
+std::string_view PlyReader::header_line() {
+    ++line_;
+    const char *begin = at_;
+    while (at_ < end_ && *at_ != '\n')
+        ++at_;
+    if (at_ == end_)
+        fail("the header has no end_header");
+    std::string_view line(begin, std::size_t(at_ - begin));
+    ++at_;
+    return trimmed(line);
+}
+
+void PlyReader::read_header() {
+    if (end_ - at_ < 4 || std::string_view(at_, 3) != "ply")
+        fail("not a PLY file: it does not begin with \"ply\"");
+    header_line();
+    bool has_format = false;
+    for (;;) {
+        const std::string_view line = header_line();
+        const std::vector<std::string_view> words = split_list(line);
+        if (words.empty() || words[0] == "comment" || words[0] == "obj_info")
+            continue;
+        if (words[0] == "end_header")
+            break;
+        if (words[0] == "format" && words.size() >= 2) {
+            has_format = true;
+            const bool little = words[1] == "binary_little_endian", big = words[1] == "binary_big_endian";
+            ascii_ = words[1] == "ascii";
+            if (!ascii_ && !little && !big)
+                fail("unknown PLY format \"" + std::string(words[1]) + "\"");
+            swap_ = !ascii_ && little != (std::endian::native == std::endian::little);
+        } else if (words[0] == "element" && words.size() == 3) {
+            const std::optional<std::int64_t> count = parse_integer(words[2]);
+            if (!count || *count < 0)
+                fail("\"" + std::string(words[2]) + "\" is no count of elements");
+            elements_.push_back({std::string(words[1]), std::uint64_t(*count), {}});
+        } else if (words[0] == "property" && !elements_.empty() && words.size() >= 3) {
+            Property property;
+            property.name = words.back();
+            const bool is_list = words[1] == "list" && words.size() == 5;
+            const std::optional<Scalar> type = scalar_type(words[is_list ? 3 : 1]);
+            if (is_list)
+                property.count_type = scalar_type(words[2]);
+            if (!type || (is_list && !property.count_type))
+                fail("unknown property type in \"" + std::string(line) + "\"");
+            property.type = *type;
+            elements_.back().properties.push_back(property);
+        } else
+            fail("cannot read the header line \"" + std::string(line.substr(0, 80)) + "\"");
+    }
+    if (!has_format)
+        fail("the header has no format line");
+    line_ = 0;
+}
+
+double PlyReader::value(Scalar type) {
+    if (!ascii_) {
+        const std::size_t size = size_of(type);
+        if (std::size_t(end_ - at_) < size)
+            fail("truncated: the file ends before its last element");
+        const double result = load_scalar(at_, type, swap_);
+        at_ += size;
+        return result;
+    }
+    while (at_ < end_ && (*at_ == ' ' || *at_ == '\n' || *at_ == '\r' || *at_ == '\t'))
+        ++at_;
+    if (at_ == end_)
+        fail("truncated: the file ends before its last element");
+    if (*at_ == '+')
+        ++at_;
+    double result = 0;
+    const auto [stop, error] = std::from_chars(at_, end_, result);
+    if (error == std::errc::invalid_argument)
+        fail(quoted_excerpt({at_, end_}) + " is not a number");
+    at_ = stop;
+    return result;
+}
+
+std::uint64_t PlyReader::list_length(const Property &property) {
+    const double length = value(*property.count_type);
+    if (!(length >= 0) || length != std::floor(length) || length > 4294967295.0)
+        fail("a list of length " + std::to_string(length));
+    const std::uint64_t least = ascii_ ? 1 : size_of(property.type);
+    if (std::uint64_t(length) > std::uint64_t(end_ - at_) / least)
+        fail("truncated: a list is longer than the rest of the file");
+    return std::uint64_t(length);
+}
+
+void PlyReader::skip(const Property &property) {
+    if (!property.count_type)
+        value(property.type);
+    else if (const std::uint64_t length = list_length(property); ascii_)
+        for (std::uint64_t i = 0; i < length; ++i)
+            value(property.type);
+    else
+        at_ += length * size_of(property.type);
+}
+
+void PlyReader::read_vertices(const ElementDeclaration &element) {
+    if (element.count > std::numeric_limits<std::int32_t>::max())
+        fail("more vertices than 32-bit indices hold");
+    // Where each property goes: 0 to 2 position, 3 to 5 normal, 6 and 7 texture coordinates, 8 nowhere.
+    constexpr std::size_t nowhere = 8;
+    std::vector<std::size_t> targets;
+    bool present[nowhere + 1] = {};
+    for (const Property &property : element.properties) {
+        constexpr const char *names[nowhere] = {"x", "y", "z", "nx", "ny", "nz", "u", "v"};
+        std::string name = property.name;
+        if (name == "s" || name == "texture_u")
+            name = "u";
+        if (name == "t" || name == "texture_v")
+            name = "v";
+        const auto found = property.count_type ? std::end(names) : std::find(std::begin(names), std::end(names), name);
+        targets.push_back(std::size_t(found - std::begin(names)));
+        present[targets.back()] = true;
+    }
+    if (!present[0] || !present[1] || !present[2])
+        fail("the vertices have no x, y and z");
+    const bool has_normals = present[3] && present[4] && present[5], has_texcoords = present[6] && present[7];
+    mesh_.positions.reserve(element.count);
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+        float values[nowhere + 1] = {};
+        for (std::size_t p = 0; p < targets.size(); ++p) {
+            const Property &property = element.properties[p];
+            if (property.count_type)
+                skip(property);
+            else
+                values[targets[p]] = float(value(property.type));
+        }
+        mesh_.positions.push_back({values[0], values[1], values[2]});
+        if (has_normals)
+            mesh_.normals.push_back({values[3], values[4], values[5]});
+        if (has_texcoords)
+            mesh_.texcoords.push_back({values[6], values[7]});
+    }
+}
+
+void PlyReader::read_faces(const ElementDeclaration &element) {
+    std::vector<std::uint32_t> polygon;
+    for (std::uint64_t i = 0; i < element.count; ++i)
+        for (const Property &property : element.properties) {
+            const bool is_indices =
+                property.count_type && (property.name == "vertex_indices" || property.name == "vertex_index");
+            if (!is_indices) {
+                skip(property);
+                continue;
+            }
+            const std::uint64_t length = list_length(property);
+            polygon.clear();
+            for (std::uint64_t corner = 0; corner < length; ++corner) {
+                const double index = value(property.type);
+                if (!(index >= 0) || index > 4294967295.0 || index != std::floor(index))
+                    fail("face index " + std::to_string(index) + " is out of range");
+                polygon.push_back(std::uint32_t(index));
+            }
+            for (std::size_t corner = 2; corner < polygon.size(); ++corner)
+                mesh_.triangles.push_back({polygon[0], polygon[corner - 1], polygon[corner]});
+        }
+}
+
+} // namespace
+
+Mesh parse_ply(const std::string &data, const std::string &file_name) { return PlyReader(data, file_name).read(); }
+
+Mesh read_ply(const std::filesystem::path &path) {
+    const std::optional<std::string> data = read_whole_file(path);
+    if (!data)
+        throw SceneError({std::make_shared<const std::string>(path.string()), 0}, "cannot read this file");
+    return parse_ply(*data, path.string());
+}
+
+} // namespace gradus

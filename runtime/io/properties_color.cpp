@@ -1,0 +1,139 @@
+// Colours among the properties: <rgb>, <srgb>, <spectrum> and plain numbers.
+#include "runtime/io/file_search.h"
+#include "runtime/io/properties.h"
+#include "runtime/io/text.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace gradus {
+
+namespace {
+
+Rgb gray(double value) { return {float(value), float(value), float(value)}; }
+
+/// "#rrggbb" as three numbers in [0, 1].
+std::optional<Double3> parse_hex_color(std::string_view text) {
+    text = trimmed(text);
+    if (text.size() != 7 || text[0] != '#')
+        return std::nullopt;
+    Double3 color;
+    for (int i = 0; i < 3; ++i) {
+        unsigned value = 0;
+        const char *begin = text.data() + 1 + 2 * i;
+        const auto [end, error] = std::from_chars(begin, begin + 2, value, 16);
+        if (error != std::errc() || end != begin + 2)
+            return std::nullopt;
+        color[i] = value / 255.0;
+    }
+    return color;
+}
+
+/// "400:0.1, 500:0.2": pairs of wavelength and value.
+SampledSpectrum parse_samples(const Element &property, const std::string &text) {
+    SampledSpectrum samples;
+    // A blank after the colon is allowed: join such pairs first.
+    std::string joined;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        joined += text[i];
+        if (text[i] == ':')
+            while (i + 1 < text.size() && text[i + 1] == ' ')
+                ++i;
+    }
+    for (std::string_view item : split_list(joined)) {
+        const std::size_t colon = item.find(':');
+        const std::optional<double> wavelength = parse_number(item.substr(0, colon));
+        const std::optional<double> value =
+            colon == std::string_view::npos ? std::nullopt : parse_number(item.substr(colon + 1));
+        if (!wavelength || !value)
+            throw SceneError(property.location, "\"" + std::string(item) + "\" is no pair wavelength:value");
+        if (!samples.empty() && *wavelength <= samples.back().first)
+            throw SceneError(property.location,
+                             "the wavelengths of a spectrum must rise; " + std::string(item) + " does not");
+        samples.emplace_back(*wavelength, *value);
+    }
+    return samples;
+}
+
+Rgb to_rgb(const Double3 &c) { return {float(c[0]), float(c[1]), float(c[2])}; }
+
+} // namespace
+
+Rgb Properties::read_spectrum(const Element &property, const std::string &name, ColorUse use) {
+    if (property.attribute("filename"))
+        throw SceneError(property.location, "\"" + name + "\": spectra in files of their own are not supported; " +
+                                                "write value=\"wavelength:value, ...\"");
+    if (property.attribute("type"))
+        throw SceneError(property.location, "spectrum plugin \"" + property.attribute_or("type", "") +
+                                                "\" is not known here; give a value");
+    const std::string &text = value_of(property);
+    if (text.find(':') != std::string::npos) {
+        const SampledSpectrum samples = parse_samples(property, text);
+        for (const auto &[wavelength, value] : samples)
+            if (value < 0)
+                throw SceneError(property.location,
+                                 "\"" + name + "\" is negative at " + std::to_string(wavelength) + " nm");
+        const Rgb rgb = spectrum_to_rgb(samples, use);
+        if (use == ColorUse::reflectance) // a saturated colour may leave the unit cube though no sample does
+            return {std::min(rgb.r, 1.0f), std::min(rgb.g, 1.0f), std::min(rgb.b, 1.0f)};
+        return rgb;
+    }
+    const std::optional<std::vector<double>> values = parse_numbers(text);
+    if (!values || (values->size() != 1 && values->size() != 3))
+        throw SceneError(property.location, "\"" + name +
+                                                "\" needs one number, three (RGB), or wavelength:value pairs," +
+                                                " not \"" + text + "\"");
+    return values->size() == 1 ? gray((*values)[0])
+                               : Rgb{float((*values)[0]), float((*values)[1]), float((*values)[2])};
+}
+
+Rgb Properties::read_color(const Element &property, const std::string &name, ColorUse use) {
+    const Element &target = property.tag == "ref" ? resolve_(property) : property;
+    if (target.tag == "texture")
+        throw SceneError(property.location, "texture plugin \"" + target.attribute_or("type", "") +
+                                                "\" is not known here (known: none); give \"" + name +
+                                                "\" as <rgb> or <spectrum>");
+    if (property.tag == "spectrum")
+        return read_spectrum(property, name, use);
+    const bool gamma_coded = property.tag == "srgb";
+    if (property.tag != "rgb" && !gamma_coded && property.tag != "float" && property.tag != "integer")
+        throw SceneError(property.location, "\"" + name + "\" needs a colour (<rgb>, <srgb>, <spectrum> or <float>)," +
+                                                " not a <" + property.tag + ">");
+    const std::string &text = value_of(property);
+    Double3 color;
+    if (const std::optional<Double3> hex = parse_hex_color(text))
+        color = *hex;
+    else {
+        const std::optional<std::vector<double>> values = parse_numbers(text);
+        if (!values || (values->size() != 1 && values->size() != 3))
+            throw SceneError(property.location,
+                             "\"" + name + "\" needs one or three numbers or #rrggbb, not \"" + text + "\"");
+        for (int i = 0; i < 3; ++i)
+            color[i] = (*values)[values->size() == 3 ? i : 0];
+    }
+    if (gamma_coded)
+        for (double &value : color)
+            value = value < 0 ? value : srgb_to_linear(value);
+    return to_rgb(color);
+}
+
+Rgb Properties::color(const std::string &name, const Rgb &otherwise, ColorUse use) {
+    const Element *property = find(name);
+    if (!property)
+        return otherwise;
+    Rgb color = read_color(*property, name, use);
+    for (float value : {color.r, color.g, color.b}) {
+        if (value < 0)
+            throw SceneError(property->location, "\"" + name + "\" must not be negative");
+        if (!std::isfinite(value))
+            throw SceneError(property->location, "\"" + name + "\" is too large for single precision");
+    }
+    if (use == ColorUse::reflectance && (color.r > 1 || color.g > 1 || color.b > 1)) {
+        diagnostics_.warn(property->location, "\"" + name + "\" is above 1, which would create energy; clamped to 1");
+        color = {std::min(color.r, 1.0f), std::min(color.g, 1.0f), std::min(color.b, 1.0f)};
+    }
+    return color;
+}
+
+} // namespace gradus

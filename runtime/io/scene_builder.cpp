@@ -1,0 +1,335 @@
+#include "runtime/io/scene_builder.h"
+
+#include "runtime/io/file_search.h"
+#include "runtime/io/plugins/plugin.h"
+#include "runtime/io/text.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gradus {
+
+namespace {
+const char *const other_tags[] = {"ref", "alias", "scene"};
+
+std::string described(const Element &element) {
+    const std::string type = element.attribute_or("type", "");
+    return "<" + element.tag + (type.empty() ? "" : " type=\"" + type + "\"") + ">";
+}
+} // namespace
+
+SceneBuilder::SceneBuilder(const Document &document, Diagnostics &diagnostics)
+    : document_(document), diagnostics_(diagnostics),
+      resolve_([this](const Element &reference) -> const Element & { return resolve(reference); }) {}
+
+/// Reports tags that mean nothing, in every object.
+void SceneBuilder::check_children(const Element &element) {
+    for (const Element &child : element.children) {
+        const std::string &tag = child.tag;
+        if (is_object_tag(tag) || is_property_tag(tag) ||
+            std::find(std::begin(other_tags), std::end(other_tags), tag) != std::end(other_tags))
+            continue;
+        std::vector<std::string> known{"ref",     "default", "include",  "path",      "bsdf",      "shape",
+                                       "emitter", "sensor",  "film",     "sampler",   "rfilter",   "alias",
+                                       "string",  "float",   "integer",  "boolean",   "point",     "vector",
+                                       "rgb",     "srgb",    "spectrum", "transform", "integrator"};
+        std::string message = "unknown element <" + tag + ">";
+        if (const auto nearest = nearest_name(tag, known))
+            message += "; did you mean <" + *nearest + ">?";
+        diagnostics_.error(child.location, message);
+    }
+}
+
+void SceneBuilder::index(const Element &element, int depth) {
+    if (const std::string *id = element.attribute("id"); id && is_object_tag(element.tag)) {
+        const auto [other, is_new] = by_id_.emplace(*id, &element);
+        if (!is_new)
+            diagnostics_.error(element.location,
+                               "the id \"" + *id + "\" is already taken at " + other->second->location.text());
+    }
+    if (element.tag == "alias") {
+        const std::string *id = element.attribute("id"), *as = element.attribute("as");
+        if (!id || !as)
+            diagnostics_.error(element.location, "<alias> needs id and as");
+        else
+            aliases_[*as] = *id;
+    }
+    if (is_object_tag(element.tag) || depth == 0) {
+        check_children(element);
+        for (const Element &child : element.children)
+            index(child, depth + 1);
+    }
+}
+
+const Element &SceneBuilder::resolve(const Element &reference) {
+    const std::string *id = reference.attribute("id");
+    if (!id)
+        throw SceneError(reference.location, "<ref> needs id");
+    std::string name = *id;
+    auto found = by_id_.find(name);
+    for (std::size_t i = 0; found == by_id_.end() && i <= aliases_.size(); ++i) {
+        const auto alias = aliases_.find(name);
+        if (alias == aliases_.end())
+            break;
+        name = alias->second;
+        found = by_id_.find(name);
+    }
+    if (found == by_id_.end()) {
+        std::vector<std::string> known;
+        for (const auto &[other, element] : by_id_)
+            known.push_back(other);
+        std::string message = "nothing has the id \"" + *id + "\"";
+        if (const auto nearest = nearest_name(*id, known))
+            message += "; did you mean \"" + *nearest + "\"?";
+        throw SceneError(reference.location, message);
+    }
+    return *found->second;
+}
+
+template <typename Result>
+Result SceneBuilder::build_object(const Element &element) {
+    if (std::find(open_.begin(), open_.end(), &element) != open_.end())
+        throw SceneError(element.location, described(element) + " contains itself through a <ref>");
+    Properties properties(element, resolve_, diagnostics_);
+    const std::string type = properties.type();
+    const PluginFunction<Result> plugin = find_plugin<Result>(type);
+    if (!plugin) {
+        const std::vector<std::string> known = plugin_names(element.tag);
+        std::string message =
+            type.empty() ? "<" + element.tag + "> needs a type" : "unknown " + element.tag + " plugin \"" + type + "\"";
+        if (const auto nearest = nearest_name(type, known))
+            message += "; did you mean \"" + *nearest + "\"?";
+        throw SceneError(element.location, message + " (known: " + join(known) + ")");
+    }
+    open_.push_back(&element);
+    try {
+        Result result = plugin(properties, *this);
+        properties.report_unread();
+        open_.pop_back();
+        return result;
+    } catch (...) {
+        open_.pop_back();
+        throw;
+    }
+}
+
+template Material SceneBuilder::build_object(const Element &);
+template Emitter SceneBuilder::build_object(const Element &);
+template FilmSettings SceneBuilder::build_object(const Element &);
+template RenderSettings SceneBuilder::build_object(const Element &);
+template ReconstructionFilter SceneBuilder::build_object(const Element &);
+template Camera SceneBuilder::build_object(const Element &);
+template ShapeGeometry SceneBuilder::build_object(const Element &);
+
+std::filesystem::path SceneBuilder::find_file(Properties &properties) {
+    const std::string name = properties.string("filename", "");
+    if (name.empty())
+        throw properties.error("filename", properties.type() + " needs a filename");
+    const auto found = gradus::find_file(name, document_.search_folders);
+    if (!found)
+        throw properties.error("filename", "cannot find the file \"" + name + "\"");
+    if (!found->exact)
+        diagnostics_.warn(properties.location_of("filename"),
+                          "\"" + name + "\" differs in case from the file " + found->path.string());
+    return found->path;
+}
+
+const std::string &SceneBuilder::file_bytes(const std::filesystem::path &path, const Location &location) {
+    if (path != cached_path_) {
+        std::optional<std::string> bytes = read_whole_file(path);
+        if (!bytes)
+            throw SceneError(location, "cannot read " + path.string());
+        cached_bytes_ = std::move(*bytes);
+        cached_path_ = path;
+    }
+    return cached_bytes_;
+}
+
+Scene SceneBuilder::build() {
+    const Element &root = document_.root;
+    index(root, 0);
+    Properties scene(root, resolve_, diagnostics_);
+    const auto each = [&](const char *tag, auto &&function) {
+        for (const Properties::Object &object : scene.objects(tag))
+            try {
+                function(*object.element);
+            } catch (const SceneError &error) {
+                diagnostics_.error(error);
+            }
+    };
+    try {
+        each("integrator", [&](const Element &element) { build_integrator(element); });
+        each("sensor", [&](const Element &element) { build_sensor(element); });
+        each("emitter", [&](const Element &element) { build_emitter(element); });
+        each("shape", [&](const Element &element) { build_shape(element); });
+        each("bsdf", [&](const Element &element) { check_unused_bsdf(element); });
+        for (const char *tag : {"medium", "volume", "phase", "subsurface"})
+            each(tag, [&](const Element &element) {
+                throw SceneError(element.location, described(element) + ": participating media are not supported");
+            });
+        for (const char *tag : {"film", "sampler", "rfilter", "texture"})
+            scene.objects(tag); // shared ones, built where they are referenced
+        scene.report_unread();
+    } catch (const SceneError &error) { // a <ref> in <scene> itself that leads nowhere
+        diagnostics_.error(error);
+    }
+    check_whole();
+    return std::move(scene_);
+}
+
+void SceneBuilder::check_whole() {
+    const Location location{document_.root.location.file, 0};
+    if (!sensor_)
+        diagnostics_.error(location, "the scene has no <sensor>");
+    if (diagnostics_.has_errors())
+        return;
+    if (scene_.shapes.empty() && !environment_)
+        diagnostics_.error(location, "the scene has no shapes and no environment: there is nothing to render");
+    else if (scene_.emitters.empty())
+        diagnostics_.warn(location, "the scene has no emitters: the image will be black");
+}
+
+void SceneBuilder::build_integrator(const Element &element) {
+    if (integrator_) {
+        diagnostics_.warn(element.location,
+                          "a second <integrator> is ignored; the first is at " + integrator_->location.text());
+        return;
+    }
+    integrator_ = &element;
+    const std::uint64_t samples = scene_.settings.samples_per_pixel;
+    if (find_plugin<RenderSettings>(std::string(trimmed(element.attribute_or("type", ""))))) {
+        scene_.settings = build_object<RenderSettings>(element);
+    } else {
+        // Of an integrator that we do not have, the depths still count: on itself or on the one that it wraps.
+        Properties properties(element, resolve_, diagnostics_);
+        std::string message = "the integrator \"" + properties.type() + "\" is not known here; the method decides";
+        diagnostics_.warn(element.location, message + " (known: " + join(plugin_names("integrator")) + ")");
+        const std::vector<Properties::Object> nested = properties.objects("integrator");
+        Properties inner(nested.empty() ? element : *nested.front().element, resolve_, diagnostics_);
+        scene_.settings = integrator_path(inner, *this);
+    }
+    scene_.settings.integrator = std::string(trimmed(element.attribute_or("type", "")));
+    scene_.settings.samples_per_pixel = samples;
+}
+
+void SceneBuilder::build_sensor(const Element &element) {
+    if (sensor_) {
+        diagnostics_.warn(element.location,
+                          "a second <sensor> is ignored; the first is at " + sensor_->location.text());
+        return;
+    }
+    sensor_ = &element;
+    Properties properties(element, resolve_, diagnostics_);
+    if (const auto films = properties.objects("film"); !films.empty())
+        scene_.film = build_object<FilmSettings>(*films.front().element);
+    if (const auto samplers = properties.objects("sampler"); !samplers.empty()) {
+        // Of a sampler only its count matters: the methods bring their own random numbers.
+        Properties sampler(*samplers.front().element, resolve_, diagnostics_);
+        scene_.settings.samples_per_pixel = std::uint64_t(sampler.integer("sample_count", 4, 1, std::int64_t(1) << 40));
+    }
+    scene_.camera = build_object<Camera>(element);
+}
+
+void SceneBuilder::build_emitter(const Element &element) {
+    const std::string type(trimmed(element.attribute_or("type", "")));
+    if (type == "area")
+        throw SceneError(element.location, "an area emitter belongs inside the shape that emits");
+    const Emitter emitter = build_object<Emitter>(element);
+    if (emitter.kind == Emitter::Kind::constant) {
+        if (environment_)
+            throw SceneError(element.location,
+                             "a second environment emitter; the first is at " + environment_->location.text());
+        environment_ = &element;
+    }
+    if (emitter.value == Rgb{}) {
+        diagnostics_.warn(element.location, described(element) + " is black and left out");
+        return;
+    }
+    scene_.emitters.push_back(emitter);
+}
+
+/// A BSDF that no shape uses cannot harm the image: what is wrong with it is worth a warning.
+void SceneBuilder::check_unused_bsdf(const Element &element) {
+    if (materials_.count(&element))
+        return;
+    try {
+        build_object<Material>(element);
+    } catch (const SceneError &error) {
+        diagnostics_.warn(element.location, std::string("unused BSDF: ") + error.what());
+    }
+}
+
+std::uint32_t SceneBuilder::material_of(Properties &shape) {
+    const std::vector<Properties::Object> bsdfs = shape.objects("bsdf");
+    if (bsdfs.size() > 1)
+        throw SceneError(bsdfs[1].location, "a shape has one BSDF; this is its second");
+    if (bsdfs.empty()) {
+        if (default_material_ < 0) {
+            default_material_ = std::int64_t(scene_.materials.size());
+            scene_.materials.push_back({});
+            scene_.materials.back().name = "default";
+        }
+        return std::uint32_t(default_material_);
+    }
+    const Element &element = *bsdfs.front().element;
+    const auto known = materials_.find(&element);
+    if (known != materials_.end())
+        return known->second;
+    Material material = build_object<Material>(element);
+    material.name = element.attribute_or("id", element.attribute_or("type", "") + " at " + element.location.text());
+    const auto index = std::uint32_t(scene_.materials.size());
+    scene_.materials.push_back(material);
+    materials_[&element] = index;
+    return index;
+}
+
+std::int32_t SceneBuilder::emitter_of(Properties &shape) {
+    const std::vector<Properties::Object> emitters = shape.objects("emitter");
+    if (emitters.empty())
+        return -1;
+    if (emitters.size() > 1)
+        throw SceneError(emitters[1].location, "a shape has one emitter; this is its second");
+    const Element &element = *emitters.front().element;
+    const std::string type(trimmed(element.attribute_or("type", "")));
+    if (type != "area" && find_plugin<Emitter>(type))
+        throw SceneError(emitters[0].location, "only an area emitter can stand inside a shape, not \"" + type + "\"");
+    const Emitter emitter = build_object<Emitter>(element);
+    if (emitter.value == Rgb{})
+        return -1;
+    scene_.emitters.push_back(emitter);
+    return std::int32_t(scene_.emitters.size() - 1);
+}
+
+void SceneBuilder::build_shape(const Element &element) {
+    Properties attachments(element, resolve_, diagnostics_);
+    for (const char *tag : {"medium", "subsurface", "volume"})
+        if (const auto found = attachments.objects(tag); !found.empty())
+            throw SceneError(found.front().location, "participating media are not supported");
+    const ShapeGeometry geometry = build_object<ShapeGeometry>(element);
+    Shape shape;
+    shape.name = element.attribute_or("id", element.attribute_or("type", "") + " at " + element.location.text());
+    if (const auto *built = std::get_if<BuiltMesh>(&geometry)) {
+        if (built->degenerate > 0)
+            diagnostics_.warn(element.location, std::to_string(built->degenerate) +
+                                                    " degenerate triangles of shape \"" + shape.name +
+                                                    "\" are left out");
+        if (built->mesh.triangles.empty()) {
+            diagnostics_.warn(element.location, "shape \"" + shape.name + "\" has no area and is left out");
+            return;
+        }
+    }
+    shape.material = material_of(attachments);
+    shape.emitter = emitter_of(attachments);
+    if (const auto *sphere = std::get_if<Sphere>(&geometry)) {
+        shape.kind = Shape::Kind::sphere;
+        shape.geometry = std::uint32_t(scene_.spheres.size());
+        scene_.spheres.push_back(*sphere);
+    } else {
+        shape.kind = Shape::Kind::mesh;
+        shape.geometry = std::uint32_t(scene_.meshes.size());
+        scene_.meshes.push_back(std::get<BuiltMesh>(geometry).mesh);
+    }
+    scene_.shapes.push_back(std::move(shape));
+}
+
+} // namespace gradus

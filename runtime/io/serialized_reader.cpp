@@ -1,0 +1,228 @@
+// Mitsuba's serialized meshes. A file is a row of meshes and, at its end, the table of their offsets and their count
+// (32 bits). A mesh is the bytes 1C 04, its version (16 bits), and a zlib stream of flags, [from version 4: a name],
+// counts, positions, normals, texture coordinates, colours and triangles. All little endian.
+#include "runtime/io/diagnostics.h"
+#include "runtime/io/file_search.h"
+#include "runtime/io/mesh_files.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+namespace gradus {
+
+namespace {
+
+constexpr std::uint16_t format_mark = 0x041c;
+enum Flags : std::uint32_t {
+    has_normals = 0x0001,
+    has_texcoords = 0x0002,
+    has_colors = 0x0008,
+    wants_face_normals = 0x0010,
+    double_precision = 0x2000 // neither 0x1000 nor this: single precision
+};
+
+template <typename T>
+T little_endian(const unsigned char *bytes) {
+    T value = 0;
+    for (std::size_t i = 0; i < sizeof(T); ++i)
+        value |= T(T(bytes[i]) << (8 * i));
+    return value;
+}
+
+/// Inflates a zlib stream piece by piece.
+class Inflater {
+  public:
+    Inflater(const char *begin, std::size_t size) {
+        stream_.next_in = reinterpret_cast<Bytef *>(const_cast<char *>(begin));
+        stream_.avail_in = uInt(std::min<std::size_t>(size, std::numeric_limits<uInt>::max()));
+        ready_ = inflateInit(&stream_) == Z_OK;
+    }
+    ~Inflater() {
+        if (ready_)
+            inflateEnd(&stream_);
+    }
+    Inflater(const Inflater &) = delete;
+    Inflater &operator=(const Inflater &) = delete;
+
+    /// False where the stream is broken or ends first.
+    bool read(void *target, std::size_t size) {
+        auto *at = static_cast<Bytef *>(target);
+        while (ready_ && size > 0) {
+            const std::size_t piece = std::min<std::size_t>(size, 1u << 30);
+            stream_.next_out = at;
+            stream_.avail_out = uInt(piece);
+            const int status = inflate(&stream_, Z_NO_FLUSH);
+            const std::size_t got = piece - stream_.avail_out;
+            at += got;
+            size -= got;
+            if (size > 0 && (status != Z_OK || got == 0))
+                return false;
+        }
+        return ready_;
+    }
+
+  private:
+    z_stream stream_{};
+    bool ready_ = false;
+};
+
+class SerializedReader {
+  public:
+    SerializedReader(const std::string &data, const std::string &file_name, std::uint64_t index)
+        : data_(data), file_name_(file_name), index_(index) {}
+
+    SerializedMesh read();
+
+  private:
+    [[noreturn]] void fail(const std::string &message) const {
+        throw SceneError({std::make_shared<const std::string>(file_name_), 0}, message);
+    }
+    const unsigned char *bytes(std::uint64_t offset) const {
+        return reinterpret_cast<const unsigned char *>(data_.data()) + offset;
+    }
+    std::pair<std::uint64_t, std::uint64_t> find_mesh(std::uint16_t version) const;
+    void read_bytes(Inflater &inflater, void *target, std::size_t size) const {
+        if (!inflater.read(target, size))
+            fail("mesh " + std::to_string(index_) + " is truncated or corrupt");
+    }
+    std::uint64_t read_count(Inflater &inflater, std::uint64_t most) const;
+    std::vector<float> read_floats(Inflater &inflater, std::uint64_t count, bool doubles) const;
+
+    const std::string &data_;
+    const std::string &file_name_;
+    std::uint64_t index_;
+};
+
+/// Where the mesh begins and ends. The end is the next offset or the table.
+std::pair<std::uint64_t, std::uint64_t> SerializedReader::find_mesh(std::uint16_t version) const {
+    const std::uint64_t size = data_.size(), entry = version == 3 ? 4 : 8;
+    const std::uint64_t count = little_endian<std::uint32_t>(bytes(size - 4));
+    if (count == 0 || count > (size - 4) / entry)
+        fail("corrupt: the file ends with a count of " + std::to_string(count) + " meshes");
+    if (index_ >= count)
+        fail("there is no mesh " + std::to_string(index_) + "; the file holds " + std::to_string(count) +
+             ", counted from 0");
+    const std::uint64_t table = size - 4 - count * entry;
+    const auto offset = [&](std::uint64_t i) {
+        return version == 3 ? std::uint64_t(little_endian<std::uint32_t>(bytes(table + i * entry)))
+                            : little_endian<std::uint64_t>(bytes(table + i * entry));
+    };
+    const std::uint64_t begin = offset(index_);
+    if (begin > table || table - begin < 4)
+        fail("corrupt: the offset of mesh " + std::to_string(index_) + " lies outside the file");
+    const std::uint64_t next = index_ + 1 < count ? offset(index_ + 1) : table;
+    return {begin, next > begin && next <= table ? next : table};
+}
+
+std::uint64_t SerializedReader::read_count(Inflater &inflater, std::uint64_t most) const {
+    unsigned char raw[8];
+    read_bytes(inflater, raw, sizeof raw);
+    const std::uint64_t count = little_endian<std::uint64_t>(raw);
+    if (count > most)
+        fail("corrupt: mesh " + std::to_string(index_) + " claims " + std::to_string(count) + " elements");
+    return count;
+}
+
+std::vector<float> SerializedReader::read_floats(Inflater &inflater, std::uint64_t count, bool doubles) const {
+    constexpr std::uint64_t piece = 1 << 16;
+    const std::size_t width = doubles ? 8 : 4;
+    std::vector<float> values;
+    std::vector<unsigned char> raw(piece * width);
+    // Grows as data arrives, so that a false count cannot ask for all memory.
+    while (values.size() < count) {
+        const std::uint64_t now = std::min<std::uint64_t>(piece, count - values.size());
+        read_bytes(inflater, raw.data(), now * width);
+        for (std::uint64_t i = 0; i < now; ++i) {
+            if (doubles) {
+                const auto bits = little_endian<std::uint64_t>(&raw[i * 8]);
+                double value;
+                std::memcpy(&value, &bits, 8);
+                values.push_back(float(value));
+            } else {
+                const auto bits = little_endian<std::uint32_t>(&raw[i * 4]);
+                float value;
+                std::memcpy(&value, &bits, 4);
+                values.push_back(value);
+            }
+        }
+    }
+    return values;
+}
+
+SerializedMesh SerializedReader::read() {
+    if (data_.size() < 12)
+        fail("not a serialized mesh file: only " + std::to_string(data_.size()) + " bytes");
+    if (little_endian<std::uint16_t>(bytes(0)) != format_mark)
+        fail("not a serialized mesh file: it does not begin with 1C 04");
+    const auto file_version = little_endian<std::uint16_t>(bytes(2));
+    if (file_version != 3 && file_version != 4)
+        fail("serialized format version " + std::to_string(file_version) + " is not known (known: 3, 4)");
+    const auto [begin, end] = find_mesh(file_version);
+    const auto version = little_endian<std::uint16_t>(bytes(begin + 2));
+    if (little_endian<std::uint16_t>(bytes(begin)) != format_mark || (version != 3 && version != 4))
+        fail("corrupt: mesh " + std::to_string(index_) + " does not begin with 1C 04 and a known version");
+
+    Inflater inflater(data_.data() + begin + 4, end - begin - 4);
+    unsigned char raw[4];
+    read_bytes(inflater, raw, 4);
+    const auto flags = little_endian<std::uint32_t>(raw);
+    if (version == 4)
+        for (char c = 1; c != 0;) // the name
+            read_bytes(inflater, &c, 1);
+    // Deflate shrinks by 1032 at most, which bounds what a stream can hold.
+    const std::uint64_t most = (end - begin) * 1032 / 12 + 1;
+    const std::uint64_t vertices = read_count(inflater, std::min<std::uint64_t>(most, 0x7fffffff));
+    const std::uint64_t triangles = read_count(inflater, most);
+
+    const bool doubles = flags & double_precision;
+    SerializedMesh result;
+    result.face_normals = flags & wants_face_normals;
+    const auto to_vectors = [&](const std::vector<float> &values) {
+        std::vector<Vector3> vectors(values.size() / 3);
+        for (std::size_t i = 0; i < vectors.size(); ++i)
+            vectors[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+        return vectors;
+    };
+    Mesh &mesh = result.mesh;
+    mesh.positions = to_vectors(read_floats(inflater, vertices * 3, doubles));
+    if (flags & has_normals)
+        mesh.normals = to_vectors(read_floats(inflater, vertices * 3, doubles));
+    if (flags & has_texcoords) {
+        const std::vector<float> values = read_floats(inflater, vertices * 2, doubles);
+        for (std::size_t i = 0; i < vertices; ++i)
+            mesh.texcoords.push_back({values[2 * i], values[2 * i + 1]});
+    }
+    if (flags & has_colors)
+        read_floats(inflater, vertices * 3, doubles);
+    for (std::uint64_t i = 0; i < triangles; ++i) {
+        unsigned char corners[12];
+        read_bytes(inflater, corners, sizeof corners);
+        std::array<std::uint32_t, 3> triangle;
+        for (int corner = 0; corner < 3; ++corner) {
+            triangle[corner] = little_endian<std::uint32_t>(corners + 4 * corner);
+            if (triangle[corner] >= vertices)
+                fail("corrupt: a triangle of mesh " + std::to_string(index_) + " has vertex " +
+                     std::to_string(triangle[corner]) + " of " + std::to_string(vertices));
+        }
+        mesh.triangles.push_back(triangle);
+    }
+    return result;
+}
+
+} // namespace
+
+SerializedMesh parse_serialized(const std::string &data, const std::string &file_name, std::uint64_t index) {
+    return SerializedReader(data, file_name, index).read();
+}
+
+SerializedMesh read_serialized(const std::filesystem::path &path, std::uint64_t index) {
+    const std::optional<std::string> data = read_whole_file(path);
+    if (!data)
+        throw SceneError({std::make_shared<const std::string>(path.string()), 0}, "cannot read this file");
+    return parse_serialized(*data, path.string(), index);
+}
+
+} // namespace gradus

@@ -1,0 +1,133 @@
+#include "runtime/io/transform_reader.h"
+
+#include "runtime/io/text.h"
+#include "runtime/scene/transform.h"
+
+#include <cmath>
+#include <optional>
+
+namespace gradus {
+
+namespace {
+
+[[noreturn]] void fail(const Element &step, const std::string &message) {
+    throw SceneError(step.location, "<" + step.tag + ">: " + message);
+}
+
+double number_attribute(const Element &step, const std::string &name, double otherwise) {
+    const std::string *text = step.attribute(name);
+    if (!text)
+        return otherwise;
+    const std::optional<double> number = parse_number(*text);
+    if (!number)
+        fail(step, name + "=\"" + *text + "\" is not a number");
+    return *number;
+}
+
+std::vector<double> list_attribute(const Element &step, const std::string &name) {
+    const std::string *text = step.attribute(name);
+    if (!text)
+        fail(step, "needs " + name);
+    const std::optional<std::vector<double>> numbers = parse_numbers(*text);
+    if (!numbers)
+        fail(step, name + "=\"" + *text + "\" is not a list of numbers");
+    return *numbers;
+}
+
+Double3 triple_attribute(const Element &step, const std::string &name) {
+    const std::vector<double> numbers = list_attribute(step, name);
+    if (numbers.size() != 3)
+        fail(step, name + " needs three numbers, not " + std::to_string(numbers.size()));
+    return {numbers[0], numbers[1], numbers[2]};
+}
+
+/// x, y, z as attributes, or all three in value.
+Double3 components(const Element &step, double otherwise) {
+    if (step.attribute("value"))
+        return triple_attribute(step, "value");
+    return {number_attribute(step, "x", otherwise), number_attribute(step, "y", otherwise),
+            number_attribute(step, "z", otherwise)};
+}
+
+Matrix4 read_matrix(const Element &step) {
+    const std::vector<double> values = list_attribute(step, "value");
+    Matrix4 result;
+    if (values.size() == 16) {
+        for (int i = 0; i < 16; ++i)
+            result.m[i] = values[i];
+        if (values[12] != 0 || values[13] != 0 || values[14] != 0 || values[15] == 0)
+            fail(step, "the last row must be 0 0 0 1; projective maps are not supported");
+        for (int i = 0; i < 16; ++i)
+            result.m[i] /= values[15];
+    } else if (values.size() == 9) {
+        for (int row = 0; row < 3; ++row)
+            for (int column = 0; column < 3; ++column)
+                result.m[row * 4 + column] = values[row * 3 + column];
+    } else
+        fail(step, "value needs 16 or 9 numbers, not " + std::to_string(values.size()));
+    return result;
+}
+
+Matrix4 read_scale(const Element &step) {
+    if (const std::string *value = step.attribute("value"); value && split_list(*value).size() == 1) {
+        const double s = number_attribute(step, "value", 1);
+        return scaling({s, s, s});
+    }
+    return scaling(components(step, 1));
+}
+
+Matrix4 read_rotation(const Element &step) {
+    if (!step.attribute("angle"))
+        fail(step, "needs angle (in degrees)");
+    const Double3 axis = components(step, 0);
+    if (length(axis) == 0)
+        fail(step, "the axis is zero; give x, y or z");
+    return rotation(axis, number_attribute(step, "angle", 0));
+}
+
+Matrix4 read_look_at(const Element &step, Diagnostics &diagnostics) {
+    const Double3 origin = triple_attribute(step, "origin"), target = triple_attribute(step, "target");
+    const Double3 view = subtract(target, origin);
+    if (!(length(view) > 0))
+        fail(step, "origin and target are the same point");
+    Double3 up{0, 0, 0};
+    const bool given = step.attribute("up") != nullptr;
+    if (given)
+        up = triple_attribute(step, "up");
+    if (!(length(cross(normalize(view), up)) > 1e-9 * length(up))) {
+        if (given)
+            diagnostics.warn(step.location,
+                             "<" + step.tag + ">: up is zero or parallel to the view; another is chosen");
+        up = std::fabs(view[1]) < 0.9 * length(view) ? Double3{0, 1, 0} : Double3{1, 0, 0};
+    }
+    return look_at(origin, target, up);
+}
+
+} // namespace
+
+Matrix4 read_transform(const Element &transform, Diagnostics &diagnostics) {
+    Matrix4 result;
+    for (const Element &step : transform.children) {
+        const std::string kind = lower_case(step.tag);
+        Matrix4 matrix;
+        if (kind == "matrix")
+            matrix = read_matrix(step);
+        else if (kind == "translate")
+            matrix = translation(components(step, 0));
+        else if (kind == "scale")
+            matrix = read_scale(step);
+        else if (kind == "rotate")
+            matrix = read_rotation(step);
+        else if (kind == "lookat")
+            matrix = read_look_at(step, diagnostics);
+        else
+            fail(step, "not a step of a transform (known: matrix, lookat, translate, rotate, scale)");
+        result = multiply(matrix, result);
+    }
+    for (double value : result.m)
+        if (!std::isfinite(value))
+            throw SceneError(transform.location, "<transform>: a number of the resulting matrix is not finite");
+    return result;
+}
+
+} // namespace gradus

@@ -1,0 +1,21 @@
+#include "runtime/methods/method.h"
+
+#include "runtime/error.h"
+#include "runtime/methods/path_tracer.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace gradus {
+
+std::vector<std::string> method_names() { return {"pt"}; }
+
+std::unique_ptr<Method> make_method(const std::string &name, Device &device, const Scene &scene,
+                                    const RenderOptions &options) {
+    if (name == "pt")
+        return std::make_unique<PathTracer>(device, scene, options);
+    throw Error(ExitCode::usage, fmt::format("there is no method \"{}\"; there is: {}", name,
+                                             fmt::join(method_names(), ", ")));
+}
+
+} // namespace gradus

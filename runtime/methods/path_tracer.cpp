@@ -1,0 +1,269 @@
+#include "runtime/methods/path_tracer.h"
+
+#include "runtime/error.h"
+#include "runtime/stages/trace_stage.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+
+namespace gradus {
+
+namespace {
+
+constexpr Precision precision = Precision::single;
+constexpr std::uint32_t deepest = 1u << 16; // where a file asks for paths without end
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+TraitMap traits_for(const Scene &scene, const RenderOptions &options) {
+    TraitMap traits = scene_traits(scene);
+    traits["TRAIT_AOV"] = options.aov;
+    if (options.all_traits)
+        traits = with_all_traits(traits);
+    traits["STRATEGY"] = static_cast<int>(options.strategy);
+    return traits;
+}
+
+FilmSettings with_crop(FilmSettings film) {
+    if (film.crop_width == 0 || film.crop_height == 0) {
+        film.crop_x = film.crop_y = 0;
+        film.crop_width = film.width;
+        film.crop_height = film.height;
+    }
+    if (film.width == 0 || film.height == 0 || film.crop_x + film.crop_width > film.width ||
+        film.crop_y + film.crop_height > film.height)
+        throw Error(ExitCode::usage, fmt::format("the crop {}x{} at {},{} does not lie in the film of {}x{}",
+                                                 film.crop_width, film.crop_height, film.crop_x, film.crop_y,
+                                                 film.width, film.height));
+    if (std::uint64_t(film.width) * film.height >= std::numeric_limits<std::int32_t>::max())
+        throw Error(ExitCode::usage, fmt::format("a film of {}x{} has too many pixels", film.width, film.height));
+    return film;
+}
+
+} // namespace
+
+PathTracer::PathTracer(Device &device, const Scene &scene, const RenderOptions &options)
+    : device_(device), options_(options), settings_(scene.settings), film_settings_(with_crop(scene.film)),
+      traits_(traits_for(scene, options)), scene_tables_(make_scene_tables(scene, traits_)),
+      tracer_(scene, options.threads) {
+    const std::uint32_t pixels = film_settings_.crop_width * film_settings_.crop_height;
+    total_ = pixels * settings_.samples_per_pixel;
+    const std::uint32_t bins = static_cast<std::uint32_t>(scene_tables_.bins.size()) + 1;
+    tables_.emplace(device, choose_batch_size(device, options.batch_size, total_, traits_, precision), bins, traits_,
+                    precision);
+    scene_buffers_.emplace(device, scene_tables_, precision);
+    build_kernels(scene_tables_.bins);
+    film_.emplace(device, accumulate_, *tables_, film_settings_.crop_width, film_settings_.crop_height, traits_,
+                  precision);
+    partition_.emplace(partition_kernels_, *tables_, bins);
+    warm(all_kernels());
+}
+
+void PathTracer::build_kernels(const std::vector<std::string> &kinds) {
+    const auto stage = [](const std::string &name) {
+        return KernelRequest{name, "kernels/stages/" + name + ".cl", name, {}};
+    };
+    std::vector<KernelRequest> requests = {stage("camera"), stage("classify"), stage("surface"), stage("escape"),
+                                           stage("connect"), FilmStage::request()};
+    for (const KernelRequest &request : PartitionStage::requests())
+        requests.push_back(request);
+    const std::size_t first_kind = requests.size();
+    for (const std::string &kind : kinds) {
+        const std::map<std::string, std::string> definitions = {
+            {"BSDF", kind}, {"BSDF_IS_DIRAC", bsdf_kind_is_dirac(kind) ? "1" : "0"}};
+        for (const char *name : {"light_sample", "scatter", "feature"})
+            requests.push_back({fmt::format("{} {}", name, kind), fmt::format("kernels/stages/{}.cl", name), name,
+                                definitions});
+    }
+    KernelLibrary library(device_, traits_, precision);
+    const std::vector<Kernel> built = library.build(requests, {}, options_.dump_kernels);
+    camera_ = built[0];
+    classify_ = built[1];
+    surface_ = built[2];
+    escape_ = built[3];
+    connect_ = built[4];
+    accumulate_ = built[5];
+    partition_kernels_.assign(built.begin() + 6, built.begin() + 9);
+    for (std::size_t i = 0; i < kinds.size(); ++i) {
+        const std::size_t first = first_kind + 3 * i;
+        kinds_.push_back({built[first], built[first + 1], built[first + 2], bsdf_kind_is_dirac(kinds[i])});
+    }
+
+    for (Kernel *kernel : all_kernels()) {
+        scene_buffers_->bind(*kernel);
+        for (const Buffer *buffer : {&tables_->ray, &tables_->shadow, &tables_->radiance, &tables_->feature,
+                                     &tables_->tangent, &tables_->bin, &tables_->index, &tables_->vertex[0]})
+            kernel->bind(*buffer);
+        kernel->bind("vertex_old", tables_->vertex[1]);
+        for (const char *number : {"count", "first", "depth", "roulette", "chunks", "first_pixel", "first_slot",
+                                   "first_sample_low", "first_sample_high"})
+            kernel->set(number, 0);
+        kernel->set("capacity", tables_->capacity);
+    }
+    camera_.set("pixels", film_settings_.crop_width * film_settings_.crop_height);
+    camera_.set("crop_x", film_settings_.crop_x);
+    camera_.set("crop_y", film_settings_.crop_y);
+    camera_.set("crop_width", film_settings_.crop_width);
+    camera_.set("film_width", film_settings_.width);
+    camera_.set("seed_low", static_cast<std::uint32_t>(options_.seed));
+    camera_.set("seed_high", static_cast<std::uint32_t>(options_.seed >> 32));
+}
+
+std::vector<Kernel *> PathTracer::all_kernels() {
+    std::vector<Kernel *> kernels = {&camera_, &classify_, &surface_, &escape_, &connect_, &accumulate_};
+    for (Kernel &kernel : partition_kernels_)
+        kernels.push_back(&kernel);
+    for (KindKernels &kind : kinds_) {
+        if (!kind.is_dirac && scene_tables_.light_count > 0)
+            kernels.push_back(&kind.light_sample);
+        kernels.push_back(&kind.scatter);
+        if (options_.aov)
+            kernels.push_back(&kind.feature);
+    }
+    return kernels;
+}
+
+/// Some implementations compile at the first launch: do that now, on no rows, and say what it took.
+void PathTracer::warm(std::vector<Kernel *> kernels) {
+    for (std::size_t i = 0; i < kernels.size(); ++i) {
+        const auto start = std::chrono::steady_clock::now();
+        kernels[i]->set("count", 0);
+        kernels[i]->launch(1);
+        finish(device_);
+        kernels[i]->reset_usage();
+        const double seconds = seconds_since(start);
+        statistics_.compile_seconds[kernels[i]->name()] = seconds;
+        if (options_.on_compiled)
+            options_.on_compiled(kernels[i]->name(), i + 1, kernels.size(), seconds);
+    }
+}
+
+void PathTracer::begin_paths(std::uint32_t count) {
+    const std::uint64_t first_sample = done_ / film_->pixels();
+    camera_.set("count", count);
+    camera_.set("first_pixel", static_cast<std::uint32_t>(done_ % film_->pixels()));
+    camera_.set("first_sample_low", static_cast<std::uint32_t>(first_sample));
+    camera_.set("first_sample_high", static_cast<std::uint32_t>(first_sample >> 32));
+    camera_.bind("vertex", tables_->vertex[0]);
+    camera_.launch(count);
+}
+
+void PathTracer::trace(std::uint32_t rays, std::uint32_t shadows) {
+    const TraceCounts counts = run_trace_stage(tracer_, *tables_, rays, shadows, trace_seconds_);
+    statistics_.rays["extension"] += counts.extension;
+    statistics_.rays["shadow"] += counts.shadow;
+}
+
+bool PathTracer::render_batch() {
+    if (done_ >= total_)
+        return false;
+    const auto start = std::chrono::steady_clock::now();
+    const std::uint32_t count =
+        static_cast<std::uint32_t>(std::min<std::uint64_t>(tables_->capacity, total_ - done_));
+    const std::uint32_t max_depth =
+        settings_.max_depth < 0 ? deepest : static_cast<std::uint32_t>(settings_.max_depth);
+    const auto run = [](Kernel &kernel, std::uint32_t first, std::uint32_t items) {
+        kernel.set("first", first);
+        kernel.set("count", items);
+        kernel.launch(items);
+    };
+
+    begin_paths(count);
+    std::uint32_t rays = count, vertices = 0; // rows of the ray table, and of the newest vertices
+    int newest = 0;
+    for (std::uint32_t depth = 0; depth < max_depth && rays > 0; ++depth) {
+        trace(rays, vertices);
+        connect_.bind("vertex", tables_->vertex[newest]);
+        run(connect_, 0, vertices);
+
+        run(classify_, 0, rays);
+        const std::vector<std::uint32_t> &range = partition_->run(rays);
+        const std::uint32_t escaped = range[1], hits = range.back() - escaped;
+        for (Kernel *kernel : {&surface_, &escape_}) {
+            kernel->bind("vertex_old", tables_->vertex[newest]);
+            kernel->bind("vertex", tables_->vertex[1 - newest]);
+            kernel->set("depth", depth);
+        }
+        run(escape_, 0, escaped);
+        run(surface_, escaped, hits);
+        newest = 1 - newest;
+        vertices = hits;
+        rays = 0;
+
+        const bool last = depth + 1 >= max_depth;
+        for (std::size_t k = 0; k < kinds_.size(); ++k) {
+            const std::uint32_t first = range[k + 1] - escaped, items = range[k + 2] - range[k + 1];
+            if (items == 0)
+                continue;
+            KindKernels &kind = kinds_[k];
+            for (Kernel *kernel : {&kind.light_sample, &kind.scatter, &kind.feature}) {
+                kernel->bind("vertex", tables_->vertex[newest]);
+                kernel->set("depth", depth);
+            }
+            if (depth == 0 && options_.aov)
+                run(kind.feature, first, items);
+            if (last)
+                continue;
+            if (!kind.is_dirac && scene_tables_.light_count > 0 && options_.strategy != RenderOptions::Strategy::bsdf)
+                run(kind.light_sample, first, items);
+            kind.scatter.set("roulette",
+                             settings_.rr_depth >= 0 && depth + 1 >= std::uint32_t(settings_.rr_depth) ? 1 : 0);
+            run(kind.scatter, first, items);
+            rays = hits;
+        }
+    }
+    connect_.bind("vertex", tables_->vertex[newest]);
+    run(connect_, 0, vertices);
+    film_->accumulate(count, static_cast<std::uint32_t>(done_ % film_->pixels()));
+    finish(device_);
+    done_ += count;
+    statistics_.samples += count;
+    statistics_.render_seconds += seconds_since(start);
+    return done_ < total_;
+}
+
+Image PathTracer::image() {
+    statistics_.non_finite = 0;
+    return film_->image(done_, statistics_.non_finite);
+}
+
+Statistics PathTracer::statistics() const {
+    Statistics s = statistics_;
+    // The kernels of a stage may be several; a path meets them in this order.
+    const auto stage = [&](const Kernel &kernel) {
+        const Kernel::Usage usage = kernel.usage();
+        s.stages.push_back({kernel.name(), usage.seconds, usage.items, usage.launches});
+    };
+    stage(camera_);
+    s.stages.push_back({"trace", trace_seconds_, s.rays["extension"] + s.rays["shadow"], 0});
+    stage(connect_);
+    stage(classify_);
+    for (const Kernel &kernel : partition_kernels_)
+        stage(kernel);
+    stage(escape_);
+    stage(surface_);
+    for (const KindKernels &kind : kinds_) {
+        stage(kind.feature);
+        stage(kind.light_sample);
+        stage(kind.scatter);
+    }
+    stage(accumulate_);
+    std::erase_if(s.stages, [](const Statistics::Stage &row) { return row.items == 0; });
+    double known = 0;
+    for (const Statistics::Stage &row : s.stages)
+        known += row.seconds;
+    s.stages.push_back({"launch and wait", std::max(0.0, s.render_seconds - known), 0, 0});
+    s.device_bytes = peak_device_bytes(device_);
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    s.peak_host_bytes = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+    return s;
+}
+
+} // namespace gradus

@@ -1,0 +1,61 @@
+// Unidirectional path tracing with light sampling, multiple importance sampling and Russian roulette (Kajiya 1986,
+// Veach 1997), as a wavefront.
+#pragma once
+
+#include "runtime/methods/method.h"
+#include "runtime/stages/batch_tables.h"
+#include "runtime/stages/film_stage.h"
+#include "runtime/stages/partition_stage.h"
+#include "runtime/stages/scene_buffers.h"
+#include "runtime/trace/tracer.h"
+
+#include <optional>
+
+namespace gradus {
+
+class PathTracer final : public Method {
+  public:
+    PathTracer(Device &device, const Scene &scene, const RenderOptions &options);
+
+    std::uint64_t total_samples() const override { return total_; }
+    std::uint64_t done_samples() const override { return done_; }
+    bool render_batch() override;
+    Image image() override;
+    Statistics statistics() const override;
+
+    /// For measuring: the tracer records and replays the rays of a render.
+    Tracer &tracer() { return tracer_; }
+
+  private:
+    /// The kernels of one BSDF kind.
+    struct KindKernels {
+        Kernel light_sample, scatter, feature;
+        bool is_dirac = false;
+    };
+
+    void build_kernels(const std::vector<std::string> &kinds);
+    void warm(std::vector<Kernel *> kernels);
+    std::vector<Kernel *> all_kernels();
+    void begin_paths(std::uint32_t count);
+    void trace(std::uint32_t rays, std::uint32_t shadows);
+
+    Device &device_;
+    RenderOptions options_;
+    RenderSettings settings_;
+    FilmSettings film_settings_;
+    TraitMap traits_;
+    SceneTables scene_tables_;
+    Tracer tracer_;
+    std::uint64_t total_ = 0, done_ = 0;
+    std::optional<BatchTables> tables_;
+    std::optional<SceneBuffers> scene_buffers_;
+    std::optional<FilmStage> film_;
+    std::optional<PartitionStage> partition_;
+    std::vector<Kernel> partition_kernels_;
+    Kernel camera_, classify_, surface_, escape_, connect_, accumulate_;
+    std::vector<KindKernels> kinds_; ///< of bin 1, 2, ...
+    Statistics statistics_;
+    double trace_seconds_ = 0;
+};
+
+} // namespace gradus

@@ -1,0 +1,36 @@
+#include "runtime/scene/light_table.h"
+
+namespace gradus {
+
+AliasTable make_alias_table(const std::vector<double> &weights) {
+    const std::size_t count = weights.size();
+    double total = 0;
+    for (double weight : weights)
+        total += weight;
+    AliasTable table;
+    table.probability.resize(count);
+    table.threshold.assign(count, 1.0f);
+    table.alias.resize(count);
+    std::vector<double> scaled(count);
+    std::vector<std::uint32_t> small, large;
+    for (std::size_t i = 0; i < count; ++i) {
+        table.probability[i] = static_cast<float>(weights[i] / total);
+        table.alias[i] = static_cast<std::uint32_t>(i);
+        scaled[i] = weights[i] / total * static_cast<double>(count);
+        (scaled[i] < 1 ? small : large).push_back(static_cast<std::uint32_t>(i));
+    }
+    while (!small.empty() && !large.empty()) {
+        const std::uint32_t low = small.back(), high = large.back();
+        small.pop_back();
+        table.threshold[low] = static_cast<float>(scaled[low]);
+        table.alias[low] = high;
+        scaled[high] -= 1 - scaled[low];
+        if (scaled[high] < 1) {
+            large.pop_back();
+            small.push_back(high);
+        }
+    }
+    return table; // what is left over is 1 but for rounding
+}
+
+} // namespace gradus

@@ -1,0 +1,148 @@
+#include "runtime/scene/mesh_builder.h"
+
+#include "runtime/scene/transform.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gradus {
+namespace {
+
+bool is_finite(const Vector3 &v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+/// Twice the area, along the geometric normal.
+Double3 area_vector(const Mesh &mesh, const std::array<std::uint32_t, 3> &triangle) {
+    const Double3 p0 = to_double(mesh.positions[triangle[0]]);
+    return cross(subtract(to_double(mesh.positions[triangle[1]]), p0),
+                 subtract(to_double(mesh.positions[triangle[2]]), p0));
+}
+
+void transform_positions(Mesh &mesh, const Matrix4 &to_world) {
+    for (Vector3 &p : mesh.positions)
+        p = to_float(transform_point(to_world, to_double(p)));
+}
+
+/// Normals that are zero or not finite become (0, 0, 0), which settle_normals() replaces.
+void transform_normals(Mesh &mesh, const Matrix4 &to_world) {
+    const NormalMap map(to_world);
+    for (Vector3 &n : mesh.normals) {
+        const Double3 mapped = map(to_double(n));
+        const double size = length(mapped);
+        n = std::isfinite(size) && size > 0 ? to_float(scale(mapped, 1 / size)) : Vector3{};
+    }
+}
+
+/// Drops triangles that have no area in single precision, where they are intersected. The threshold is relative to
+/// the longest edge, so a tiny mesh loses nothing.
+std::size_t drop_degenerate(Mesh &mesh) {
+    const auto is_degenerate = [&](const std::array<std::uint32_t, 3> &t) {
+        if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0])
+            return true;
+        for (std::uint32_t index : t)
+            if (!is_finite(mesh.positions[index]))
+                return true;
+        double longest = 0;
+        for (int i = 0; i < 3; ++i)
+            longest = std::max(
+                longest, length(subtract(to_double(mesh.positions[t[(i + 1) % 3]]), to_double(mesh.positions[t[i]]))));
+        const double twice_area = length(area_vector(mesh, t));
+        return !(twice_area > 1e-10 * longest * longest) || !std::isnormal(float(twice_area));
+    };
+    const auto end = std::remove_if(mesh.triangles.begin(), mesh.triangles.end(), is_degenerate);
+    const std::size_t dropped = std::size_t(mesh.triangles.end() - end);
+    mesh.triangles.erase(end, mesh.triangles.end());
+    // What no triangle uses must not spoil bounds that someone takes over all positions.
+    if (!mesh.triangles.empty())
+        for (Vector3 &p : mesh.positions)
+            if (!is_finite(p))
+                p = mesh.positions[mesh.triangles[0][0]];
+    return dropped;
+}
+
+/// The file's normals tell the front: a triangle that is wound against the sum of its three is turned round.
+void wind_along_normals(Mesh &mesh) {
+    for (auto &t : mesh.triangles) {
+        const Double3 sum =
+            add(add(to_double(mesh.normals[t[0]]), to_double(mesh.normals[t[1]])), to_double(mesh.normals[t[2]]));
+        if (dot(area_vector(mesh, t), sum) < 0)
+            std::swap(t[1], t[2]);
+    }
+}
+
+/// Replaces missing normals (0, 0, 0) by computed ones.
+void settle_normals(Mesh &mesh) {
+    const Vector3 missing{};
+    if (std::find(mesh.normals.begin(), mesh.normals.end(), missing) == mesh.normals.end())
+        return;
+    const std::vector<Vector3> computed = smooth_vertex_normals(mesh);
+    for (std::size_t i = 0; i < mesh.normals.size(); ++i)
+        if (mesh.normals[i] == missing)
+            mesh.normals[i] = computed[i];
+}
+
+void reverse_winding(Mesh &mesh) {
+    for (auto &t : mesh.triangles)
+        std::swap(t[1], t[2]);
+}
+
+} // namespace
+
+std::vector<Vector3> smooth_vertex_normals(const Mesh &mesh) {
+    std::vector<Double3> sums(mesh.positions.size(), Double3{0, 0, 0});
+    for (const auto &t : mesh.triangles) {
+        const Double3 area = area_vector(mesh, t);
+        const double size = length(area);
+        if (!(size > 0))
+            continue;
+        const Double3 normal = scale(area, 1 / size);
+        for (int i = 0; i < 3; ++i) {
+            const Double3 corner = to_double(mesh.positions[t[i]]);
+            const Double3 a = subtract(to_double(mesh.positions[t[(i + 1) % 3]]), corner);
+            const Double3 b = subtract(to_double(mesh.positions[t[(i + 2) % 3]]), corner);
+            const double angle = std::atan2(length(cross(a, b)), dot(a, b));
+            sums[t[i]] = add(sums[t[i]], scale(normal, angle));
+        }
+    }
+    std::vector<Vector3> normals(sums.size(), Vector3{0, 0, 1});
+    for (std::size_t i = 0; i < sums.size(); ++i)
+        if (const double size = length(sums[i]); size > 1e-12)
+            normals[i] = to_float(scale(sums[i], 1 / size));
+    return normals;
+}
+
+double surface_area(const Mesh &mesh) {
+    double area = 0;
+    for (const auto &t : mesh.triangles)
+        area += 0.5 * length(area_vector(mesh, t));
+    return area;
+}
+
+BuiltMesh build_mesh(Mesh mesh, const Matrix4 &to_world, const MeshOptions &options) {
+    BuiltMesh built;
+    if (options.face_normals)
+        mesh.normals.clear();
+    transform_positions(mesh, to_world);
+    transform_normals(mesh, to_world);
+    built.degenerate = drop_degenerate(mesh);
+
+    if (options.front_from_local_winding) {
+        // A mirror turns the winding over but not the side that a mapped normal points to.
+        if (determinant(to_world) < 0)
+            reverse_winding(mesh);
+    } else if (!mesh.normals.empty())
+        wind_along_normals(mesh);
+
+    if (mesh.normals.empty() && options.compute_normals && !options.face_normals)
+        mesh.normals = smooth_vertex_normals(mesh);
+    settle_normals(mesh);
+
+    if (options.flip_normals) {
+        reverse_winding(mesh);
+        for (Vector3 &n : mesh.normals)
+            n = {-n.x, -n.y, -n.z};
+    }
+    built.mesh = std::move(mesh);
+    return built;
+}
+
+} // namespace gradus

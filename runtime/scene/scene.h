@@ -1,0 +1,133 @@
+// What a scene is: meshes, spheres, materials, emitters, a camera and a film, in world space and free of any file
+// format. runtime/io fills it, runtime/scene/traits.h says what it needs, runtime/scene/scene_tables.h lays it out
+// for the device.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace gradus {
+
+/// Linear RGB with the primaries and white point of sRGB. Unit and meaning are with the member that holds it.
+struct Rgb {
+    float r = 0, g = 0, b = 0;
+    bool operator==(const Rgb &) const = default;
+};
+
+struct Vector3 {
+    float x = 0, y = 0, z = 0;
+    bool operator==(const Vector3 &) const = default;
+};
+
+/// Row-major 4x4 matrix acting on column vectors, in double so that chains of transforms stay exact to float.
+struct Matrix4 {
+    std::array<double, 16> m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+};
+
+/// A triangle mesh in world space. The geometric normal of a triangle is (p1 - p0) x (p2 - p0), normalised; a loader
+/// that mirrors or flips a mesh reorders its indices so that this holds.
+struct Mesh {
+    std::vector<Vector3> positions;
+    std::vector<Vector3> normals; ///< shading normals by vertex, unit length; empty: use the geometric normal
+    std::vector<std::array<float, 2>> texcoords; ///< by vertex; may be empty
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+struct Sphere {
+    Vector3 center;
+    float radius = 1;
+    bool flip_normals = false; ///< true: the normal points to the center
+};
+
+/// A mesh or a sphere, with its material and what it emits.
+struct Shape {
+    enum class Kind { mesh, sphere };
+    Kind kind = Kind::mesh;
+    std::uint32_t geometry = 0; ///< index into Scene::meshes or Scene::spheres
+    std::uint32_t material = 0; ///< index into Scene::materials
+    std::int32_t emitter = -1;  ///< index into Scene::emitters, or -1
+    std::string name;           ///< its id in the file, or a description of where it came from
+};
+
+/// The names are those of GRADUS_BSDF_KINDS without the microfacet distribution.
+enum class BsdfKind { diffuse, conductor, dielectric, null, roughconductor, roughdielectric };
+enum class Microfacet { beckmann, ggx };
+
+/// One side of a surface. Members that its kind does not name are ignored.
+struct Bsdf {
+    BsdfKind kind = BsdfKind::diffuse;
+    Microfacet distribution = Microfacet::beckmann;
+    Rgb reflectance{0.5f, 0.5f, 0.5f};
+    Rgb specular_reflectance{1, 1, 1};
+    Rgb specular_transmittance{1, 1, 1};
+    Rgb eta{0, 0, 0}; ///< conductors, relative to the outside; eta 0 with k 1 is a perfect mirror
+    Rgb k{1, 1, 1};
+    float ior = 1.5046f; ///< dielectrics: inside over outside
+    float alpha_u = 0.1f, alpha_v = 0.1f;
+    bool operator==(const Bsdf &) const = default;
+};
+
+/// A BSDF for the front side of a surface and one for its back. One-sided kinds (diffuse, conductors) absorb what
+/// arrives from behind unless two_sided; then `back` describes the back side as seen from there.
+struct Material {
+    Bsdf front;
+    Bsdf back;              ///< used only where two_sided
+    bool two_sided = false; ///< never true for dielectrics and null, which have both sides by nature
+    std::string name;
+};
+
+struct Emitter {
+    enum class Kind {
+        area,       ///< emits from the front side of a shape
+        constant,   ///< the same radiance from every direction
+        point,      ///< at position
+        directional ///< travels along direction
+    };
+    Kind kind = Kind::area;
+    Rgb value; ///< area, constant: radiance (W sr^-1 m^-2); point: intensity (W sr^-1); directional: irradiance on a
+               ///< plane across the direction (W m^-2)
+    Vector3 position;  ///< point
+    Vector3 direction; ///< directional: unit vector, the way that light travels
+};
+
+/// A pinhole camera that looks along its local +z with +y up and +x to the left of the image, as Mitsuba has it.
+struct Camera {
+    enum class FovAxis { x, y, smaller, larger, diagonal };
+    Matrix4 to_world; ///< rigid but for a scale, which is ignored
+    double fov = 50;  ///< degrees, along fov_axis
+    FovAxis fov_axis = FovAxis::x;
+};
+
+struct FilmSettings {
+    enum class Filter { box, tent, gaussian };
+    std::uint32_t width = 768, height = 576; ///< the full film; the crop is a part of it
+    std::uint32_t crop_x = 0, crop_y = 0, crop_width = 0, crop_height = 0; ///< crop_width 0: no crop
+    Filter filter = Filter::gaussian;
+    float filter_radius = 2.0f;  ///< tent: half its support in pixels; gaussian: where it is cut off
+    float filter_stddev = 0.5f;  ///< gaussian, in pixels
+};
+
+/// What the file asks of the renderer; the command line may override each.
+struct RenderSettings {
+    int max_depth = -1; ///< path edges at most; 1: directly seen emitters only; -1: no limit
+    int rr_depth = 5;   ///< Russian roulette from this depth on
+    bool hide_emitters = false;
+    std::uint64_t samples_per_pixel = 4;
+    std::string integrator; ///< as the file names it; informative
+};
+
+struct Scene {
+    std::string path; ///< the file that it came from
+    std::vector<Mesh> meshes;
+    std::vector<Sphere> spheres;
+    std::vector<Shape> shapes;
+    std::vector<Material> materials;
+    std::vector<Emitter> emitters;
+    Camera camera;
+    FilmSettings film;
+    RenderSettings settings;
+};
+
+} // namespace gradus

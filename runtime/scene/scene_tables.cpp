@@ -1,0 +1,261 @@
+#include "runtime/scene/scene_tables.h"
+
+#include "kernels/shared/material.h"
+#include "kernels/shared/scene_records.h"
+#include "runtime/scene/camera_record.h"
+#include "runtime/scene/light_table.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gradus {
+
+using namespace lib_float;
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+// Positions are exact to a few units in the last place of the largest coordinate; 32 of those (2^-24 each, so
+// 2^-18 with room) keep a new ray off the surface it starts from.
+constexpr float offset_scale = 0x1p-18f;
+
+Vector3 operator-(Vector3 a, Vector3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+Vector3 operator*(float s, Vector3 a) { return {s * a.x, s * a.y, s * a.z}; }
+Vector3 cross(Vector3 a, Vector3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+double length(Vector3 a) { return std::sqrt(double(a.x) * a.x + double(a.y) * a.y + double(a.z) * a.z); }
+float largest(Vector3 a) { return std::max({std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)}); }
+double luminance(Rgb c) { return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b; }
+
+void put(float *record, int field, Vector3 v) {
+    record[field] = v.x;
+    record[field + 1] = v.y;
+    record[field + 2] = v.z;
+}
+
+struct Bounds {
+    Vector3 low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
+    void add(Vector3 p, float r = 0) {
+        low = {std::min(low.x, p.x - r), std::min(low.y, p.y - r), std::min(low.z, p.z - r)};
+        high = {std::max(high.x, p.x + r), std::max(high.y, p.y + r), std::max(high.z, p.z + r)};
+    }
+    double radius() const { return high.x >= low.x ? std::max(0.5 * length(high - low), 1e-6) : 1; }
+};
+
+Bounds scene_bounds(const Scene &scene) {
+    Bounds bounds;
+    for (const Shape &shape : scene.shapes) {
+        if (shape.kind == Shape::Kind::mesh)
+            for (Vector3 p : scene.meshes[shape.geometry].positions)
+                bounds.add(p);
+        else
+            bounds.add(scene.spheres[shape.geometry].center, scene.spheres[shape.geometry].radius);
+    }
+    return bounds;
+}
+
+/// Grows the lights and, with them, the weights by which they are chosen.
+struct LightBuilder {
+    SceneTables &tables;
+    std::vector<double> weights;
+    bool has_environment = false;
+
+    /// A new light; returns its number and its record.
+    std::uint32_t add(light_kind kind, Rgb value, double power, float *&record) {
+        const std::size_t number = weights.size();
+        weights.push_back(power);
+        tables.light_kinds.push_back(kind);
+        tables.lights.resize((number + 1) * light_stride, 0.0f);
+        record = &tables.lights[number * light_stride];
+        record[light_value_r] = value.r;
+        record[light_value_g] = value.g;
+        record[light_value_b] = value.b;
+        return static_cast<std::uint32_t>(number);
+    }
+
+    void finish() {
+        tables.light_count = static_cast<std::uint32_t>(weights.size());
+        // A black light follows the last: what the environment is where there is none.
+        tables.lights.resize((weights.size() + 1) * light_stride, 0.0f);
+        if (!has_environment)
+            tables.environment_light = tables.light_count;
+        if (weights.empty())
+            return;
+        const AliasTable alias = make_alias_table(weights);
+        for (std::size_t i = 0; i < weights.size(); ++i) {
+            tables.lights[i * light_stride + light_probability] = alias.probability[i];
+            tables.lights[i * light_stride + light_alias_threshold] = alias.threshold[i];
+        }
+        tables.light_alias = alias.alias;
+    }
+};
+
+void add_mesh(const Scene &scene, const Shape &shape, const TraitMap &traits, SceneTables &tables,
+              LightBuilder &lights) {
+    const Mesh &mesh = scene.meshes[shape.geometry];
+    for (const auto &t : mesh.triangles) {
+        const Vector3 p0 = mesh.positions[t[0]];
+        const Vector3 e1 = mesh.positions[t[1]] - p0, e2 = mesh.positions[t[2]] - p0;
+        const float offset = offset_scale * (largest(p0) + std::max(largest(e1), largest(e2)));
+        const Vector3 area_normal = cross(e1, e2);
+        const double area = 0.5 * length(area_normal);
+
+        tables.triangles.resize(tables.triangles.size() + triangle_stride, 0.0f);
+        float *record = &tables.triangles[tables.triangles.size() - triangle_stride];
+        put(record, triangle_p0_x, p0);
+        put(record, triangle_e1_x, e1);
+        put(record, triangle_e2_x, e2);
+        record[triangle_offset] = offset;
+
+        if (traits.at("TRAIT_SHADING_NORMALS")) {
+            const Vector3 flat = static_cast<float>(1 / (2 * area)) * area_normal;
+            for (int corner = 0; corner < 3; ++corner) {
+                const Vector3 n = mesh.normals.empty() ? flat : mesh.normals[t[corner]];
+                tables.triangle_normals.insert(tables.triangle_normals.end(), {n.x, n.y, n.z});
+            }
+        }
+        if (traits.at("TRAIT_ANISOTROPIC")) {
+            Vector3 along{};
+            if (!mesh.texcoords.empty()) {
+                const auto &a = mesh.texcoords[t[0]], &b = mesh.texcoords[t[1]], &c = mesh.texcoords[t[2]];
+                const float u1 = b[0] - a[0], v1 = b[1] - a[1], u2 = c[0] - a[0], v2 = c[1] - a[1];
+                const float determinant = u1 * v2 - u2 * v1;
+                const float sign = determinant < 0 ? -1.0f : 1.0f; // only the direction counts
+                along = determinant == 0 ? Vector3{} : sign * (v2 * e1 - v1 * e2);
+            }
+            tables.triangle_tangents.insert(tables.triangle_tangents.end(), {along.x, along.y, along.z});
+        }
+
+        std::uint32_t light = no_light;
+        if (shape.emitter >= 0) {
+            const Rgb radiance = scene.emitters[shape.emitter].value;
+            const double power = pi * area * luminance(radiance);
+            if (power > 0) {
+                float *light_record;
+                light = lights.add(light_kind_triangle, radiance, power, light_record);
+                put(light_record, light_p_x, p0);
+                put(light_record, light_e1_x, e1);
+                put(light_record, light_e2_x, e2);
+                light_record[light_inverse_area] = static_cast<float>(1 / area);
+                light_record[light_offset] = offset;
+            }
+        }
+        tables.primitive_light.push_back(light);
+        tables.primitive_material.push_back(shape.material);
+    }
+}
+
+void add_sphere(const Scene &scene, const Shape &shape, SceneTables &tables, LightBuilder &lights) {
+    const Sphere &sphere = scene.spheres[shape.geometry];
+    const float offset = offset_scale * (largest(sphere.center) + sphere.radius);
+    const float facing = sphere.flip_normals ? -1.0f : 1.0f;
+    tables.spheres.resize(tables.spheres.size() + sphere_stride);
+    float *record = &tables.spheres[tables.spheres.size() - sphere_stride];
+    put(record, sphere_center_x, sphere.center);
+    record[sphere_radius] = sphere.radius;
+    record[sphere_facing] = facing;
+    record[sphere_offset] = offset;
+
+    std::uint32_t light = no_light;
+    if (shape.emitter >= 0) {
+        const Rgb radiance = scene.emitters[shape.emitter].value;
+        const double area = 4 * pi * double(sphere.radius) * sphere.radius;
+        const double power = pi * area * luminance(radiance);
+        if (power > 0) {
+            float *light_record;
+            light = lights.add(light_kind_sphere, radiance, power, light_record);
+            put(light_record, light_p_x, sphere.center);
+            light_record[light_e1_x] = sphere.radius;
+            light_record[light_e1_y] = facing;
+            light_record[light_inverse_area] = static_cast<float>(1 / area);
+            light_record[light_offset] = offset;
+        }
+    }
+    tables.primitive_light.push_back(light);
+    tables.primitive_material.push_back(shape.material);
+}
+
+/// Lights without a surface. Those at infinity count with what crosses a disk as wide as the scene.
+void add_other_lights(const Scene &scene, double radius, SceneTables &tables, LightBuilder &lights) {
+    const double disk = pi * radius * radius;
+    for (const Emitter &emitter : scene.emitters) {
+        const double value = luminance(emitter.value);
+        if (emitter.kind == Emitter::Kind::area || !(value > 0))
+            continue;
+        float *record;
+        if (emitter.kind == Emitter::Kind::constant) {
+            tables.environment_light = lights.add(light_kind_constant, emitter.value, pi * value * disk, record);
+            lights.has_environment = true;
+        } else if (emitter.kind == Emitter::Kind::point) {
+            lights.add(light_kind_point, emitter.value, 4 * pi * value, record);
+            put(record, light_p_x, emitter.position);
+        } else {
+            lights.add(light_kind_directional, emitter.value, value * disk, record);
+            put(record, light_p_x, -1.0f * emitter.direction);
+        }
+    }
+}
+
+void add_material_record(const Bsdf &bsdf, SceneTables &tables) {
+    tables.materials.resize(tables.materials.size() + material_stride);
+    float *record = &tables.materials[tables.materials.size() - material_stride];
+    const auto put_rgb = [&](int field, Rgb c) { put(record, field, {c.r, c.g, c.b}); };
+    put_rgb(material_reflectance_r, bsdf.reflectance);
+    put_rgb(material_specular_reflectance_r, bsdf.specular_reflectance);
+    put_rgb(material_specular_transmittance_r, bsdf.specular_transmittance);
+    put_rgb(material_eta_r, bsdf.eta);
+    put_rgb(material_k_r, bsdf.k);
+    record[material_ior] = bsdf.ior;
+    record[material_alpha_u] = bsdf.alpha_u;
+    record[material_alpha_v] = bsdf.alpha_v;
+    const auto kind = std::find(tables.bins.begin(), tables.bins.end(), bsdf_kind_name(bsdf));
+    // A material that no shape has may be of a kind without a bin; nothing ever looks there.
+    tables.material_bin.push_back(static_cast<std::uint32_t>(1 + (kind - tables.bins.begin())));
+    tables.material_flags.push_back(0);
+    tables.material_back.push_back(static_cast<std::uint32_t>(tables.material_back.size()));
+}
+
+void add_materials(const Scene &scene, SceneTables &tables) {
+    for (const Material &material : scene.materials)
+        add_material_record(material.front, tables);
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        const Material &material = scene.materials[i];
+        if (!material.two_sided)
+            continue;
+        tables.material_flags[i] = material_flag_two_sided;
+        if (!(material.back == material.front)) {
+            tables.material_back[i] = static_cast<std::uint32_t>(tables.material_back.size());
+            add_material_record(material.back, tables);
+        }
+    }
+}
+
+} // namespace
+
+SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits) {
+    SceneTables tables;
+    tables.bins = bsdf_kinds(scene);
+    LightBuilder lights{tables, {}, false};
+    for (const Shape &shape : scene.shapes)
+        if (shape.kind == Shape::Kind::mesh)
+            add_mesh(scene, shape, traits, tables, lights);
+    tables.triangle_count = static_cast<std::uint32_t>(tables.primitive_material.size());
+    for (const Shape &shape : scene.shapes)
+        if (shape.kind == Shape::Kind::sphere)
+            add_sphere(scene, shape, tables, lights);
+    const double radius = scene_bounds(scene).radius();
+    tables.scene_diameter = static_cast<float>(2.02 * radius);
+    add_other_lights(scene, radius, tables, lights);
+    lights.finish();
+    add_materials(scene, tables);
+    tables.camera = make_camera_record(scene.camera, scene.film);
+    return tables;
+}
+
+std::size_t table_bytes(const SceneTables &t) {
+    return 4 * (t.triangles.size() + t.triangle_normals.size() + t.triangle_tangents.size() + t.spheres.size() +
+                t.materials.size() + t.lights.size() + t.camera.size() + t.primitive_material.size() +
+                t.primitive_light.size() + t.material_bin.size() + t.material_flags.size() + t.material_back.size() +
+                t.light_kinds.size() + t.light_alias.size());
+}
+
+} // namespace gradus

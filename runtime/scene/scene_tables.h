@@ -1,0 +1,29 @@
+// A scene laid out as the kernels read it: the records of kernels/shared/scene_records.h and material.h.
+#pragma once
+
+#include "runtime/scene/scene.h"
+#include "runtime/scene/traits.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace gradus {
+
+struct SceneTables {
+    std::vector<float> triangles, triangle_normals, triangle_tangents, spheres, materials, lights, camera;
+    std::vector<std::uint32_t> primitive_material, primitive_light;           ///< by primitive
+    std::vector<std::uint32_t> material_bin, material_flags, material_back;   ///< by material record
+    std::vector<std::uint32_t> light_kinds, light_alias;                      ///< by light
+    std::vector<std::string> bins; ///< the BSDF kind of bin 1, 2, ...; bin 0 is for paths that escaped
+    std::uint32_t triangle_count = 0, light_count = 0, environment_light = 0;
+    float scene_diameter = 1; ///< longer than any segment within the scene
+};
+
+/// Lays out the scene for these traits. `film_width` and `film_height` are those of the full film.
+SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits);
+
+/// Bytes that the tables take.
+std::size_t table_bytes(const SceneTables &tables);
+
+} // namespace gradus

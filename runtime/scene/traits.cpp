@@ -1,0 +1,162 @@
+#include "runtime/scene/traits.h"
+
+#include "kernels/shared/material.h"
+
+#include <algorithm>
+#include <set>
+
+namespace gradus {
+
+namespace {
+
+struct TraitText {
+    const char *name, *text;
+};
+
+constexpr TraitText descriptions[] = {
+    {"TRAIT_TRIANGLES", "triangle meshes"},
+    {"TRAIT_SPHERES", "spheres"},
+    {"TRAIT_SHADING_NORMALS", "interpolated normals"},
+    {"TRAIT_ANISOTROPIC", "anisotropic roughness, which needs tangents"},
+    {"TRAIT_TWO_SIDED", "materials seen alike from both sides"},
+    {"TRAIT_TWO_FACED", "materials whose two sides differ"},
+    {"TRAIT_MANY_BSDF_KINDS", "more than one kind of BSDF"},
+    {"TRAIT_REFRACTION", "dielectrics: paths keep their index ratio for Russian roulette"},
+    {"TRAIT_ENVIRONMENT", "light from where rays leave the scene"},
+    {"TRAIT_LIGHT_TRIANGLE", "emitting triangles"},
+    {"TRAIT_LIGHT_SPHERE", "emitting spheres"},
+    {"TRAIT_LIGHT_POINT", "point lights"},
+    {"TRAIT_LIGHT_DIRECTIONAL", "directional lights"},
+    {"TRAIT_LIGHT_CONSTANT", "sampling of a constant environment"},
+    {"TRAIT_HIDE_EMITTERS", "emitters that the camera does not see"},
+    {"TRAIT_FILTER_TENT", "tent pixel filter"},
+    {"TRAIT_FILTER_GAUSSIAN", "Gaussian pixel filter"},
+};
+
+struct KindEntry {
+    const char *name;
+    bool is_dirac;
+};
+
+#define GRADUS_KIND_ENTRY(name, is_dirac) {#name, is_dirac != 0},
+constexpr KindEntry kinds[] = {GRADUS_BSDF_KINDS(GRADUS_KIND_ENTRY)};
+#undef GRADUS_KIND_ENTRY
+
+bool refracts(const Bsdf &bsdf) { return bsdf.kind == BsdfKind::dielectric || bsdf.kind == BsdfKind::roughdielectric; }
+
+bool is_anisotropic(const Bsdf &bsdf) {
+    return (bsdf.kind == BsdfKind::roughconductor || bsdf.kind == BsdfKind::roughdielectric) &&
+           bsdf.alpha_u != bsdf.alpha_v;
+}
+
+/// Calls visit(bsdf) for each side of each material that a shape has.
+template <class Visit>
+void for_each_bsdf(const Scene &scene, Visit visit) {
+    for (const Shape &shape : scene.shapes) {
+        const Material &material = scene.materials[shape.material];
+        visit(material.front);
+        if (material.two_sided)
+            visit(material.back);
+    }
+}
+
+} // namespace
+
+std::string bsdf_kind_name(const Bsdf &bsdf) {
+    const std::string distribution = bsdf.distribution == Microfacet::ggx ? "_ggx" : "_beckmann";
+    switch (bsdf.kind) {
+    case BsdfKind::diffuse: return "diffuse";
+    case BsdfKind::conductor: return "conductor";
+    case BsdfKind::dielectric: return "dielectric";
+    case BsdfKind::null: return "null";
+    case BsdfKind::roughconductor: return "roughconductor" + distribution;
+    case BsdfKind::roughdielectric: return "roughdielectric" + distribution;
+    }
+    return "";
+}
+
+std::vector<std::string> bsdf_kinds(const Scene &scene) {
+    std::set<std::string> found;
+    for_each_bsdf(scene, [&](const Bsdf &bsdf) { found.insert(bsdf_kind_name(bsdf)); });
+    std::vector<std::string> ordered;
+    for (const KindEntry &kind : kinds)
+        if (found.contains(kind.name))
+            ordered.push_back(kind.name);
+    return ordered;
+}
+
+bool bsdf_kind_is_dirac(const std::string &name) {
+    return std::any_of(std::begin(kinds), std::end(kinds),
+                       [&](const KindEntry &kind) { return kind.name == name && kind.is_dirac; });
+}
+
+TraitMap scene_traits(const Scene &scene) {
+    TraitMap traits;
+    for (const TraitText &trait : descriptions)
+        traits[trait.name] = 0;
+    for (const Shape &shape : scene.shapes) {
+        const bool mesh = shape.kind == Shape::Kind::mesh;
+        traits[mesh ? "TRAIT_TRIANGLES" : "TRAIT_SPHERES"] = 1;
+        if (mesh && !scene.meshes[shape.geometry].normals.empty())
+            traits["TRAIT_SHADING_NORMALS"] = 1;
+        if (shape.emitter >= 0)
+            traits[mesh ? "TRAIT_LIGHT_TRIANGLE" : "TRAIT_LIGHT_SPHERE"] = 1;
+        const Material &material = scene.materials[shape.material];
+        if (material.two_sided) {
+            traits["TRAIT_TWO_SIDED"] = 1;
+            if (!(material.front == material.back))
+                traits["TRAIT_TWO_FACED"] = 1;
+        }
+    }
+    for_each_bsdf(scene, [&](const Bsdf &bsdf) {
+        if (refracts(bsdf))
+            traits["TRAIT_REFRACTION"] = 1;
+        if (is_anisotropic(bsdf))
+            traits["TRAIT_ANISOTROPIC"] = 1;
+    });
+    traits["TRAIT_MANY_BSDF_KINDS"] = bsdf_kinds(scene).size() > 1;
+    for (const Emitter &emitter : scene.emitters) {
+        if (emitter.value == Rgb{})
+            continue; // black: no light
+        switch (emitter.kind) {
+        case Emitter::Kind::area: break; // by the shape that bears it
+        case Emitter::Kind::constant:
+            traits["TRAIT_ENVIRONMENT"] = 1;
+            traits["TRAIT_LIGHT_CONSTANT"] = 1;
+            break;
+        case Emitter::Kind::point: traits["TRAIT_LIGHT_POINT"] = 1; break;
+        case Emitter::Kind::directional: traits["TRAIT_LIGHT_DIRECTIONAL"] = 1; break;
+        }
+    }
+    traits["TRAIT_HIDE_EMITTERS"] = scene.settings.hide_emitters;
+    traits["TRAIT_FILTER_TENT"] = scene.film.filter == FilmSettings::Filter::tent;
+    traits["TRAIT_FILTER_GAUSSIAN"] = scene.film.filter == FilmSettings::Filter::gaussian;
+    return traits;
+}
+
+std::vector<std::pair<std::string, int>> trait_list(const Scene &scene) {
+    const TraitMap traits = scene_traits(scene);
+    std::vector<std::pair<std::string, int>> list;
+    for (const TraitText &trait : descriptions)
+        list.emplace_back(trait.name, traits.at(trait.name));
+    return list;
+}
+
+std::string trait_description(const std::string &name) {
+    for (const TraitText &trait : descriptions)
+        if (trait.name == name)
+            return trait.text;
+    return "";
+}
+
+TraitMap with_all_traits(TraitMap traits) {
+    for (auto &[name, value] : traits) {
+        // The filter and hidden emitters change the picture; the rest only makes room for what is not there.
+        const bool setting = name.starts_with("TRAIT_FILTER") || name == "TRAIT_HIDE_EMITTERS";
+        if (!setting)
+            value = 1;
+    }
+    return traits;
+}
+
+} // namespace gradus

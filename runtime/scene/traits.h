@@ -1,0 +1,36 @@
+// What a scene needs of the kernels. What a scene does not need is neither compiled, allocated nor branched on.
+#pragma once
+
+#include "runtime/scene/scene.h"
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace gradus {
+
+/// Values of the names that kernel files declare in their "//! traits:" lines: 1 where the scene has the feature.
+using TraitMap = std::map<std::string, int>;
+
+TraitMap scene_traits(const Scene &scene);
+
+/// The same as a list, with the settings of a render left out, for `gradus inspect`.
+std::vector<std::pair<std::string, int>> trait_list(const Scene &scene);
+
+/// One line that says what a trait stands for; empty for an unknown one.
+std::string trait_description(const std::string &name);
+
+/// Every feature on, as if the scene had it: what a renderer without specialised kernels would run.
+TraitMap with_all_traits(TraitMap traits);
+
+/// The BSDF of the kernels that a Bsdf of the scene uses: a name of GRADUS_BSDF_KINDS.
+std::string bsdf_kind_name(const Bsdf &bsdf);
+
+/// The kinds that occur on the scene's shapes, in the order of GRADUS_BSDF_KINDS.
+std::vector<std::string> bsdf_kinds(const Scene &scene);
+
+/// True for kinds that light sampling cannot meet.
+bool bsdf_kind_is_dirac(const std::string &name);
+
+} // namespace gradus

@@ -1,0 +1,34 @@
+// The tables of one batch of paths on the device, and how large a batch may be.
+#pragma once
+
+#include "runtime/device/buffer.h"
+#include "runtime/device/program.h"
+#include "runtime/scene/traits.h"
+
+#include <cstdint>
+
+namespace gradus {
+
+/// Rows that each work-item of the partition counts.
+constexpr std::uint32_t partition_chunk = 256;
+
+struct BatchTables {
+    /// `bins` of the partition, the escaped included. Allocates only what the traits ask for.
+    BatchTables(Device &device, std::uint32_t capacity, std::uint32_t bins, const TraitMap &traits,
+                Precision precision);
+
+    std::uint32_t capacity;
+    Buffer ray, shadow, radiance, feature, tangent;
+    Buffer vertex[2]; ///< surface reads one and writes the other
+    Buffer bin, offset, index, range;
+};
+
+/// Bytes of a batch for each path in it.
+std::size_t batch_bytes_per_path(const TraitMap &traits, Precision precision);
+
+/// The batch size for a request (0: the device's default), bounded by the device's memory and by what there is to
+/// do. Throws Error where not even a small batch fits.
+std::uint32_t choose_batch_size(Device &device, std::uint32_t requested, std::uint64_t samples, const TraitMap &traits,
+                                Precision precision);
+
+} // namespace gradus

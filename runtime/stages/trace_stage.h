@@ -1,0 +1,15 @@
+// Hands the ray and shadow tables of a batch to the tracer.
+#pragma once
+
+#include "runtime/stages/batch_tables.h"
+#include "runtime/trace/tracer.h"
+
+namespace gradus {
+
+/// Traces the first `rays` rows of tables.ray and the first `shadows` rows of tables.shadow. Waits for the device
+/// first; the device does nothing while the host traces, so that the two never compete for cores.
+/// `trace_seconds` grows by the tracer's time alone.
+TraceCounts run_trace_stage(Tracer &tracer, const BatchTables &tables, std::uint32_t rays, std::uint32_t shadows,
+                            double &trace_seconds);
+
+} // namespace gradus

@@ -1,0 +1,67 @@
+// Intersecting rays in batches. The only place that knows Embree.
+#pragma once
+
+#include "runtime/scene/scene.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace gradus {
+
+/// The host's view of the columns of a ray table: see GRADUS_RAY_COLUMNS.
+struct RayColumns {
+    const float *origin[3];
+    const float *direction[3];
+    std::uint32_t *primitive; ///< in: ray_pending or ray_none; out: what was hit, or ray_escaped
+};
+
+/// The host's view of the columns of a shadow table: see GRADUS_SHADOW_COLUMNS.
+struct ShadowColumns {
+    const float *origin[3];
+    const float *direction[3];
+    std::uint32_t *open; ///< in: 1 asks for a trace; out: 1 if nothing lies before parameter 1
+};
+
+struct TraceCounts {
+    std::uint64_t extension = 0, shadow = 0;
+};
+
+/// How rays are put in order before they are traced.
+enum class RayOrder {
+    none,   ///< as they come
+    octant, ///< by the signs of the direction
+    cell    ///< by those and by a coarse Morton cell of the origin
+};
+
+/// Rays of traced batches, packed as they were traced, so that tracing alone can be timed again.
+struct RecordedRays;
+
+class Tracer {
+  public:
+    /// Builds the acceleration structures. Primitives are numbered triangles first (mesh by mesh in the order of
+    /// Scene::shapes), then spheres in that order. `threads`: 0 for all. Throws Error where memory is short.
+    Tracer(const Scene &scene, int threads);
+    ~Tracer();
+
+    /// Traces rows [0, rays) and [0, shadows), on all threads; returns how many were really traced. Which hit a ray
+    /// gets depends on the ray alone.
+    TraceCounts trace(const RayColumns &ray, std::size_t rays, const ShadowColumns &shadow, std::size_t shadows);
+
+    void set_order(RayOrder extension, RayOrder shadow);
+
+    /// From now on keeps the packets of every `interval`-th call of trace(); 0 stops that.
+    void record(std::size_t interval);
+    /// Traces what was recorded once more and returns the seconds that it took; `recorded_seconds` and
+    /// `recorded_rays` are what the recorded calls took, all of trace() included, and how many rays they held.
+    double replay(double &recorded_seconds, std::uint64_t &recorded_rays);
+
+    std::size_t memory_bytes() const;
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+} // namespace gradus

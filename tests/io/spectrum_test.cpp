@@ -1,0 +1,160 @@
+// Spectra and refractive indices.
+#include "runtime/io/refractive_index.h"
+#include "runtime/io/spectrum.h"
+#include "tests/io/scene_text.h"
+
+#include <cmath>
+
+namespace gradus {
+namespace {
+
+TEST(Spectrum, FlatReflectanceIsGray) {
+    for (const ColorUse use : {ColorUse::reflectance, ColorUse::index})
+        expect_rgb(spectrum_to_rgb({{300, 0.4}, {900, 0.4}}, use), 0.4, 0.4, 0.4, 1e-6);
+}
+
+TEST(Spectrum, FlatLightIsEqualEnergyWhite) {
+    // X = Y = Z = 1 in linear sRGB: the sums of the rows of the matrix of IEC 61966-2-1.
+    expect_rgb(spectrum_to_rgb({{300, 1}, {900, 1}}, ColorUse::emission), 1.2048, 0.9483, 0.9087, 1e-3);
+}
+
+TEST(Spectrum, DaylightIsWhite) {
+    // CIE D65 every 40 nm, relative to its value at 560 nm, so coarse that some per cent of error remain.
+    const SampledSpectrum daylight{{380, 0.499755}, {400, 0.827549}, {440, 1.04865}, {480, 1.15923}, {520, 1.0479},
+                                   {560, 1.0},      {600, 0.900062}, {640, 0.836992}, {680, 0.782842}, {720, 0.61604},
+                                   {780, 0.633828}};
+    const Rgb rgb = spectrum_to_rgb(daylight, ColorUse::emission);
+    EXPECT_NEAR(rgb.r / rgb.g, 1, 0.03);
+    EXPECT_NEAR(rgb.b / rgb.g, 1, 0.03);
+}
+
+TEST(Spectrum, AgreesWithMitsuba) {
+    // What Mitsuba 3.9 makes of the same spectra in its RGB mode; its observer is tabulated more finely.
+    const SampledSpectrum ramp{{400, 0.1}, {500, 0.2}, {600, 0.7}, {700, 0.8}};
+    expect_rgb(spectrum_to_rgb(ramp, ColorUse::reflectance), 0.835107, 0.405667, 0.112629, 0.004);
+    expect_rgb(spectrum_to_rgb(ramp, ColorUse::emission), 0.96325, 0.389259, 0.0958685, 0.004);
+    // Nothing outside the samples.
+    expect_rgb(spectrum_to_rgb({{400, 0.5}, {700, 0.5}}, ColorUse::reflectance), 0.497671, 0.499878, 0.497455, 0.001);
+}
+
+TEST(Spectrum, LuminanceOfALineIsTheObservers) {
+    // A triangle of area 1 nm at 550 nm: Y = ybar(550) / (integral of ybar = 106.857 nm).
+    const Rgb rgb = spectrum_to_rgb({{549, 0}, {550, 1}, {551, 0}}, ColorUse::emission);
+    EXPECT_EQ(rgb.b, 0); // out of gamut
+    EXPECT_GT(rgb.g, rgb.r);
+    // y = 0.2126 r + 0.7152 g + 0.0722 b before clamping; xyz -> rgb by hand for (0.43345, 0.99495, 0.00875).
+    const double green = (-0.969244 * 0.43345 + 1.875968 * 0.99495 + 0.041555 * 0.00875) / 106.857;
+    EXPECT_NEAR(rgb.g, green, 0.01 * green);
+}
+
+TEST(Spectrum, GammaCurve) {
+    EXPECT_DOUBLE_EQ(srgb_to_linear(0), 0);
+    EXPECT_NEAR(srgb_to_linear(1), 1, 1e-12);
+    EXPECT_NEAR(srgb_to_linear(0.5), 0.2140411, 1e-6);
+    EXPECT_NEAR(srgb_to_linear(0.04), 0.04 / 12.92, 1e-12);
+}
+
+double reflectance(double eta, double k) {
+    return ((eta - 1) * (eta - 1) + k * k) / ((eta + 1) * (eta + 1) + k * k);
+}
+
+struct Measured {
+    double wavelength, n, k;
+};
+
+/// Normal reflectance of a metal by name against a table of n and k. The table is another measurement than the one
+/// behind the names; for clean films of noble metals such measurements differ by a few hundredths.
+void compare_with_table(const std::string &name, const std::vector<Measured> &table) {
+    SampledSpectrum n, k;
+    for (const Measured &row : table) {
+        n.emplace_back(row.wavelength, row.n);
+        k.emplace_back(row.wavelength, row.k);
+    }
+    const Rgb eta_table = spectrum_to_rgb(n, ColorUse::index), k_table = spectrum_to_rgb(k, ColorUse::index);
+    const std::optional<ConductorIndex> index = conductor_index(name);
+    ASSERT_TRUE(index);
+    EXPECT_NEAR(reflectance(index->eta.r, index->k.r), reflectance(eta_table.r, k_table.r), 0.05) << name;
+    EXPECT_NEAR(reflectance(index->eta.g, index->k.g), reflectance(eta_table.g, k_table.g), 0.05) << name;
+    EXPECT_NEAR(reflectance(index->eta.b, index->k.b), reflectance(eta_table.b, k_table.b), 0.05) << name;
+}
+
+// P. Johnson and R. Christy, Optical Constants of the Noble Metals, Physical Review B 6 (1972).
+TEST(RefractiveIndex, NobleMetalsAgreeWithJohnsonAndChristy) {
+    compare_with_table("Au", {{381.5, 1.46, 1.933},
+                              {397.4, 1.47, 1.952},
+                              {413.3, 1.46, 1.958},
+                              {430.5, 1.45, 1.948},
+                              {450.9, 1.38, 1.914},
+                              {471.4, 1.31, 1.849},
+                              {495.9, 1.04, 1.833},
+                              {520.9, 0.62, 2.081},
+                              {548.6, 0.43, 2.455},
+                              {582.1, 0.29, 2.863},
+                              {616.8, 0.21, 3.272},
+                              {659.5, 0.14, 3.697},
+                              {704.5, 0.13, 4.103},
+                              {756.0, 0.14, 4.542},
+                              {821.1, 0.16, 5.083}});
+    compare_with_table("Ag", {{381.5, 0.05, 1.864},
+                              {397.4, 0.05, 2.070},
+                              {413.3, 0.05, 2.275},
+                              {430.5, 0.04, 2.462},
+                              {450.9, 0.04, 2.657},
+                              {471.4, 0.05, 2.869},
+                              {495.9, 0.05, 3.093},
+                              {520.9, 0.05, 3.324},
+                              {548.6, 0.06, 3.586},
+                              {582.1, 0.05, 3.858},
+                              {616.8, 0.06, 4.152},
+                              {659.5, 0.05, 4.483},
+                              {704.5, 0.04, 4.838},
+                              {756.0, 0.03, 5.242},
+                              {821.1, 0.04, 5.727}});
+    compare_with_table("Cu", {{381.5, 1.34, 2.045},
+                              {397.4, 1.32, 2.116},
+                              {413.3, 1.28, 2.207},
+                              {430.5, 1.25, 2.305},
+                              {450.9, 1.24, 2.397},
+                              {471.4, 1.25, 2.483},
+                              {495.9, 1.22, 2.564},
+                              {520.9, 1.18, 2.608},
+                              {548.6, 1.02, 2.577},
+                              {582.1, 0.70, 2.704},
+                              {616.8, 0.30, 3.205},
+                              {659.5, 0.22, 3.747},
+                              {704.5, 0.21, 4.205},
+                              {756.0, 0.24, 4.665},
+                              {821.1, 0.26, 5.180}});
+}
+
+TEST(RefractiveIndex, AluminiumReflectsAboutNinetyTwoPercent) {
+    const std::optional<ConductorIndex> index = conductor_index("Al");
+    ASSERT_TRUE(index);
+    // Fresh aluminium films across the visible range (Hass 1955).
+    for (const auto &[eta, k] : {std::pair{index->eta.r, index->k.r}, std::pair{index->eta.g, index->k.g},
+                                 std::pair{index->eta.b, index->k.b}})
+        EXPECT_NEAR(reflectance(eta, k), 0.92, 0.012);
+}
+
+TEST(RefractiveIndex, Names) {
+    EXPECT_DOUBLE_EQ(dielectric_index("bk7").value(), 1.5046);
+    EXPECT_DOUBLE_EQ(dielectric_index(" Acrylic Glass ").value(), 1.49);
+    EXPECT_DOUBLE_EQ(dielectric_index("water").value(), 1.333);
+    EXPECT_DOUBLE_EQ(dielectric_index("diamond").value(), 2.419);
+    EXPECT_FALSE(dielectric_index("kryptonite"));
+    EXPECT_TRUE(conductor_index("au"));
+    EXPECT_TRUE(conductor_index("Cu_palik"));
+    EXPECT_TRUE(conductor_index("Ni"));
+    EXPECT_FALSE(conductor_index("palik"));
+    const ConductorIndex mirror = conductor_index("none").value();
+    expect_rgb(mirror.eta, 0, 0, 0, 0);
+    expect_rgb(mirror.k, 1, 1, 1, 0);
+    for (const std::string &name : conductor_names()) {
+        const ConductorIndex index = conductor_index(name).value();
+        for (const float value : {index.eta.r, index.eta.g, index.eta.b, index.k.r, index.k.g, index.k.b})
+            EXPECT_TRUE(value >= 0 && value < 20) << name;
+    }
+}
+
+} // namespace
+} // namespace gradus

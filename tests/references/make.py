@@ -1,0 +1,153 @@
+#!/usr/bin/env python3
+"""Renders the references of the project's own scenes with Mitsuba 3: NAME-mean.exr, NAME-variance.exr, NAME.json.
+
+The mean is over independent batches (seeds); the variance is that of the mean image, the sample variance over the
+batches divided by their number. Both are 32-bit float RGB, box filter, nothing clamped. The variance is rounded to
+eight bits after the leading one, so that it compresses. Russian roulette is off; max_depth is the scene's own.
+
+    PYTHON-WITH-MITSUBA tests/references/make.py [--output FOLDER] [--scale 0.1] [NAME...]
+"""
+
+import argparse
+import json
+import pathlib
+import sys
+import time
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+sys.path.insert(0, str(ROOT / "bench" / "peers"))
+import mitsuba_setup  # noqa: E402
+
+WIDTH = 128
+MAX_DEPTH = 12
+RR_DEPTH = 1000  # beyond max_depth: off
+BATCHES = 64
+LARGEST_RENDER = 1 << 23  # samples in one call, which bounds its memory
+
+# name: (scene file, height, parameters, samples a pixel in all)
+REFERENCES = {
+    "cornell-box": ("cornell-box.xml", 128, {}, 16384),
+    "torus-rough-glass": ("torus-rough-glass.xml", 96, {}, 16384),
+    "plates": ("plates.xml", 96, {}, 49152),
+    "holes-7": ("holes.xml", 96, {"density": 7}, 16384),
+    "holes-14": ("holes.xml", 96, {"density": 14}, 16384),
+    "holes-28": ("holes.xml", 96, {"density": 28}, 16384),
+    "door-ajar": ("door-ajar.xml", 96, {}, 24576),
+    "materials": ("materials.xml", 96, {}, 32768),
+}
+
+
+def render_batch(mitsuba, scene, spp, first_seed, pixels):
+    """The mean over spp samples a pixel, in float64, and the next unused seed. Splits spp to bound memory."""
+    import numpy
+
+    total, done, seed = 0.0, 0, first_seed
+    while done < spp:
+        part = min(spp - done, max(1, LARGEST_RENDER // pixels))
+        total = total + part * numpy.array(mitsuba.render(scene, spp=part, seed=seed), dtype=numpy.float64)
+        done, seed = done + part, seed + 1
+    return total / spp, seed
+
+
+def block_means(image, size=16):
+    height, width, channels = image.shape
+    return image.reshape(height // size, size, width // size, size, channels).mean(axis=(1, 3))
+
+
+def round_mantissa(values, bits):
+    """float32 values to the nearest with that many bits after the leading one."""
+    import numpy
+
+    raw = values.astype(numpy.float32).view(numpy.uint32).astype(numpy.uint64)
+    dropped = 23 - bits
+    raw = (raw + (1 << (dropped - 1))) >> dropped << dropped
+    return raw.astype(numpy.uint32).view(numpy.float32)
+
+
+def make_reference(mitsuba, name, arguments):
+    import numpy
+
+    file, height, parameters, spp = REFERENCES[name]
+    spp_of_batch = max(1, round(spp * arguments.scale / BATCHES))
+    parameters = dict(parameters)
+    scene = mitsuba_setup.load_scene(
+        mitsuba,
+        ROOT / "scenes" / file,
+        resx=WIDTH,
+        resy=height,
+        max_depth=MAX_DEPTH,
+        rr_depth=RR_DEPTH,
+        rfilter="box",
+        **parameters,
+    )
+    started, seed = time.time(), arguments.seed
+    mean = squares = blocks = block_squares = 0.0
+    for batch in range(BATCHES):
+        image, seed = render_batch(mitsuba, scene, spp_of_batch, seed, WIDTH * height)
+        if not numpy.isfinite(image).all():
+            raise RuntimeError(f"{name}: batch {batch} holds a value that is not finite")
+        # Welford's update: no cancellation where the variance is far below the mean.
+        difference = image - mean
+        mean = mean + difference / (batch + 1)
+        squares = squares + difference * (image - mean)
+        block_difference = block_means(image) - blocks
+        blocks = blocks + block_difference / (batch + 1)
+        block_squares = block_squares + block_difference * (block_means(image) - blocks)
+    variance = squares / (BATCHES - 1) / BATCHES
+    block_error = numpy.sqrt(block_squares / (BATCHES - 1) / BATCHES) / blocks
+
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    mitsuba.Bitmap(mean.astype(numpy.float32)).write(str(arguments.output / f"{name}-mean.exr"))
+    mitsuba.Bitmap(round_mantissa(variance, 8)).write(str(arguments.output / f"{name}-variance.exr"))
+    if arguments.png:
+        mitsuba.util.write_bitmap(str(arguments.output / f"{name}.png"), mean.astype(numpy.float32))
+    record = {
+        "scene": f"scenes/{file}",
+        "parameters": parameters,
+        "width": WIDTH,
+        "height": height,
+        "filter": "box",
+        "max_depth": MAX_DEPTH,
+        "rr_depth": RR_DEPTH,
+        "spp": spp_of_batch * BATCHES,
+        "batches": BATCHES,
+        "first_seed": arguments.seed,
+        "mean": [float(f"{value:.6g}") for value in mean.mean(axis=(0, 1))],
+        "relmse_of_mean": float(f"{(variance / (mean**2 + 0.001)).mean():.3g}"),
+        "block_relative_error_median": float(f"{numpy.median(block_error):.3g}"),
+        "block_relative_error_max": float(f"{block_error.max():.3g}"),
+        "renderer": f"mitsuba {mitsuba.__version__} {arguments.variant}",
+    }
+    (arguments.output / f"{name}.json").write_text(json.dumps(record, indent=2) + "\n")
+    print(
+        f"{name}: {record['spp']} spp, relMSE {record['relmse_of_mean']:.2g}, block error median "
+        f"{record['block_relative_error_median']:.2%} max {record['block_relative_error_max']:.2%}, "
+        f"{time.time() - started:.0f} s",
+        flush=True,
+    )
+
+
+def main():
+    parser = argparse.ArgumentParser(description="renders the references of the project's own scenes with Mitsuba 3")
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(REFERENCES)} (default: all)")
+    parser.add_argument("--output", type=pathlib.Path, default=HERE, help="folder (default: the one of this script)")
+    parser.add_argument("--scale", type=float, default=1, help="factor on the samples, for a quick look")
+    parser.add_argument("--seed", type=int, default=1, help="first seed; a render takes one seed or more each")
+    parser.add_argument("--png", action="store_true", help="also write a tone-mapped picture to look at")
+    parser.add_argument("--variant", default="llvm_ad_rgb")
+    parser.add_argument("--llvm", help="path of libLLVM (default: DRJIT_LIBLLVM_PATH, then the newest found)")
+    arguments = parser.parse_args()
+    unknown = [name for name in arguments.names if name not in REFERENCES]
+    if unknown:
+        parser.error(f"no such reference: {', '.join(unknown)}")
+    try:
+        mitsuba = mitsuba_setup.start_mitsuba(arguments.variant, arguments.llvm)
+    except ImportError:
+        sys.exit(mitsuba_setup.HOW_TO_GET)
+    for name in arguments.names or REFERENCES:
+        make_reference(mitsuba, name, arguments)
+
+
+if __name__ == "__main__":
+    main()
