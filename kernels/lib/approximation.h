@@ -12,11 +12,13 @@ GRADUS_LIB_BEGIN
 
 typedef struct {
     real sine, cosine;
+    GRADUS_NOT_IN_REGISTERS
 } sine_cosine;
 
 /* The standard-normal-like pair that Beckmann microfacets need: gauss = exp(-x^2), cdf = (1 + erf(x)) / 2. */
 typedef struct {
     real gauss, cdf;
+    GRADUS_NOT_IN_REGISTERS
 } gauss_cdf;
 
 #ifdef GRADUS_DOUBLE

@@ -21,8 +21,9 @@ typedef struct {
 /* Density and weight of one pair of directions: the sampled kinds form both from the same terms, so that
  * eval = weight pdf holds to rounding. */
 typedef struct {
+    rgb weight; /* first: returned in registers as (r, g), (b, pdf); the other order stops PoCL's vectoriser */
     real pdf;
-    rgb weight;
+    GRADUS_NOT_IN_REGISTERS
 } bsdf_terms;
 
 GRADUS_FN rgb material_reflectance(material m) { return rgb3(m.reflectance_r, m.reflectance_g, m.reflectance_b); }

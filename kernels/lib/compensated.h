@@ -8,6 +8,7 @@ GRADUS_LIB_BEGIN
 
 typedef struct {
     real sum, correction;
+    GRADUS_NOT_IN_REGISTERS
 } compensated;
 
 GRADUS_FN compensated compensated_add(compensated s, real x) {

@@ -10,6 +10,7 @@ GRADUS_LIB_BEGIN
 typedef struct {
     real reflectance;        /* in [0, 1]; 1 where reflection is total */
     real cosine_transmitted; /* cosine between the transmitted ray and the normal, >= 0; 0 where reflection is total */
+    GRADUS_NOT_IN_REGISTERS
 } fresnel_dielectric_result;
 
 /* cosine: of the incident ray against the normal, in [0, 1]. eta: index on the transmitted side over that on the

@@ -10,6 +10,7 @@ GRADUS_LIB_BEGIN
 
 typedef struct {
     uint x, y, z, w;
+    GRADUS_NOT_IN_REGISTERS
 } random_bits;
 
 GRADUS_FN random_bits random_hash(uint x, uint y, uint z, uint w) {
@@ -42,6 +43,7 @@ GRADUS_FN random_bits random_key(uint seed_low, uint seed_high, uint pixel, uint
 /* Four independent numbers in [0, 1): multiples of 2^-24, which float holds exactly. */
 typedef struct {
     real a, b, c, d;
+    GRADUS_NOT_IN_REGISTERS
 } random4;
 
 GRADUS_FN real random_unit(uint bits) { return (real)(bits >> 8) * R(1.0 / 16777216.0); }

@@ -8,10 +8,12 @@ GRADUS_LIB_BEGIN
 
 typedef struct {
     real x, y, z;
+    GRADUS_NOT_IN_REGISTERS
 } vec3;
 
 typedef struct {
     real r, g, b;
+    GRADUS_NOT_IN_REGISTERS
 } rgb;
 
 GRADUS_FN vec3 v3(real x, real y, real z) {

@@ -8,6 +8,7 @@ GRADUS_LIB_BEGIN
 
 typedef struct {
     real x, y;
+    GRADUS_NOT_IN_REGISTERS
 } point2;
 
 /* Uniform on the unit disk; density 1/pi by area. */

@@ -61,6 +61,15 @@ static inline __attribute__((unused)) float as_float(uint bits) {
 
 #endif
 
+/* Ends every small struct. The x86-64 calling convention passes a struct of up to 16 bytes as short vectors, and PoCL
+ * does not vectorise over work-items where such are left after inlining; a larger one goes through memory, which
+ * inlining removes without a trace. */
+#ifdef __OPENCL_VERSION__
+#define GRADUS_NOT_IN_REGISTERS real not_in_registers[4];
+#else
+#define GRADUS_NOT_IN_REGISTERS
+#endif
+
 /* The only built-ins that kernels/lib may call: each vectorises on every CPU implementation and is one
  * instruction on GPUs. Transcendental functions are in kernels/lib/approximation.h. */
 #ifdef __OPENCL_VERSION__

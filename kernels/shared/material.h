@@ -55,9 +55,10 @@ typedef struct {
 } material;
 #undef GRADUS_FIELD_MEMBER
 
-/* Loads one record; fields that the caller does not use cost nothing once inlined. */
-#define GRADUS_FIELD_LOAD(name, text) m.name = record[material_##name];
-GRADUS_FN material material_load(GRADUS_GLOBAL const real *materials, uint index) {
+/* Loads one record; fields that the caller does not use cost nothing once inlined. `unit` is 1, see FIELD_OF in
+ * kernels/shared/scene_records.h. */
+#define GRADUS_FIELD_LOAD(name, text) m.name = record[material_##name * (size_t)unit];
+GRADUS_FN material material_load(GRADUS_GLOBAL const real *materials, uint index, uint unit) {
     GRADUS_GLOBAL const real *record = materials + (size_t)index * material_stride;
     material m;
     GRADUS_MATERIAL_FIELDS(GRADUS_FIELD_LOAD)

@@ -102,8 +102,10 @@ enum light_kind { light_kind_triangle, light_kind_sphere, light_kind_point, ligh
 /* Bits of material_flags. */
 #define material_flag_two_sided 1u
 
-/* Members of a record: FIELD_OF(light, lights, 3, value_r) */
-#define FIELD_OF(record, array, index, field) ((array)[(size_t)(index) * record##_stride + record##_##field])
+/* Members of a record: FIELD_OF(light, lights, 3, value_r). `unit` is an argument of each kernel and always 1: a
+ * compiler that cannot know this does not join the loads of neighbouring fields into short vectors, which would stop
+ * PoCL from vectorising over work-items. */
+#define FIELD_OF(record, array, index, field) ((array)[(size_t)(index) * record##_stride + record##_##field * (size_t)unit])
 #define FIELD_V3(record, array, index, field)                                                                          \
     v3(FIELD_OF(record, array, index, field##_x), FIELD_OF(record, array, index, field##_y),                           \
        FIELD_OF(record, array, index, field##_z))

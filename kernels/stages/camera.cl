@@ -9,7 +9,7 @@
 #include "kernels/shared/stage.h"
 
 /* Filter importance sampling (Ernst et al. 2006): the offset from the pixel's center is drawn from the filter. */
-GRADUS_FN real filter_offset(__global const real *camera, real u) {
+GRADUS_FN real filter_offset(__global const real *camera, uint unit, real u) {
 #if TRAIT_FILTER_TENT
     return FIELD_OF(camera, camera, 0, filter_radius) * warp_tent(u);
 #elif TRAIT_FILTER_GAUSSIAN
@@ -19,7 +19,7 @@ GRADUS_FN real filter_offset(__global const real *camera, real u) {
 #endif
 }
 
-STAGE camera(uint count, uint capacity, __global real *ray, __global real *vertex, __global real *radiance,
+STAGE camera(uint count, uint unit, uint capacity, __global real *ray, __global real *vertex, __global real *radiance,
              __global real *feature, __global const real *camera, uint first_pixel, uint first_sample_low, uint first_sample_high, uint pixels,
              uint crop_x, uint crop_y, uint crop_width, uint film_width, uint seed_low, uint seed_high) {
     const size_t row = get_global_id(0);
@@ -35,8 +35,8 @@ STAGE camera(uint count, uint capacity, __global real *ray, __global real *verte
 
     const random_bits key = random_key(seed_low, seed_high, y * film_width + x, sample_low, sample_high);
     const random4 u = random_draw(key.x, key.y, random_dimension_camera);
-    const real film_x = (real)x + R(0.5) + filter_offset(camera, u.a);
-    const real film_y = (real)y + R(0.5) + filter_offset(camera, u.b);
+    const real film_x = (real)x + R(0.5) + filter_offset(camera, unit, u.a);
+    const real film_y = (real)y + R(0.5) + filter_offset(camera, unit, u.b);
     const vec3 direction =
         v3_normalize(v3_mad(v3_mad(FIELD_V3(camera, camera, 0, corner), film_x, FIELD_V3(camera, camera, 0, right)),
                             film_y, FIELD_V3(camera, camera, 0, down)));

@@ -4,7 +4,7 @@
 #include "kernels/lib/scene_hit.h"
 #include "kernels/shared/stage.h"
 
-STAGE classify(uint count, uint capacity, __global const real *ray, __global uint *bin,
+STAGE classify(uint count, uint unit, uint capacity, __global const real *ray, __global uint *bin,
                __global const uint *primitive_material, __global const uint *material_bin,
                __global const uint *material_flags, __global const uint *material_back,
                __global const real *triangles, __global const real *spheres, uint triangle_count) {
@@ -18,7 +18,7 @@ STAGE classify(uint count, uint capacity, __global const real *ray, __global uin
 #if TRAIT_TWO_FACED
     /* The two sides may be of different kinds. */
     const vec3 direction = AT_V3(ray, direction, row);
-    const int behind = primitive_is_behind(triangles, spheres, triangle_count, hit ? primitive : 0u,
+    const int behind = primitive_is_behind(triangles, spheres, unit, triangle_count, hit ? primitive : 0u,
                                            AT_V3(ray, origin, row), direction);
     material = behind && (material_flags[material] & material_flag_two_sided) ? material_back[material] : material;
 #endif

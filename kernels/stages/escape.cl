@@ -3,7 +3,7 @@
 #include "kernels/lib/mis.h"
 #include "kernels/shared/stage.h"
 
-STAGE escape(uint count, uint first, uint capacity, uint depth, __global const uint *index,
+STAGE escape(uint count, uint unit, uint first, uint capacity, uint depth, __global const uint *index,
              __global const real *vertex_old, __global real *radiance, __global const real *lights,
              uint environment_light) {
     const size_t i = get_global_id(0);

@@ -2,14 +2,14 @@
 #include "kernels/lib/bsdf.h"
 #include "kernels/shared/stage.h"
 
-STAGE feature(uint count, uint first, uint capacity, __global const real *vertex, __global real *feature,
+STAGE feature(uint count, uint unit, uint first, uint capacity, __global const real *vertex, __global real *feature,
               __global const real *camera, __global const real *materials) {
     const size_t i = get_global_id(0);
     if (i >= count)
         return;
     const size_t row = first + i;
     const uint slot = AT_UINT(vertex, slot, row);
-    const material m = material_load(materials, AT_UINT(vertex, material, row));
+    const material m = material_load(materials, AT_UINT(vertex, material, row), unit);
     const vec3 away = v3_sub(AT_V3(vertex, position, row), FIELD_V3(camera, camera, 0, origin));
     const rgb albedo = PASTE(BSDF, _albedo)(m);
     const vec3 normal = AT_V3(vertex, shading, row);

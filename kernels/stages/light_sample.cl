@@ -16,7 +16,7 @@
 #define IF_LIGHT(name)
 #endif
 
-STAGE light_sample(uint count, uint first, uint capacity, uint depth, __global const real *vertex,
+STAGE light_sample(uint count, uint unit, uint first, uint capacity, uint depth, __global const real *vertex,
                    __global const real *tangent, __global real *shadow, __global const real *materials,
                    __global const real *lights, __global const uint *light_kinds, __global const uint *light_alias,
                    uint light_count, real scene_diameter) {
@@ -82,7 +82,7 @@ STAGE light_sample(uint count, uint first, uint capacity, uint depth, __global c
     const frame axes = VERTEX_FRAME(row);
     const vec3 wi = frame_to_local(axes, AT_V3(vertex, wi, row));
     const vec3 wo = frame_to_local(axes, s.direction);
-    const material m = material_load(materials, AT_UINT(vertex, material, row));
+    const material m = material_load(materials, AT_UINT(vertex, material, row), unit);
     const rgb reflected = PASTE(BSDF, _eval)(m, wi, wo);
     const real pdf_bsdf = PASTE(BSDF, _pdf)(m, wi, wo);
     const real weight = mis_weight_light(s.pdf * probability, pdf_bsdf) / probability;

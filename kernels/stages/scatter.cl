@@ -6,7 +6,7 @@
 #include "kernels/lib/vertex_frame.h"
 #include "kernels/shared/stage.h"
 
-STAGE scatter(uint count, uint first, uint capacity, uint depth, uint roulette, __global real *vertex,
+STAGE scatter(uint count, uint unit, uint first, uint capacity, uint depth, uint roulette, __global real *vertex,
               __global const real *tangent, __global real *ray, __global const real *materials) {
     const size_t i = get_global_id(0);
     if (i >= count)
@@ -16,7 +16,7 @@ STAGE scatter(uint count, uint first, uint capacity, uint depth, uint roulette, 
                                   random_dimension_scatter(depth));
     const frame axes = VERTEX_FRAME(row);
     const vec3 wi = frame_to_local(axes, AT_V3(vertex, wi, row));
-    const material m = material_load(materials, AT_UINT(vertex, material, row));
+    const material m = material_load(materials, AT_UINT(vertex, material, row), unit);
     const bsdf_sample s = PASTE(BSDF, _sample)(m, wi, u.a, u.b, u.c);
 
     rgb throughput = rgb_mul(AT_RGB(vertex, throughput, row), s.weight);

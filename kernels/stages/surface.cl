@@ -8,7 +8,7 @@
 #include "kernels/lib/scene_hit.h"
 #include "kernels/shared/stage.h"
 
-STAGE surface(uint count, uint first, uint capacity, uint depth, __global const uint *index, __global const real *ray,
+STAGE surface(uint count, uint unit, uint first, uint capacity, uint depth, __global const uint *index, __global const real *ray,
               __global const real *vertex_old, __global real *vertex, __global real *shadow, __global real *tangent,
               __global const real *triangles, __global const real *triangle_normals,
               __global const real *triangle_tangents, __global const real *spheres, uint triangle_count,
@@ -25,7 +25,7 @@ STAGE surface(uint count, uint first, uint capacity, uint depth, __global const 
         rgb3(AT_IN(vertex_old, vertex, throughput_r, row), AT_IN(vertex_old, vertex, throughput_g, row),
              AT_IN(vertex_old, vertex, throughput_b, row));
     const primitive_hit hit =
-        primitive_hit_of(triangles, spheres, triangle_count, primitive, origin, direction);
+        primitive_hit_of(triangles, spheres, unit, triangle_count, primitive, origin, direction);
     const real side = -v3_dot(hit.normal, direction);
 
     rgb emitted = rgb_gray(R(0));

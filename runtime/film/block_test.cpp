@@ -49,46 +49,101 @@ struct Column {
     double reference_degrees_of_freedom = 0;
 };
 
-struct Score {
-    double z = std::numeric_limits<double>::quiet_NaN();
-    double difference = 0, standard_error = 0;
-    bool finite = true;
+/// The means over one block and what is known of their noise.
+struct Measured {
+    double ours = 0, reference = 0;
+    double reference_variance = 0;
+    double sample_variance = 0; ///< of the mean of ours, over the seeds; 0 for one seed
+    double floor = 0;           ///< the same from the reference's variance; 0 where unknown
+    bool finite() const {
+        return std::isfinite(ours) && std::isfinite(reference) && std::isfinite(reference_variance) &&
+               std::isfinite(sample_variance);
+    }
 };
 
-Score score_block(const Column &column, const Block &block) {
+Measured measure(const Column &column, const Block &block) {
     const double count = double(column.seeds.size());
     std::vector<double> means;
     for (const Channel *seed : column.seeds)
         means.push_back(block.mean(*seed));
-    double mean = 0;
-    for (const double value : means)
-        mean += value / count;
-    Variance ours, theirs{0, column.reference_degrees_of_freedom};
+    Measured result;
+    for (const double mean : means)
+        result.ours += mean / count;
     if (means.size() > 1) {
         double squares = 0;
-        for (const double value : means)
-            squares += (value - mean) * (value - mean);
-        ours = {squares / (count - 1) / count, count - 1};
+        for (const double mean : means)
+            squares += (mean - result.ours) * (mean - result.ours);
+        result.sample_variance = squares / (count - 1) / count;
     }
+    result.reference = block.mean(*column.reference);
     if (column.variance) {
-        theirs.value = block.mean(*column.variance) / block.pixels();
-        const double floor = theirs.value * column.variance_scale;
-        if (column.variance_scale > 0 && floor >= ours.value)
-            ours = {floor, column.reference_degrees_of_freedom};
+        result.reference_variance = block.mean(*column.variance) / block.pixels();
+        result.floor = result.reference_variance * column.variance_scale;
     }
-    const double reference = block.mean(*column.reference);
-    Score score;
-    score.difference = mean - reference;
-    score.finite = std::isfinite(score.difference) && std::isfinite(ours.value) && std::isfinite(theirs.value);
-    if (!score.finite)
-        return score;
-    const double rounding = rounding_error * std::max(std::abs(mean), std::abs(reference));
-    score.standard_error = std::sqrt(ours.value + theirs.value + rounding * rounding);
-    const bool constant = ours.value + theirs.value == 0;
-    if (constant && std::abs(score.difference) <= 3 * rounding)
-        return score;
-    score.z = student_to_normal(score.difference / score.standard_error, combined_degrees_of_freedom(ours, theirs));
-    return score;
+    return result;
+}
+
+/// A quantile of chi-square over its degrees of freedom, at z standard deviations (Wilson and Hilferty 1931).
+double reduced_chi_square(double degrees_of_freedom, double z) {
+    const double spread = 2 / (9 * degrees_of_freedom);
+    return std::pow(std::max(0.0, 1 - spread + z * std::sqrt(spread)), 3);
+}
+
+/// How much noisier we are than the floor says, at least 1: from the upper quartile over the blocks, which a few
+/// bright samples do not decide, and which holds where half of the blocks are of another nature. 0 where the blocks
+/// are too few to tell.
+double pooled_noise_ratio(const std::vector<Measured> &blocks, double degrees_of_freedom) {
+    constexpr std::size_t enough_blocks = 8;
+    constexpr double normal_upper_quartile = 0.6745;
+    std::vector<double> ratios;
+    for (const Measured &block : blocks)
+        if (block.finite() && block.floor > 0)
+            ratios.push_back(block.sample_variance / block.floor);
+    if (ratios.size() < enough_blocks)
+        return 0;
+    const auto quartile = ratios.begin() + std::ptrdiff_t(ratios.size() * 3 / 4);
+    std::nth_element(ratios.begin(), quartile, ratios.end());
+    return std::max(1.0, *quartile / reduced_chi_square(degrees_of_freedom, normal_upper_quartile));
+}
+
+/// The variance of the mean of ours: the larger of both, the floor raised by the pooled ratio. Where the sample
+/// variance is larger by no more than chance has it, it errs to the safe side of a variance that is known from all
+/// blocks, and the score is as good as normal; else nothing but the seeds tells the variance, and it is Student's.
+Variance variance_of_ours(const Measured &block, const Column &column, double ratio) {
+    const double seeds_freedom = double(column.seeds.size()) - 1;
+    const double floor = block.floor * std::max(1.0, ratio);
+    if (seeds_freedom < 1 || floor >= block.sample_variance)
+        return {floor, column.reference_degrees_of_freedom};
+    const bool as_expected = ratio > 0 && block.sample_variance <= floor * reduced_chi_square(seeds_freedom, 3);
+    return {block.sample_variance, as_expected ? column.reference_degrees_of_freedom : seeds_freedom};
+}
+
+/// NaN where nothing varies and both are equal up to rounding.
+double score(const Measured &block, const Variance &ours, const Variance &theirs, double &standard_error) {
+    const double difference = block.ours - block.reference;
+    const double rounding = rounding_error * std::max(std::abs(block.ours), std::abs(block.reference));
+    standard_error = std::sqrt(ours.value + theirs.value + rounding * rounding);
+    if (ours.value + theirs.value == 0 && std::abs(difference) <= 3 * rounding)
+        return std::numeric_limits<double>::quiet_NaN();
+    return student_to_normal(difference / standard_error, combined_degrees_of_freedom(ours, theirs));
+}
+
+void score_column(const Column &column, const std::vector<Block> &blocks, BlockTest &test) {
+    std::vector<Measured> measured;
+    for (const Block &block : blocks)
+        measured.push_back(measure(column, block));
+    const double ratio = column.seeds.size() > 1 ? pooled_noise_ratio(measured, double(column.seeds.size()) - 1) : 0;
+    for (const Measured &block : measured) {
+        double z = std::numeric_limits<double>::quiet_NaN(), standard_error = z;
+        if (block.finite())
+            z = score(block, variance_of_ours(block, column, ratio),
+                      {block.reference_variance, column.reference_degrees_of_freedom}, standard_error);
+        else
+            ++test.non_finite;
+        test.z.push_back(z);
+        test.difference.push_back(block.ours - block.reference);
+        test.standard_error.push_back(standard_error);
+    }
 }
 
 void judge(BlockTest &test) {
@@ -139,18 +194,14 @@ BlockTest block_z_test(const std::vector<Image> &seeds, const Image &reference, 
         block > 0 ? static_cast<std::uint32_t>(block) : std::max(reference.width, reference.height);
     test.blocks_x = (reference.width + side - 1) / side;
     test.blocks_y = (reference.height + side - 1) / side;
+    std::vector<Block> blocks;
+    for (std::uint32_t y = 0; y < test.blocks_y; ++y)
+        for (std::uint32_t x = 0; x < test.blocks_x; ++x)
+            blocks.push_back({x * side, std::min((x + 1) * side, reference.width), y * side,
+                              std::min((y + 1) * side, reference.height), reference.width});
     for (const Column &column : columns) {
         test.channels.push_back(column.reference->name);
-        for (std::uint32_t y = 0; y < test.blocks_y; ++y)
-            for (std::uint32_t x = 0; x < test.blocks_x; ++x) {
-                const Block area{x * side, std::min((x + 1) * side, reference.width), y * side,
-                                 std::min((y + 1) * side, reference.height), reference.width};
-                const Score score = score_block(column, area);
-                test.z.push_back(score.z);
-                test.difference.push_back(score.difference);
-                test.standard_error.push_back(score.standard_error);
-                test.non_finite += score.finite ? 0 : 1;
-            }
+        score_column(column, blocks, test);
     }
     judge(test);
     return test;

@@ -44,8 +44,9 @@ struct BlockTest {
 /// `reference_spp` samples a pixel; without channels: unknown, taken as 0. The variance of our mean is the sample
 /// variance over the seeds over their number, or the reference's variance times the ratio of the sample counts,
 /// whichever is larger: few seeds may all have missed the rare bright samples that carry the variance. The latter is
-/// left out where a count is 0. As the variance is itself an estimate, z is Student's t with the degrees of freedom
-/// of Welch and Satterthwaite (seeds - 1, and reference_batches - 1) as a normal quantile.
+/// left out where a count is 0, and raised where ours are noisier in many blocks (by the upper quartile of their
+/// ratios). Scores are Student's t as normal quantiles, with the degrees of freedom of Welch and Satterthwaite: seeds -
+/// 1 for a variance that only the seeds tell, reference_batches - 1 for one that the reference tells, too.
 ///
 /// Throws Error(ExitCode::image) where sizes or channels do not fit, Error(ExitCode::usage) where the variance of our
 /// mean is not known: one seed, and no variance of the reference or no counts.

@@ -26,9 +26,15 @@ fs::path resolve_target(const std::string &path) {
     if (path.empty())
         fail(path, "the name is empty");
     std::error_code failure;
-    const fs::path target = fs::weakly_canonical(path, failure);
-    if (failure)
-        fail(path, failure.message());
+    fs::path target = fs::absolute(path);
+    // By hand, as the library does not follow a link to a file that is not there yet.
+    constexpr int most_links = 40;
+    for (int i = 0; i < most_links && fs::is_symlink(fs::symlink_status(target, failure)); ++i) {
+        const fs::path next = fs::read_symlink(target, failure);
+        if (failure)
+            fail(path, failure.message());
+        target = target.parent_path() / next;
+    }
     const fs::file_status status = fs::status(target, failure);
     if (fs::is_directory(status))
         fail(path, "it is a folder");

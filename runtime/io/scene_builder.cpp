@@ -167,7 +167,7 @@ Scene SceneBuilder::build() {
             each(tag, [&](const Element &element) {
                 throw SceneError(element.location, described(element) + ": participating media are not supported");
             });
-        for (const char *tag : {"film", "sampler", "rfilter", "texture"})
+        for (const char *tag : {"film", "sampler", "rfilter", "texture", "alias"})
             scene.objects(tag); // shared ones, built where they are referenced
         scene.report_unread();
     } catch (const SceneError &error) { // a <ref> in <scene> itself that leads nowhere

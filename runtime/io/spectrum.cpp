@@ -72,19 +72,25 @@ Double3 xyz_to_rgb(const Double3 &xyz) {
 } // namespace
 
 Rgb spectrum_to_rgb(const SampledSpectrum &spectrum, ColorUse use) {
-    // Sums over the spectrum and over the flat spectrum 1, midpoints every half nanometre.
+    // Sums of the spectrum, of the flat spectrum 1 and of equal energy, midpoints every half nanometre.
     constexpr double step = 0.5;
-    Double3 sum{0, 0, 0}, flat{0, 0, 0};
+    Double3 sum{0, 0, 0}, flat{0, 0, 0}, equal{0, 0, 0};
     for (double wavelength = first_wavelength + step / 2; wavelength < last_wavelength; wavelength += step) {
         const ObserverRow row = observer_at(wavelength);
-        const double illuminant = use == ColorUse::emission ? 1 : row.d65;
-        const Double3 weight{row.x * illuminant, row.y * illuminant, row.z * illuminant};
+        const Double3 matching{row.x, row.y, row.z};
+        const Double3 weight = scale(matching, use == ColorUse::emission ? 1 : row.d65);
         sum = add(sum, scale(weight, value_at(spectrum, wavelength)));
         flat = add(flat, weight);
+        equal = add(equal, matching);
+    }
+    // The observer is made so that the three functions have the same integral; a table every 10 nm misses that by 1e-3.
+    for (int i = 0; i < 3; ++i) {
+        sum[i] /= equal[i];
+        flat[i] /= equal[i];
     }
     Double3 rgb = xyz_to_rgb(scale(sum, 1 / flat[1]));
     if (use != ColorUse::emission) {
-        // The tables' white is that of sRGB to about 1e-3; take out the rest so that flat is exactly gray.
+        // The white of D65 is that of sRGB to about 1e-3; take out the rest so that flat is exactly gray.
         const Double3 white = xyz_to_rgb(scale(flat, 1 / flat[1]));
         for (int i = 0; i < 3; ++i)
             rgb[i] /= white[i];

@@ -35,6 +35,7 @@ SceneBuffers::SceneBuffers(Device &device, const SceneTables &t, Precision preci
 void SceneBuffers::bind(Kernel &kernel) const {
     for (const Buffer &buffer : buffers_)
         kernel.bind(buffer);
+    kernel.set("unit", 1);
     kernel.set("triangle_count", triangle_count_);
     kernel.set("light_count", light_count_);
     kernel.set("environment_light", environment_light_);

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
-#include <random>
 
 namespace gradus {
 namespace {
@@ -51,7 +51,7 @@ TEST(Distributions, StudentToNormal) {
     EXPECT_NEAR(student_to_normal(5, 1e7), 5, 1e-4);
     EXPECT_LT(student_to_normal(25, 7), 8);
     EXPECT_GT(student_to_normal(25, 7), 5);
-    EXPECT_EQ(student_to_normal(0, 7), 0);
+    EXPECT_NEAR(student_to_normal(0, 7), 0, 1e-9);
     EXPECT_TRUE(std::isfinite(student_to_normal(1e200, 63)));
 }
 

@@ -46,7 +46,8 @@ class TemporaryFolder {
 /// A scene around `body`, which begins on line 3. It has a sensor and, unless told otherwise, a sphere.
 inline std::string scene_around(const std::string &body, const std::string &version = "3.0.0",
                                 const std::string &rest = "<shape type=\"sphere\"/>") {
-    return "<scene version=\"" + version + "\">\n<sensor type=\"perspective\"/>\n" + body + "\n" + rest + "\n</scene>\n";
+    return "<scene version=\"" + version + "\">\n<sensor type=\"perspective\"/>\n" + body + "\n" + rest +
+           "\n</scene>\n";
 }
 
 inline LoadedScene load_text(const std::string &text, const LoadOptions &options = {}) {

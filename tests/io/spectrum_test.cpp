@@ -20,9 +20,9 @@ TEST(Spectrum, FlatLightIsEqualEnergyWhite) {
 
 TEST(Spectrum, DaylightIsWhite) {
     // CIE D65 every 40 nm, relative to its value at 560 nm, so coarse that some per cent of error remain.
-    const SampledSpectrum daylight{{380, 0.499755}, {400, 0.827549}, {440, 1.04865}, {480, 1.15923}, {520, 1.0479},
-                                   {560, 1.0},      {600, 0.900062}, {640, 0.836992}, {680, 0.782842}, {720, 0.61604},
-                                   {780, 0.633828}};
+    const SampledSpectrum daylight{{380, 0.499755}, {400, 0.827549}, {440, 1.04865},  {480, 1.15923},
+                                   {520, 1.0479},   {560, 1.0},      {600, 0.900062}, {640, 0.836992},
+                                   {680, 0.782842}, {720, 0.61604},  {780, 0.633828}};
     const Rgb rgb = spectrum_to_rgb(daylight, ColorUse::emission);
     EXPECT_NEAR(rgb.r / rgb.g, 1, 0.03);
     EXPECT_NEAR(rgb.b / rgb.g, 1, 0.03);
@@ -54,77 +54,80 @@ TEST(Spectrum, GammaCurve) {
     EXPECT_NEAR(srgb_to_linear(0.04), 0.04 / 12.92, 1e-12);
 }
 
-double reflectance(double eta, double k) {
-    return ((eta - 1) * (eta - 1) + k * k) / ((eta + 1) * (eta + 1) + k * k);
-}
+double reflectance(double eta, double k) { return ((eta - 1) * (eta - 1) + k * k) / ((eta + 1) * (eta + 1) + k * k); }
 
 struct Measured {
     double wavelength, n, k;
 };
 
-/// Normal reflectance of a metal by name against a table of n and k. The table is another measurement than the one
-/// behind the names; for clean films of noble metals such measurements differ by a few hundredths.
-void compare_with_table(const std::string &name, const std::vector<Measured> &table) {
+/// A table of n and k as the named indices are made: integrated as a light of equal energy.
+ConductorIndex integrated(const std::vector<Measured> &table) {
     SampledSpectrum n, k;
     for (const Measured &row : table) {
         n.emplace_back(row.wavelength, row.n);
         k.emplace_back(row.wavelength, row.k);
     }
-    const Rgb eta_table = spectrum_to_rgb(n, ColorUse::index), k_table = spectrum_to_rgb(k, ColorUse::index);
-    const std::optional<ConductorIndex> index = conductor_index(name);
-    ASSERT_TRUE(index);
-    EXPECT_NEAR(reflectance(index->eta.r, index->k.r), reflectance(eta_table.r, k_table.r), 0.05) << name;
-    EXPECT_NEAR(reflectance(index->eta.g, index->k.g), reflectance(eta_table.g, k_table.g), 0.05) << name;
-    EXPECT_NEAR(reflectance(index->eta.b, index->k.b), reflectance(eta_table.b, k_table.b), 0.05) << name;
+    return {spectrum_to_rgb(n, ColorUse::emission), spectrum_to_rgb(k, ColorUse::emission)};
+}
+
+void expect_ratio_near_one(const Rgb &a, const Rgb &b, double tolerance) {
+    expect_rgb({a.r / b.r, a.g / b.g, a.b / b.b}, 1, 1, 1, tolerance);
 }
 
 // P. Johnson and R. Christy, Optical Constants of the Noble Metals, Physical Review B 6 (1972).
 TEST(RefractiveIndex, NobleMetalsAgreeWithJohnsonAndChristy) {
-    compare_with_table("Au", {{381.5, 1.46, 1.933},
-                              {397.4, 1.47, 1.952},
-                              {413.3, 1.46, 1.958},
-                              {430.5, 1.45, 1.948},
-                              {450.9, 1.38, 1.914},
-                              {471.4, 1.31, 1.849},
-                              {495.9, 1.04, 1.833},
-                              {520.9, 0.62, 2.081},
-                              {548.6, 0.43, 2.455},
-                              {582.1, 0.29, 2.863},
-                              {616.8, 0.21, 3.272},
-                              {659.5, 0.14, 3.697},
-                              {704.5, 0.13, 4.103},
-                              {756.0, 0.14, 4.542},
-                              {821.1, 0.16, 5.083}});
-    compare_with_table("Ag", {{381.5, 0.05, 1.864},
-                              {397.4, 0.05, 2.070},
-                              {413.3, 0.05, 2.275},
-                              {430.5, 0.04, 2.462},
-                              {450.9, 0.04, 2.657},
-                              {471.4, 0.05, 2.869},
-                              {495.9, 0.05, 3.093},
-                              {520.9, 0.05, 3.324},
-                              {548.6, 0.06, 3.586},
-                              {582.1, 0.05, 3.858},
-                              {616.8, 0.06, 4.152},
-                              {659.5, 0.05, 4.483},
-                              {704.5, 0.04, 4.838},
-                              {756.0, 0.03, 5.242},
-                              {821.1, 0.04, 5.727}});
-    compare_with_table("Cu", {{381.5, 1.34, 2.045},
-                              {397.4, 1.32, 2.116},
-                              {413.3, 1.28, 2.207},
-                              {430.5, 1.25, 2.305},
-                              {450.9, 1.24, 2.397},
-                              {471.4, 1.25, 2.483},
-                              {495.9, 1.22, 2.564},
-                              {520.9, 1.18, 2.608},
-                              {548.6, 1.02, 2.577},
-                              {582.1, 0.70, 2.704},
-                              {616.8, 0.30, 3.205},
-                              {659.5, 0.22, 3.747},
-                              {704.5, 0.21, 4.205},
-                              {756.0, 0.24, 4.665},
-                              {821.1, 0.26, 5.180}});
+    const ConductorIndex gold = integrated({{381.5, 1.46, 1.933},
+                                            {397.4, 1.47, 1.952},
+                                            {413.3, 1.46, 1.958},
+                                            {430.5, 1.45, 1.948},
+                                            {450.9, 1.38, 1.914},
+                                            {471.4, 1.31, 1.849},
+                                            {495.9, 1.04, 1.833},
+                                            {520.9, 0.62, 2.081},
+                                            {548.6, 0.43, 2.455},
+                                            {582.1, 0.29, 2.863},
+                                            {616.8, 0.21, 3.272},
+                                            {659.5, 0.14, 3.697},
+                                            {704.5, 0.13, 4.103},
+                                            {756.0, 0.14, 4.542},
+                                            {821.1, 0.16, 5.083}});
+    const ConductorIndex silver = integrated({{381.5, 0.05, 1.864},
+                                              {397.4, 0.05, 2.070},
+                                              {413.3, 0.05, 2.275},
+                                              {430.5, 0.04, 2.462},
+                                              {450.9, 0.04, 2.657},
+                                              {471.4, 0.05, 2.869},
+                                              {495.9, 0.05, 3.093},
+                                              {520.9, 0.05, 3.324},
+                                              {548.6, 0.06, 3.586},
+                                              {582.1, 0.05, 3.858},
+                                              {616.8, 0.06, 4.152},
+                                              {659.5, 0.05, 4.483},
+                                              {704.5, 0.04, 4.838},
+                                              {756.0, 0.03, 5.242},
+                                              {821.1, 0.04, 5.727}});
+    const ConductorIndex copper = integrated({{381.5, 1.34, 2.045},
+                                              {397.4, 1.32, 2.116},
+                                              {413.3, 1.28, 2.207},
+                                              {430.5, 1.25, 2.305},
+                                              {450.9, 1.24, 2.397},
+                                              {471.4, 1.25, 2.483},
+                                              {495.9, 1.22, 2.564},
+                                              {520.9, 1.18, 2.608},
+                                              {548.6, 1.02, 2.577},
+                                              {582.1, 0.70, 2.704},
+                                              {616.8, 0.30, 3.205},
+                                              {659.5, 0.22, 3.747},
+                                              {704.5, 0.21, 4.205},
+                                              {756.0, 0.24, 4.665},
+                                              {821.1, 0.26, 5.180}});
+    // Copper by name comes from this very table.
+    expect_ratio_near_one(conductor_index("Cu")->eta, copper.eta, 0.02);
+    expect_ratio_near_one(conductor_index("Cu")->k, copper.k, 0.02);
+    // Gold and silver by name come from other films. Their k differs by less than a tenth; their small n, which the
+    // preparation of the film decides, is not compared.
+    expect_ratio_near_one(conductor_index("Au")->k, gold.k, 0.1);
+    expect_ratio_near_one(conductor_index("Ag")->k, silver.k, 0.1);
 }
 
 TEST(RefractiveIndex, AluminiumReflectsAboutNinetyTwoPercent) {

@@ -1,0 +1,102 @@
+// The command line: help, versions, mistakes, and the small commands.
+#include "tests/driver/child_process.h"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+namespace gradus {
+namespace {
+
+using ::testing::HasSubstr;
+
+using CommandLine = ProgramTest;
+
+TEST_F(CommandLine, HelpAndVersion) {
+    EXPECT_EQ(run({"--version"}).out, "gradus 0.1.0\n");
+    const Outcome help = run({"--help"});
+    EXPECT_EQ(help.exit_code, 0);
+    for (const char *word : {"render", "inspect", "devices", "compare", "warm", "Examples:", "130"})
+        EXPECT_THAT(help.out, HasSubstr(word));
+    const Outcome render = run({"render", "--help"});
+    EXPECT_EQ(render.exit_code, 0);
+    for (const char *option :
+         {"--method",   "--spp",      "--time",   "--seed",          "--size",         "--crop",       "--max-depth",
+          "--rr-depth", "--nthreads", "--device", "--batch-size",    "--define",       "--strict",     "--quiet",
+          "--stats",    "--aov",      "--png",    "--write-partial", "--dump-kernels", "--all-traits", "--strategy"})
+        EXPECT_THAT(render.out, HasSubstr(option));
+    for (const char *command : {"inspect", "devices", "compare", "warm"})
+        EXPECT_EQ(run({command, "--help"}).exit_code, 0) << command;
+}
+
+TEST_F(CommandLine, MistakesAreUsageErrors) {
+    const std::vector<std::vector<std::string>> cases = {{},
+                                                         {"paint"},
+                                                         {"render"},
+                                                         {"render", "scene.xml"},
+                                                         {"--spp", "0"},
+                                                         {"--spp", "-3"},
+                                                         {"--spp", "many"},
+                                                         {"--seed", "-1"},
+                                                         {"--seed", "1.5"},
+                                                         {"--time", "0"},
+                                                         {"--time", "-1"},
+                                                         {"--size", "640"},
+                                                         {"--size", "0x10"},
+                                                         {"--size", "10x10x10"},
+                                                         {"--crop", "1,2,3"},
+                                                         {"--crop", "-1,0,2,2"},
+                                                         {"--crop", "0,0,0,2"},
+                                                         {"--max-depth", "0"},
+                                                         {"--max-depth", "-2"},
+                                                         {"--rr-depth", "0"},
+                                                         {"--nthreads", "-1"},
+                                                         {"--method", "magic"},
+                                                         {"--strategy", "luck"},
+                                                         {"-D", "novalue"},
+                                                         {"--write-partial", "0"},
+                                                         {"--unknown"},
+                                                         {"second.xml"}};
+    for (std::vector<std::string> arguments : cases) {
+        const std::string name = arguments.empty() ? "nothing" : arguments[0] + " " + arguments.back();
+        if (!arguments.empty() && arguments[0] != "render" && arguments[0] != "paint")
+            arguments.insert(arguments.begin(), {"render", "scene.xml", "-o", "out.exr"});
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.exit_code, 2) << name << ": " << outcome.err;
+        EXPECT_NE(outcome.err, "") << name;
+    }
+    EXPECT_THAT(files(), ::testing::ElementsAre("scene.xml"));
+}
+
+TEST_F(CommandLine, OptionsMayStandAnywhereAndDefinitionsTakeOneWordEach) {
+    EXPECT_EQ(run({"render", "-D", "a=1", "scene.xml", "-Db=2", "-o", "out.exr", "--max-depth", "-1", "-D", "c=x=y"})
+                  .exit_code,
+              0);
+}
+
+TEST_F(CommandLine, InspectPrintsSceneAndTraits) {
+    const Outcome text = run({"inspect", "scene.xml", "--size", "32x16"});
+    EXPECT_EQ(text.exit_code, 0) << text.err;
+    EXPECT_THAT(text.out, HasSubstr("32x16"));
+    EXPECT_THAT(text.out, HasSubstr("HAS_DIFFUSE = 1"));
+    const nlohmann::json json = nlohmann::json::parse(run({"inspect", "scene.xml", "--json"}).out);
+    EXPECT_EQ(json.at("film").at("width"), 8);
+    EXPECT_EQ(json.at("traits").at("HAS_CONSTANT"), 0);
+    EXPECT_EQ(run({"inspect", "none.xml"}).exit_code, 3);
+}
+
+TEST_F(CommandLine, DevicesSaysWhatToDoWhereThereIsNone) {
+    const Outcome outcome = run({"devices"});
+    EXPECT_EQ(outcome.exit_code, 4);
+    EXPECT_THAT(outcome.err, HasSubstr("pocl-opencl-icd"));
+    EXPECT_EQ(nlohmann::json::parse(run({"devices", "--json"}).out), nlohmann::json::array());
+}
+
+TEST_F(CommandLine, WarmNamesTheKernels) {
+    const Outcome outcome = run({"warm", "scene.xml"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("0.250 s  fake_kernel (1 of 1)"));
+    EXPECT_THAT(files(), ::testing::ElementsAre("scene.xml"));
+}
+
+} // namespace
+} // namespace gradus

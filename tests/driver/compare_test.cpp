@@ -1,0 +1,144 @@
+// `gradus compare` as a process: figures, verdict and exit codes.
+#include "runtime/io/image_io.h"
+#include "tests/driver/child_process.h"
+#include "tests/film/make_image.h"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace gradus {
+namespace {
+
+using ::testing::HasSubstr;
+
+class Compare : public ProgramTest {
+  protected:
+    static constexpr std::uint32_t side = 64;
+
+    /// A gray 1 with noise of that deviation; `error` is added to one block of 16 x 16.
+    void write_noise(const std::string &name, unsigned seed, double deviation, float error, const char *spp) const {
+        std::mt19937 generator(seed);
+        std::normal_distribution<double> noise(1, deviation);
+        Image image = make_gray(side, side, std::vector<float>(side * side));
+        for (Channel &channel : image.channels)
+            for (std::size_t i = 0; i < channel.values.size(); ++i)
+                channel.values[i] = float(noise(generator)) + (i % side < 16 && i / side < 16 ? error : 0);
+        image.metadata["seed"] = std::to_string(seed);
+        if (spp)
+            image.metadata["spp"] = spp;
+        write_image(image, at(name));
+    }
+    /// Eight images of 64 samples, a reference of 6400 and its variance; one sample has deviation 1.
+    void write_set(float error) const {
+        for (unsigned seed = 1; seed <= 8; ++seed)
+            write_noise("seed" + std::to_string(seed) + ".exr", seed, 1.0 / 8, error, "64");
+        write_noise("reference.exr", 100, 1.0 / 80, 0, nullptr);
+        write_image(make_gray(side, side, std::vector<float>(side * side, 1.0f / 6400)), at("variance.exr"));
+    }
+    std::vector<std::string> all(std::vector<std::string> more) const {
+        std::vector<std::string> arguments{"compare"};
+        for (int seed = 1; seed <= 8; ++seed)
+            arguments.push_back("seed" + std::to_string(seed) + ".exr");
+        arguments.push_back("reference.exr");
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return arguments;
+    }
+};
+
+TEST_F(Compare, PrintsFiguresOfOneImage) {
+    write_image(make_gray(2, 1, {1.5f, 2}), at("image.exr"));
+    write_image(make_gray(2, 1, {1, 2}), at("reference.exr"));
+    const Outcome text = run({"compare", "image.exr", "reference.exr"});
+    EXPECT_EQ(text.exit_code, 0) << text.err;
+    EXPECT_THAT(text.out, HasSubstr("relMSE 1.2488e-01"));
+    EXPECT_THAT(text.out, HasSubstr("mean ratio 1.166667"));
+    const nlohmann::json json =
+        nlohmann::json::parse(run({"compare", "image.exr", "reference.exr", "--json", "-"}).out);
+    EXPECT_NEAR(json.at("images").at(0).at("relative_mse").get<double>(), 0.25 / 1.001 / 2, 1e-9);
+    EXPECT_NEAR(json.at("images").at(0).at("psnr").get<double>(), 10 * std::log10(4 / 0.125), 1e-9);
+    EXPECT_EQ(run({"compare", "image.exr", "reference.exr", "--check", "--max-relmse", "0.1"}).exit_code, 1);
+    EXPECT_EQ(run({"compare", "image.exr", "reference.exr", "--check", "--max-relmse", "0.2"}).exit_code, 0);
+}
+
+TEST_F(Compare, UnbiasedSeedsHold) {
+    write_set(0);
+    const Outcome outcome =
+        run(all({"--variance", "variance.exr", "--reference-spp", "6400", "--check", "--json", "out.json"}));
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("verdict: equal within the noise"));
+    const nlohmann::json json = nlohmann::json::parse(text_of("out.json"));
+    EXPECT_EQ(json.at("holds"), true);
+    EXPECT_EQ(json.at("samples_per_pixel"), 64);
+    EXPECT_EQ(json.at("z").at("blocks").at("tested"), 48);
+    EXPECT_NEAR(json.at("z").at("pixels").at("expected_over_three").get<double>(), 0.0027 * 3 * 64 * 64, 0.1);
+    // Without a variance the seeds alone tell the noise.
+    EXPECT_EQ(run(all({"--check"})).exit_code, 0);
+    // One image is enough where the reference's variance and the counts are known.
+    EXPECT_EQ(run({"compare", "seed1.exr", "reference.exr", "--variance", "variance.exr", "--reference-spp", "6400",
+                   "--check"})
+                  .exit_code,
+              0);
+}
+
+TEST_F(Compare, AnErrorInOneBlockFails) {
+    write_set(0.05f);
+    const std::vector<std::string> checked = all({"--variance", "variance.exr", "--reference-spp", "6400", "--check"});
+    const Outcome outcome = run(checked);
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_THAT(outcome.out, HasSubstr("FAILED: blocks: largest |z|"));
+    std::vector<std::string> unchecked = checked;
+    unchecked.pop_back();
+    EXPECT_EQ(run(unchecked).exit_code, 0) << "only --check gives the exit code";
+}
+
+TEST_F(Compare, TheSameSeedTwiceFails) {
+    write_set(0);
+    const Outcome outcome = run({"compare", "seed1.exr", "seed1.exr", "reference.exr", "--check"});
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_THAT(outcome.out, HasSubstr("the same seed 1"));
+}
+
+TEST_F(Compare, NonFiniteValuesAreReportedAndFail) {
+    write_image(make_gray(2, 1, {1, std::numeric_limits<float>::quiet_NaN()}), at("image.exr"));
+    write_image(make_gray(2, 1, {1, 1}), at("reference.exr"));
+    const Outcome outcome = run({"compare", "image.exr", "reference.exr", "--check"});
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_THAT(outcome.out, HasSubstr("3 values are NaN or infinite"));
+}
+
+TEST_F(Compare, ErrorImages) {
+    write_image(make_gray(2, 1, {2, 1}), at("image.exr"));
+    write_image(make_gray(2, 1, {1, 1}), at("reference.exr"));
+    ASSERT_EQ(run({"compare", "image.exr", "reference.exr", "--error-image", "error.png"}).exit_code, 0);
+    const Image picture = read_image(at("error.png"));
+    EXPECT_NEAR(picture.find("R")->values[0], 1, 1e-5);
+    EXPECT_NEAR(picture.find("G")->values[0], 0, 1e-3);
+    EXPECT_NEAR(picture.find("G")->values[1], 1, 1e-5);
+    ASSERT_EQ(run({"compare", "image.exr", "reference.exr", "--error-image", "error.exr"}).exit_code, 0);
+    EXPECT_NEAR(read_image(at("error.exr")).find("R")->values[0], 1 / std::sqrt(1.001), 1e-6);
+    EXPECT_EQ(run({"compare", "image.exr", "reference.exr", "--error-image", "error.jpg"}).exit_code, 2);
+}
+
+TEST_F(Compare, ImagesThatDoNotFitAreImageErrors) {
+    write_image(make_gray(2, 1, {2, 1}), at("image.exr"));
+    write_image(make_gray(1, 2, {2, 1}), at("turned.exr"));
+    EXPECT_EQ(run({"compare", "image.exr", "turned.exr"}).exit_code, 6);
+    EXPECT_EQ(run({"compare", "image.exr", "none.exr"}).exit_code, 6);
+    EXPECT_EQ(run({"compare", "image.exr", "image.exr", "--layer", "albedo"}).exit_code, 6);
+    EXPECT_EQ(run({"compare", "image.exr"}).exit_code, 2);
+}
+
+TEST_F(Compare, Layers) {
+    write_image(make_image(1, 1, {{"R", {1}}, {"G", {1}}, {"B", {1}}, {"albedo.R", {2}}}), at("image.exr"));
+    write_image(make_image(1, 1, {{"R", {9}}, {"G", {9}}, {"B", {9}}, {"albedo.R", {1}}}), at("reference.exr"));
+    const Outcome outcome = run({"compare", "image.exr", "reference.exr", "--layer", "albedo"});
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_THAT(outcome.out, HasSubstr("mean ratio 2.000000"));
+}
+
+} // namespace
+} // namespace gradus

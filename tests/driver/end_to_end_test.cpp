@@ -1,0 +1,111 @@
+// The program itself, on a scene that it reads, compiles and renders.
+#include "runtime/film/metrics.h"
+#include "runtime/io/image_io.h"
+#include "tests/driver/child_process.h"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <csignal>
+
+namespace gradus {
+namespace {
+
+using ::testing::HasSubstr;
+
+class EndToEnd : public ProgramTest {
+  protected:
+    const std::string scene = std::string(GRADUS_SCENES) + "/cornell-box.xml";
+
+    std::vector<std::string> render(const std::string &output, std::vector<std::string> more) const {
+        more.insert(more.begin(), {"render", scene, "-o", output, "--size", "32x32"});
+        return more;
+    }
+    /// The same channels with the same values, bit for bit but for the sign of zero.
+    void expect_equal_pixels(const std::string &first, const std::string &second) const {
+        const Image a = read_image(at(first)), b = read_image(at(second));
+        ASSERT_EQ(a.channels.size(), b.channels.size());
+        for (const Channel &channel : a.channels)
+            EXPECT_EQ(channel.values, b.find(channel.name)->values) << channel.name;
+    }
+};
+
+TEST_F(EndToEnd, RendersWithLayersPictureAndStatistics) {
+    const Outcome outcome = run(render("out.exr", {"--spp", "4", "--aov", "--png", "--stats", "out.json"}));
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    const Image image = read_image(at("out.exr"));
+    for (const char *name : {"R", "G", "B", "albedo.R", "normal.X", "depth.Z", "variance.R"})
+        EXPECT_NE(image.find(name), nullptr) << name;
+    EXPECT_EQ(count_non_finite(image), 0u);
+    EXPECT_GT(compare_means(image, image).image, 0.01) << "the image is black";
+    EXPECT_EQ(image.metadata.at("spp"), "4");
+    EXPECT_EQ(image.metadata.at("samples"), std::to_string(32 * 32 * 4));
+    const nlohmann::json statistics = nlohmann::json::parse(text_of("out.json"));
+    EXPECT_EQ(statistics.at("samples"), 32 * 32 * 4);
+    EXPECT_GE(statistics.at("rays").at("extension").at("count").get<std::uint64_t>(), 32u * 32 * 4);
+    EXPECT_GT(statistics.at("stages").size(), 3u);
+    EXPECT_EQ(statistics.at("non_finite"), 0);
+}
+
+TEST_F(EndToEnd, TheImageDependsOnTheSeedAndNotOnThreadsOrBatches) {
+    ASSERT_EQ(run(render("first.exr", {"--spp", "4", "--seed", "3"})).exit_code, 0);
+    ASSERT_EQ(
+        run(render("second.exr", {"--spp", "4", "--seed", "3", "--nthreads", "1", "--batch-size", "1024"})).exit_code,
+        0);
+    ASSERT_EQ(run(render("third.exr", {"--spp", "4", "--seed", "4"})).exit_code, 0);
+    expect_equal_pixels("first.exr", "second.exr");
+    EXPECT_GT(relative_mse(read_image(at("first.exr")), read_image(at("third.exr"))), 0);
+}
+
+TEST_F(EndToEnd, ACropIsThatPartOfTheImage) {
+    ASSERT_EQ(run(render("full.exr", {"--spp", "4"})).exit_code, 0);
+    ASSERT_EQ(run(render("crop.exr", {"--spp", "4", "--crop", "9,4,7,5"})).exit_code, 0);
+    const Image full = read_image(at("full.exr")), crop = read_image(at("crop.exr"));
+    ASSERT_EQ(crop.width, 7u);
+    ASSERT_EQ(crop.height, 5u);
+    for (const char *name : {"R", "G", "B"})
+        for (std::uint32_t y = 0; y < 5; ++y)
+            for (std::uint32_t x = 0; x < 7; ++x)
+                EXPECT_EQ(crop.find(name)->values[y * 7 + x], full.find(name)->values[(y + 4) * 32 + x + 9]);
+}
+
+TEST_F(EndToEnd, AnInterruptLeavesAValidImage) {
+    ChildProcess process(render("out.exr", {"--spp", "1000000", "--write-partial", "0.05"}), folder);
+    ASSERT_TRUE(wait_for_file("out.exr"));
+    process.send(SIGINT);
+    const Outcome outcome = process.wait();
+    EXPECT_EQ(outcome.exit_code, 130) << outcome.err;
+    const Image image = read_image(at("out.exr"));
+    EXPECT_EQ(count_non_finite(image), 0u);
+    EXPECT_GT(std::stoull(image.metadata.at("samples")), 0u);
+    EXPECT_LT(std::stoull(image.metadata.at("samples")), 32u * 32 * 1000000);
+}
+
+TEST_F(EndToEnd, TimeEndsTheRender) {
+    const Outcome outcome = run(render("out.exr", {"--time", "0.5"}));
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    const Image image = read_image(at("out.exr"));
+    EXPECT_GE(std::stod(image.metadata.at("seconds")), 0.5);
+    EXPECT_LT(std::stod(image.metadata.at("seconds")), 5);
+    EXPECT_GT(std::stod(image.metadata.at("spp")), 1);
+}
+
+TEST_F(EndToEnd, InspectDevicesAndWarm) {
+    const Outcome inspect = run({"inspect", scene});
+    EXPECT_EQ(inspect.exit_code, 0) << inspect.err;
+    EXPECT_THAT(inspect.out, HasSubstr("diffuse"));
+    const nlohmann::json devices = nlohmann::json::parse(run({"devices", "--json"}).out);
+    ASSERT_FALSE(devices.empty());
+    EXPECT_NE(devices.at(0).at("name"), "");
+    const Outcome warm = run({"warm", scene, "--size", "32x32", "--spp", "1"});
+    EXPECT_EQ(warm.exit_code, 0) << warm.err;
+}
+
+TEST_F(EndToEnd, MistakesHaveTheirExitCodes) {
+    EXPECT_EQ(run({"render", "none.xml", "-o", "out.exr"}).exit_code, 3);
+    EXPECT_EQ(run(render("out.exr", {"--device", "no such device"})).exit_code, 4);
+    EXPECT_EQ(run(render("missing/out.exr", {})).exit_code, 5);
+}
+
+} // namespace
+} // namespace gradus

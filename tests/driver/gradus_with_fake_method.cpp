@@ -1,0 +1,115 @@
+// The gradus program with a scene loader and a method that tests control by scene parameters (-D):
+//   batch_ms=N   what a batch of one sample a pixel takes (0)
+//   fail=memory  the render runs out of memory; fail=strange: throws what is no exception
+//   nan=1        one value of the image is NaN
+//   warn=TEXT    the loader warns
+// The image is R = seed, G = samples a pixel so far, B = 0.5; the film is 8x6 with 4 samples a pixel.
+#include "driver/program.h"
+#include "runtime/error.h"
+
+#include <chrono>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <new>
+#include <thread>
+
+namespace gradus {
+namespace {
+
+std::map<std::string, std::string> parameters;
+
+std::string parameter(const std::string &name) {
+    const auto at = parameters.find(name);
+    return at == parameters.end() ? "" : at->second;
+}
+
+LoadedScene load_fake_scene(const std::string &path, const LoadOptions &options) {
+    if (!std::filesystem::exists(path))
+        throw Error(ExitCode::scene, path + ":1: no such scene");
+    parameters = options.parameters;
+    LoadedScene loaded;
+    loaded.scene.path = path;
+    loaded.scene.film.width = 8;
+    loaded.scene.film.height = 6;
+    loaded.scene.settings.samples_per_pixel = 4;
+    if (!parameter("warn").empty())
+        loaded.warnings.push_back(path + ":2: " + parameter("warn"));
+    return loaded;
+}
+
+class FakeMethod : public Method {
+  public:
+    FakeMethod(const Scene &scene, const RenderOptions &options)
+        : seed_(options.seed), aov_(options.aov), samples_per_pixel_(scene.settings.samples_per_pixel) {
+        width_ = scene.film.crop_width > 0 ? scene.film.crop_width : scene.film.width;
+        height_ = scene.film.crop_height > 0 ? scene.film.crop_height : scene.film.height;
+        if (options.on_compiled)
+            options.on_compiled("fake_kernel", 1, 1, 0.25);
+    }
+    std::uint64_t total_samples() const override { return pixels() * samples_per_pixel_; }
+    std::uint64_t done_samples() const override { return pixels() * done_; }
+    bool render_batch() override {
+        if (parameter("fail") == "memory")
+            throw std::bad_alloc();
+        if (parameter("fail") == "strange")
+            throw 7;
+        if (!parameter("batch_ms").empty())
+            std::this_thread::sleep_for(std::chrono::milliseconds(std::stoi(parameter("batch_ms"))));
+        ++done_;
+        return done_ < samples_per_pixel_;
+    }
+    Image image() override {
+        Image image;
+        image.width = width_;
+        image.height = height_;
+        const auto add = [&](const char *name, float value) {
+            image.channels.push_back({name, std::vector<float>(pixels(), value)});
+        };
+        add("R", float(seed_));
+        add("G", float(done_));
+        add("B", 0.5f);
+        if (aov_)
+            add("albedo.R", 0.25f);
+        if (!parameter("nan").empty())
+            image.channels[2].values[0] = std::numeric_limits<float>::quiet_NaN();
+        return image;
+    }
+    Statistics statistics() const override {
+        Statistics statistics;
+        statistics.stages = {{"trace", 0.75, 100, 10}, {"camera", 0.25, 50, 5}};
+        statistics.rays = {{"extension", 1000}};
+        statistics.samples = done_samples();
+        statistics.render_seconds = 1;
+        return statistics;
+    }
+
+  private:
+    std::uint64_t pixels() const { return std::uint64_t(width_) * height_; }
+
+    std::uint64_t seed_;
+    bool aov_;
+    std::uint64_t samples_per_pixel_, done_ = 0;
+    std::uint32_t width_ = 0, height_ = 0;
+};
+
+} // namespace
+} // namespace gradus
+
+int main(int argc, char **argv) {
+    gradus::Services services;
+    services.load_scene = gradus::load_fake_scene;
+    services.list_devices = [] { return std::vector<gradus::DeviceDescription>(); };
+    services.method_names = [] { return std::vector<std::string>{"pt"}; };
+    services.traits = [](const gradus::Scene &) {
+        return std::vector<std::pair<std::string, int>>{{"HAS_DIFFUSE", 1}, {"HAS_CONSTANT", 0}};
+    };
+    services.prepare = [](const std::string &, const std::string &, const gradus::Scene &scene,
+                          const gradus::RenderOptions &options) {
+        gradus::PreparedMethod prepared;
+        prepared.description.name = "fake device";
+        prepared.method = std::make_unique<gradus::FakeMethod>(scene, options);
+        return prepared;
+    };
+    return gradus::run_program(argc, argv, services);
+}

@@ -1,0 +1,94 @@
+// Renders that are interrupted, killed, or looked at while they run.
+#include "runtime/io/image_io.h"
+#include "tests/driver/child_process.h"
+
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+namespace gradus {
+namespace {
+
+using ::testing::ElementsAre;
+
+void sleep_ms(int milliseconds) { std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds)); }
+
+class Interrupt : public ProgramTest {
+  protected:
+    /// A render without an end. Its first partial image says that it is under way.
+    std::vector<std::string> endless(const std::string &batch_ms = "5") const {
+        return {"render",  "scene.xml",       "-o",   "out.exr", "--spp",
+                "1000000", "--write-partial", "0.02", "-D",      "batch_ms=" + batch_ms};
+    }
+    void expect_valid_partial_image() const {
+        const Image image = read_image(at("out.exr"));
+        EXPECT_EQ(image.metadata.at("partial"), "true");
+        const float samples = image.find("G")->values.at(0);
+        EXPECT_GE(samples, 1);
+        EXPECT_EQ(image.metadata.at("samples"), std::to_string(48 * int(samples)));
+        EXPECT_EQ(std::stof(image.metadata.at("spp")), samples);
+    }
+};
+
+TEST_F(Interrupt, ASignalLeavesAValidImageOfWhatThereIs) {
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+        ChildProcess process(endless(), folder);
+        ASSERT_TRUE(wait_for_file("out.exr"));
+        process.send(number);
+        const Outcome outcome = process.wait();
+        EXPECT_EQ(outcome.exit_code, 130) << outcome.err;
+        EXPECT_THAT(outcome.err, ::testing::HasSubstr("interrupted; wrote out.exr"));
+        expect_valid_partial_image();
+        EXPECT_THAT(files(), ElementsAre("out.exr", "scene.xml"));
+        std::filesystem::remove(at("out.exr"));
+    }
+}
+
+TEST_F(Interrupt, ASecondSignalEndsAtOnce) {
+    // The file is there once the first batch is done, so the second, of a minute, is under way.
+    ChildProcess process(
+        {"render", "scene.xml", "-o", "out.exr", "--write-partial", "0.001", "--spp", "10", "-D", "batch_ms=1500"},
+        folder);
+    ASSERT_TRUE(wait_for_file("out.exr"));
+    sleep_ms(100);
+    process.send(SIGINT);
+    sleep_ms(100);
+    const auto start = std::chrono::steady_clock::now();
+    process.send(SIGINT);
+    const Outcome outcome = process.wait();
+    EXPECT_EQ(outcome.signal, SIGINT);
+    EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 0.8);
+    expect_valid_partial_image();
+}
+
+TEST_F(Interrupt, PartialImagesAreWholeWheneverTheyAreRead) {
+    ChildProcess process(endless("1"), folder);
+    ASSERT_TRUE(wait_for_file("out.exr"));
+    float last = 0;
+    for (int i = 0; i < 100; ++i) {
+        expect_valid_partial_image();
+        const float samples = read_image(at("out.exr")).find("G")->values.at(0);
+        EXPECT_GE(samples, last);
+        last = samples;
+        sleep_ms(2);
+    }
+    EXPECT_GT(last, 10) << "the image was not written again";
+    process.send(SIGTERM);
+    EXPECT_EQ(process.wait().exit_code, 130);
+}
+
+TEST_F(Interrupt, AKillAtAnyTimeLeavesAWholeImage) {
+    for (int i = 0; i < 15; ++i) {
+        ChildProcess process(endless("0"), folder);
+        ASSERT_TRUE(wait_for_file("out.exr"));
+        sleep_ms(i * 3);
+        process.send(SIGKILL);
+        EXPECT_EQ(process.wait().signal, SIGKILL);
+        expect_valid_partial_image();
+    }
+}
+
+} // namespace
+} // namespace gradus

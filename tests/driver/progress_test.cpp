@@ -1,0 +1,128 @@
+#include "driver/progress.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <thread>
+
+namespace gradus {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// A file of its own that Progress prints to.
+class Printed {
+  public:
+    ~Printed() { std::fclose(file); }
+    std::string text() const {
+        std::fflush(file);
+        std::rewind(file);
+        std::string text;
+        for (int letter = std::fgetc(file); letter != EOF; letter = std::fgetc(file))
+            text += char(letter);
+        return text;
+    }
+    std::FILE *file = std::tmpfile();
+};
+
+ProgressState state(std::uint64_t done, double elapsed) {
+    ProgressState state;
+    state.done = done;
+    state.total = 4000000;
+    state.elapsed = elapsed;
+    return state;
+}
+
+TEST(Progress, Durations) {
+    EXPECT_EQ(format_duration(0), "0:00");
+    EXPECT_EQ(format_duration(6.2), "0:07");
+    EXPECT_EQ(format_duration(60), "1:00");
+    EXPECT_EQ(format_duration(3723), "1:02:03");
+}
+
+TEST(Progress, Counts) {
+    EXPECT_EQ(format_count(0), "0");
+    EXPECT_EQ(format_count(999), "999");
+    EXPECT_EQ(format_count(1000), "1.00 k");
+    EXPECT_EQ(format_count(12345), "12.3 k");
+    EXPECT_EQ(format_count(999999), "1.00 M");
+    EXPECT_EQ(format_count(2.5e9), "2.50 G");
+}
+
+TEST(Progress, LineHasShareRateAndTimeLeft) {
+    const std::string line = progress_line(state(1000000, 2), 0);
+    EXPECT_EQ(line, " 25 %  1.00 M samples  500 k/s  0:02 elapsed  0:06 left");
+    EXPECT_EQ(progress_line(state(1000000, 2), 8).substr(0, 10), "[==      ]");
+    EXPECT_THAT(progress_line(state(0, 0), 0), Not(HasSubstr("left")));
+}
+
+TEST(Progress, TheNearerLimitCounts) {
+    ProgressState timed = state(1000000, 3);
+    timed.time_limit = 4;
+    EXPECT_DOUBLE_EQ(progress_fraction(timed), 0.75);
+    timed.time_limit = 300;
+    EXPECT_DOUBLE_EQ(progress_fraction(timed), 0.25);
+    timed.sample_limit = false;
+    EXPECT_DOUBLE_EQ(progress_fraction(timed), 0.01);
+    timed.time_limit = 1;
+    EXPECT_DOUBLE_EQ(progress_fraction(timed), 1);
+}
+
+TEST(Progress, PlainLinesComeNowAndThenAndAtBothEnds) {
+    const Printed printed;
+    EXPECT_EQ(Progress::choose_mode(false, printed.file), Progress::Mode::plain);
+    Progress progress(Progress::Mode::plain, printed.file, 3600);
+    for (int i = 0; i < 100; ++i)
+        progress.update(state(std::uint64_t(i) * 10000, 1));
+    progress.finish(state(4000000, 9));
+    const std::string text = printed.text();
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2);
+    EXPECT_THAT(text, Not(HasSubstr("\r")));
+    EXPECT_THAT(text, HasSubstr("100 %"));
+}
+
+TEST(Progress, ATerminalHasOneLineThatIsRedrawn) {
+    const Printed printed;
+    Progress progress(Progress::Mode::terminal, printed.file);
+    progress.update(state(1000000, 1));
+    progress.message("a message");
+    progress.update(state(2000000, 1)); // too soon to be drawn
+    progress.finish(state(4000000, 9));
+    const std::string text = printed.text();
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2) << "the message's and the last";
+    EXPECT_THAT(text, HasSubstr("\r\x1b[Ka message\n"));
+    EXPECT_THAT(text, Not(HasSubstr(" 50 %")));
+    EXPECT_EQ(text.back(), '\n');
+}
+
+TEST(Progress, QuietPrintsNothing) {
+    const Printed printed;
+    EXPECT_EQ(Progress::choose_mode(true, printed.file), Progress::Mode::quiet);
+    Progress progress(Progress::Mode::quiet, printed.file);
+    progress.message("text");
+    progress.compiled("kernel", 1, 2, 0.1);
+    progress.update(state(1, 1));
+    progress.finish(state(2, 2));
+    EXPECT_EQ(printed.text(), "");
+}
+
+TEST(Progress, LinesOfSeveralThreadsStayWhole) {
+    const Printed printed;
+    Progress progress(Progress::Mode::plain, printed.file);
+    std::vector<std::thread> threads;
+    for (int thread = 0; thread < 4; ++thread)
+        threads.emplace_back([&progress] {
+            for (int i = 0; i < 50; ++i)
+                progress.compiled("kernel", 3, 7, 0.5);
+        });
+    for (std::thread &thread : threads)
+        thread.join();
+    std::string expected;
+    for (int i = 0; i < 200; ++i)
+        expected += "compiled kernel in 0.50 s (3 of 7)\n";
+    EXPECT_EQ(printed.text(), expected);
+}
+
+} // namespace
+} // namespace gradus

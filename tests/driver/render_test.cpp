@@ -1,0 +1,158 @@
+// `gradus render`: what it writes, and what it does where it cannot.
+#include "runtime/error.h"
+#include "runtime/io/image_io.h"
+#include "tests/driver/child_process.h"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <cmath>
+
+namespace gradus {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class Render : public ProgramTest {
+  protected:
+    Outcome render(std::vector<std::string> options, std::size_t file_size_limit = 0) const {
+        options.insert(options.begin(), {"render", "scene.xml"});
+        return run(options, file_size_limit);
+    }
+    float value(const Image &image, const char *channel) const { return image.find(channel)->values.at(0); }
+};
+
+TEST_F(Render, WritesTheImageWithItsMetadata) {
+    const Outcome outcome = render({"-o", "out.exr", "--seed", "5"});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(files(), ElementsAre("out.exr", "scene.xml"));
+    const Image image = read_image(at("out.exr"));
+    EXPECT_EQ(image.width, 8u);
+    EXPECT_EQ(image.height, 6u);
+    EXPECT_EQ(image.channels.size(), 3u);
+    EXPECT_EQ(value(image, "R"), 5);
+    EXPECT_EQ(value(image, "G"), 4);
+    EXPECT_EQ(value(image, "B"), 0.5f);
+    EXPECT_EQ(image.metadata.at("scene"), "scene.xml");
+    EXPECT_EQ(image.metadata.at("method"), "pt");
+    EXPECT_EQ(image.metadata.at("spp"), "4");
+    EXPECT_EQ(image.metadata.at("seed"), "5");
+    EXPECT_EQ(image.metadata.at("samples"), "192");
+    EXPECT_EQ(image.metadata.at("version"), "0.1.0");
+    EXPECT_EQ(image.metadata.at("device"), "fake device");
+    EXPECT_EQ(image.metadata.at("partial"), "false");
+    EXPECT_GE(std::stod(image.metadata.at("seconds")), 0);
+    EXPECT_THAT(outcome.err, HasSubstr("compiled fake_kernel in 0.25 s (1 of 1)"));
+    EXPECT_THAT(outcome.err, HasSubstr("100 %"));
+    EXPECT_EQ(outcome.out, "");
+}
+
+TEST_F(Render, OptionsReplaceTheFilesSettings) {
+    ASSERT_EQ(render({"-o", "out.exr", "--size", "20x10", "--crop", "15,4,5,6", "--spp", "2", "--aov"}).exit_code, 0);
+    const Image image = read_image(at("out.exr"));
+    EXPECT_EQ(image.width, 5u);
+    EXPECT_EQ(image.height, 6u);
+    EXPECT_EQ(value(image, "G"), 2);
+    EXPECT_EQ(value(image, "albedo.R"), 0.25f);
+    EXPECT_EQ(image.metadata.at("crop"), "15,4,5,6");
+}
+
+TEST_F(Render, WritesPngAndStatistics) {
+    const Outcome outcome = render({"-o", "out.exr", "--png", "--stats", "out.json", "--quiet"});
+    ASSERT_EQ(outcome.exit_code, 0);
+    EXPECT_EQ(outcome.err, "");
+    EXPECT_THAT(files(), ElementsAre("out.exr", "out.json", "out.png", "scene.xml"));
+    EXPECT_NEAR(value(read_image(at("out.png")), "B"), 0.5f, 0.005f);
+    const nlohmann::json statistics = nlohmann::json::parse(text_of("out.json"));
+    EXPECT_EQ(statistics.at("samples"), 192);
+    EXPECT_EQ(statistics.at("spp"), 4);
+    EXPECT_EQ(statistics.at("stages").at(0).at("name"), "trace");
+    EXPECT_EQ(statistics.at("stages").at(0).at("share"), 0.75);
+    EXPECT_EQ(statistics.at("rays").at("extension").at("per_second"), 1000);
+    EXPECT_EQ(statistics.at("interrupted"), false);
+}
+
+TEST_F(Render, StatisticsToStandardOutput) {
+    const Outcome outcome = render({"-o", "out.exr", "--stats", "-"});
+    ASSERT_EQ(outcome.exit_code, 0);
+    EXPECT_EQ(nlohmann::json::parse(outcome.out).at("method"), "pt");
+}
+
+TEST_F(Render, TimeEndsTheRender) {
+    const auto start = std::chrono::steady_clock::now();
+    const Outcome outcome = render({"-o", "out.exr", "--time", "0.4", "-D", "batch_ms=10"});
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_GT(seconds, 0.4);
+    EXPECT_LT(seconds, 5);
+    const Image image = read_image(at("out.exr"));
+    const float samples = value(image, "G");
+    EXPECT_GT(samples, 4) << "the file's sample count is no limit";
+    EXPECT_LE(samples, 41);
+    EXPECT_EQ(std::stof(image.metadata.at("spp")), samples);
+}
+
+TEST_F(Render, SamplesEndATimedRenderWhereBothAreGiven) {
+    ASSERT_EQ(render({"-o", "out.exr", "--time", "50", "--spp", "3"}).exit_code, 0);
+    EXPECT_EQ(value(read_image(at("out.exr")), "G"), 3);
+}
+
+TEST_F(Render, WarnsOfTheSceneAndOfValuesThatAreNotFinite) {
+    const Outcome outcome = render({"-o", "out.exr", "-D", "warn=a strange parameter", "-D", "nan=1"});
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_THAT(outcome.err, HasSubstr("warning: scene.xml:2: a strange parameter"));
+    EXPECT_THAT(outcome.err, HasSubstr("1 values of the image are NaN or infinite"));
+    EXPECT_TRUE(std::isnan(value(read_image(at("out.exr")), "B")));
+}
+
+TEST_F(Render, OutputsAreCheckedBeforeTheRender) {
+    // The batch would take a minute: only a check ahead of it can answer in time.
+    const std::vector<std::vector<std::string>> cases = {{"-o", "missing/out.exr"},
+                                                         {"-o", "/proc/out.exr"},
+                                                         {"-o", "scene.xml/out.exr"},
+                                                         {"-o", "out.exr", "--stats", "missing/out.json"}};
+    for (std::vector<std::string> options : cases) {
+        options.insert(options.end(), {"-D", "batch_ms=60000"});
+        const Outcome outcome = render(options);
+        EXPECT_EQ(outcome.exit_code, 5) << options[1];
+        EXPECT_THAT(outcome.err, HasSubstr("gradus: error: cannot write"));
+        EXPECT_THAT(files(), ElementsAre("scene.xml"));
+    }
+    std::filesystem::create_directory(folder / "folder.exr");
+    EXPECT_EQ(render({"-o", "folder.exr"}).exit_code, 5);
+}
+
+TEST_F(Render, AFullDiskLeavesNothingHalfWritten) {
+    const Outcome outcome = render({"-o", "out.exr", "--size", "400x400"}, 600);
+    EXPECT_EQ(outcome.exit_code, 5) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("File too large"));
+    EXPECT_THAT(files(), ElementsAre("scene.xml"));
+}
+
+TEST_F(Render, AFailedWriteKeepsTheOldImage) {
+    ASSERT_EQ(render({"-o", "out.exr", "--seed", "1"}).exit_code, 0);
+    const std::string before = text_of("out.exr");
+    EXPECT_EQ(render({"-o", "out.exr", "--seed", "2"}, 100).exit_code, 5);
+    EXPECT_EQ(text_of("out.exr"), before);
+    EXPECT_THAT(files(), ElementsAre("out.exr", "scene.xml"));
+}
+
+TEST_F(Render, ErrorsHaveTheirExitCodes) {
+    EXPECT_EQ(run({"render", "none.xml", "-o", "out.exr"}).exit_code, 3);
+    EXPECT_EQ(render({"-o", "out.png"}).exit_code, 2);
+    EXPECT_EQ(render({"-o", "out.exr", "--crop", "4,0,5,1"}).exit_code, 2);
+    EXPECT_EQ(render({"-o", "out.exr", "--stats", "out.exr"}).exit_code, 2);
+    const Outcome memory = render({"-o", "out.exr", "-D", "fail=memory"});
+    EXPECT_EQ(memory.exit_code, 4);
+    EXPECT_THAT(memory.err, HasSubstr("out of memory"));
+    const Outcome strange = render({"-o", "out.exr", "-D", "fail=strange"});
+    EXPECT_EQ(strange.exit_code, 1);
+    EXPECT_THAT(strange.err, HasSubstr("gradus: error: an exception of unknown type\n"));
+    EXPECT_THAT(files(), ElementsAre("scene.xml"));
+}
+
+} // namespace
+} // namespace gradus

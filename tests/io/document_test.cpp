@@ -1,0 +1,216 @@
+// What happens to a scene file as text: parameters, includes, references, unknown parameters, file search.
+#include "tests/io/scene_text.h"
+
+namespace gradus {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const char *const sensor_with_spp = "<sensor type=\"perspective\"><sampler type=\"independent\"><integer "
+                                    "name=\"sample_count\" value=\"$spp\"/></sampler></sensor>";
+
+TEST(Parameters, DefaultAndOverride) {
+    const std::string text = std::string("<scene version=\"3.0.0\"><default name=\"spp\" value=\"16\"/>") +
+                             sensor_with_spp + "<shape type=\"sphere\"/></scene>";
+    EXPECT_EQ(load_text(text).scene.settings.samples_per_pixel, 16u);
+    EXPECT_EQ(load_text(text, {{{"spp", "99"}}, false}).scene.settings.samples_per_pixel, 99u);
+}
+
+TEST(Parameters, StandInTypesBooleansAndParts) {
+    const std::string text = "<scene version=\"3.0.0\"><default name=\"kind\" value=\"sphere\"/>"
+                             "<default name=\"flip\" value=\"True\"/><default name=\"r\" value=\"2\"/>"
+                             "<default name=\"double\" value=\"$r$r\"/>"
+                             "<sensor type=\"perspective\"/><shape type=\"$kind\"><boolean name=\"flip_normals\" "
+                             "value=\"$flip\"/><float name=\"radius\" value=\"$double.5\"/></shape></scene>";
+    const Scene scene = load_text(text).scene;
+    ASSERT_EQ(scene.spheres.size(), 1u);
+    EXPECT_FLOAT_EQ(scene.spheres[0].radius, 22.5f);
+    EXPECT_TRUE(scene.spheres[0].flip_normals);
+}
+
+TEST(Parameters, LongestKnownNameCounts) {
+    const std::string text = "<scene version=\"3.0.0\"><default name=\"r\" value=\"3\"/><default name=\"ra\" "
+                             "value=\"4\"/><sensor type=\"perspective\"/><shape type=\"sphere\"><float "
+                             "name=\"radius\" value=\"$ra\"/></shape></scene>";
+    EXPECT_FLOAT_EQ(load_text(text).scene.spheres[0].radius, 4);
+}
+
+TEST(Parameters, GivenOnTheCommandLineAlone) {
+    const std::string text =
+        std::string("<scene version=\"3.0.0\">") + sensor_with_spp + "<shape type=\"sphere\"/></scene>";
+    EXPECT_EQ(load_text(text, {{{"spp", "7"}}, false}).scene.settings.samples_per_pixel, 7u);
+}
+
+TEST(Parameters, UnknownOnTheCommandLineIsAnErrorWithTheKnownOnes) {
+    const std::string text = scene_around("<default name=\"resolution\" value=\"16\"/>");
+    const std::string message = error_of_text(text, {{{"resolutoin", "8"}}, false});
+    EXPECT_THAT(message, HasSubstr("-D resolutoin"));
+    EXPECT_THAT(message, HasSubstr("did you mean resolution"));
+}
+
+TEST(Parameters, UsedBeforeTheIncludedDefault) {
+    TemporaryFolder folder;
+    folder.write("defaults.xml", "<scene version=\"3.0.0\"><default name=\"spp\" value=\"5\"/>"
+                                 "<default name=\"shape_file\" value=\"shape\"/></scene>");
+    folder.write("shape.xml", "<shape version=\"3.0.0\" type=\"cube\"/>");
+    const std::string path = folder.write("scene.xml", std::string("<scene version=\"3.0.0\">") + sensor_with_spp +
+                                                           "<include filename=\"$shape_file.xml\"/>"
+                                                           "<include filename=\"defaults.xml\"/></scene>");
+    const Scene scene = load_scene(path).scene;
+    EXPECT_EQ(scene.settings.samples_per_pixel, 5u);
+    EXPECT_EQ(scene.shapes.size(), 1u);
+}
+
+TEST(Parameters, FirstDefaultCounts) {
+    const std::string text = std::string("<scene version=\"3.0.0\"><default name=\"spp\" value=\"1\"/>"
+                                         "<default name=\"spp\" value=\"2\"/>") +
+                             sensor_with_spp + "<shape type=\"sphere\"/></scene>";
+    EXPECT_EQ(load_text(text).scene.settings.samples_per_pixel, 1u);
+}
+
+TEST(Includes, SensorAndFilmInTheirOwnFileOfAnotherDialect) {
+    TemporaryFolder folder;
+    folder.write("sub/camera.xml", "<scene version=\"0.5.0\"><sensor type=\"perspective\"><float name=\"fov\" "
+                                   "value=\"33\"/><string name=\"fovAxis\" value=\"smaller\"/></sensor></scene>");
+    const std::string path = folder.write(
+        "scene.xml",
+        "<?xml version='1.0' encoding='utf-8'?>\n<scene version=\"3.0.0\"><include filename=\"sub/camera.xml\"/>"
+        "<shape type=\"sphere\"/></scene>");
+    const LoadedScene loaded = load_scene(path);
+    EXPECT_DOUBLE_EQ(loaded.scene.camera.fov, 33);
+    EXPECT_EQ(loaded.scene.camera.fov_axis, Camera::FovAxis::smaller);
+    EXPECT_EQ(loaded.scene.path, path);
+}
+
+TEST(Includes, PathAddsAFolder) {
+    TemporaryFolder folder;
+    folder.write("elsewhere/mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const std::string path =
+        folder.write("scene.xml", scene_around("<path value=\"elsewhere\"/><shape type=\"obj\"><string "
+                                               "name=\"filename\" value=\"mesh.obj\"/></shape>",
+                                               "3.0.0", ""));
+    EXPECT_EQ(load_scene(path).scene.meshes.size(), 1u);
+}
+
+TEST(FileSearch, WrongCaseAndBackslashesAreForgiven) {
+    TemporaryFolder folder;
+    folder.write("Meshes/The Räum.OBJ", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const auto scene_with = [&](const std::string &name) {
+        return folder.write("scene.xml", scene_around("<shape type=\"obj\"><string name=\"filename\" value=\"" + name +
+                                                          "\"/></shape>\n<emitter type=\"constant\"/>",
+                                                      "3.0.0", ""));
+    };
+    EXPECT_THAT(load_scene(scene_with("Meshes\\The Räum.OBJ")).warnings, IsEmpty());
+    const LoadedScene loaded = load_scene(scene_with("meshes\\the Räum.obj"));
+    EXPECT_EQ(loaded.scene.meshes.size(), 1u);
+    EXPECT_THAT(loaded.warnings, ElementsAre(HasSubstr("scene.xml:3: \"meshes\\the Räum.obj\" differs in case")));
+}
+
+TEST(References, WithOrWithoutNameNestedAndAliased) {
+    const std::string text =
+        scene_around("<bsdf type=\"twosided\" id=\"outer\"><bsdf type=\"diffuse\" id=\"inner\">"
+                     "<rgb name=\"reflectance\" value=\"0.25\"/></bsdf></bsdf>\n<alias id=\"inner\" as=\"other\"/>\n"
+                     "<shape type=\"cube\"><ref id=\"outer\"/></shape>"
+                     "<shape type=\"cube\"><ref name=\"bsdf\" id=\"inner\"/></shape>"
+                     "<shape type=\"cube\"><ref id=\"other\"/></shape>\n<emitter type=\"constant\"/>",
+                     "3.0.0", "");
+    const LoadedScene loaded = load_text(text);
+    EXPECT_THAT(loaded.warnings, IsEmpty());
+    ASSERT_EQ(loaded.scene.shapes.size(), 3u);
+    ASSERT_EQ(loaded.scene.materials.size(), 2u);
+    EXPECT_TRUE(loaded.scene.materials[loaded.scene.shapes[0].material].two_sided);
+    EXPECT_FALSE(loaded.scene.materials[loaded.scene.shapes[1].material].two_sided);
+    EXPECT_EQ(loaded.scene.shapes[1].material, loaded.scene.shapes[2].material);
+    EXPECT_EQ(loaded.scene.materials[0].name, "outer");
+}
+
+TEST(References, FilmAndSamplerOfTheScene) {
+    const std::string text = "<scene version=\"0.6.0\"><film type=\"hdrfilm\" id=\"f\"><integer name=\"width\" "
+                             "value=\"20\"/><integer name=\"height\" value=\"10\"/></film><sampler "
+                             "type=\"ldsampler\" id=\"s\"><integer name=\"sampleCount\" value=\"12\"/></sampler>"
+                             "<sensor type=\"perspective\"><ref id=\"f\"/><ref id=\"s\"/></sensor>"
+                             "<shape type=\"cube\"/></scene>";
+    const Scene scene = load_text(text).scene;
+    EXPECT_EQ(scene.film.width, 20u);
+    EXPECT_EQ(scene.film.height, 10u);
+    EXPECT_EQ(scene.settings.samples_per_pixel, 12u);
+}
+
+TEST(References, IdsMayBeInAnyScript) {
+    const std::string text = scene_around("<bsdf id=\"Плитка №1\" type=\"null\"/><shape type=\"cube\"><ref "
+                                          "id=\"Плитка №1\"/></shape>",
+                                          "3.0.0", "");
+    EXPECT_EQ(load_text(text).scene.materials[0].front.kind, BsdfKind::null);
+}
+
+TEST(UnknownParameters, WarnWithTheNearestName) {
+    const std::string text = scene_around("<shape type=\"sphere\">\n<float name=\"raduis\" value=\"2\"/>\n"
+                                          "</shape><emitter type=\"constant\"/>",
+                                          "3.0.0", "");
+    const LoadedScene loaded = load_text(text);
+    EXPECT_THAT(loaded.warnings,
+                ElementsAre(HasSubstr("scene.xml:4: unknown parameter \"raduis\" of shape \"sphere\" is ignored; did "
+                                      "you mean \"radius\"?")));
+    EXPECT_FLOAT_EQ(loaded.scene.spheres[0].radius, 1);
+    EXPECT_THAT(error_of_text(text, {{}, true}), HasSubstr("scene.xml:4: unknown parameter \"raduis\""));
+}
+
+TEST(UnknownParameters, OfTheSceneAndUnusedObjects) {
+    const std::string text = scene_around("<integer name=\"depth\" value=\"2\"/>\n<shape type=\"cube\">"
+                                          "<film type=\"hdrfilm\"/></shape><emitter type=\"constant\"/>");
+    EXPECT_THAT(load_text(text).warnings, testing::UnorderedElementsAre(HasSubstr("scene.xml:3: unknown parameter"),
+                                                                        HasSubstr("scene.xml:4: <film> in shape")));
+}
+
+TEST(UnknownParameters, ThoseWithoutMeaningPassInSilence) {
+    const std::string text =
+        "<scene version=\"3.0.0\"><integrator type=\"path\"/><sensor type=\"perspective\" id=\"cam\" name=\"x\">"
+        "<float name=\"near_clip\" value=\"0.1\"/><float name=\"farClip\" value=\"100\"/>"
+        "<float name=\"focus_distance\" value=\"1\"/><sampler type=\"multijitter\"><integer name=\"seed\" "
+        "value=\"3\"/></sampler><film type=\"hdrfilm\"><string name=\"file_format\" value=\"openexr\"/>"
+        "<string name=\"pixelFormat\" value=\"rgb\"/><string name=\"component_format\" value=\"float32\"/>"
+        "<boolean name=\"banner\" value=\"false\"/></film></sensor><shape type=\"sphere\" name=\"ball\"/>"
+        "<emitter type=\"constant\"><float name=\"sampling_weight\" value=\"1\"/></emitter></scene>";
+    EXPECT_THAT(load_text(text).warnings, IsEmpty());
+    EXPECT_EQ(error_of_text(text, {{}, true}), "");
+}
+
+TEST(Warnings, UnusedBsdfsDoNoHarm) {
+    const LoadedScene loaded = load_text(scene_around("<bsdf type=\"hair\" id=\"h\"/><emitter type=\"constant\"/>"));
+    EXPECT_THAT(loaded.warnings, ElementsAre(HasSubstr("unknown bsdf plugin \"hair\"")));
+}
+
+TEST(Warnings, SceneWithoutEmitters) {
+    EXPECT_THAT(load_text(scene_around("")).warnings, ElementsAre(HasSubstr("no emitters")));
+}
+
+TEST(Warnings, SecondSensorIsIgnored) {
+    const LoadedScene loaded =
+        load_text(scene_around("<sensor type=\"perspective\"><float name=\"fov\" value=\"3\"/></sensor><emitter "
+                               "type=\"constant\"/>"));
+    EXPECT_THAT(loaded.warnings, ElementsAre(HasSubstr("second <sensor>")));
+    EXPECT_NE(loaded.scene.camera.fov, 3);
+}
+
+TEST(Values, BlanksSignsAndExponents) {
+    for (const auto &[text, value] : std::vector<std::pair<std::string, double>>{
+             {" 40 ", 40}, {"+4e1", 40}, {"4.0E+001", 40}, {"\t4e001\n", 40}, {".5", 0.5}, {"5.", 5}})
+        EXPECT_DOUBLE_EQ(
+            load_text("<scene version=\"3.0.0\"><sensor type=\"perspective\"><float name=\"fov\" value=\"" + text +
+                      "\"/></sensor><shape type=\"cube\"/></scene>")
+                .scene.camera.fov,
+            value)
+            << text;
+}
+
+TEST(Values, IntegersMayBeWrittenAsFloats) {
+    const std::string text = "<scene version=\"3.0.0\"><sensor type=\"perspective\"><sampler type=\"independent\">"
+                             "<integer name=\"sample_count\" value=\"1e3\"/></sampler></sensor><shape "
+                             "type=\"cube\"/></scene>";
+    EXPECT_EQ(load_text(text).scene.settings.samples_per_pixel, 1000u);
+}
+
+} // namespace
+} // namespace gradus

@@ -1,0 +1,201 @@
+// Mesh files written here and read back, and broken ones.
+#include "runtime/io/diagnostics.h"
+#include "runtime/io/mesh_files.h"
+#include "tests/io/mesh_text.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace gradus {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using Triangle = std::array<std::uint32_t, 3>;
+
+template <typename Function>
+std::string message_of(Function &&function) {
+    try {
+        function();
+    } catch (const SceneError &error) {
+        return error.what();
+    }
+    return {};
+}
+std::string obj_error(const std::string &text) {
+    return message_of([&] { parse_obj(text, "m.obj"); });
+}
+std::string ply_error(const std::string &text) {
+    return message_of([&] { parse_ply(text, "m.ply"); });
+}
+std::string serialized_error(const std::string &data, std::uint64_t index = 0) {
+    return message_of([&] { parse_serialized(data, "m.serialized", index); });
+}
+
+void expect_same(const Mesh &actual, const Mesh &expected) {
+    EXPECT_EQ(actual.positions, expected.positions);
+    EXPECT_EQ(actual.normals, expected.normals);
+    EXPECT_EQ(actual.texcoords, expected.texcoords);
+    EXPECT_EQ(actual.triangles, expected.triangles);
+}
+
+TEST(Obj, PositionsOnly) {
+    const Mesh mesh = parse_obj("# comment\nv 0 0 0\nv 1 0 0 1.0\r\nv  +0 1e0 -0.5\nf 1 2 3\n", "m.obj");
+    EXPECT_THAT(mesh.positions, ElementsAre(Vector3{0, 0, 0}, Vector3{1, 0, 0}, Vector3{0, 1, -0.5f}));
+    EXPECT_THAT(mesh.triangles, ElementsAre(Triangle{0, 1, 2}));
+    EXPECT_TRUE(mesh.normals.empty());
+    EXPECT_TRUE(mesh.texcoords.empty());
+}
+
+TEST(Obj, CornersOfEveryForm) {
+    const std::string head = "v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0.5 0.25\nvt 1 1 0\nvn 0 0 1\nvn 1 0 0\n";
+    const Mesh full = parse_obj(head + "f 1/1/1 2/2/1 3/1/2", "m.obj");
+    EXPECT_THAT(full.texcoords, ElementsAre(std::array{0.5f, 0.25f}, std::array{1.0f, 1.0f}, std::array{0.5f, 0.25f}));
+    EXPECT_THAT(full.normals, ElementsAre(Vector3{0, 0, 1}, Vector3{0, 0, 1}, Vector3{1, 0, 0}));
+    const Mesh normals = parse_obj(head + "f 1//2 2//2 3//2", "m.obj");
+    EXPECT_TRUE(normals.texcoords.empty());
+    EXPECT_EQ(normals.normals[0], (Vector3{1, 0, 0}));
+    const Mesh texcoords = parse_obj(head + "f 1/2 2/2 3/2", "m.obj");
+    EXPECT_TRUE(texcoords.normals.empty());
+    EXPECT_EQ(texcoords.texcoords[0], (std::array{1.0f, 1.0f}));
+    const Mesh relative = parse_obj(head + "f -3/-2/-1 -2/-2/-1 -1/-2/-1", "m.obj");
+    EXPECT_THAT(relative.positions, ElementsAre(Vector3{0, 0, 0}, Vector3{1, 0, 0}, Vector3{1, 1, 0}));
+    EXPECT_EQ(relative.texcoords[2], (std::array{0.5f, 0.25f}));
+    EXPECT_EQ(relative.normals[2], (Vector3{1, 0, 0}));
+}
+
+TEST(Obj, PolygonsAreFansAndCornersAreShared) {
+    const Mesh mesh = parse_obj("o thing\ng group\nusemtl x\ns off\nv 0 0 0\nv 1 0 0\nv 2 1 0\nv 1 2 0\nv 0 2 0\n"
+                                "f 1 2 3 4 5\nf 1 3 2 # other side\n",
+                                "m.obj");
+    EXPECT_EQ(mesh.positions.size(), 5u);
+    EXPECT_THAT(mesh.triangles,
+                ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}, Triangle{0, 3, 4}, Triangle{0, 2, 1}));
+}
+
+TEST(Obj, PositionsWithSeveralNormalsAreSplit) {
+    const Mesh mesh = parse_obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 1\nvn 0 0 1\nvn 0 1 0\nf 1//1 2//1 3//1\n"
+                                "f 1//2 3//2 4//2\nf 1//1 3//1 4//2\n",
+                                "m.obj");
+    EXPECT_EQ(mesh.positions.size(), 6u); // 3, then 1 and 3 once more and 4
+    EXPECT_THAT(mesh.triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{3, 4, 5}, Triangle{0, 2, 5}));
+}
+
+TEST(Obj, Errors) {
+    const std::string head = "v 0 0 0\nv 1 0 0\nv 1 1 0\n";
+    EXPECT_THAT(obj_error(head + "f 1 2 4\n"), HasSubstr("m.obj:4: face index out of range: v 4 of 3"));
+    EXPECT_THAT(obj_error(head + "f 1 2 0\n"), HasSubstr("m.obj:4"));
+    EXPECT_THAT(obj_error(head + "f 1 2 -4\n"), HasSubstr("-4"));
+    EXPECT_THAT(obj_error(head + "f 1/1 2/1 3/1\n"), HasSubstr("vt 1 of 0"));
+    EXPECT_THAT(obj_error(head + "f 1//1 2//1 3//1\n"), HasSubstr("vn 1 of 0"));
+    EXPECT_THAT(obj_error(head + "f 1 2\n"), HasSubstr("three corners"));
+    EXPECT_THAT(obj_error(head + "f a b c\n"), HasSubstr("\"a b c"));
+    EXPECT_THAT(obj_error(head + "f 1,2 2 3\n"), HasSubstr("m.obj:4: a face corner"));
+    EXPECT_THAT(obj_error("v 0 zero 0\n"), HasSubstr("m.obj:1: \"zero 0"));
+    EXPECT_THAT(obj_error("v 0 0\n"), HasSubstr("three numbers"));
+    EXPECT_THAT(obj_error(head + "f 1 2 99999999999999999999999\n"), HasSubstr("out of range"));
+}
+
+TEST(Ply, Ascii) {
+    const Mesh mesh = parse_ply("ply\r\nformat ascii 1.0\r\nobj_info x\r\nelement vertex 4\r\nproperty float x\r\n"
+                                "property float y\r\nproperty float z\r\nproperty float u\r\nproperty float v\r\n"
+                                "element face 2\r\nproperty list uchar int vertex_index\r\nend_header\r\n"
+                                "0 0 0 0 0\r\n1 0 0 1 0\r\n1 1 0 1 1\r\n0 1 1e-1 0 1\r\n4 0 1 2 3\r\n3 2 1 0\r\n",
+                                "m.ply");
+    EXPECT_EQ(mesh.positions.size(), 4u);
+    EXPECT_EQ(mesh.positions[3], (Vector3{0, 1, 0.1f}));
+    EXPECT_EQ(mesh.texcoords[2], (std::array{1.0f, 1.0f}));
+    EXPECT_THAT(mesh.triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}, Triangle{2, 1, 0}));
+}
+
+TEST(Ply, BinaryOfBothByteOrders) {
+    const Mesh mesh = folded_square();
+    for (bool big_endian : {false, true})
+        expect_same(parse_ply(binary_ply(mesh, big_endian), "m.ply"), mesh);
+}
+
+TEST(Ply, Errors) {
+    const std::string binary = binary_ply(folded_square(), false);
+    for (std::size_t cut = 1; cut < binary.size(); ++cut) // the last element of all is needed, too
+        EXPECT_NE(ply_error(binary.substr(0, cut)), "") << cut;
+    EXPECT_THAT(ply_error("plx\n"), HasSubstr("m.ply: not a PLY file"));
+    EXPECT_THAT(ply_error("ply\nformat xml 1.0\nend_header\n"), HasSubstr("m.ply:2: unknown PLY format \"xml\""));
+    EXPECT_THAT(ply_error("ply\nformat ascii 1.0\nelement vertex -1\nend_header\n"), HasSubstr("m.ply:3"));
+    EXPECT_THAT(ply_error("ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\nend_header\n"),
+                HasSubstr("m.ply:4: unknown property type"));
+    EXPECT_THAT(ply_error("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n"),
+                HasSubstr("no x, y and z"));
+    EXPECT_THAT(ply_error("ply\nend_header\n"), HasSubstr("no format"));
+    const std::string head = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty "
+                             "float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    EXPECT_THAT(ply_error(head + "0 0 0\n3 0 0 1\n"), HasSubstr("index 1 is out of range: there are 1"));
+    EXPECT_THAT(ply_error(head + "0 0 0\n3 0 0 -1\n"), HasSubstr("out of range"));
+    EXPECT_THAT(ply_error(head + "0 0 x\n3 0 0 0\n"), HasSubstr("\"x"));
+    EXPECT_THAT(ply_error("ply\nformat binary_little_endian 1.0\nelement vertex 1000000000000\nproperty float "
+                          "x\nproperty float y\nproperty float z\nend_header\n"),
+                HasSubstr("1000000000000"));
+}
+
+TEST(Serialized, BothVersionsAllPrecisionsSeveralMeshes) {
+    Mesh second = folded_square();
+    second.normals.clear();
+    second.texcoords.clear();
+    second.positions[3].z = 7;
+    for (std::uint16_t version : {3, 4})
+        for (std::uint32_t precision : {0u, 0x1000u, 0x2000u})
+            for (bool colors : {false, true}) {
+                const SerializedOptions options{version, precision, colors, colors};
+                const std::string file = serialized_file({folded_square(), second, folded_square()}, options);
+                expect_same(parse_serialized(file, "m", 0).mesh, folded_square());
+                expect_same(parse_serialized(file, "m", 1).mesh, second);
+                expect_same(parse_serialized(file, "m", 2).mesh, folded_square());
+                EXPECT_EQ(parse_serialized(file, "m", 1).face_normals, colors);
+                EXPECT_THAT(serialized_error(file, 3), HasSubstr("no mesh 3; the file holds 3"));
+            }
+}
+
+TEST(Serialized, Errors) {
+    const std::string good = serialized_file({folded_square(), folded_square()}, {});
+    ASSERT_EQ(serialized_error(good, 1), "");
+    EXPECT_THAT(serialized_error(""), HasSubstr("m.serialized: not a serialized mesh file"));
+    EXPECT_THAT(serialized_error("PK" + good.substr(2)), HasSubstr("1C 04"));
+    std::string version = good;
+    version[2] = 9;
+    EXPECT_THAT(serialized_error(version), HasSubstr("version 9"));
+    std::string count = good;
+    count[count.size() - 1] = 0x7f;
+    EXPECT_THAT(serialized_error(count), HasSubstr("corrupt"));
+    std::string offset = good;
+    offset[offset.size() - 4 - 8 + 3] = 0x7f; // the second mesh's
+    EXPECT_THAT(serialized_error(offset, 1), HasSubstr("offset of mesh 1"));
+    std::string stream = good;
+    stream[30] = char(stream[30] ^ 0xff);
+    EXPECT_NE(serialized_error(stream, 0), "");
+    EXPECT_EQ(serialized_error(stream, 1), "");
+}
+
+/// A file of one mesh whose payload was tampered with.
+std::string tampered(std::size_t at, std::uint64_t value) {
+    std::string payload = serialized_payload(folded_square(), {});
+    std::string bytes;
+    append_bytes(bytes, value);
+    payload.replace(at, 8, bytes);
+    std::string file("\x1c\x04\x04\x00", 4);
+    file += deflated(payload);
+    append_bytes<std::uint64_t>(file, 0);
+    append_bytes<std::uint32_t>(file, 1);
+    return file;
+}
+
+TEST(Serialized, FalseCountsAndIndices) {
+    const std::size_t counts = 4 + 7; // after the flags and the name
+    EXPECT_THAT(serialized_error(tampered(counts, ~0ull)), HasSubstr("claims"));
+    EXPECT_THAT(serialized_error(tampered(counts, 300)), HasSubstr("truncated"));
+    EXPECT_THAT(serialized_error(tampered(counts + 8, ~0ull)), HasSubstr("claims"));
+    EXPECT_THAT(serialized_error(tampered(counts + 8, 300)), HasSubstr("truncated"));
+    const std::size_t last = serialized_payload(folded_square(), {}).size() - 8;
+    EXPECT_THAT(serialized_error(tampered(last, 4)), HasSubstr("vertex 4 of 4"));
+}
+
+} // namespace
+} // namespace gradus

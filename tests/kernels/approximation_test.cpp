@@ -1,0 +1,125 @@
+// The largest errors that kernels/lib/approximation.h states, on dense samples and at the edges.
+#include "tests/kernels/precision.h"
+
+#include <cstdio>
+#include <gtest/gtest.h>
+#include <limits>
+
+using namespace gradus::testing;
+
+namespace {
+
+/// |value - exact| in units in the last place of a float at exact; the double build is measured in double's units.
+double error_in_ulp(real value, long double exact) {
+    const double magnitude = std::max(std::fabs(static_cast<double>(exact)), 1e-37);
+    const int digits = is_double ? 52 : 23;
+    const double unit = std::ldexp(1.0, std::ilogb(magnitude) - digits);
+    return static_cast<double>(std::fabs(static_cast<long double>(value) - exact)) / unit;
+}
+
+template <class Function, class Exact>
+double worst_ulp(Function function, Exact exact, double low, double high, int count = 400'000) {
+    double worst = 0, where = low;
+    for (int i = 0; i <= count; ++i) {
+        const real x = static_cast<real>(low + (high - low) * i / count);
+        const double error = error_in_ulp(function(x), exact(static_cast<long double>(x)));
+        if (!(error <= worst)) {
+            worst = error;
+            where = static_cast<double>(x);
+        }
+    }
+    std::printf("  largest error in [%g, %g]: %.2f ULP at %.9g\n", low, high, worst, where);
+    return worst;
+}
+
+} // namespace
+
+TEST(Approximation, ExponentialWithinTwoUlp) {
+    const auto exact = [](long double x) { return std::exp(x); };
+    EXPECT_LE(worst_ulp(lib::approx_exp, exact, -87, 88), 2);
+    EXPECT_LE(worst_ulp(lib::approx_exp, exact, -1, 1), 2);
+    EXPECT_EQ(lib::approx_exp(0), 1);
+    if (!is_double)
+        EXPECT_EQ(lib::approx_exp(R(-1e30)), 0);
+    EXPECT_EQ(lib::approx_exp(-std::numeric_limits<real>::infinity()), 0);
+}
+
+TEST(Approximation, LogarithmWithinTwoUlp) {
+    const auto exact = [](long double x) { return std::log(x); };
+    EXPECT_LE(worst_ulp(lib::approx_log, exact, 0.5, 2), 2);
+    EXPECT_LE(worst_ulp(lib::approx_log, exact, 0.999, 1.001), 2);
+    EXPECT_LE(worst_ulp(lib::approx_log, exact, 1e-7, 1e-3), 2);
+    EXPECT_LE(worst_ulp(lib::approx_log, exact, 1, 1e6), 2);
+    EXPECT_LE(error_in_ulp(lib::approx_log(std::numeric_limits<float>::min()), std::log(0x1p-126L)), 2);
+    EXPECT_EQ(lib::approx_log(1), 0);
+}
+
+TEST(Approximation, SineAndCosineOfTurns) {
+    double worst = 0;
+    for (int i = 0; i <= 1 << 20; ++i) {
+        const real u = static_cast<real>(std::ldexp(i, -20));
+        const long double angle = 2 * 3.14159265358979323846264338327950288L * u;
+        const lib::sine_cosine pair = lib::approx_sine_cosine_2pi(u);
+        worst = std::max({worst, static_cast<double>(std::fabs(pair.sine - std::sin(angle))),
+                          static_cast<double>(std::fabs(pair.cosine - std::cos(angle)))});
+    }
+    std::printf("  largest absolute error %.3g\n", worst);
+    EXPECT_LE(worst, bound(1e-7, 5e-16));
+    const real quarter[5][2] = {{0, 1}, {1, 0}, {0, -1}, {-1, 0}, {0, 1}};
+    for (int i = 0; i <= 4; ++i) {
+        const lib::sine_cosine pair = lib::approx_sine_cosine_2pi(R(0.25) * i);
+        EXPECT_EQ(pair.sine, quarter[i][0]) << i;
+        EXPECT_EQ(pair.cosine, quarter[i][1]) << i;
+    }
+}
+
+TEST(Approximation, ErrorFunctionWithinTwoUlp) {
+    const auto exact = [](long double x) { return std::erf(x); };
+    EXPECT_LE(worst_ulp(lib::approx_erf, exact, -6, 6), 2);
+    EXPECT_LE(worst_ulp(lib::approx_erf, exact, -1e-3, 1e-3), 2);
+    EXPECT_LE(worst_ulp(lib::approx_erf, exact, 0.93, 0.94), 2); // the seam of the two polynomials
+    EXPECT_EQ(lib::approx_erf(0), 0);
+    EXPECT_EQ(lib::approx_erf(R(1e18)), 1);
+    EXPECT_EQ(lib::approx_erf(R(-1e18)), -1);
+}
+
+TEST(Approximation, GaussAndItsCumulatedKeepTheirTails) {
+    for (int i = 0; i <= 400'000; ++i) {
+        const real x = static_cast<real>(-4 + 8e0 * i / 400'000);
+        const lib::gauss_cdf pair = lib::approx_gauss_cdf(x);
+        const long double square = static_cast<long double>(x) * x, allowed = 4 + 2 * square;
+        ASSERT_LE(error_in_ulp(pair.gauss, std::exp(-square)), allowed) << x;
+        ASSERT_LE(error_in_ulp(pair.cdf, 0.5L * std::erfc(-static_cast<long double>(x))), allowed) << x;
+    }
+    for (const real x : {R(-50), R(-9), R(-4.2), R(4.2), R(9), R(50), R(1e18)}) {
+        const lib::gauss_cdf pair = lib::approx_gauss_cdf(x);
+        EXPECT_NEAR(pair.gauss, std::exp(-double(x) * x), bound(1.2e-7, 1e-15)) << x;
+        EXPECT_NEAR(pair.cdf, 0.5 * std::erfc(-double(x)), bound(1.2e-7, 1e-15)) << x;
+    }
+}
+
+TEST(Approximation, InverseErrorFunctionIsTheInverse) {
+    // The error of y in ULP is judged through erf: dy = d(erf) sqrt(pi) / 2 exp(y^2).
+    double worst = 0;
+    for (int i = 1; i < 400'000; ++i) {
+        const real u = static_cast<real>(i / 400'000.0);
+        const long double y = lib::approx_inverse_erf_unit(u);
+        const long double x = 2 * static_cast<long double>(u) - 1;
+        const long double residual = x < 0 ? std::erfc(-y) - (1 + x) : (1 - x) - std::erfc(y);
+        const long double slip = residual * 0.886226925452758013649L * std::exp(y * y);
+        worst = std::max(worst, static_cast<double>(std::fabs(slip / y)));
+    }
+    std::printf("  largest relative error %.3g\n", worst);
+    EXPECT_LE(worst, bound(4 * 1.2e-7, 1e-12));
+    for (const real x : {R(-0.999), R(-0.5), R(-1e-4), R(1e-4), R(0.3), R(0.97), R(0.9999)}) {
+        const double y = lib::approx_inverse_erf(x);
+        const double slip = (std::erf(y) - x) * 0.886226925452758 * std::exp(y * y);
+        EXPECT_LE(std::fabs(slip / y), bound(4 * 1.2e-7, 1e-12)) << x;
+    }
+    for (const real u : {R(0), R(1)})
+        EXPECT_NEAR(std::fabs(lib::approx_inverse_erf_unit(u)), 3.93, 0.1);
+    EXPECT_EQ(lib::approx_inverse_erf_unit(R(0.5)), 0);
+    EXPECT_EQ(lib::approx_inverse_erf(0), 0);
+    for (const real x : {R(-1), R(1)})
+        EXPECT_TRUE(std::isfinite(lib::approx_inverse_erf(x)));
+}

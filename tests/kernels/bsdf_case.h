@@ -1,0 +1,101 @@
+// The BSDF kinds with materials and incident directions: one description for every test of samplers and of energy.
+#pragma once
+
+#include "tests/kernels/precision.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace gradus::testing {
+
+/// The functions of one BSDF kind.
+struct Kind {
+    const char *name;
+    bool is_delta;
+    lib::rgb (*eval)(lib::material, lib::vec3, lib::vec3);
+    real (*pdf)(lib::material, lib::vec3, lib::vec3);
+    lib::bsdf_sample (*sample)(lib::material, lib::vec3, real, real, real);
+    lib::rgb (*albedo)(lib::material);
+};
+
+#define GRADUS_TEST_KIND(name, is_delta)                                                                               \
+    Kind{#name, (is_delta) != 0, lib::name##_eval, lib::name##_pdf, lib::name##_sample, lib::name##_albedo},
+inline const std::vector<Kind> kinds = {GRADUS_BSDF_KINDS(GRADUS_TEST_KIND)};
+#undef GRADUS_TEST_KIND
+
+inline const Kind &kind_named(const std::string &name) {
+    for (const Kind &kind : kinds)
+        if (name == kind.name)
+            return kind;
+    throw std::runtime_error("no BSDF kind " + name);
+}
+
+inline bool is_dielectric(const Kind &kind) { return std::string(kind.name).find("dielectric") != std::string::npos; }
+inline bool is_rough(const Kind &kind) { return std::string(kind.name).find("rough") == 0; }
+
+/// White reflectances, a perfect mirror as conductor, glass as dielectric.
+inline lib::material white_material(double alpha_u, double alpha_v, double ior = 1.5) {
+    lib::material m{};
+    m.reflectance_r = m.reflectance_g = m.reflectance_b = 1;
+    m.specular_reflectance_r = m.specular_reflectance_g = m.specular_reflectance_b = 1;
+    m.specular_transmittance_r = m.specular_transmittance_g = m.specular_transmittance_b = 1;
+    m.k_r = m.k_g = m.k_b = 1;
+    m.ior = static_cast<real>(ior);
+    m.alpha_u = static_cast<real>(alpha_u);
+    m.alpha_v = static_cast<real>(alpha_v);
+    return m;
+}
+
+/// A different value in every field that a BSDF reads: gold-like channels, tinted factors.
+inline lib::material coloured_material(double alpha_u, double alpha_v, double ior = 1.5) {
+    lib::material m = white_material(alpha_u, alpha_v, ior);
+    m.reflectance_r = R(0.7), m.reflectance_g = R(0.4), m.reflectance_b = R(0.2);
+    m.specular_reflectance_r = R(0.9), m.specular_reflectance_g = R(0.8), m.specular_reflectance_b = R(0.6);
+    m.specular_transmittance_r = R(0.5), m.specular_transmittance_g = R(0.75), m.specular_transmittance_b = R(0.95);
+    m.eta_r = R(0.18), m.eta_g = R(0.42), m.eta_b = R(1.37);
+    m.k_r = R(3.42), m.k_g = R(2.35), m.k_b = R(1.77);
+    return m;
+}
+
+/// Unit vector at the angle from +z and the azimuth, both in degrees.
+inline lib::vec3 direction(double angle, double azimuth) {
+    const double theta = angle * M_PI / 180, phi = azimuth * M_PI / 180;
+    return lib::v3(static_cast<real>(std::sin(theta) * std::cos(phi)),
+                   static_cast<real>(std::sin(theta) * std::sin(phi)), static_cast<real>(std::cos(theta)));
+}
+
+struct BsdfCase {
+    std::string name;
+    Kind kind;
+    lib::material material;
+    lib::vec3 wi;
+};
+
+/// Every kind that has a density, over roughness (both axes alike and not) and incidence up to grazing; dielectrics
+/// from both sides and for three index ratios.
+inline std::vector<BsdfCase> bsdf_cases() {
+    const double roughness[][2] = {{0.01, 0.01}, {0.1, 0.1}, {0.05, 0.4}, {0.5, 0.5}, {1, 1}};
+    std::vector<BsdfCase> cases;
+    for (const Kind &kind : kinds) {
+        if (kind.is_delta)
+            continue;
+        for (const double angle : {0.0, 40.0, 85.0, 89.5, 180.0, 140.0, 95.0, 90.5}) {
+            if (angle > 90 && !is_dielectric(kind))
+                continue;
+            for (const auto &alpha : roughness) {
+                if (!is_rough(kind) && alpha[0] != 1)
+                    continue;
+                const double ior = alpha[0] == 0.5 ? 1.1 : alpha[0] == 0.1 ? 2.4 : 1.5;
+                cases.push_back({std::string(kind.name) + " alpha " + std::to_string(alpha[0]) + " " +
+                                     std::to_string(alpha[1]) + " ior " + std::to_string(ior) + " incidence " +
+                                     std::to_string(angle),
+                                 kind, white_material(alpha[0], alpha[1], ior), direction(angle, 33)});
+            }
+        }
+    }
+    return cases;
+}
+
+} // namespace gradus::testing

@@ -1,0 +1,82 @@
+// A map of the sphere of directions to two unit squares, one a hemisphere, that is fine around the lobe of a BSDF.
+//
+// Each hemisphere goes to the unit disk by Lambert's equal-area projection (d omega = 2 dA), a disk automorphism
+// w = (z - c) / (1 - conj(c) z) moves the lobe's centre c to the middle, and the radius is stretched by
+// rho = s q / (1 + s - q). No cell is cut by the horizon, where densities jump.
+#pragma once
+
+#include "tests/kernels/precision.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+namespace gradus::testing {
+
+class DirectionChart {
+  public:
+    /// centre: middle of the lobe; width: where half of the radial range is spent; is_upper: which hemisphere.
+    DirectionChart(double x, double y, double z, double width, bool is_upper) : width(width), is_upper(is_upper) {
+        const double length = std::hypot(x, y);
+        const double radius = std::min(std::sqrt(std::max(0.0, 1 - std::fabs(z))), 0.97);
+        centre = length > 1e-9 ? std::complex(x, y) * (radius / length) : 0.0;
+    }
+
+    struct Point {
+        double q, turn; ///< both in [0, 1]
+    };
+
+    Point to_square(double x, double y, double z) const {
+        const double length = std::hypot(x, y);
+        // sqrt(1 - |z|) without cancellation
+        const double radius = length / std::sqrt(1 + std::fabs(z));
+        const std::complex<double> disk = length > 0 ? std::complex(x, y) * (radius / length) : 0.0;
+        const auto w = (disk - centre) / (1.0 - std::conj(centre) * disk);
+        const double rho = std::min(std::abs(w), 1.0);
+        const double turn = std::arg(w) / (2 * M_PI);
+        return {rho * (1 + width) / (width + rho), turn < 0 ? turn + 1 : turn};
+    }
+
+    struct Direction {
+        double x, y, z, jacobian; ///< solid angle over area of the square
+    };
+
+    Direction to_direction(double q, double turn) const {
+        const double rho = width * q / (1 + width - q);
+        const double rho_per_q = width * (1 + width) / ((1 + width - q) * (1 + width - q));
+        const auto w = std::polar(rho, 2 * M_PI * turn);
+        const auto denominator = 1.0 + std::conj(centre) * w;
+        const auto disk = (w + centre) / denominator;
+        const double stretch = (1 - std::norm(centre)) / std::norm(denominator);
+        const double squared = std::min(std::norm(disk), 1.0);
+        const double scale = std::sqrt(2 - squared);
+        return {disk.real() * scale, disk.imag() * scale, (is_upper ? 1 : -1) * (1 - squared),
+                2 * stretch * stretch * 2 * M_PI * rho * rho_per_q};
+    }
+
+  private:
+    double width;
+    bool is_upper;
+    std::complex<double> centre;
+};
+
+/// The charts of the two hemispheres for a path from wi, fine around the mirrored and the refracted direction.
+struct LobeCharts {
+    DirectionChart upper, lower;
+    const DirectionChart &of(bool is_upper) const { return is_upper ? upper : lower; }
+};
+
+inline LobeCharts lobe_charts(lib::vec3 wi, double ior, double alpha) {
+    const bool from_above = wi.z >= 0;
+    const double eta = from_above ? ior : 1 / ior;
+    double x = -wi.x / eta, y = -wi.y / eta;
+    const double sine = std::hypot(x, y);
+    if (sine > 0.999) // total reflection: what is transmitted leaves near the horizon
+        x *= 0.999 / sine, y *= 0.999 / sine;
+    const double z = std::sqrt(1 - x * x - y * y);
+    const double width = std::min(1.0, 2 * alpha);
+    const DirectionChart reflected(-wi.x, -wi.y, wi.z, width, from_above), refracted(x, y, z, width, !from_above);
+    return from_above ? LobeCharts{reflected, refracted} : LobeCharts{refracted, reflected};
+}
+
+} // namespace gradus::testing
