@@ -1,5 +1,6 @@
 #include "driver/commands.h"
 #include "driver/comparison.h"
+#include "driver/standard_streams.h"
 #include "runtime/error.h"
 #include "runtime/io/atomic_file.h"
 #include "runtime/io/image_io.h"
@@ -57,12 +58,12 @@ int run_compare(Arguments arguments) {
         const std::string text =
             comparison_json(comparison).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
         if (arguments.json == "-")
-            fmt::print("{}", text);
+            print_result(text);
         else
             write_file_atomically(arguments.json, text.data(), text.size());
     }
     if (arguments.json != "-")
-        fmt::print("{}", comparison_text(comparison));
+        print_result(comparison_text(comparison));
     const bool failed = arguments.check && !comparison.failures.empty();
     return static_cast<int>(failed ? ExitCode::failure : ExitCode::success);
 }

@@ -1,4 +1,5 @@
 #include "driver/commands.h"
+#include "driver/standard_streams.h"
 #include "runtime/error.h"
 
 #include <CLI/CLI.hpp>
@@ -16,20 +17,23 @@ constexpr const char *advice =
     "and for a graphics card the OpenCL driver of its maker. The folder /etc/OpenCL/vendors, or the one that\n"
     "OCL_ICD_VENDORS names, must hold an .icd file for each.\n";
 
-void print_table(const std::vector<DeviceDescription> &devices) {
+std::string device_table(const std::vector<DeviceDescription> &devices) {
+    std::string text;
     for (std::size_t i = 0; i < devices.size(); ++i) {
         const DeviceDescription &device = devices[i];
-        fmt::print("{}  {}\n", i, device.name);
-        fmt::print("   platform     {}\n", device.platform);
-        fmt::print("   type         {}, {} compute units\n", device.type, device.compute_units);
-        fmt::print("   version      {}, driver {}\n", device.version, device.driver);
-        fmt::print("   memory       {:.1f} GiB, {:.1f} GiB in one piece, as it reports\n",
-                   double(device.memory_bytes) / double(1 << 30), double(device.allocation_bytes) / double(1 << 30));
-        fmt::print("   double       {}\n", device.has_double ? "yes" : "no");
+        text += fmt::format("{}  {}\n", i, device.name);
+        text += fmt::format("   platform     {}\n", device.platform);
+        text += fmt::format("   type         {}, {} compute units\n", device.type, device.compute_units);
+        text += fmt::format("   version      {}, driver {}\n", device.version, device.driver);
+        text += fmt::format("   memory       {:.1f} GiB, {:.1f} GiB in one piece, as it reports\n",
+                            double(device.memory_bytes) / double(1 << 30),
+                            double(device.allocation_bytes) / double(1 << 30));
+        text += fmt::format("   double       {}\n", device.has_double ? "yes" : "no");
     }
+    return text;
 }
 
-void print_json(const std::vector<DeviceDescription> &devices) {
+std::string device_json(const std::vector<DeviceDescription> &devices) {
     nlohmann::json list = nlohmann::json::array();
     for (const DeviceDescription &device : devices)
         list.push_back({{"name", device.name},
@@ -42,7 +46,7 @@ void print_json(const std::vector<DeviceDescription> &devices) {
                         {"memory_bytes", device.memory_bytes},
                         {"allocation_bytes", device.allocation_bytes},
                         {"double", device.has_double}});
-    fmt::print("{}\n", list.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    return list.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 } // namespace
@@ -54,12 +58,9 @@ void add_devices_command(CLI::App &app, const Services &services, std::function<
     command.callback([as_json, &services, &chosen] {
         chosen = [as_json, &services] {
             const std::vector<DeviceDescription> devices = services.list_devices();
-            if (*as_json)
-                print_json(devices);
-            else
-                print_table(devices);
+            print_result(*as_json ? device_json(devices) : device_table(devices));
             if (devices.empty())
-                fmt::print(stderr, "{}", advice);
+                print_message(advice);
             return static_cast<int>(devices.empty() ? ExitCode::device : ExitCode::success);
         };
     });

@@ -1,6 +1,7 @@
 #include "driver/commands.h"
 #include "driver/scene_request.h"
 #include "driver/scene_summary.h"
+#include "driver/standard_streams.h"
 #include "runtime/error.h"
 
 #include <CLI/CLI.hpp>
@@ -23,35 +24,39 @@ std::string counts(const std::map<std::string, std::uint64_t> &kinds) {
 
 std::string mebibytes(std::uint64_t bytes) { return fmt::format("{:.1f} MiB", double(bytes) / double(1 << 20)); }
 
-void print_text(const Scene &scene, const SceneSummary &summary, const Traits &traits) {
+std::string summary_text(const Scene &scene, const SceneSummary &summary, const Traits &traits) {
+    std::string text;
     const FilmSettings &film = scene.film;
     const auto [width, height] = image_size(film);
     const auto &low = summary.lower, &high = summary.upper;
-    fmt::print("scene       {}\n", scene.path);
-    fmt::print("shapes      {} meshes, {} spheres; {} triangles, {} vertices\n", summary.meshes, summary.spheres,
-               summary.triangles, summary.vertices);
-    fmt::print("bounds      ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n", low[0], low[1], low[2], high[0],
-               high[1], high[2]);
-    fmt::print("materials   {}\n", counts(summary.materials));
-    fmt::print("emitters    {}\n", counts(summary.emitters));
-    fmt::print("camera      perspective, {:.6g} degrees along {}\n", scene.camera.fov, name_of(scene.camera.fov_axis));
-    fmt::print("film        {}x{}, {} filter", film.width, film.height, name_of(film.filter));
+    text += fmt::format("scene       {}\n", scene.path);
+    text += fmt::format("shapes      {} meshes, {} spheres; {} triangles, {} vertices\n", summary.meshes,
+                        summary.spheres, summary.triangles, summary.vertices);
+    text += fmt::format("bounds      ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n", low[0], low[1], low[2],
+                        high[0], high[1], high[2]);
+    text += fmt::format("materials   {}\n", counts(summary.materials));
+    text += fmt::format("emitters    {}\n", counts(summary.emitters));
+    text += fmt::format("camera      perspective, {:.6g} degrees along {}\n", scene.camera.fov,
+                        name_of(scene.camera.fov_axis));
+    text += fmt::format("film        {}x{}, {} filter", film.width, film.height, name_of(film.filter));
     if (film.crop_width > 0)
-        fmt::print(", crop {}x{} at {},{}", width, height, film.crop_x, film.crop_y);
-    fmt::print("\n");
-    fmt::print("settings    {} samples a pixel, max depth {}, Russian roulette from {}{}{}\n",
-               scene.settings.samples_per_pixel,
-               scene.settings.max_depth < 0 ? "unlimited" : std::to_string(scene.settings.max_depth),
-               scene.settings.rr_depth, scene.settings.hide_emitters ? ", emitters hidden" : "",
-               scene.settings.integrator.empty() ? "" : ", integrator " + scene.settings.integrator);
-    fmt::print("memory      geometry {}, ray tracing about {}, film {}; a render adds its batch\n",
-               mebibytes(summary.geometry_bytes), mebibytes(summary.tree_bytes), mebibytes(summary.film_bytes));
-    fmt::print("traits      (each kernel is compiled for those of them that it declares)\n");
+        text += fmt::format(", crop {}x{} at {},{}", width, height, film.crop_x, film.crop_y);
+    text += fmt::format("\n");
+    text += fmt::format("settings    {} samples a pixel, max depth {}, Russian roulette from {}{}{}\n",
+                        scene.settings.samples_per_pixel,
+                        scene.settings.max_depth < 0 ? "unlimited" : std::to_string(scene.settings.max_depth),
+                        scene.settings.rr_depth, scene.settings.hide_emitters ? ", emitters hidden" : "",
+                        scene.settings.integrator.empty() ? "" : ", integrator " + scene.settings.integrator);
+    text +=
+        fmt::format("memory      geometry {}, ray tracing about {}, film {}; a render adds its batch\n",
+                    mebibytes(summary.geometry_bytes), mebibytes(summary.tree_bytes), mebibytes(summary.film_bytes));
+    text += fmt::format("traits      (each kernel is compiled for those of them that it declares)\n");
     for (const auto &[name, value] : traits)
-        fmt::print("  {} = {}\n", name, value);
+        text += fmt::format("  {} = {}\n", name, value);
+    return text;
 }
 
-void print_json(const Scene &scene, const SceneSummary &summary, const Traits &traits) {
+std::string summary_json(const Scene &scene, const SceneSummary &summary, const Traits &traits) {
     const FilmSettings &film = scene.film;
     const auto [width, height] = image_size(film);
     nlohmann::json trait_object = nlohmann::json::object();
@@ -83,7 +88,7 @@ void print_json(const Scene &scene, const SceneSummary &summary, const Traits &t
           {"tree_bytes_estimated", summary.tree_bytes},
           {"film_bytes", summary.film_bytes}}},
         {"traits", trait_object}};
-    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 } // namespace
@@ -101,9 +106,10 @@ void add_inspect_command(CLI::App &app, const Services &services, std::function<
     command.callback([arguments, &services, &chosen] {
         chosen = [arguments, &services] {
             const Scene scene = load_requested_scene(arguments->scene, services, [](const std::string &warning) {
-                fmt::print(stderr, "gradus: warning: {}\n", warning);
+                print_message("gradus: warning: " + warning + "\n");
             });
-            (arguments->json ? print_json : print_text)(scene, summarize(scene), services.traits(scene));
+            print_result(
+                (arguments->json ? summary_json : summary_text)(scene, summarize(scene), services.traits(scene)));
             return static_cast<int>(ExitCode::success);
         };
     });

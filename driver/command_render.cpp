@@ -49,6 +49,11 @@ void add_render_command(CLI::App &app, const Services &services, std::function<i
         ->check(CLI::PositiveNumber)
         ->group(samples);
     command.add_option("--seed", request->method.options.seed, "Images of different seeds are independent")
+        ->check(CLI::Validator(
+            [](const std::string &text) { // CLI11 would wrap a negative number around
+                return text.find('-') == std::string::npos ? "" : "a seed is not negative";
+            },
+            "UINT"))
         ->capture_default_str()
         ->group(samples);
 

@@ -1,13 +1,13 @@
 #include "driver/commands.h"
 #include "driver/method_request.h"
 #include "driver/scene_request.h"
+#include "driver/standard_streams.h"
 #include "runtime/error.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cstdio>
 #include <memory>
 
 namespace gradus {
@@ -21,19 +21,18 @@ struct WarmRequest {
 int run_warm(const WarmRequest &request, const Services &services) {
     const auto start = std::chrono::steady_clock::now();
     const Scene scene = load_requested_scene(request.scene, services, [](const std::string &warning) {
-        fmt::print(stderr, "gradus: warning: {}\n", warning);
+        print_message("gradus: warning: " + warning + "\n");
     });
     RenderOptions options = request.method.options;
     options.on_compiled = [](const std::string &kernel, std::size_t ready, std::size_t total, double seconds) {
-        fmt::print("{:8.3f} s  {} ({} of {})\n", seconds, kernel, ready, total);
-        std::fflush(stdout);
+        print_message(fmt::format("{:8.3f} s  {} ({} of {})\n", seconds, kernel, ready, total));
     };
     const PreparedMethod prepared = services.prepare(request.method.method, request.method.device, scene, options);
     // Some implementations compile a kernel when it first runs, and once for each shape of its grid: a batch as a
     // render has it meets them all.
     prepared.method->render_batch();
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    fmt::print("{:8.3f} s  in all, on {}\n", seconds, prepared.description.name);
+    print_message(fmt::format("{:8.3f} s  in all, on {}\n", seconds, prepared.description.name));
     return static_cast<int>(ExitCode::success);
 }
 

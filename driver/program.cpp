@@ -1,6 +1,7 @@
 #include "driver/program.h"
 
 #include "driver/commands.h"
+#include "driver/standard_streams.h"
 #include "runtime/error.h"
 
 #include <CLI/CLI.hpp>
@@ -34,15 +35,15 @@ int run_chosen(const std::function<int()> &chosen) {
     try {
         return chosen();
     } catch (const Error &error) {
-        fmt::print(stderr, "gradus: error: {}\n", error.what());
+        print_message(fmt::format("gradus: error: {}\n", error.what()));
         return static_cast<int>(error.code);
     } catch (const std::bad_alloc &) {
-        fmt::print(stderr, "gradus: error: out of memory: try a smaller --size, a --crop, or a smaller --batch-size\n");
+        print_message("gradus: error: out of memory: try a smaller --size, a --crop, or a smaller --batch-size\n");
         return static_cast<int>(ExitCode::device);
     } catch (const std::exception &error) {
-        fmt::print(stderr, "gradus: error: {}\n", error.what());
+        print_message(fmt::format("gradus: error: {}\n", error.what()));
     } catch (...) {
-        fmt::print(stderr, "gradus: error: an exception of unknown type\n");
+        print_message("gradus: error: an exception of unknown type\n");
     }
     return static_cast<int>(ExitCode::failure);
 }
@@ -75,7 +76,7 @@ int run_program(int argc, const char *const *argv, const Services &services) {
         // Run after parsing, while the options that the command refers to are alive.
         return run_chosen(chosen);
     } catch (const std::exception &error) {
-        fmt::print(stderr, "gradus: error: {}\n", error.what());
+        print_message(fmt::format("gradus: error: {}\n", error.what()));
         return static_cast<int>(ExitCode::failure);
     }
 }

@@ -55,7 +55,7 @@ std::string progress_line(const ProgressState &state, int bar_width) {
         line = fmt::format("[{}{}] ", std::string(filled, '='), std::string(bar_width - filled, ' '));
     }
     line += fmt::format("{:3.0f} %  {} samples  {}/s  {} elapsed", std::floor(fraction * 100), format_count(state.done),
-                        format_count(rate), format_duration(state.elapsed));
+                        format_count(rate), format_duration(std::floor(state.elapsed)));
     if (fraction > 0 && fraction < 1)
         line += fmt::format("  {} left", format_duration(state.elapsed * (1 - fraction) / fraction));
     return line;
@@ -72,7 +72,7 @@ Progress::Progress(Mode mode, std::FILE *out, double plain_interval)
 
 void Progress::clear_line() {
     if (drawn_)
-        fmt::print(out_, "\r\x1b[K");
+        std::fputs("\r\x1b[K", out_);
     drawn_ = false;
 }
 
@@ -81,7 +81,7 @@ void Progress::message(const std::string &text) {
         return;
     const std::lock_guard lock(mutex_);
     clear_line();
-    fmt::print(out_, "{}\n", text);
+    std::fputs(fmt::format("{}\n", text).c_str(), out_);
     std::fflush(out_);
 }
 
@@ -95,10 +95,10 @@ void Progress::draw(const ProgressState &state) {
         const auto columns = static_cast<std::size_t>(terminal_columns(out_));
         if (line.size() >= columns)
             line = progress_line(state, 0).substr(0, columns - 1);
-        fmt::print(out_, "\r{}\x1b[K", line);
+        std::fputs(fmt::format("\r{}\x1b[K", line).c_str(), out_);
         drawn_ = true;
     } else {
-        fmt::print(out_, "{}\n", progress_line(state, 0));
+        std::fputs(fmt::format("{}\n", progress_line(state, 0)).c_str(), out_);
     }
     std::fflush(out_);
 }
@@ -122,7 +122,7 @@ void Progress::finish(const ProgressState &state) {
     const std::lock_guard lock(mutex_);
     draw(state);
     if (mode_ == Mode::terminal) {
-        fmt::print(out_, "\n");
+        std::fputs("\n", out_);
         std::fflush(out_);
         drawn_ = false;
     }

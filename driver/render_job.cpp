@@ -3,6 +3,7 @@
 #include "driver/interrupt.h"
 #include "driver/program.h"
 #include "driver/progress.h"
+#include "driver/standard_streams.h"
 #include "driver/statistics_json.h"
 #include "runtime/error.h"
 #include "runtime/film/metrics.h"
@@ -168,7 +169,7 @@ class RenderJob {
             statistics_to_json(record_, statistics).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
             "\n";
         if (request_.statistics == "-")
-            fmt::print("{}", text);
+            print_result(text);
         else
             write_file_atomically(request_.statistics, text.data(), text.size());
     }

@@ -32,7 +32,8 @@ GRADUS_FN bsdf_terms roughdielectric_terms(material m, vec3 wi, vec3 wo, int dis
     const vec3 h = v3_scale(sum, r_copysign1(sum.z)); /* on the upper side */
     const real length_squared = v3_dot(h, h);
     const real inverse_length = R(1) / r_sqrt(r_max(length_squared, R(1e-30)));
-    const real from_cosine = v3_dot(from, h) * inverse_length;
+    /* wi . m; |h| / 2 for reflection, which the reversed path finds too, to the last bit. */
+    const real from_cosine = is_reflected ? R(0.5) * length_squared * inverse_length : v3_dot(from, h) * inverse_length;
     const real to_cosine = v3_dot(to, h) * inverse_length;
     const real reflectance = fresnel_dielectric(r_clamp(from_cosine, R(0), R(1)), eta_below).reflectance;
     const real probability = is_reflected ? reflectance : R(1) - reflectance;

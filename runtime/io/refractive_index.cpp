@@ -28,10 +28,10 @@ struct NamedConductor {
     float eta_r, eta_g, eta_b, k_r, k_g, k_b;
 };
 
-// Measured n(lambda) and k(lambda) (E. Palik, Handbook of Optical Constants; Johnson and Christy 1972; the SOPRA
-// tables), integrated over the CIE 1931 observer as a light of equal energy is: that makes red 1.2 times and blue 0.9
-// times what a mean over each channel would give, but it is what Mitsuba 3.9 prints in its RGB mode, and both renderers
-// must agree on a metal. The tests repeat the integral for copper from Johnson and Christy's table.
+// Measured n(lambda) and k(lambda) (E. Palik, Handbook of Optical Constants, and the SOPRA tables), integrated over the
+// CIE 1931 observer as a light of equal energy is. That makes red 1.2 times and blue 0.9 times what a mean over each
+// channel would give, but these are the values that Mitsuba 3.9 prints in its RGB mode, and both renderers must agree
+// on a metal. The tests compare k of the noble metals with Johnson and Christy's tables (1972), treated alike.
 constexpr NamedConductor conductors[] = {
     {"none", 0, 0, 0, 1, 1, 1},
     {"a-C", 2.94405f, 2.22714f, 1.96816f, 0.887465f, 0.799299f, 0.81529f},

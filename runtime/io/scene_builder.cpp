@@ -125,7 +125,10 @@ std::filesystem::path SceneBuilder::find_file(Properties &properties) {
     const std::string name = properties.string("filename", "");
     if (name.empty())
         throw properties.error("filename", properties.type() + " needs a filename");
-    const auto found = gradus::find_file(name, document_.search_folders);
+    std::vector<std::filesystem::path> folders = document_.search_folders;
+    if (const auto &file = properties.location().file) // an included file may lie elsewhere, its meshes beside it
+        folders.push_back(std::filesystem::path(*file).parent_path());
+    const auto found = gradus::find_file(name, folders);
     if (!found)
         throw properties.error("filename", "cannot find the file \"" + name + "\"");
     if (!found->exact)
@@ -264,12 +267,17 @@ std::uint32_t SceneBuilder::material_of(Properties &shape) {
     if (bsdfs.size() > 1)
         throw SceneError(bsdfs[1].location, "a shape has one BSDF; this is its second");
     if (bsdfs.empty()) {
-        if (default_material_ < 0) {
-            default_material_ = std::int64_t(scene_.materials.size());
+        // Mitsuba 3's defaults: half of the light is reflected, but nothing by a shape that emits.
+        const bool emits = !shape.objects("emitter").empty();
+        std::int64_t &index = emits ? default_emitter_material_ : default_material_;
+        if (index < 0) {
+            index = std::int64_t(scene_.materials.size());
             scene_.materials.push_back({});
-            scene_.materials.back().name = "default";
+            scene_.materials.back().name = emits ? "default of emitters" : "default";
+            if (emits)
+                scene_.materials.back().front.reflectance = {0, 0, 0};
         }
-        return std::uint32_t(default_material_);
+        return std::uint32_t(index);
     }
     const Element &element = *bsdfs.front().element;
     const auto known = materials_.find(&element);

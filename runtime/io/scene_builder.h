@@ -52,7 +52,7 @@ class SceneBuilder {
     std::map<std::string, const Element *> by_id_;
     std::map<std::string, std::string> aliases_;
     std::map<const Element *, std::uint32_t> materials_;
-    std::int64_t default_material_ = -1;
+    std::int64_t default_material_ = -1, default_emitter_material_ = -1;
     const Element *sensor_ = nullptr, *integrator_ = nullptr, *environment_ = nullptr;
     std::vector<const Element *> open_; ///< objects that are being built, outermost first
     std::filesystem::path cached_path_;

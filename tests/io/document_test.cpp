@@ -94,6 +94,16 @@ TEST(Includes, PathAddsAFolder) {
     EXPECT_EQ(load_scene(path).scene.meshes.size(), 1u);
 }
 
+TEST(Includes, MeshesMayLieBesideTheIncludedFile) {
+    TemporaryFolder folder;
+    folder.write("part/mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    folder.write("part/part.xml", "<shape version=\"3.0.0\" type=\"obj\"><string name=\"filename\" "
+                                  "value=\"mesh.obj\"/></shape>");
+    const std::string path =
+        folder.write("scene.xml", scene_around("<include filename=\"part/part.xml\"/>", "3.0.0", ""));
+    EXPECT_EQ(load_scene(path).scene.meshes.size(), 1u);
+}
+
 TEST(FileSearch, WrongCaseAndBackslashesAreForgiven) {
     TemporaryFolder folder;
     folder.write("Meshes/The Räum.OBJ", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");

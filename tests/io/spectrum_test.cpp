@@ -121,13 +121,11 @@ TEST(RefractiveIndex, NobleMetalsAgreeWithJohnsonAndChristy) {
                                               {704.5, 0.21, 4.205},
                                               {756.0, 0.24, 4.665},
                                               {821.1, 0.26, 5.180}});
-    // Copper by name comes from this very table.
-    expect_ratio_near_one(conductor_index("Cu")->eta, copper.eta, 0.02);
-    expect_ratio_near_one(conductor_index("Cu")->k, copper.k, 0.02);
-    // Gold and silver by name come from other films. Their k differs by less than a tenth; their small n, which the
-    // preparation of the film decides, is not compared.
+    // The named ones come from other films. Such measurements of k agree to about a tenth; the small n, which the
+    // preparation of the film decides, differs by more and is not compared.
     expect_ratio_near_one(conductor_index("Au")->k, gold.k, 0.1);
     expect_ratio_near_one(conductor_index("Ag")->k, silver.k, 0.1);
+    expect_ratio_near_one(conductor_index("Cu")->k, copper.k, 0.1);
 }
 
 TEST(RefractiveIndex, AluminiumReflectsAboutNinetyTwoPercent) {

@@ -39,8 +39,7 @@ TEST(Approximation, ExponentialWithinTwoUlp) {
     EXPECT_LE(worst_ulp(lib::approx_exp, exact, -87, 88), 2);
     EXPECT_LE(worst_ulp(lib::approx_exp, exact, -1, 1), 2);
     EXPECT_EQ(lib::approx_exp(0), 1);
-    if (!is_double)
-        EXPECT_EQ(lib::approx_exp(R(-1e30)), 0);
+    EXPECT_EQ(lib::approx_exp(R(-1e30)), 0);
     EXPECT_EQ(lib::approx_exp(-std::numeric_limits<real>::infinity()), 0);
 }
 
@@ -87,7 +86,7 @@ TEST(Approximation, GaussAndItsCumulatedKeepTheirTails) {
     for (int i = 0; i <= 400'000; ++i) {
         const real x = static_cast<real>(-4 + 8e0 * i / 400'000);
         const lib::gauss_cdf pair = lib::approx_gauss_cdf(x);
-        const long double square = static_cast<long double>(x) * x, allowed = 4 + 2 * square;
+        const long double square = static_cast<long double>(x) * x, allowed = 8 + 2 * square;
         ASSERT_LE(error_in_ulp(pair.gauss, std::exp(-square)), allowed) << x;
         ASSERT_LE(error_in_ulp(pair.cdf, 0.5L * std::erfc(-static_cast<long double>(x))), allowed) << x;
     }

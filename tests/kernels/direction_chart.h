@@ -2,7 +2,8 @@
 //
 // Each hemisphere goes to the unit disk by Lambert's equal-area projection (d omega = 2 dA), a disk automorphism
 // w = (z - c) / (1 - conj(c) z) moves the lobe's centre c to the middle, and the radius is stretched by
-// rho = s q / (1 + s - q). No cell is cut by the horizon, where densities jump.
+// rho = s p / (1 + s - p), p = q (2 - q). No cell is cut by the horizon, where densities jump, and the second map
+// makes cells thin there, where the densities of grazing paths turn steep.
 #pragma once
 
 #include "tests/kernels/precision.h"
@@ -18,7 +19,7 @@ class DirectionChart {
     /// centre: middle of the lobe; width: where half of the radial range is spent; is_upper: which hemisphere.
     DirectionChart(double x, double y, double z, double width, bool is_upper) : width(width), is_upper(is_upper) {
         const double length = std::hypot(x, y);
-        const double radius = std::min(std::sqrt(std::max(0.0, 1 - std::fabs(z))), 0.97);
+        const double radius = std::min(std::sqrt(std::max(0.0, 1 - std::fabs(z))), 0.985);
         centre = length > 1e-9 ? std::complex(x, y) * (radius / length) : 0.0;
     }
 
@@ -34,7 +35,8 @@ class DirectionChart {
         const auto w = (disk - centre) / (1.0 - std::conj(centre) * disk);
         const double rho = std::min(std::abs(w), 1.0);
         const double turn = std::arg(w) / (2 * M_PI);
-        return {rho * (1 + width) / (width + rho), turn < 0 ? turn + 1 : turn};
+        const double one_minus_p = width * (1 - rho) / (width + rho);
+        return {1 - std::sqrt(one_minus_p), turn < 0 ? turn + 1 : turn};
     }
 
     struct Direction {
@@ -42,8 +44,9 @@ class DirectionChart {
     };
 
     Direction to_direction(double q, double turn) const {
-        const double rho = width * q / (1 + width - q);
-        const double rho_per_q = width * (1 + width) / ((1 + width - q) * (1 + width - q));
+        const double p = q * (2 - q);
+        const double rho = width * p / (1 + width - p);
+        const double rho_per_q = width * (1 + width) / ((1 + width - p) * (1 + width - p)) * 2 * (1 - q);
         const auto w = std::polar(rho, 2 * M_PI * turn);
         const auto denominator = 1.0 + std::conj(centre) * w;
         const auto disk = (w + centre) / denominator;
@@ -67,6 +70,8 @@ struct LobeCharts {
 };
 
 inline LobeCharts lobe_charts(lib::vec3 wi, double ior, double alpha) {
+    if (alpha >= 1) // no lobe to speak of
+        return {{0, 0, 1, 1, true}, {0, 0, -1, 1, false}};
     const bool from_above = wi.z >= 0;
     const double eta = from_above ? ior : 1 / ior;
     double x = -wi.x / eta, y = -wi.y / eta;

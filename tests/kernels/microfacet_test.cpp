@@ -12,7 +12,8 @@ constexpr int distributions[] = {lib::microfacet_ggx, lib::microfacet_beckmann};
 
 /// Integral over the normals m of D(m) weight(m). The substitution tan(theta) = alpha-sized t / (1 - t), per azimuth
 /// on the ellipse of the two roughnesses, resolves D for every roughness.
-template <class Weight> double integrate_normals(int distribution, double alpha_u, double alpha_v, Weight weight) {
+template <class Weight>
+double integrate_normals(int distribution, double alpha_u, double alpha_v, Weight weight) {
     const auto integrand = [&](double t, double turn) {
         const double r = t / (1 - t), r_per_t = 1 / ((1 - t) * (1 - t));
         const double x = alpha_u * r * std::cos(2 * M_PI * turn), y = alpha_v * r * std::sin(2 * M_PI * turn);
@@ -86,8 +87,8 @@ TEST(Microfacet, SampledNormalsAreVisibleUnitVectors) {
                 for (const double u1 : {0.0, 1e-6, 0.25, 0.5, 0.9, 1 - 1e-6})
                     for (const double u2 : {0.0, 1e-6, 0.3, 0.5, 0.999999}) {
                         const lib::vec3 wi = direction(angle, 200);
-                        const lib::vec3 m = lib::microfacet_sample_visible(
-                            distribution, v3_scale(wi, 1), real(alpha), real(alpha / 2), real(u1), real(u2));
+                        const lib::vec3 m = lib::microfacet_sample_visible(distribution, v3_scale(wi, 1), real(alpha),
+                                                                           real(alpha / 2), real(u1), real(u2));
                         EXPECT_NEAR(lib::v3_length_squared(m), 1, bound(5e-7, 1e-14));
                         EXPECT_GE(m.z, 0);
                         EXPECT_GE(lib::v3_dot(m, wi), -bound(1e-6, 1e-8));

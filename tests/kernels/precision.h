@@ -1,6 +1,9 @@
 // Names the build of kernels/lib that a test file sees: every test is compiled once in float and once in double.
 #pragma once
 
+// First: it has template parameters named R, which is a macro of kernels/shared/compat.h.
+#include <gtest/gtest.h>
+
 #include "kernels/lib/approximation.h"
 #include "kernels/lib/bsdf.h"
 #include "kernels/lib/frame.h"

@@ -30,6 +30,19 @@ double integrate(Function f, double a, double b, double c, double d, int panels 
     return sum * width * height;
 }
 
+/// As above, but each panel is halved along both axes until halving changes its integral by no more than tolerance.
+template <class Function>
+double integrate_adaptively(Function f, double a, double b, double c, double d, double tolerance, int depth = 9) {
+    const double whole = integrate(f, a, b, c, d), halved = integrate(f, a, b, c, d, 2);
+    if (depth == 0 || std::fabs(whole - halved) <= tolerance)
+        return halved;
+    const double x = 0.5 * (a + b), y = 0.5 * (c + d), share = 0.5 * tolerance;
+    return integrate_adaptively(f, a, x, c, y, share, depth - 1) +
+           integrate_adaptively(f, x, b, c, y, share, depth - 1) +
+           integrate_adaptively(f, a, x, y, d, share, depth - 1) +
+           integrate_adaptively(f, x, b, y, d, share, depth - 1);
+}
+
 /// Integral of f over [a, b].
 template <class Function>
 double integrate(Function f, double a, double b, int panels) {

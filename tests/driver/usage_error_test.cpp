@@ -1,0 +1,74 @@
+// Mistakes on the command line, inside this process: starting one for each would take most of the tests' time.
+#include "driver/program.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+namespace gradus {
+namespace {
+
+/// Runs the program with services that must not be reached, and returns its exit code.
+int run(const std::vector<std::string> &arguments) {
+    Services services;
+    services.method_names = [] { return std::vector<std::string>{"pt"}; };
+    services.load_scene = [](const std::string &, const LoadOptions &) -> LoadedScene {
+        LoadedScene loaded;
+        loaded.scene.film.width = loaded.scene.film.height = 8;
+        return loaded;
+    };
+    services.prepare = [](const std::string &, const std::string &, const Scene &,
+                          const RenderOptions &) -> PreparedMethod { throw std::logic_error("a render began"); };
+    std::vector<const char *> words{"gradus"};
+    for (const std::string &argument : arguments)
+        words.push_back(argument.c_str());
+    return run_program(int(words.size()), words.data(), services);
+}
+
+TEST(UsageErrors, HaveTheirExitCodeAndAMessage) {
+    const std::string output = ::testing::TempDir() + "gradus-usage-error.exr";
+    const std::vector<std::vector<std::string>> cases = {{},
+                                                         {"paint"},
+                                                         {"render"},
+                                                         {"render", "scene.xml"},
+                                                         {"--spp", "0"},
+                                                         {"--spp", "-3"},
+                                                         {"--spp", "many"},
+                                                         {"--seed", "-1"},
+                                                         {"--seed", "1.5"},
+                                                         {"--time", "0"},
+                                                         {"--time", "-1"},
+                                                         {"--size", "640"},
+                                                         {"--size", "0x10"},
+                                                         {"--size", "10x10x10"},
+                                                         {"--crop", "1,2,3"},
+                                                         {"--crop", "-1,0,2,2"},
+                                                         {"--crop", "0,0,0,2"},
+                                                         {"--max-depth", "0"},
+                                                         {"--max-depth", "-2"},
+                                                         {"--rr-depth", "0"},
+                                                         {"--nthreads", "-1"},
+                                                         {"--method", "magic"},
+                                                         {"--strategy", "luck"},
+                                                         {"-D", "novalue"},
+                                                         {"--write-partial", "0"},
+                                                         {"--unknown"},
+                                                         {"second.xml"}};
+    for (std::vector<std::string> arguments : cases) {
+        const std::string name = arguments.empty() ? "nothing" : arguments[0] + " " + arguments.back();
+        if (!arguments.empty() && arguments[0] != "render" && arguments[0] != "paint")
+            arguments.insert(arguments.begin(), {"render", "scene.xml", "-o", output});
+        ::testing::internal::CaptureStderr();
+        const int exit_code = run(arguments);
+        const std::string message = ::testing::internal::GetCapturedStderr();
+        EXPECT_EQ(exit_code, 2) << name << ": " << message;
+        EXPECT_NE(message, "") << name;
+    }
+    ::testing::internal::CaptureStderr();
+    EXPECT_EQ(run({"render", "scene.xml", "-o", output}), 1) << "without a mistake the render begins";
+    EXPECT_THAT(::testing::internal::GetCapturedStderr(), ::testing::HasSubstr("a render began"));
+}
+
+} // namespace
+} // namespace gradus
