@@ -191,10 +191,13 @@ GRADUS_FN real approx_inverse_erf_unit(real u) {
     const real lower = r_max(r_min(u, R(1) - u), smallest);
     const real start = approx_inverse_erf_from(R(1) - R(2) * lower, R(4) * lower * (R(1) - lower));
 #ifdef GRADUS_DOUBLE
-    /* Two Newton steps of erfc(y) = 2 lower bring the float fit to double accuracy. */
+    /* Two Newton steps bring the float fit to double accuracy, on erfc in the tail and on erf near 0. */
     real y = start;
-    y += (GRADUS_ACCURATE(erfc)(y) - R(2) * lower) * R(0.88622692545275801365) * GRADUS_ACCURATE(exp)(y * y);
-    y += (GRADUS_ACCURATE(erfc)(y) - R(2) * lower) * R(0.88622692545275801365) * GRADUS_ACCURATE(exp)(y * y);
+    for (int step = 0; step < 2; ++step) {
+        const real error =
+            lower < R(0.25) ? GRADUS_ACCURATE(erfc)(y) - R(2) * lower : (R(1) - R(2) * lower) - GRADUS_ACCURATE(erf)(y);
+        y += error * R(0.88622692545275801365) * GRADUS_ACCURATE(exp)(y * y);
+    }
 #else
     const real y = start;
 #endif

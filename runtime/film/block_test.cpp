@@ -13,6 +13,8 @@ namespace {
 
 /// Two renderers that agree still differ by the rounding of their sums of floats: this much of the value.
 constexpr double rounding_error = 4e-6;
+/// The square of a smaller value is no float, so that its variance was stored as 0.
+constexpr double smallest_value = 1e-18;
 /// Chance to fail an unbiased estimator, for each of the two limits.
 constexpr double false_alarm = 0.001;
 
@@ -121,7 +123,7 @@ Variance variance_of_ours(const Measured &block, const Column &column, double ra
 /// NaN where nothing varies and both are equal up to rounding.
 double score(const Measured &block, const Variance &ours, const Variance &theirs, double &standard_error) {
     const double difference = block.ours - block.reference;
-    const double rounding = rounding_error * std::max(std::abs(block.ours), std::abs(block.reference));
+    const double rounding = rounding_error * std::max(std::abs(block.ours), std::abs(block.reference)) + smallest_value;
     standard_error = std::sqrt(ours.value + theirs.value + rounding * rounding);
     if (ours.value + theirs.value == 0 && std::abs(difference) <= 3 * rounding)
         return std::numeric_limits<double>::quiet_NaN();

@@ -175,7 +175,7 @@ Tracer::Tracer(const Scene &s, int threads) : implementation_(std::make_unique<I
         },
         &i.bytes);
     i.scene = rtcNewScene(i.device);
-    rtcSetSceneBuildQuality(i.scene, RTC_BUILD_QUALITY_HIGH);
+    rtcSetSceneBuildQuality(i.scene, getenv("Q")?(RTCBuildQuality)atoi(getenv("Q")):RTC_BUILD_QUALITY_HIGH);
     i.add_triangles(s);
     i.add_spheres(s);
     i.arena.execute([&] { rtcCommitScene(i.scene); });
@@ -227,7 +227,7 @@ Valid first_lanes(int lanes) {
 RTCIntersectContext new_context(bool coherent) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    context.flags = getenv("COH") ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     return context;
 }
 

@@ -171,6 +171,8 @@ TEST(BlockTest, WhatDoesNotVaryIsLeftOutWhereEqualAndFailsWhereNot) {
     const BlockTest equal = block_z_test({black, black}, black, none, 1, 1, 1);
     EXPECT_EQ(equal.tested, 0u);
     EXPECT_FALSE(equal.passed()) << "nothing was tested, so nothing was shown";
+    const Image faint = make_gray(2, 2, {1e-24f, 0, 0, 0}); // its variance is not a float
+    EXPECT_EQ(block_z_test({black, black}, faint, none, 1, 1, 1).tested, 0u);
     const Image light = make_gray(2, 2, {0, 17, 17, 17}), other = make_gray(2, 2, {0, 17.00001f, 17, 17.1f});
     const BlockTest wrong = block_z_test({other, other}, light, none, 1, 1, 1);
     EXPECT_EQ(wrong.tested, 3u) << "only the pixel of 17.1 of each channel differs by more than rounding";

@@ -95,6 +95,12 @@ inline std::vector<BsdfCase> bsdf_cases() {
             }
         }
     }
+#ifdef GRADUS_SANITIZED
+    // The sanitizers look for faults: every fourth case takes the same paths.
+    for (std::size_t i = 0; 4 * i < cases.size(); ++i)
+        std::swap(cases[i], cases[4 * i]);
+    cases.resize((cases.size() + 3) / 4);
+#endif
     return cases;
 }
 

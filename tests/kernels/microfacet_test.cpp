@@ -77,7 +77,8 @@ TEST(Microfacet, BeckmannSlopesInvertTheirCumulatedArea) {
             worst = std::max(worst, std::fabs(cumulated(slope) / whole - u1));
         }
     std::printf("  largest error of the cumulated area: %.3g\n", worst);
-    EXPECT_LE(worst, bound(4e-6, 1e-10));
+    // Slopes end at 4 deviations of sqrt(1/2): 7.7e-9 of the area is given up on purpose.
+    EXPECT_LE(worst, bound(4e-6, 1e-8));
 }
 
 TEST(Microfacet, SampledNormalsAreVisibleUnitVectors) {
