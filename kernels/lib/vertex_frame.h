@@ -1,7 +1,7 @@
 /* The local frame of a path's vertex: shading normal, and dp/du where a surface is anisotropic. */
 #ifndef GRADUS_LIB_VERTEX_FRAME_H
 #define GRADUS_LIB_VERTEX_FRAME_H
-//! traits: TRAIT_ANISOTROPIC
+//! traits: TRAIT_ANISOTROPIC TRAIT_SHADING_NORMALS
 #include "kernels/lib/frame.h"
 
 GRADUS_LIB_BEGIN
@@ -21,10 +21,15 @@ GRADUS_FN frame frame_from_tangent(vec3 normal, vec3 along) {
     return f;
 }
 
-#if TRAIT_ANISOTROPIC
-#define VERTEX_FRAME(row) frame_from_tangent(AT_V3(vertex, shading, row), AT_V3(tangent, along, row))
+#if TRAIT_SHADING_NORMALS
+#define VERTEX_NORMAL(row) AT_V3(vertex, shading, row)
 #else
-#define VERTEX_FRAME(row) frame_from_normal(AT_V3(vertex, shading, row))
+#define VERTEX_NORMAL(row) AT_V3(vertex, geometric, row)
+#endif
+#if TRAIT_ANISOTROPIC
+#define VERTEX_FRAME(row) frame_from_tangent(VERTEX_NORMAL(row), AT_V3(tangent, along, row))
+#else
+#define VERTEX_FRAME(row) frame_from_normal(VERTEX_NORMAL(row))
 #endif
 
 GRADUS_LIB_END

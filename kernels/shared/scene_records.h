@@ -64,7 +64,7 @@
     FIELD(light, e2_x, "")                                                                                             \
     FIELD(light, e2_y, "")                                                                                             \
     FIELD(light, e2_z, "")                                                                                             \
-    FIELD(light, inverse_area, "triangles and spheres")                                                                \
+    FIELD(light, inverse_area, "triangles and spheres; for the density of hits")                                                                \
     FIELD(light, offset, "how far connections end before the surface")
 
 #define GRADUS_CAMERA_FIELDS(FIELD)                                                                                    \
@@ -99,8 +99,10 @@ enum light_kind { light_kind_triangle, light_kind_sphere, light_kind_point, ligh
 /* primitive_light of a primitive that does not emit. */
 #define no_light 0xFFFFFFFFu
 
-/* Bits of material_flags. */
-#define material_flag_two_sided 1u
+/* primitive_material is a material record with this bit set where the material is the same from both sides, or has
+ * another record for its back. */
+#define material_two_sided 0x80000000u
+#define material_record(value) ((value) & ~material_two_sided)
 
 /* Members of a record: FIELD_OF(light, lights, 3, value_r). `unit` is an argument of each kernel and always 1: a
  * compiler that cannot know this does not join the loads of neighbouring fields into short vectors, which would stop

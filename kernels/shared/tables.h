@@ -52,14 +52,11 @@
     REAL(vertex, geometric_x, "geometric normal, unit, on the side that the material calls front")                     \
     REAL(vertex, geometric_y, "")                                                                                      \
     REAL(vertex, geometric_z, "")                                                                                      \
-    REAL(vertex, shading_x, "shading normal, unit, likewise")                                                          \
+    UINT(vertex, material, "record of the material on this side")                                                      \
+    REAL(vertex, shading_x, "from here only with TRAIT_SHADING_NORMALS: shading normal, unit, on the side of geometric") \
     REAL(vertex, shading_y, "")                                                                                        \
     REAL(vertex, shading_z, "")                                                                                        \
-    UINT(vertex, material, "record of the material on this side")                                                      \
-    REAL(vertex, emitted_r, "what the path gains from the emission found at this vertex")                              \
-    REAL(vertex, emitted_g, "")                                                                                        \
-    REAL(vertex, emitted_b, "")                                                                                        \
-    REAL(vertex, eta, "last and only with TRAIT_REFRACTION: product of index ratios so far, for Russian roulette")
+    REAL(vertex, eta, "from here only with TRAIT_REFRACTION: product of index ratios so far, for Russian roulette")
 
 /* The direction in which a rough surface's alpha_u is measured, only with TRAIT_ANISOTROPIC. */
 #define GRADUS_TANGENT_COLUMNS(REAL, UINT)                                                                             \

@@ -1,5 +1,4 @@
-/* connect: adds to each path what its newest vertex gained: the emission found there, and the light sampled from it
- * where nothing is in between. */
+/* connect: adds to each path the light sampled from its newest vertex, where nothing is in between. */
 #include "kernels/shared/stage.h"
 
 STAGE connect(uint count, uint capacity, __global const real *vertex, __global const real *shadow,
@@ -9,7 +8,7 @@ STAGE connect(uint count, uint capacity, __global const real *vertex, __global c
         return;
     const uint slot = AT_UINT(vertex, slot, row);
     const int open = AT_UINT(shadow, open, row) != 0u;
-    AT(radiance, value_r, slot) += AT(vertex, emitted_r, row) + (open ? AT(shadow, value_r, row) : R(0));
-    AT(radiance, value_g, slot) += AT(vertex, emitted_g, row) + (open ? AT(shadow, value_g, row) : R(0));
-    AT(radiance, value_b, slot) += AT(vertex, emitted_b, row) + (open ? AT(shadow, value_b, row) : R(0));
+    AT(radiance, value_r, slot) += open ? AT(shadow, value_r, row) : R(0);
+    AT(radiance, value_g, slot) += open ? AT(shadow, value_g, row) : R(0);
+    AT(radiance, value_b, slot) += open ? AT(shadow, value_b, row) : R(0);
 }

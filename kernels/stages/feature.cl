@@ -1,5 +1,6 @@
 /* feature: what the camera sees first at each path of one BSDF kind (rows `first` on): albedo, shading normal, depth. */
 #include "kernels/lib/bsdf.h"
+#include "kernels/lib/vertex_frame.h"
 #include "kernels/shared/stage.h"
 
 STAGE feature(uint count, uint unit, uint first, uint capacity, __global const real *vertex, __global real *feature,
@@ -12,7 +13,7 @@ STAGE feature(uint count, uint unit, uint first, uint capacity, __global const r
     const material m = material_load(materials, AT_UINT(vertex, material, row), unit);
     const vec3 away = v3_sub(AT_V3(vertex, position, row), FIELD_V3(camera, camera, 0, origin));
     const rgb albedo = PASTE(BSDF, _albedo)(m);
-    const vec3 normal = AT_V3(vertex, shading, row);
+    const vec3 normal = VERTEX_NORMAL(row);
     SET_RGB(feature, albedo, slot, albedo);
     SET_V3(feature, normal, slot, normal);
     AT(feature, depth, slot) = r_sqrt(v3_dot(away, away));

@@ -35,7 +35,6 @@ STAGE light_sample(uint count, uint unit, uint first, uint capacity, uint depth,
     const vec3 p = FIELD_V3(light, lights, light, p);
 #if TRAIT_LIGHT_TRIANGLE || TRAIT_LIGHT_SPHERE
     const vec3 e1 = FIELD_V3(light, lights, light, e1);
-    const real inverse_area = FIELD_OF(light, lights, light, inverse_area);
 #endif
 #if LIGHT_KINDS > 1
     const uint kind = light_kinds[light];
@@ -49,11 +48,11 @@ STAGE light_sample(uint count, uint unit, uint first, uint capacity, uint depth,
     s.pdf = R(0);
 #if TRAIT_LIGHT_TRIANGLE
     IF_LIGHT(triangle)
-    s = light_from_triangle(value, p, e1, FIELD_V3(light, lights, light, e2), inverse_area, position, u.c, u.d);
+    s = light_from_triangle(value, p, e1, FIELD_V3(light, lights, light, e2), position, u.c, u.d);
 #endif
 #if TRAIT_LIGHT_SPHERE
     IF_LIGHT(sphere)
-    s = light_from_sphere(value, p, e1.x, e1.y, inverse_area, position, u.c, u.d);
+    s = light_from_sphere(value, p, e1.x, e1.y, FIELD_OF(light, lights, light, inverse_area), position, u.c, u.d);
 #endif
 #if TRAIT_LIGHT_POINT
     IF_LIGHT(point) {

@@ -1,19 +1,15 @@
 /* surface: the new vertex of each path that hit something. Reads the ray and the old vertex of row index[i], writes
- * the new vertex, dense: position, normals on the side that was hit, material, and what the path gains from the
- * emission found there, weighted against light sampling. */
+ * the new vertex, dense: position, normals on the side that was hit, material. */
 //! traits: TRAIT_REFRACTION TRAIT_SHADING_NORMALS TRAIT_ANISOTROPIC TRAIT_TWO_SIDED TRAIT_TWO_FACED
-//! traits: TRAIT_LIGHT_TRIANGLE TRAIT_LIGHT_SPHERE TRAIT_HIDE_EMITTERS TRAIT_SPHERES TRAIT_TRIANGLES
-#include "kernels/lib/light.h"
-#include "kernels/lib/mis.h"
+//! traits: TRAIT_SPHERES TRAIT_TRIANGLES
 #include "kernels/lib/scene_hit.h"
 #include "kernels/shared/stage.h"
 
-STAGE surface(uint count, uint unit, uint first, uint capacity, uint depth, __global const uint *index, __global const real *ray,
+STAGE surface(uint count, uint unit, uint first, uint capacity, __global const uint *index, __global const real *ray,
               __global const real *vertex_old, __global real *vertex, __global real *shadow, __global real *tangent,
               __global const real *triangles, __global const real *triangle_normals,
               __global const real *triangle_tangents, __global const real *spheres, uint triangle_count,
-              __global const uint *primitive_material, __global const uint *primitive_light,
-              __global const uint *material_flags, __global const uint *material_back, __global const real *lights) {
+              __global const uint *primitive_material, __global const uint *material_back) {
     const size_t i = get_global_id(0);
     if (i >= count)
         return;
@@ -26,37 +22,6 @@ STAGE surface(uint count, uint unit, uint first, uint capacity, uint depth, __gl
              AT_IN(vertex_old, vertex, throughput_b, row));
     const primitive_hit hit =
         primitive_hit_of(triangles, spheres, unit, triangle_count, primitive, origin, direction);
-    const real side = -v3_dot(hit.normal, direction);
-
-    rgb emitted = rgb_gray(R(0));
-#if TRAIT_LIGHT_TRIANGLE || TRAIT_LIGHT_SPHERE
-    const uint light_or_none = primitive_light[primitive];
-    const uint light = light_or_none == no_light ? 0u : light_or_none;
-    const vec3 connection = v3_sub(hit.position, origin);
-    const real distance_squared = v3_dot(connection, connection);
-    const real inverse_area = FIELD_OF(light, lights, light, inverse_area);
-    real pdf_light = light_area_pdf(inverse_area, distance_squared, side);
-#if TRAIT_LIGHT_SPHERE && TRAIT_LIGHT_TRIANGLE
-    if (primitive >= triangle_count)
-#endif
-#if TRAIT_LIGHT_SPHERE
-    {
-        const vec3 to_center = v3_sub(FIELD_V3(light, lights, light, p), origin);
-        pdf_light = light_sphere_pdf(FIELD_OF(light, lights, light, e1_x), FIELD_OF(light, lights, light, e1_y),
-                                     inverse_area, v3_dot(to_center, to_center), distance_squared, side);
-    }
-#endif
-    const real weight = mis_weight_bsdf(AT_IN(vertex_old, vertex, pdf, row),
-                                        pdf_light * FIELD_OF(light, lights, light, probability));
-    int seen = light_or_none != no_light && side > R(0);
-#if TRAIT_HIDE_EMITTERS
-    seen = seen && depth > 0u;
-#endif
-    const rgb radiance = rgb3(FIELD_OF(light, lights, light, value_r), FIELD_OF(light, lights, light, value_g),
-                              FIELD_OF(light, lights, light, value_b));
-    emitted = rgb_scale(rgb_mul(throughput, radiance), seen ? weight : R(0));
-#endif
-
     vec3 shading = hit.normal;
 #if TRAIT_SHADING_NORMALS
 #if TRAIT_SPHERES
@@ -67,18 +32,21 @@ STAGE surface(uint count, uint unit, uint first, uint capacity, uint depth, __gl
                                              hit.u, FIELD_V3(normals, triangle_normals, primitive, n1)),
                                       hit.v, FIELD_V3(normals, triangle_normals, primitive, n2)));
 #endif
-    uint material = primitive_material[primitive];
+    const uint sided_material = primitive_material[primitive];
+    uint material_index = material_record(sided_material);
     vec3 geometric = hit.normal;
 #if TRAIT_TWO_SIDED
+    const int two_sided = (sided_material & material_two_sided) != 0u;
 #if TRAIT_TWO_FACED
-    const int behind = side < R(0);
-    const int turned = behind && (material_flags[material] & material_flag_two_sided) != 0u;
-    material = turned ? material_back[material] : material;
+    const int turned = two_sided && v3_dot(hit.normal, direction) > R(0);
+    const uint back = material_back[material_index];
+    material_index = turned ? back : material_index;
 #else
-    const int turned = v3_dot(shading, direction) > R(0) && (material_flags[material] & material_flag_two_sided) != 0u;
+    const int turned = two_sided && v3_dot(shading, direction) > R(0);
 #endif
-    geometric = v3_scale(geometric, turned ? R(-1) : R(1));
-    shading = v3_scale(shading, turned ? R(-1) : R(1));
+    const real turn = turned ? R(-1) : R(1);
+    geometric = v3_scale(geometric, turn);
+    shading = v3_scale(shading, turn);
 #endif
 
 #if TRAIT_ANISOTROPIC
@@ -115,8 +83,9 @@ STAGE surface(uint count, uint unit, uint first, uint capacity, uint depth, __gl
     AT(vertex, offset, i) = offset;
     SET_V3(vertex, wi, i, v3_neg(direction));
     SET_V3(vertex, geometric, i, geometric);
+#if TRAIT_SHADING_NORMALS
     SET_V3(vertex, shading, i, shading);
-    AT_UINT(vertex, material, i) = material;
-    SET_RGB(vertex, emitted, i, emitted);
+#endif
+    AT_UINT(vertex, material, i) = material_index;
     AT_UINT(shadow, open, i) = 0u;
 }

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <thread>
 
 namespace gradus {
 
@@ -115,6 +116,8 @@ Device::Device(const std::string &selector, int threads) : implementation_(std::
     const Found &chosen = found[choose(found, selector)];
     implementation_->description = chosen.description;
     implementation_->device = chosen.device;
+    implementation_->compile_threads =
+        threads > 0 ? static_cast<unsigned>(threads) : std::max(1u, std::thread::hardware_concurrency());
     opencl_call("opening the device " + chosen.description.name, [&] {
         implementation_->context = cl::Context(chosen.device);
         implementation_->queue = cl::CommandQueue(implementation_->context, chosen.device, CL_QUEUE_PROFILING_ENABLE);

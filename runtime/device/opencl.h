@@ -16,6 +16,7 @@ struct Device::Implementation {
     cl::Device device;
     cl::Context context;
     cl::CommandQueue queue;
+    unsigned compile_threads = 1; ///< kernels that are compiled at a time
     std::uint64_t allocated_bytes = 0, peak_bytes = 0;
 };
 

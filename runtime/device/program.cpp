@@ -194,7 +194,7 @@ std::vector<Kernel> KernelLibrary::build(const std::vector<KernelRequest> &reque
         }
     };
     std::vector<std::thread> threads;
-    const std::size_t count = std::min<std::size_t>(std::max(1u, std::thread::hardware_concurrency()), requests.size());
+    const std::size_t count = std::min<std::size_t>(device_.implementation().compile_threads, requests.size());
     for (std::size_t i = 1; i < count; ++i)
         threads.emplace_back(work);
     work();

@@ -54,11 +54,11 @@ PathTracer::PathTracer(Device &device, const Scene &scene, const RenderOptions &
       tracer_(scene, options.threads) {
     const std::uint32_t pixels = film_settings_.crop_width * film_settings_.crop_height;
     total_ = pixels * settings_.samples_per_pixel;
-    const std::uint32_t bins = static_cast<std::uint32_t>(scene_tables_.bins.size()) + 1;
+    const std::uint32_t bins = static_cast<std::uint32_t>(1 + 2 * scene_tables_.kinds.size());
     tables_.emplace(device, choose_batch_size(device, options.batch_size, total_, traits_, precision), bins, traits_,
                     precision);
     scene_buffers_.emplace(device, scene_tables_, precision);
-    build_kernels(scene_tables_.bins);
+    build_kernels(scene_tables_.kinds);
     film_.emplace(device, accumulate_, *tables_, film_settings_.crop_width, film_settings_.crop_height, traits_,
                   precision);
     partition_.emplace(partition_kernels_, *tables_, bins);
@@ -69,8 +69,8 @@ void PathTracer::build_kernels(const std::vector<std::string> &kinds) {
     const auto stage = [](const std::string &name) {
         return KernelRequest{name, "kernels/stages/" + name + ".cl", name, {}};
     };
-    std::vector<KernelRequest> requests = {stage("camera"), stage("classify"), stage("surface"), stage("escape"),
-                                           stage("connect"), FilmStage::request()};
+    std::vector<KernelRequest> requests = {stage("camera"),  stage("classify"), stage("surface"),       stage("escape"),
+                                           stage("connect"), stage("emission"), FilmStage::request()};
     for (const KernelRequest &request : PartitionStage::requests())
         requests.push_back(request);
     const std::size_t first_kind = requests.size();
@@ -88,8 +88,9 @@ void PathTracer::build_kernels(const std::vector<std::string> &kinds) {
     surface_ = built[2];
     escape_ = built[3];
     connect_ = built[4];
-    accumulate_ = built[5];
-    partition_kernels_.assign(built.begin() + 6, built.begin() + 9);
+    emission_ = built[5];
+    accumulate_ = built[6];
+    partition_kernels_.assign(built.begin() + 7, built.begin() + 10);
     for (std::size_t i = 0; i < kinds.size(); ++i) {
         const std::size_t first = first_kind + 3 * i;
         kinds_.push_back({built[first], built[first + 1], built[first + 2], bsdf_kind_is_dirac(kinds[i])});
@@ -116,7 +117,7 @@ void PathTracer::build_kernels(const std::vector<std::string> &kinds) {
 }
 
 std::vector<Kernel *> PathTracer::all_kernels() {
-    std::vector<Kernel *> kernels = {&camera_, &classify_, &surface_, &escape_, &connect_, &accumulate_};
+    std::vector<Kernel *> kernels = {&camera_, &classify_, &surface_, &escape_, &connect_, &emission_, &accumulate_};
     for (Kernel &kernel : partition_kernels_)
         kernels.push_back(&kernel);
     for (KindKernels &kind : kinds_) {
@@ -185,12 +186,14 @@ bool PathTracer::render_batch() {
         run(classify_, 0, rays);
         const std::vector<std::uint32_t> &range = partition_->run(rays);
         const std::uint32_t escaped = range[1], hits = range.back() - escaped;
-        for (Kernel *kernel : {&surface_, &escape_}) {
+        for (Kernel *kernel : {&surface_, &escape_, &emission_}) {
             kernel->bind("vertex_old", tables_->vertex[newest]);
             kernel->bind("vertex", tables_->vertex[1 - newest]);
             kernel->set("depth", depth);
         }
         run(escape_, 0, escaped);
+        for (std::size_t k = 0; k < kinds_.size(); ++k)
+            run(emission_, range[2 + 2 * k], range[3 + 2 * k] - range[2 + 2 * k]);
         run(surface_, escaped, hits);
         newest = 1 - newest;
         vertices = hits;
@@ -198,7 +201,7 @@ bool PathTracer::render_batch() {
 
         const bool last = depth + 1 >= max_depth;
         for (std::size_t k = 0; k < kinds_.size(); ++k) {
-            const std::uint32_t first = range[k + 1] - escaped, items = range[k + 2] - range[k + 1];
+            const std::uint32_t first = range[1 + 2 * k] - escaped, items = range[3 + 2 * k] - range[1 + 2 * k];
             if (items == 0)
                 continue;
             KindKernels &kind = kinds_[k];
@@ -218,8 +221,6 @@ bool PathTracer::render_batch() {
             rays = hits;
         }
     }
-    connect_.bind("vertex", tables_->vertex[newest]);
-    run(connect_, 0, vertices);
     film_->accumulate(count, static_cast<std::uint32_t>(done_ % film_->pixels()));
     finish(device_);
     done_ += count;
@@ -247,6 +248,7 @@ Statistics PathTracer::statistics() const {
     for (const Kernel &kernel : partition_kernels_)
         stage(kernel);
     stage(escape_);
+    stage(emission_);
     stage(surface_);
     for (const KindKernels &kind : kinds_) {
         stage(kind.feature);

@@ -52,8 +52,8 @@ class PathTracer final : public Method {
     std::optional<FilmStage> film_;
     std::optional<PartitionStage> partition_;
     std::vector<Kernel> partition_kernels_;
-    Kernel camera_, classify_, surface_, escape_, connect_, accumulate_;
-    std::vector<KindKernels> kinds_; ///< of bin 1, 2, ...
+    Kernel camera_, classify_, surface_, escape_, connect_, emission_, accumulate_;
+    std::vector<KindKernels> kinds_; ///< in the order of SceneTables::kinds
     Statistics statistics_;
     double trace_seconds_ = 0;
 };

@@ -89,6 +89,20 @@ struct LightBuilder {
     }
 };
 
+/// The bin of a side of a surface.
+std::uint32_t bin_of(const Bsdf &bsdf, std::uint32_t light, const SceneTables &tables) {
+    const auto kind = std::find(tables.kinds.begin(), tables.kinds.end(), bsdf_kind_name(bsdf));
+    return static_cast<std::uint32_t>(1 + 2 * (kind - tables.kinds.begin()) + (light == no_light ? 0 : 1));
+}
+
+void add_primitive(const Scene &scene, const Shape &shape, std::uint32_t light, SceneTables &tables) {
+    const Material &material = scene.materials[shape.material];
+    tables.primitive_light.push_back(light);
+    tables.primitive_material.push_back(shape.material | (material.two_sided ? material_two_sided : 0));
+    tables.primitive_bin.push_back(bin_of(material.front, light, tables));
+    tables.primitive_back_bin.push_back(bin_of(material.two_sided ? material.back : material.front, light, tables));
+}
+
 void add_mesh(const Scene &scene, const Shape &shape, const TraitMap &traits, SceneTables &tables,
               LightBuilder &lights) {
     const Mesh &mesh = scene.meshes[shape.geometry];
@@ -139,8 +153,7 @@ void add_mesh(const Scene &scene, const Shape &shape, const TraitMap &traits, Sc
                 light_record[light_offset] = offset;
             }
         }
-        tables.primitive_light.push_back(light);
-        tables.primitive_material.push_back(shape.material);
+        add_primitive(scene, shape, light, tables);
     }
 }
 
@@ -170,8 +183,7 @@ void add_sphere(const Scene &scene, const Shape &shape, SceneTables &tables, Lig
             light_record[light_offset] = offset;
         }
     }
-    tables.primitive_light.push_back(light);
-    tables.primitive_material.push_back(shape.material);
+    add_primitive(scene, shape, light, tables);
 }
 
 /// Lights without a surface. Those at infinity count with what crosses a disk as wide as the scene.
@@ -207,10 +219,6 @@ void add_material_record(const Bsdf &bsdf, SceneTables &tables) {
     record[material_ior] = bsdf.ior;
     record[material_alpha_u] = bsdf.alpha_u;
     record[material_alpha_v] = bsdf.alpha_v;
-    const auto kind = std::find(tables.bins.begin(), tables.bins.end(), bsdf_kind_name(bsdf));
-    // A material that no shape has may be of a kind without a bin; nothing ever looks there.
-    tables.material_bin.push_back(static_cast<std::uint32_t>(1 + (kind - tables.bins.begin())));
-    tables.material_flags.push_back(0);
     tables.material_back.push_back(static_cast<std::uint32_t>(tables.material_back.size()));
 }
 
@@ -219,10 +227,7 @@ void add_materials(const Scene &scene, SceneTables &tables) {
         add_material_record(material.front, tables);
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         const Material &material = scene.materials[i];
-        if (!material.two_sided)
-            continue;
-        tables.material_flags[i] = material_flag_two_sided;
-        if (!(material.back == material.front)) {
+        if (material.two_sided && !(material.back == material.front)) {
             tables.material_back[i] = static_cast<std::uint32_t>(tables.material_back.size());
             add_material_record(material.back, tables);
         }
@@ -233,7 +238,7 @@ void add_materials(const Scene &scene, SceneTables &tables) {
 
 SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits) {
     SceneTables tables;
-    tables.bins = bsdf_kinds(scene);
+    tables.kinds = bsdf_kinds(scene);
     LightBuilder lights{tables, {}, false};
     for (const Shape &shape : scene.shapes)
         if (shape.kind == Shape::Kind::mesh)
@@ -254,7 +259,7 @@ SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits) {
 std::size_t table_bytes(const SceneTables &t) {
     return 4 * (t.triangles.size() + t.triangle_normals.size() + t.triangle_tangents.size() + t.spheres.size() +
                 t.materials.size() + t.lights.size() + t.camera.size() + t.primitive_material.size() +
-                t.primitive_light.size() + t.material_bin.size() + t.material_flags.size() + t.material_back.size() +
+                t.primitive_light.size() + t.primitive_bin.size() + t.primitive_back_bin.size() + t.material_back.size() +
                 t.light_kinds.size() + t.light_alias.size());
 }
 

@@ -20,7 +20,6 @@ constexpr TraitText descriptions[] = {
     {"TRAIT_ANISOTROPIC", "anisotropic roughness, which needs tangents"},
     {"TRAIT_TWO_SIDED", "materials seen alike from both sides"},
     {"TRAIT_TWO_FACED", "materials whose two sides differ"},
-    {"TRAIT_MANY_BSDF_KINDS", "more than one kind of BSDF"},
     {"TRAIT_REFRACTION", "dielectrics: paths keep their index ratio for Russian roulette"},
     {"TRAIT_ENVIRONMENT", "light from where rays leave the scene"},
     {"TRAIT_LIGHT_TRIANGLE", "emitting triangles"},
@@ -114,7 +113,6 @@ TraitMap scene_traits(const Scene &scene) {
         if (is_anisotropic(bsdf))
             traits["TRAIT_ANISOTROPIC"] = 1;
     });
-    traits["TRAIT_MANY_BSDF_KINDS"] = bsdf_kinds(scene).size() > 1;
     for (const Emitter &emitter : scene.emitters) {
         if (emitter.value == Rgb{})
             continue; // black: no light

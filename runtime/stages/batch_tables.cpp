@@ -18,7 +18,9 @@ constexpr std::uint32_t default_batch_cpu = 1u << 16, default_batch_other = 1u <
 constexpr std::uint32_t least_batch = 64, largest_batch = 1u << 24;
 
 std::uint32_t vertex_column_count(const TraitMap &traits) {
-    return static_cast<std::uint32_t>(traits.at("TRAIT_REFRACTION") ? int(vertex_columns) : int(vertex_eta));
+    if (traits.at("TRAIT_REFRACTION"))
+        return vertex_columns;
+    return static_cast<std::uint32_t>(traits.at("TRAIT_SHADING_NORMALS") ? int(vertex_eta) : int(vertex_shading_x));
 }
 
 } // namespace

@@ -25,8 +25,8 @@ SceneBuffers::SceneBuffers(Device &device, const SceneTables &t, Precision preci
     reals("camera", t.camera);
     numbers("primitive_material", t.primitive_material);
     numbers("primitive_light", t.primitive_light);
-    numbers("material_bin", t.material_bin);
-    numbers("material_flags", t.material_flags);
+    numbers("primitive_bin", t.primitive_bin);
+    numbers("primitive_back_bin", t.primitive_back_bin);
     numbers("material_back", t.material_back);
     numbers("light_kinds", t.light_kinds);
     numbers("light_alias", t.light_alias);

@@ -2,35 +2,44 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace gradus {
 
-/// A counting sort of the rows of one chunk by a small key. Stable.
+/// How rays are put in order before they are traced.
+enum class RayOrder {
+    none,   ///< as they come
+    octant, ///< by the signs of the direction
+    cell    ///< by those and by a coarse Morton cell of the origin
+};
+
+/// The columns that extension and shadow rays share.
+struct SegmentColumns {
+    const float *origin[3];
+    const float *direction[3];
+};
+
+/// A counting sort of the rows of one chunk by a small key. Stable, so that the order never changes.
 class RayOrdering {
   public:
     /// `low` and `high` bound all ray origins.
-    void set_bounds(const std::array<float, 3> &low, const std::array<float, 3> &high) {
-        for (int axis = 0; axis < 3; ++axis) {
-            low_[axis] = low[axis];
-            const float extent = high[axis] - low[axis];
-            scale_[axis] = extent > 0 ? cells / extent : 0;
-        }
-    }
+    RayOrdering(const std::array<float, 3> &low, const std::array<float, 3> &high);
 
-    static constexpr int cells = 8; ///< along each axis: 3 bits each
+    static constexpr int cell_bits = 3; ///< along each axis
 
-    /// Sorts `rows` (into the columns `origin` and `direction`) in place by direction octant, and where `by_cell` by
-    /// the Morton cell of the origin within that.
-    void sort(std::vector<std::uint32_t> &rows, const float *const origin[3], const float *const direction[3],
-              bool by_cell);
+    /// The rows of [begin, end) whose `state` equals `wanted`, in order; valid until the next call.
+    const std::vector<std::uint32_t> &sort(const SegmentColumns &rays, const std::uint32_t *state,
+                                           std::uint32_t wanted, std::size_t begin, std::size_t end, RayOrder order);
+
+    /// Places in the sorted rows at which a new octant begins, the end included; one range for RayOrder::none.
+    const std::vector<std::uint32_t> &groups() const { return groups_; }
 
   private:
     std::array<float, 3> low_{}, scale_{};
     std::vector<std::uint16_t> keys_;
-    std::vector<std::uint32_t> sorted_;
-    std::vector<std::uint32_t> count_;
+    std::vector<std::uint32_t> sorted_, count_, groups_;
 };
 
 } // namespace gradus

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/scene/scene.h"
+#include "runtime/trace/ray_order.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -11,28 +12,17 @@
 namespace gradus {
 
 /// The host's view of the columns of a ray table: see GRADUS_RAY_COLUMNS.
-struct RayColumns {
-    const float *origin[3];
-    const float *direction[3];
+struct RayColumns : SegmentColumns {
     std::uint32_t *primitive; ///< in: ray_pending or ray_none; out: what was hit, or ray_escaped
 };
 
 /// The host's view of the columns of a shadow table: see GRADUS_SHADOW_COLUMNS.
-struct ShadowColumns {
-    const float *origin[3];
-    const float *direction[3];
+struct ShadowColumns : SegmentColumns {
     std::uint32_t *open; ///< in: 1 asks for a trace; out: 1 if nothing lies before parameter 1
 };
 
 struct TraceCounts {
     std::uint64_t extension = 0, shadow = 0;
-};
-
-/// How rays are put in order before they are traced.
-enum class RayOrder {
-    none,   ///< as they come
-    octant, ///< by the signs of the direction
-    cell    ///< by those and by a coarse Morton cell of the origin
 };
 
 /// Rays of traced batches, packed as they were traced, so that tracing alone can be timed again.

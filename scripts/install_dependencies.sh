@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# Installs the Debian packages that building, testing and running Gradus takes; only those that are missing.
+#
+#   scripts/install_dependencies.sh [--list]
+#
+# --list prints the packages, one a line, and installs nothing. Needs root or sudo only where something is missing.
+set -euo pipefail
+
+packages=(
+    # Tools.
+    g++ cmake ninja-build python3
+    # OpenCL: loader, headers, and PoCL, which runs kernels on the CPU. PoCL brings its own clang and links
+    # kernels with the linker that comes with g++.
+    ocl-icd-opencl-dev opencl-headers opencl-clhpp-headers pocl-opencl-icd
+    # Ray tracing, images, scene files, command line, text.
+    libembree-dev libtbb-dev libopenimageio-dev libpugixml-dev zlib1g-dev
+    libcli11-dev nlohmann-json3-dev libfmt-dev
+    # Tests; oclgrind checks every memory access of the kernels.
+    libgtest-dev libgmock-dev oclgrind
+)
+
+if [ "${1:-}" = --list ]; then
+    printf '%s\n' "${packages[@]}"
+    exit 0
+fi
+
+if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+    echo "This is not a Debian: the packages must be there already. They are, by Debian's names: ${packages[*]}" >&2
+    exit 0
+fi
+
+missing=()
+for package in "${packages[@]}"; do
+    status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
+    [ "$status" = installed ] || missing+=("$package")
+done
+[ ${#missing[@]} -gt 0 ] || exit 0
+
+echo "Installing ${missing[*]}"
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+    if ! command -v sudo >/dev/null; then
+        echo "Neither root nor sudo. As root: apt-get install --no-install-recommends ${missing[*]}" >&2
+        exit 1
+    fi
+    as_root=(sudo)
+fi
+run_apt() { "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get "$@" </dev/null; }
+install() { run_apt install -y -q --no-install-recommends "${missing[@]}"; }
+
+# Package lists are fetched where they are missing, do not name a package, or name one that the mirror has replaced.
+apt-get install --simulate "${missing[@]}" >/dev/null 2>&1 || run_apt update -q
+install || { run_apt update -q && install; }

@@ -1,0 +1,124 @@
+// Small scenes built in code, for tests of scenes, stages and methods.
+#pragma once
+
+#include "runtime/scene/scene.h"
+#include "runtime/scene/transform.h"
+
+#include <array>
+#include <string>
+
+namespace gradus::testing {
+
+inline Bsdf diffuse(double albedo) {
+    Bsdf bsdf;
+    bsdf.kind = BsdfKind::diffuse;
+    bsdf.reflectance = {float(albedo), float(albedo), float(albedo)};
+    return bsdf;
+}
+
+inline Material material_of(const Bsdf &front) {
+    Material material;
+    material.front = front;
+    return material;
+}
+
+inline Material two_sided(const Bsdf &front, const Bsdf &back) {
+    Material material;
+    material.front = front;
+    material.back = back;
+    material.two_sided = true;
+    return material;
+}
+
+/// Grows a scene. The functions return the index of what they add.
+struct SceneMaker {
+    Scene scene;
+
+    /// A square film with the box filter, nothing cropped; no limit to the depth, no Russian roulette.
+    SceneMaker(std::uint32_t size, std::uint64_t samples_per_pixel) {
+        scene.film.width = scene.film.height = size;
+        scene.film.filter = FilmSettings::Filter::box;
+        scene.film.filter_radius = 0.5f;
+        scene.settings.max_depth = -1;
+        scene.settings.rr_depth = -1;
+        scene.settings.samples_per_pixel = samples_per_pixel;
+    }
+
+    void look(const Double3 &from, const Double3 &at, double fov, const Double3 &up = {0, 1, 0}) {
+        scene.camera.to_world = look_at(from, at, up);
+        scene.camera.fov = fov;
+    }
+    std::uint32_t material(const Material &material) {
+        scene.materials.push_back(material);
+        return std::uint32_t(scene.materials.size() - 1);
+    }
+    std::uint32_t material(const Bsdf &bsdf) { return material(material_of(bsdf)); }
+    std::int32_t emitter(Emitter::Kind kind, Rgb value) {
+        Emitter emitter;
+        emitter.kind = kind;
+        emitter.value = value;
+        scene.emitters.push_back(emitter);
+        return std::int32_t(scene.emitters.size() - 1);
+    }
+    void environment(double radiance) {
+        emitter(Emitter::Kind::constant, {float(radiance), float(radiance), float(radiance)});
+    }
+    void point_light(Rgb intensity, Vector3 position) {
+        scene.emitters[std::size_t(emitter(Emitter::Kind::point, intensity))].position = position;
+    }
+    void directional_light(Rgb irradiance, Vector3 direction) {
+        scene.emitters[std::size_t(emitter(Emitter::Kind::directional, irradiance))].direction = direction;
+    }
+    void shape(Shape::Kind kind, std::size_t geometry, std::uint32_t material, std::int32_t emitter) {
+        Shape shape;
+        shape.kind = kind;
+        shape.geometry = std::uint32_t(geometry);
+        shape.material = material;
+        shape.emitter = emitter;
+        shape.name = "shape " + std::to_string(scene.shapes.size());
+        scene.shapes.push_back(shape);
+    }
+    void sphere(Vector3 center, float radius, std::uint32_t material, std::int32_t emitter = -1, bool flip = false) {
+        scene.spheres.push_back({center, radius, flip});
+        shape(Shape::Kind::sphere, scene.spheres.size() - 1, material, emitter);
+    }
+    /// A parallelogram with corners p, p + u, p + u + v, p + v; its front is where u x v points.
+    void parallelogram(Vector3 p, Vector3 u, Vector3 v, std::uint32_t material, std::int32_t emitter = -1) {
+        Mesh mesh;
+        add_parallelogram(mesh, p, u, v);
+        scene.meshes.push_back(mesh);
+        shape(Shape::Kind::mesh, scene.meshes.size() - 1, material, emitter);
+    }
+    /// The cube [-1, 1]^3, its front inside where `inward`. Its sides have texture coordinates, so that anisotropic
+    /// roughness has a direction.
+    void cube(std::uint32_t material, std::int32_t emitter = -1, bool inward = false) {
+        Mesh mesh;
+        for (int axis = 0; axis < 3; ++axis)
+            for (const float side : {-1.0f, 1.0f}) {
+                std::array<float, 3> corner{-1, -1, -1}, u{}, v{};
+                corner[axis] = side;
+                u[(axis + 1) % 3] = v[(axis + 2) % 3] = 2; // u x v is the positive axis
+                const bool along_axis = (side > 0) != inward;
+                const auto &first = along_axis ? u : v, &second = along_axis ? v : u;
+                add_parallelogram(mesh, {corner[0], corner[1], corner[2]}, {first[0], first[1], first[2]},
+                                  {second[0], second[1], second[2]});
+            }
+        scene.meshes.push_back(mesh);
+        shape(Shape::Kind::mesh, scene.meshes.size() - 1, material, emitter);
+    }
+
+  private:
+    static void add_parallelogram(Mesh &mesh, Vector3 p, Vector3 u, Vector3 v) {
+        const auto first = std::uint32_t(mesh.positions.size());
+        mesh.positions.insert(mesh.positions.end(), {p,
+                                                     {p.x + u.x, p.y + u.y, p.z + u.z},
+                                                     {p.x + u.x + v.x, p.y + u.y + v.y, p.z + u.z + v.z},
+                                                     {p.x + v.x, p.y + v.y, p.z + v.z}});
+        const std::array<float, 2> corners[] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+        mesh.texcoords.insert(mesh.texcoords.end(), std::begin(corners), std::end(corners));
+        mesh.triangles.push_back({first, first + 1, first + 2});
+        mesh.triangles.push_back({first, first + 2, first + 3});
+    }
+};
+
+} // namespace gradus::testing
