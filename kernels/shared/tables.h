@@ -1,7 +1,6 @@
 /* The tables of the wavefront, declared once for host and device.
  *
- * A table is a structure of arrays: column c of row r is element c * capacity + r of one array of `real`. Every
- * table of a batch has the same capacity. Columns of whole numbers keep a uint in the first four bytes of their
+ * A table is a structure of arrays: column c of row r is element c * capacity + r of one array of `real`. Columns of whole numbers keep a uint in the first four bytes of their
  * slot. Rows are dense: a stage that drops paths writes the survivors side by side, so that every later access
  * is contiguous (an access through an index column costs about three times as much on PoCL).
  *
@@ -35,9 +34,10 @@
 
 /* The newest vertex of each path. Two of these tables alternate: `surface` reads the old one and writes the new. */
 #define GRADUS_VERTEX_COLUMNS(REAL, UINT)                                                                              \
-    UINT(vertex, slot, "the path's place in the batch: its row in `radiance`")                                         \
+    UINT(vertex, slot, "the path's place in its pass: its row in `radiance`")                                         \
     UINT(vertex, key_0, "random numbers: hash of seed, pixel and sample")                                              \
     UINT(vertex, key_1, "")                                                                                            \
+    UINT(vertex, depth, "edges of the path before this vertex, less one: 0 at what the camera sees")                   \
     REAL(vertex, throughput_r, "contribution over density of the path so far")                                         \
     REAL(vertex, throughput_g, "")                                                                                     \
     REAL(vertex, throughput_b, "")                                                                                     \
@@ -64,7 +64,7 @@
     REAL(tangent, along_y, "")                                                                                         \
     REAL(tangent, along_z, "")
 
-/* What each path of the batch has gathered, by slot. */
+/* What each path of a pass has gathered, by slot. A pass has more paths than rows: new ones begin where others end. */
 #define GRADUS_RADIANCE_COLUMNS(REAL, UINT)                                                                            \
     REAL(radiance, value_r, "")                                                                                        \
     REAL(radiance, value_g, "")                                                                                        \
@@ -131,15 +131,24 @@ enum feature_film_column { GRADUS_FEATURE_FILM_COLUMNS(GRADUS_COLUMN_INDEX, GRAD
 
 GRADUS_LIB_END
 
+/* Rows of each table: the name of the kernel argument that says so. */
+#define CAPACITY_OF_ray capacity
+#define CAPACITY_OF_shadow capacity
+#define CAPACITY_OF_vertex capacity
+#define CAPACITY_OF_tangent capacity
+#define CAPACITY_OF_radiance slots
+#define CAPACITY_OF_feature slots
+#define CAPACITY_OF_film pixels
+#define CAPACITY_OF_feature_film pixels
+
 /* Element access: AT(ray, origin_x, row) is a real, AT_UINT(ray, primitive, row) a uint. The table's pointer has the
- * table's name, and `capacity` is in scope. */
-#define COLUMN_OF(table, column) ((table) + (size_t)(table##_##column) * capacity)
-#define AT(table, column, row) (COLUMN_OF(table, column)[row])
-#define AT_UINT(table, column, row) (*(GRADUS_GLOBAL uint *)(COLUMN_OF(table, column) + (row)))
-/* For a second table of the same columns: AT_IN(vertex_old, vertex, slot, row). */
-#define AT_IN(pointer, table, column, row) (((pointer) + (size_t)(table##_##column) * capacity)[row])
+ * table's name; AT_IN and AT_UINT_IN are for a second table of the same columns: AT_IN(vertex_old, vertex, pdf, row). */
+#define AT_IN(pointer, table, column, row)                                                                             \
+    (((pointer) + (size_t)(table##_##column) * (size_t)CAPACITY_OF_##table)[row])
 #define AT_UINT_IN(pointer, table, column, row)                                                                        \
-    (*(GRADUS_GLOBAL uint *)((pointer) + (size_t)(table##_##column) * capacity + (row)))
+    (*(GRADUS_GLOBAL uint *)((pointer) + (size_t)(table##_##column) * (size_t)CAPACITY_OF_##table + (row)))
+#define AT(table, column, row) AT_IN(table, table, column, row)
+#define AT_UINT(table, column, row) AT_UINT_IN(table, table, column, row)
 
 /* Three columns at once, as vec3 or rgb; kernels/lib/vector.h must be included. */
 #define AT_V3(table, column, row) v3(AT(table, column##_x, row), AT(table, column##_y, row), AT(table, column##_z, row))

@@ -17,7 +17,7 @@ GRADUS_FN int is_finite(real x) { return (as_uint((float)x) & 0x7F800000u) != 0x
         AT(table, correction_column, pixel) = s.correction;                                                            \
     }
 
-STAGE accumulate(uint count, uint batch_capacity, uint pixels, uint first_slot, uint first_pixel,
+STAGE accumulate(uint count, uint slots, uint pixels, uint first_slot, uint first_pixel,
                  __global const real *radiance, __global const real *feature, __global real *film,
                  __global real *feature_film) {
     const size_t i = get_global_id(0);
@@ -26,14 +26,12 @@ STAGE accumulate(uint count, uint batch_capacity, uint pixels, uint first_slot, 
     const uint slot = first_slot + (uint)i;
     const uint unwrapped = first_pixel + (uint)i;
     const uint pixel = unwrapped >= pixels ? unwrapped - pixels : unwrapped;
-    uint capacity = batch_capacity;
     rgb value = AT_RGB(radiance, value, slot);
 #if TRAIT_AOV
     const rgb albedo = AT_RGB(feature, albedo, slot);
     const vec3 normal = AT_V3(feature, normal, slot);
     const real depth = AT(feature, depth, slot);
 #endif
-    capacity = pixels;
     const int finite = is_finite(value.r) && is_finite(value.g) && is_finite(value.b);
     value = rgb3(finite ? value.r : R(0), finite ? value.g : R(0), finite ? value.b : R(0));
     ADD(film, sum_r, correction_r, value.r)

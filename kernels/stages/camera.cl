@@ -1,7 +1,7 @@
 /* camera: begins one path a row. Leaves its first ray, its random key, throughput 1 and radiance 0.
  *
- * Samples are numbered pixel first: number = sample * pixels + pixel of the crop. This batch starts at pixel
- * `first_pixel` of sample `first_sample`. Random numbers go by the pixel of the full film, so that a crop equals
+ * Paths take rows `first_row` on and slots `first_slot` on. Samples are numbered pixel first: number = sample * pixels +
+ * pixel of the crop; slot 0 is pixel `first_pixel` of sample `first_sample`. Random numbers go by the pixel of the full film, so that a crop equals
  * the same part of the full image. */
 //! traits: TRAIT_REFRACTION TRAIT_FILTER_TENT TRAIT_FILTER_GAUSSIAN TRAIT_AOV
 #include "kernels/lib/random.h"
@@ -19,13 +19,15 @@ GRADUS_FN real filter_offset(__global const real *camera, uint unit, real u) {
 #endif
 }
 
-STAGE camera(uint count, uint unit, uint capacity, __global real *ray, __global real *vertex, __global real *radiance,
-             __global real *feature, __global const real *camera, uint first_pixel, uint first_sample_low, uint first_sample_high, uint pixels,
+STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ray, __global real *vertex, __global real *radiance,
+             __global real *feature, __global const real *camera, uint first_row, uint first_slot, uint first_pixel, uint first_sample_low, uint first_sample_high, uint pixels,
              uint crop_x, uint crop_y, uint crop_width, uint film_width, uint seed_low, uint seed_high) {
-    const size_t row = get_global_id(0);
-    if (row >= count)
+    const size_t i = get_global_id(0);
+    if (i >= count)
         return;
-    const uint number = first_pixel + (uint)row;
+    const size_t row = first_row + i;
+    const uint slot = first_slot + (uint)i;
+    const uint number = first_pixel + slot;
     const uint more_samples = number / pixels;
     const uint pixel = number - more_samples * pixels;
     const uint sample_low = first_sample_low + more_samples;
@@ -45,18 +47,19 @@ STAGE camera(uint count, uint unit, uint capacity, __global real *ray, __global 
     SET_V3(ray, direction, row, direction);
     AT_UINT(ray, primitive, row) = ray_pending;
 
-    AT_UINT(vertex, slot, row) = (uint)row;
+    AT_UINT(vertex, slot, row) = slot;
     AT_UINT(vertex, key_0, row) = key.x;
     AT_UINT(vertex, key_1, row) = key.y;
+    AT_UINT(vertex, depth, row) = 0u;
     SET_RGB(vertex, throughput, row, rgb_gray(R(1)));
     AT(vertex, pdf, row) = R(0);
 #if TRAIT_REFRACTION
     AT(vertex, eta, row) = R(1);
 #endif
-    SET_RGB(radiance, value, row, rgb_gray(R(0)));
+    SET_RGB(radiance, value, slot, rgb_gray(R(0)));
 #if TRAIT_AOV
-    SET_RGB(feature, albedo, row, rgb_gray(R(0)));
-    SET_V3(feature, normal, row, v3(R(0), R(0), R(0)));
-    AT(feature, depth, row) = R(0);
+    SET_RGB(feature, albedo, slot, rgb_gray(R(0)));
+    SET_V3(feature, normal, slot, v3(R(0), R(0), R(0)));
+    AT(feature, depth, slot) = R(0);
 #endif
 }

@@ -1,7 +1,7 @@
 /* connect: adds to each path the light sampled from its newest vertex, where nothing is in between. */
 #include "kernels/shared/stage.h"
 
-STAGE connect(uint count, uint capacity, __global const real *vertex, __global const real *shadow,
+STAGE connect(uint count, uint capacity, uint slots, __global const real *vertex, __global const real *shadow,
               __global real *radiance) {
     const size_t row = get_global_id(0);
     if (row >= count)

@@ -6,7 +6,7 @@
 #include "kernels/lib/scene_hit.h"
 #include "kernels/shared/stage.h"
 
-STAGE emission(uint count, uint unit, uint first, uint capacity, uint depth, __global const uint *index,
+STAGE emission(uint count, uint unit, uint first, uint capacity, uint slots, __global const uint *index,
                __global const real *ray, __global const real *vertex_old, __global real *radiance,
                __global const real *triangles, __global const real *spheres, uint triangle_count,
                __global const uint *primitive_light, __global const real *lights) {
@@ -41,7 +41,7 @@ STAGE emission(uint count, uint unit, uint first, uint capacity, uint depth, __g
                                   pdf_light * FIELD_OF(light, lights, light, probability));
     weight = side > R(0) ? weight : R(0);
 #if TRAIT_HIDE_EMITTERS
-    weight = depth > 0u ? weight : R(0);
+    weight = AT_UINT_IN(vertex_old, vertex, depth, row) > 0u ? weight : R(0);
 #endif
     AT(radiance, value_r, slot) +=
         weight * FIELD_OF(light, lights, light, value_r) * AT_IN(vertex_old, vertex, throughput_r, row);

@@ -3,7 +3,7 @@
 #include "kernels/lib/mis.h"
 #include "kernels/shared/stage.h"
 
-STAGE escape(uint count, uint unit, uint first, uint capacity, uint depth, __global const uint *index,
+STAGE escape(uint count, uint unit, uint first, uint capacity, uint slots, __global const uint *index,
              __global const real *vertex_old, __global real *radiance, __global const real *lights,
              uint environment_light) {
     const size_t i = get_global_id(0);
@@ -15,7 +15,7 @@ STAGE escape(uint count, uint unit, uint first, uint capacity, uint depth, __glo
         FIELD_OF(light, lights, environment_light, probability) * (R(0.25) * GRADUS_INV_PI);
     real weight = mis_weight_bsdf(AT_IN(vertex_old, vertex, pdf, row), pdf_light);
 #if TRAIT_HIDE_EMITTERS
-    weight = depth > 0u ? weight : R(0);
+    weight = AT_UINT_IN(vertex_old, vertex, depth, row) > 0u ? weight : R(0);
 #endif
     AT(radiance, value_r, slot) += weight * FIELD_OF(light, lights, environment_light, value_r) *
                                    AT_IN(vertex_old, vertex, throughput_r, row);

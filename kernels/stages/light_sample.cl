@@ -16,7 +16,7 @@
 #define IF_LIGHT(name)
 #endif
 
-STAGE light_sample(uint count, uint unit, uint first, uint capacity, uint depth, __global const real *vertex,
+STAGE light_sample(uint count, uint unit, uint first, uint capacity, uint max_depth, __global const real *vertex,
                    __global const real *tangent, __global real *shadow, __global const real *materials,
                    __global const real *lights, __global const uint *light_kinds, __global const uint *light_alias,
                    uint light_count, real scene_diameter) {
@@ -24,6 +24,7 @@ STAGE light_sample(uint count, uint unit, uint first, uint capacity, uint depth,
     if (i >= count)
         return;
     const size_t row = first + i;
+    const uint depth = AT_UINT(vertex, depth, row);
     const random4 u = random_draw(AT_UINT(vertex, key_0, row), AT_UINT(vertex, key_1, row),
                                   random_dimension_light(depth));
     const uint column = min((uint)(u.a * (real)light_count), light_count - 1u);
@@ -94,5 +95,5 @@ STAGE light_sample(uint count, uint unit, uint first, uint capacity, uint depth,
     SET_V3(shadow, origin, row, origin);
     SET_V3(shadow, direction, row, v3_sub(target, origin));
     SET_RGB(shadow, value, row, gain);
-    AT_UINT(shadow, open, row) = rgb_max(gain) > R(0) ? 1u : 0u;
+    AT_UINT(shadow, open, row) = depth + 1u < max_depth && rgb_max(gain) > R(0) ? 1u : 0u;
 }

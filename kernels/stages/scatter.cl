@@ -1,17 +1,18 @@
 /* scatter: samples the BSDF of each vertex of one kind (rows `first` on) and leaves the next ray, or ends the path:
- * where the sample fails, the throughput is zero, or Russian roulette says so. */
+ * where the sample fails, the throughput is zero, the path is as long as it may be, or Russian roulette says so. */
 //! traits: TRAIT_REFRACTION
 #include "kernels/lib/bsdf.h"
 #include "kernels/lib/random.h"
 #include "kernels/lib/vertex_frame.h"
 #include "kernels/shared/stage.h"
 
-STAGE scatter(uint count, uint unit, uint first, uint capacity, uint depth, uint roulette, __global real *vertex,
+STAGE scatter(uint count, uint unit, uint first, uint capacity, uint max_depth, uint roulette_depth, __global real *vertex,
               __global const real *tangent, __global real *ray, __global const real *materials) {
     const size_t i = get_global_id(0);
     if (i >= count)
         return;
     const size_t row = first + i;
+    const uint depth = AT_UINT(vertex, depth, row);
     const random4 u = random_draw(AT_UINT(vertex, key_0, row), AT_UINT(vertex, key_1, row),
                                   random_dimension_scatter(depth));
     const frame axes = VERTEX_FRAME(row);
@@ -26,14 +27,15 @@ STAGE scatter(uint count, uint unit, uint first, uint capacity, uint depth, uint
     AT(vertex, eta, row) = eta;
 #endif
     /* Mitsuba's rule: survive with the largest throughput, freed of the radiance scaling by eta^2, at most 0.95. */
-    const real survival = roulette ? r_min(rgb_max(throughput) * eta * eta, R(0.95)) : R(1);
-    const int alive = s.pdf > R(0) && rgb_max(throughput) > R(0) && u.d < survival;
+    const real survival = depth + 1u >= roulette_depth ? r_min(rgb_max(throughput) * eta * eta, R(0.95)) : R(1);
+    const int alive = depth + 1u < max_depth && s.pdf > R(0) && rgb_max(throughput) > R(0) && u.d < survival;
     throughput = rgb_scale(throughput, R(1) / (alive ? survival : R(1)));
 
     const vec3 direction = v3_normalize(frame_to_world(axes, s.wo));
     const vec3 geometric = AT_V3(vertex, geometric, row);
     const real off = AT(vertex, offset, row) * r_copysign1(v3_dot(geometric, direction));
     const vec3 origin = v3_mad(AT_V3(vertex, position, row), off, geometric);
+    AT_UINT(vertex, depth, row) = depth + 1u;
     SET_RGB(vertex, throughput, row, throughput);
     AT(vertex, pdf, row) = BSDF_IS_DIRAC ? R(0) : s.pdf;
     SET_V3(ray, origin, row, origin);

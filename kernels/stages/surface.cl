@@ -75,6 +75,7 @@ STAGE surface(uint count, uint unit, uint first, uint capacity, __global const u
     AT_UINT(vertex, slot, i) = AT_UINT_IN(vertex_old, vertex, slot, row);
     AT_UINT(vertex, key_0, i) = AT_UINT_IN(vertex_old, vertex, key_0, row);
     AT_UINT(vertex, key_1, i) = AT_UINT_IN(vertex_old, vertex, key_1, row);
+    AT_UINT(vertex, depth, i) = AT_UINT_IN(vertex_old, vertex, depth, row);
     SET_RGB(vertex, throughput, i, throughput);
 #if TRAIT_REFRACTION
     AT(vertex, eta, i) = AT_IN(vertex_old, vertex, eta, row);

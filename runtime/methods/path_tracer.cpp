@@ -55,8 +55,11 @@ PathTracer::PathTracer(Device &device, const Scene &scene, const RenderOptions &
     const std::uint32_t pixels = film_settings_.crop_width * film_settings_.crop_height;
     total_ = pixels * settings_.samples_per_pixel;
     const std::uint32_t bins = static_cast<std::uint32_t>(1 + 2 * scene_tables_.kinds.size());
-    tables_.emplace(device, choose_batch_size(device, options.batch_size, total_, traits_, precision), bins, traits_,
-                    precision);
+    const std::uint32_t capacity = choose_batch_size(device, options.batch_size, total_, traits_, precision);
+    tables_.emplace(device, capacity,
+                    static_cast<std::uint32_t>(std::min<std::uint64_t>(batches_a_pass * std::uint64_t(capacity),
+                                                                       std::max<std::uint64_t>(total_, 1))),
+                    bins, traits_, precision);
     scene_buffers_.emplace(device, scene_tables_, precision);
     build_kernels(scene_tables_.kinds);
     film_.emplace(device, accumulate_, *tables_, film_settings_.crop_width, film_settings_.crop_height, traits_,
@@ -102,9 +105,13 @@ void PathTracer::build_kernels(const std::vector<std::string> &kinds) {
                                      &tables_->tangent, &tables_->bin, &tables_->index, &tables_->vertex[0]})
             kernel->bind(*buffer);
         kernel->bind("vertex_old", tables_->vertex[1]);
-        for (const char *number : {"count", "first", "depth", "roulette", "chunks", "first_pixel", "first_slot",
+        for (const char *number : {"count", "first", "chunks", "first_row", "first_pixel", "first_slot",
                                    "first_sample_low", "first_sample_high"})
             kernel->set(number, 0);
+        kernel->set("max_depth", max_depth());
+        // Mitsuba's rr_depth; a negative one means none.
+        kernel->set("roulette_depth", settings_.rr_depth < 0 ? 0xFFFFFFFFu : std::uint32_t(settings_.rr_depth));
+        kernel->set("slots", tables_->slots);
         kernel->set("capacity", tables_->capacity);
     }
     camera_.set("pixels", film_settings_.crop_width * film_settings_.crop_height);
@@ -116,12 +123,16 @@ void PathTracer::build_kernels(const std::vector<std::string> &kinds) {
     camera_.set("seed_high", static_cast<std::uint32_t>(options_.seed >> 32));
 }
 
+bool PathTracer::samples_lights(const KindKernels &kind) const {
+    return !kind.is_dirac && scene_tables_.light_count > 0 && options_.strategy != RenderOptions::Strategy::bsdf;
+}
+
 std::vector<Kernel *> PathTracer::all_kernels() {
     std::vector<Kernel *> kernels = {&camera_, &classify_, &surface_, &escape_, &connect_, &emission_, &accumulate_};
     for (Kernel &kernel : partition_kernels_)
         kernels.push_back(&kernel);
     for (KindKernels &kind : kinds_) {
-        if (!kind.is_dirac && scene_tables_.light_count > 0)
+        if (samples_lights(kind))
             kernels.push_back(&kind.light_sample);
         kernels.push_back(&kind.scatter);
         if (options_.aov)
@@ -130,12 +141,14 @@ std::vector<Kernel *> PathTracer::all_kernels() {
     return kernels;
 }
 
-/// Some implementations compile at the first launch: do that now, on no rows, and say what it took.
+/// Some implementations compile at the first launch, and PoCL once more for large grids: do that now, on no rows, and
+/// say what it took.
 void PathTracer::warm(std::vector<Kernel *> kernels) {
     for (std::size_t i = 0; i < kernels.size(); ++i) {
         const auto start = std::chrono::steady_clock::now();
         kernels[i]->set("count", 0);
         kernels[i]->launch(1);
+        kernels[i]->launch(tables_->capacity);
         finish(device_);
         kernels[i]->reset_usage();
         const double seconds = seconds_since(start);
@@ -145,13 +158,15 @@ void PathTracer::warm(std::vector<Kernel *> kernels) {
     }
 }
 
-void PathTracer::begin_paths(std::uint32_t count) {
-    const std::uint64_t first_sample = done_ / film_->pixels();
+std::uint32_t PathTracer::max_depth() const {
+    return settings_.max_depth < 0 ? deepest : static_cast<std::uint32_t>(settings_.max_depth);
+}
+
+void PathTracer::begin_paths(std::uint32_t row, std::uint32_t slot, std::uint32_t count, const Buffer &vertex) {
+    camera_.bind("vertex", vertex);
     camera_.set("count", count);
-    camera_.set("first_pixel", static_cast<std::uint32_t>(done_ % film_->pixels()));
-    camera_.set("first_sample_low", static_cast<std::uint32_t>(first_sample));
-    camera_.set("first_sample_high", static_cast<std::uint32_t>(first_sample >> 32));
-    camera_.bind("vertex", tables_->vertex[0]);
+    camera_.set("first_row", row);
+    camera_.set("first_slot", slot);
     camera_.launch(count);
 }
 
@@ -165,20 +180,31 @@ bool PathTracer::render_batch() {
     if (done_ >= total_)
         return false;
     const auto start = std::chrono::steady_clock::now();
-    const std::uint32_t count =
-        static_cast<std::uint32_t>(std::min<std::uint64_t>(tables_->capacity, total_ - done_));
-    const std::uint32_t max_depth =
-        settings_.max_depth < 0 ? deepest : static_cast<std::uint32_t>(settings_.max_depth);
+    const std::uint32_t paths = static_cast<std::uint32_t>(std::min<std::uint64_t>(tables_->slots, total_ - done_));
+    const std::uint32_t first_pixel = static_cast<std::uint32_t>(done_ % film_->pixels());
+    const std::uint64_t first_sample = done_ / film_->pixels();
+    camera_.set("first_pixel", first_pixel);
+    camera_.set("first_sample_low", static_cast<std::uint32_t>(first_sample));
+    camera_.set("first_sample_high", static_cast<std::uint32_t>(first_sample >> 32));
     const auto run = [](Kernel &kernel, std::uint32_t first, std::uint32_t items) {
         kernel.set("first", first);
         kernel.set("count", items);
         kernel.launch(items);
     };
 
-    begin_paths(count);
-    std::uint32_t rays = count, vertices = 0; // rows of the ray table, and of the newest vertices
     int newest = 0;
-    for (std::uint32_t depth = 0; depth < max_depth && rays > 0; ++depth) {
+    std::uint32_t begun = 0;    // paths of this pass
+    std::uint32_t vertices = 0; // rows of the newest vertices; the same rows of the ray table hold what they sent out
+    for (;;) {
+        // New paths fill the rows that others have left.
+        const std::uint32_t fresh =
+            settings_.max_depth == 0 ? 0 : std::min(tables_->capacity - vertices, paths - begun);
+        begin_paths(vertices, begun, fresh, tables_->vertex[newest]);
+        begun += fresh;
+        const std::uint32_t rays = vertices + fresh;
+        if (rays == 0)
+            break;
+
         trace(rays, vertices);
         connect_.bind("vertex", tables_->vertex[newest]);
         run(connect_, 0, vertices);
@@ -189,7 +215,6 @@ bool PathTracer::render_batch() {
         for (Kernel *kernel : {&surface_, &escape_, &emission_}) {
             kernel->bind("vertex_old", tables_->vertex[newest]);
             kernel->bind("vertex", tables_->vertex[1 - newest]);
-            kernel->set("depth", depth);
         }
         run(escape_, 0, escaped);
         for (std::size_t k = 0; k < kinds_.size(); ++k)
@@ -197,34 +222,23 @@ bool PathTracer::render_batch() {
         run(surface_, escaped, hits);
         newest = 1 - newest;
         vertices = hits;
-        rays = 0;
 
-        const bool last = depth + 1 >= max_depth;
         for (std::size_t k = 0; k < kinds_.size(); ++k) {
             const std::uint32_t first = range[1 + 2 * k] - escaped, items = range[3 + 2 * k] - range[1 + 2 * k];
-            if (items == 0)
-                continue;
             KindKernels &kind = kinds_[k];
-            for (Kernel *kernel : {&kind.light_sample, &kind.scatter, &kind.feature}) {
+            for (Kernel *kernel : {&kind.light_sample, &kind.scatter, &kind.feature})
                 kernel->bind("vertex", tables_->vertex[newest]);
-                kernel->set("depth", depth);
-            }
-            if (depth == 0 && options_.aov)
+            if (options_.aov)
                 run(kind.feature, first, items);
-            if (last)
-                continue;
-            if (!kind.is_dirac && scene_tables_.light_count > 0 && options_.strategy != RenderOptions::Strategy::bsdf)
+            if (samples_lights(kind))
                 run(kind.light_sample, first, items);
-            kind.scatter.set("roulette",
-                             settings_.rr_depth >= 0 && depth + 1 >= std::uint32_t(settings_.rr_depth) ? 1 : 0);
             run(kind.scatter, first, items);
-            rays = hits;
         }
     }
-    film_->accumulate(count, static_cast<std::uint32_t>(done_ % film_->pixels()));
+    film_->accumulate(paths, first_pixel);
     finish(device_);
-    done_ += count;
-    statistics_.samples += count;
+    done_ += paths;
+    statistics_.samples += paths;
     statistics_.render_seconds += seconds_since(start);
     return done_ < total_;
 }

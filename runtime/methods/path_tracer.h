@@ -36,7 +36,9 @@ class PathTracer final : public Method {
     void build_kernels(const std::vector<std::string> &kinds);
     void warm(std::vector<Kernel *> kernels);
     std::vector<Kernel *> all_kernels();
-    void begin_paths(std::uint32_t count);
+    std::uint32_t max_depth() const;
+    bool samples_lights(const KindKernels &kind) const;
+    void begin_paths(std::uint32_t row, std::uint32_t slot, std::uint32_t count, const Buffer &vertex);
     void trace(std::uint32_t rays, std::uint32_t shadows);
 
     Device &device_;

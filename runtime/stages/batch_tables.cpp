@@ -25,17 +25,17 @@ std::uint32_t vertex_column_count(const TraitMap &traits) {
 
 } // namespace
 
-BatchTables::BatchTables(Device &device, std::uint32_t rows, std::uint32_t bins, const TraitMap &traits,
-                         Precision precision)
-    : capacity(rows) {
-    const std::size_t column = real_bytes(precision) * capacity;
+BatchTables::BatchTables(Device &device, std::uint32_t rows, std::uint32_t slot_count, std::uint32_t bins,
+                         const TraitMap &traits, Precision precision)
+    : capacity(rows), slots(slot_count) {
+    const std::size_t column = real_bytes(precision) * capacity, slot_column = real_bytes(precision) * slots;
     const std::size_t chunks = (capacity + partition_chunk - 1) / partition_chunk;
     ray = Buffer(device, "ray", column * ray_columns);
     shadow = Buffer(device, "shadow", column * shadow_columns);
     for (Buffer &v : vertex)
         v = Buffer(device, "vertex", column * vertex_column_count(traits));
-    radiance = Buffer(device, "radiance", column * radiance_columns);
-    feature = Buffer(device, "feature", traits.at("TRAIT_AOV") ? column * feature_columns : 0);
+    radiance = Buffer(device, "radiance", slot_column * radiance_columns);
+    feature = Buffer(device, "feature", traits.at("TRAIT_AOV") ? slot_column * feature_columns : 0);
     tangent = Buffer(device, "tangent", traits.at("TRAIT_ANISOTROPIC") ? column * tangent_columns : 0);
     bin = Buffer(device, "bin", sizeof(std::uint32_t) * capacity);
     index = Buffer(device, "index", sizeof(std::uint32_t) * capacity);
@@ -45,9 +45,9 @@ BatchTables::BatchTables(Device &device, std::uint32_t rows, std::uint32_t bins,
 
 std::size_t batch_bytes_per_path(const TraitMap &traits, Precision precision) {
     std::size_t columns = 2 * vertex_column_count(traits);
-    for (int table : {int(ray_columns), int(shadow_columns), int(radiance_columns)})
+    for (int table : {int(ray_columns), int(shadow_columns), int(batches_a_pass * radiance_columns)})
         columns += static_cast<std::size_t>(table);
-    columns += traits.at("TRAIT_AOV") ? feature_columns : 0;
+    columns += traits.at("TRAIT_AOV") ? batches_a_pass * feature_columns : 0;
     columns += traits.at("TRAIT_ANISOTROPIC") ? tangent_columns : 0;
     return columns * real_bytes(precision) + 2 * sizeof(std::uint32_t);
 }

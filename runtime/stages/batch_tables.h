@@ -1,4 +1,7 @@
 // The tables of one batch of paths on the device, and how large a batch may be.
+//
+// A batch is the paths that are in flight at once. A pass is more paths than that: when some end, others begin in their
+// rows, so that a batch stays full until the pass runs out.
 #pragma once
 
 #include "runtime/device/buffer.h"
@@ -9,15 +12,19 @@
 
 namespace gradus {
 
+/// Passes are this many batches long.
+constexpr std::uint32_t batches_a_pass = 4;
+
 /// Rows that each work-item of the partition counts.
 constexpr std::uint32_t partition_chunk = 256;
 
 struct BatchTables {
     /// `bins` of the partition, the escaped included. Allocates only what the traits ask for.
-    BatchTables(Device &device, std::uint32_t capacity, std::uint32_t bins, const TraitMap &traits,
-                Precision precision);
+    BatchTables(Device &device, std::uint32_t capacity, std::uint32_t slots, std::uint32_t bins,
+                const TraitMap &traits, Precision precision);
 
-    std::uint32_t capacity;
+    std::uint32_t capacity; ///< paths in flight
+    std::uint32_t slots;    ///< paths of a pass
     Buffer ray, shadow, radiance, feature, tangent;
     Buffer vertex[2]; ///< surface reads one and writes the other
     Buffer bin, offset, index, range;

@@ -22,7 +22,7 @@ FilmStage::FilmStage(Device &device, Kernel kernel, const BatchTables &tables, s
     feature_film_.clear();
     for (const Buffer &buffer : {tables.radiance, tables.feature, film_, feature_film_})
         kernel_.bind(buffer);
-    kernel_.set("batch_capacity", tables.capacity);
+    kernel_.set("slots", tables.slots);
     kernel_.set("pixels", width * height);
 }
 

@@ -1,0 +1,144 @@
+// Pixel filters: an edge that the camera sees against the filters' integrals, and a whole image against a fine one that
+// is filtered afterwards.
+#include "tests/methods/reference_scene.h"
+#include "tests/support/render.h"
+#include "tests/support/small_scenes.h"
+
+#include <fmt/format.h>
+
+#include <functional>
+
+namespace gradus::testing {
+namespace {
+
+struct FilterCase {
+    std::string name;
+    FilmSettings::Filter filter;
+    float radius, stddev;
+
+    void set(FilmSettings &film) const {
+        film.filter = filter;
+        film.filter_radius = radius;
+        film.filter_stddev = stddev;
+    }
+    /// Share of the filter left of x.
+    double below(double x) const {
+        switch (filter) {
+        case FilmSettings::Filter::box:
+            return std::clamp(x + 0.5, 0.0, 1.0);
+        case FilmSettings::Filter::tent: {
+            const double t = std::clamp(x / radius, -1.0, 1.0);
+            return t < 0 ? 0.5 * (1 + t) * (1 + t) : 1 - 0.5 * (1 - t) * (1 - t);
+        }
+        case FilmSettings::Filter::gaussian: {
+            const double t = std::clamp(x, -double(radius), double(radius)), scale = std::sqrt(2.0) * stddev;
+            return 0.5 + 0.5 * std::erf(t / scale) / std::erf(radius / scale);
+        }
+        }
+        return 0;
+    }
+};
+
+class Filter : public ::testing::TestWithParam<FilterCase> {};
+
+TEST_P(Filter, SpreadsAnEdgeByItsIntegral) {
+    constexpr std::uint32_t size = 16;
+    constexpr std::uint64_t samples = 1024;
+    constexpr double edge = 7.3; // pixels from the left, or from the top
+    for (const bool upright : {true, false}) {
+        SceneMaker maker(size, samples);
+        maker.look({0, 0, 0}, {0, 0, 1}, 90); // at z = 1 the film is 2 wide; +x is to the left, +y up
+        GetParam().set(maker.scene.film);
+        maker.scene.settings.max_depth = 1;
+        const std::uint32_t black = maker.material(diffuse(0));
+        const std::int32_t emitter = maker.emitter(Emitter::Kind::area, {1, 1, 1});
+        const float at = float(1 - 2 * edge / size);
+        // Right of the edge, or below it; faces the camera.
+        if (upright)
+            maker.parallelogram({at - 10, -5, 1}, {0, 10, 0}, {10, 0, 0}, black, emitter);
+        else
+            maker.parallelogram({-5, at - 10, 1}, {0, 10, 0}, {10, 0, 0}, black, emitter);
+        const Image image = render(maker.scene).image;
+        for (std::uint32_t i = 0; i < size; ++i) {
+            double mean = 0;
+            for (std::uint32_t j = 0; j < size; ++j)
+                mean += pixel(image, upright ? i : j, upright ? j : i) / size;
+            const double expected = 1 - GetParam().below(edge - (i + 0.5));
+            const double error = std::sqrt(expected * (1 - expected) / double(samples * size));
+            EXPECT_NEAR(mean, expected, 4 * error + 2e-5) << (upright ? "column " : "row ") << i;
+        }
+    }
+}
+
+TEST_P(Filter, EqualsAFineImageFilteredAfterwards) {
+    constexpr std::uint32_t size = 36, fine = 8, margin = 2; // pixels, parts of each, and what is left out around
+    constexpr std::uint32_t inner = size - 2 * margin;
+    constexpr std::size_t seeds = 12;
+    ASSERT_LE(GetParam().radius, margin);
+    Scene coarse_scene = own_scene("cornell-box.xml", size, size);
+    coarse_scene.settings.samples_per_pixel = 256;
+    GetParam().set(coarse_scene.film);
+    Scene fine_scene = own_scene("cornell-box.xml", size * fine, size * fine);
+    fine_scene.settings.samples_per_pixel = 4;
+
+    // Weights of the fine pixels around the center of a coarse one.
+    constexpr std::uint32_t reach = (2 * margin + 1) * fine;
+    std::vector<double> weights(reach);
+    for (std::uint32_t i = 0; i < reach; ++i) {
+        const double left = double(i) / fine - margin - 0.5;
+        weights[i] = GetParam().below(left + 1.0 / fine) - GetParam().below(left);
+    }
+    const auto inner_image =
+        [&](const Image &image, const std::function<double(const std::string &, std::uint32_t, std::uint32_t)> &value) {
+            Image result;
+            result.width = result.height = inner;
+            for (const Channel &channel : image.channels) {
+                Channel values{channel.name, {}};
+                for (std::uint32_t y = 0; y < inner; ++y)
+                    for (std::uint32_t x = 0; x < inner; ++x)
+                        values.values.push_back(float(value(channel.name, x, y)));
+                result.channels.push_back(std::move(values));
+            }
+            return result;
+        };
+    std::vector<Image> filtered, convolved;
+    for (const Image &image : render_seeds(coarse_scene, seeds, {}, 1))
+        filtered.push_back(inner_image(image, [&](const std::string &channel, std::uint32_t x, std::uint32_t y) {
+            return pixel(image, x + margin, y + margin, channel);
+        }));
+    for (const Image &image : render_seeds(fine_scene, seeds, {}, 100))
+        convolved.push_back(inner_image(image, [&](const std::string &channel, std::uint32_t x, std::uint32_t y) {
+            double sum = 0;
+            for (std::uint32_t j = 0; j < reach; ++j)
+                for (std::uint32_t i = 0; i < reach; ++i)
+                    sum += weights[i] * weights[j] * pixel(image, x * fine + i, y * fine + j, channel);
+            return sum;
+        }));
+    // In this order: neighbours are correlated where one fine image served both, which only the first may be.
+    EXPECT_TRUE(agree("filter-" + GetParam().name, convolved, filtered, 256));
+}
+
+INSTANTIATE_TEST_SUITE_P(Film, Filter,
+                         ::testing::Values(FilterCase{"box", FilmSettings::Filter::box, 0.5f, 0.5f},
+                                           FilterCase{"tent", FilmSettings::Filter::tent, 1, 0.5f},
+                                           FilterCase{"wide_tent", FilmSettings::Filter::tent, 1.7f, 0.5f},
+                                           FilterCase{"gaussian", FilmSettings::Filter::gaussian, 2, 0.5f},
+                                           FilterCase{"cut_gaussian", FilmSettings::Filter::gaussian, 1.2f, 0.8f}),
+                         [](const auto &info) { return info.param.name; });
+
+TEST(ConstantImage, StaysUnderAnyFilter) {
+    for (const auto filter : {FilmSettings::Filter::box, FilmSettings::Filter::tent, FilmSettings::Filter::gaussian}) {
+        SceneMaker maker(16, 4);
+        maker.look({0, 0, 0}, {0, 0, 1}, 90);
+        maker.scene.film.filter = filter;
+        maker.scene.film.filter_radius = 2;
+        maker.sphere({0, 0, -5}, 0.1f, maker.material(diffuse(0.5))); // behind the camera
+        maker.environment(0.75);
+        const Spread spread = spread_of(render(maker.scene).image);
+        EXPECT_EQ(spread.least, 0.75);
+        EXPECT_EQ(spread.most, 0.75);
+    }
+}
+
+} // namespace
+} // namespace gradus::testing

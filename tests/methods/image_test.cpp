@@ -1,0 +1,106 @@
+// Images against references made by another renderer.
+#include "runtime/film/metrics.h"
+#include "tests/methods/reference_scene.h"
+#include "tests/support/render.h"
+
+#include <functional>
+
+namespace gradus::testing {
+namespace {
+
+constexpr std::size_t seeds = 8;
+
+::testing::AssertionResult renders_as_referenced(ReferenceScene reference, std::uint64_t samples_per_pixel) {
+    reference.scene.settings.samples_per_pixel = samples_per_pixel;
+    return agrees(render_seeds(reference.scene, seeds), double(samples_per_pixel), reference);
+}
+
+class OwnReference : public ::testing::TestWithParam<const char *> {};
+
+TEST_P(OwnReference, IsMet) { EXPECT_TRUE(renders_as_referenced(own_reference(GetParam()), 64)); }
+
+std::string test_name(std::string name) {
+    std::replace(name.begin(), name.end(), '-', '_');
+    return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Image, OwnReference,
+                         ::testing::Values("cornell-box", "torus-rough-glass", "plates", "holes-7", "holes-14",
+                                           "holes-28", "door-ajar", "materials"),
+                         [](const auto &info) { return test_name(info.param); });
+
+struct SharedCase {
+    SharedReference reference;
+    std::uint64_t samples_per_pixel;
+};
+
+class SharedReferenceTest : public ::testing::TestWithParam<SharedCase> {};
+
+TEST_P(SharedReferenceTest, IsMet) {
+    if (!has_shared_references())
+        GTEST_SKIP() << "there is no ../shared/references beside the project";
+    EXPECT_TRUE(renders_as_referenced(shared_reference(GetParam().reference), GetParam().samples_per_pixel));
+}
+
+INSTANTIATE_TEST_SUITE_P(Image, SharedReferenceTest,
+                         ::testing::Values(SharedCase{{"cornell-box", "cornell-box/scene.xml", 256, 256, 30, 32768},
+                                                      16},
+                                           SharedCase{{"torus-soft", "torus/scene-soft.xml", 256, 192, 30, 32768}, 32},
+                                           SharedCase{{"veach-mis", "veach-mis/scene.xml", 320, 180, 3, 32768}, 64}),
+                         [](const auto &info) { return test_name(info.param.reference.name); });
+
+// Small defects that the tests above must see, with their own sample counts.
+struct Defect {
+    std::string name, reference;
+    std::function<void(Scene &)> plant;
+};
+
+class PlantedDefect : public ::testing::TestWithParam<Defect> {};
+
+TEST_P(PlantedDefect, IsSeen) {
+    ReferenceScene reference = own_reference(GetParam().reference);
+    GetParam().plant(reference.scene);
+    reference.name = "planted-" + GetParam().name;
+    EXPECT_FALSE(renders_as_referenced(reference, 64));
+}
+
+Material &material_named(Scene &scene, const std::string &shape) {
+    for (const Shape &candidate : scene.shapes)
+        if (candidate.name.find(shape) != std::string::npos)
+            return scene.materials[candidate.material];
+    throw std::runtime_error("no shape " + shape);
+}
+
+void scale_emitters(Scene &scene, Emitter::Kind kind, float factor) {
+    std::size_t found = 0;
+    for (Emitter &emitter : scene.emitters)
+        if (emitter.kind == kind) {
+            emitter.value = {emitter.value.r * factor, emitter.value.g * factor, emitter.value.b * factor};
+            ++found;
+        }
+    ASSERT_GT(found, 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Image, PlantedDefect,
+    ::testing::Values(Defect{"lamp_3_percent_brighter", "cornell-box",
+                             [](Scene &scene) { scale_emitters(scene, Emitter::Kind::area, 1.03f); }},
+                      Defect{"paths_one_edge_shorter", "cornell-box", [](Scene &scene) { --scene.settings.max_depth; }},
+                      Defect{"rougher_metal", "materials",
+                             [](Scene &scene) {
+                                 Bsdf &bsdf = material_named(scene, "rough-silver").front;
+                                 bsdf.alpha_u = bsdf.alpha_v = 0.25f; // 0.22
+                             }},
+                      Defect{"denser_glass", "materials",
+                             [](Scene &scene) { material_named(scene, "rough-glass-ggx").front.ior *= 1.05f; }},
+                      Defect{"screen_swapped", "materials",
+                             [](Scene &scene) {
+                                 Material &screen = material_named(scene, "screen-left");
+                                 std::swap(screen.front, screen.back);
+                             }},
+                      Defect{"sky_10_percent_darker", "plates",
+                             [](Scene &scene) { scale_emitters(scene, Emitter::Kind::constant, 0.9f); }}),
+    [](const auto &info) { return info.param.name; });
+
+} // namespace
+} // namespace gradus::testing

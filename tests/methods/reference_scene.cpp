@@ -1,0 +1,120 @@
+#include "tests/methods/reference_scene.h"
+
+#include "runtime/film/metrics.h"
+#include "runtime/io/image_io.h"
+#include "runtime/io/load_scene.h"
+#include "tests/support/render.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <fstream>
+
+namespace gradus::testing {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path root = GRADUS_ROOT;
+const fs::path shared = root / ".." / "shared";
+
+void use_box_filter(Scene &scene, std::uint32_t width, std::uint32_t height) {
+    FilmSettings film;
+    film.width = width;
+    film.height = height;
+    film.filter = FilmSettings::Filter::box;
+    film.filter_radius = 0.5f;
+    scene.film = film;
+}
+
+std::string score_text(const char *what, const BlockTest &test) {
+    const std::size_t per_channel = std::size_t(test.blocks_x) * test.blocks_y;
+    const std::size_t at = test.largest_index % per_channel;
+    return fmt::format("{}: {} scores, {} not finite, largest |z| {:.2f} in {} at block ({}, {}), limit {:.2f}; "
+                       "{} over 3, limit {}\n",
+                       what, test.tested, test.non_finite, test.largest,
+                       test.channels[test.largest_index / per_channel], at % test.blocks_x, at / test.blocks_x,
+                       test.largest_limit, test.over_three, test.over_three_limit);
+}
+
+::testing::AssertionResult judge(const std::string &name, const std::vector<Image> &seeds, double samples_per_pixel,
+                                 const Image &reference, const Image &variance, double reference_samples_per_pixel,
+                                 int batches) {
+    const auto test = [&](int block) {
+        return block_z_test(seeds, reference, variance, samples_per_pixel, reference_samples_per_pixel, block, batches);
+    };
+    const BlockTest blocks = test(16), whole = test(0);
+    const Image mean = mean_image(seeds);
+    const std::string text =
+        fmt::format("{}, {} seeds of {} samples a pixel: mean ratio {:.5f}, relMSE {:.2e}\n", name, seeds.size(),
+                    samples_per_pixel, compare_means(mean, reference).ratio, relative_mse(mean, reference)) +
+        score_text("blocks", blocks) + score_text("whole image", whole);
+    std::fputs(text.c_str(), stdout);
+    if (blocks.passed() && whole.passed())
+        return ::testing::AssertionSuccess() << text;
+    const fs::path folder = fs::current_path() / "failed-images";
+    fs::create_directories(folder);
+    const Image error = relative_error_image(mean, reference);
+    write_image(mean, (folder / (name + "-mean.exr")).string());
+    write_image(error, (folder / (name + "-error.exr")).string());
+    write_png(error_picture(error), (folder / (name + "-error.png")).string());
+    return ::testing::AssertionFailure() << text << "images are in " << folder.string();
+}
+
+} // namespace
+
+Scene own_scene(const std::string &file, std::uint32_t width, std::uint32_t height) {
+    Scene scene = load_scene((root / "scenes" / file).string()).scene;
+    use_box_filter(scene, width, height);
+    return scene;
+}
+
+ReferenceScene own_reference(const std::string &name) {
+    const fs::path folder = root / "tests" / "references";
+    std::ifstream file(folder / (name + ".json"));
+    const nlohmann::json json = nlohmann::json::parse(file);
+    LoadOptions options;
+    for (const auto &[key, value] : json.at("parameters").items())
+        options.parameters[key] = value.dump();
+    ReferenceScene reference;
+    reference.name = name;
+    reference.scene = load_scene((root / json.at("scene").get<std::string>()).string(), options).scene;
+    use_box_filter(reference.scene, json.at("width"), json.at("height"));
+    reference.scene.settings.max_depth = json.at("max_depth");
+    reference.mean = read_image((folder / (name + "-mean.exr")).string());
+    reference.variance = read_image((folder / (name + "-variance.exr")).string());
+    reference.samples_per_pixel = json.at("spp");
+    return reference;
+}
+
+bool has_shared_references() { return fs::exists(shared / "references") && fs::exists(shared / "scenes"); }
+
+ReferenceScene shared_reference(const SharedReference &from) {
+    ReferenceScene reference;
+    reference.name = from.name;
+    reference.scene = load_scene((shared / "scenes" / from.scene).string()).scene;
+    use_box_filter(reference.scene, from.width, from.height);
+    reference.scene.settings.max_depth = from.max_depth;
+    reference.mean = read_image((shared / "references" / (from.name + "-mean.exr")).string());
+    reference.variance = read_image((shared / "references" / (from.name + "-variance.exr")).string());
+    reference.samples_per_pixel = from.samples_per_pixel;
+    return reference;
+}
+
+::testing::AssertionResult agrees(const std::vector<Image> &seeds, double samples_per_pixel,
+                                  const ReferenceScene &reference) {
+    constexpr int reference_batches = 64;
+    return judge(reference.name, seeds, samples_per_pixel, reference.mean, reference.variance,
+                 reference.samples_per_pixel, reference_batches);
+}
+
+::testing::AssertionResult agree(const std::string &name, const std::vector<Image> &a, const std::vector<Image> &b,
+                                 double samples_per_pixel) {
+    const MeanAndVariance other = mean_and_variance(b);
+    // The counts are left out: what is noise in one set need not be in the other.
+    return judge(name, a, samples_per_pixel, other.mean, other.variance, 0, int(b.size()));
+}
+
+} // namespace gradus::testing

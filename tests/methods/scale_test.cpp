@@ -1,0 +1,83 @@
+// Scenes of other sizes and far from the origin.
+#include "tests/methods/reference_scene.h"
+#include "tests/support/render.h"
+
+#include "runtime/scene/transform.h"
+
+#include <fmt/format.h>
+
+namespace gradus::testing {
+namespace {
+
+/// Every position p becomes factor p + offset.
+void place(Scene &scene, double factor, const Double3 &offset) {
+    const auto placed = [&](Vector3 p) { return to_float(add(scale(to_double(p), factor), offset)); };
+    for (Mesh &mesh : scene.meshes)
+        for (Vector3 &p : mesh.positions)
+            p = placed(p);
+    for (Sphere &sphere : scene.spheres) {
+        sphere.center = placed(sphere.center);
+        sphere.radius = float(sphere.radius * factor);
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        double &origin = scene.camera.to_world.m[std::size_t(axis) * 4 + 3];
+        origin = factor * origin + offset[axis];
+    }
+}
+
+double extent(const Scene &scene) {
+    Double3 low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
+    for (const Mesh &mesh : scene.meshes)
+        for (const Vector3 &p : mesh.positions)
+            for (int axis = 0; axis < 3; ++axis) {
+                low[axis] = std::min(low[axis], to_double(p)[axis]);
+                high[axis] = std::max(high[axis], to_double(p)[axis]);
+            }
+    return length(subtract(high, low));
+}
+
+class Scaled : public ::testing::TestWithParam<double> {};
+
+TEST_P(Scaled, CornellBoxStaysAsItIs) {
+    ReferenceScene reference = own_reference("cornell-box");
+    reference.name = fmt::format("cornell-box-times-{}", GetParam());
+    place(reference.scene, GetParam(), {0, 0, 0});
+    reference.scene.settings.samples_per_pixel = 32;
+    EXPECT_TRUE(agrees(render_seeds(reference.scene, 8), 32, reference));
+}
+
+INSTANTIATE_TEST_SUITE_P(Numbers, Scaled, ::testing::Values(1e-3, 1e4));
+
+class FarAway : public ::testing::TestWithParam<double> {};
+
+// A float has 24 bits: at a thousand extents 14 are left for the scene itself, and rays start off surfaces by some
+// thousandths of its extent. Corners darken; that much is stated here, and that it is no more.
+TEST_P(FarAway, CornellBoxKeepsItsLight) {
+    const double extents = GetParam();
+    ReferenceScene reference = own_reference("cornell-box");
+    const double offset = extents * extent(reference.scene) / std::sqrt(3.0);
+    place(reference.scene, 1, {offset, -offset, offset});
+    reference.scene.settings.samples_per_pixel = 32;
+    const std::vector<Image> images = render_seeds(reference.scene, 8); // fails on values that are not finite
+    const Image mean = mean_image(images);
+    const BlockTest blocks =
+        block_z_test(images, reference.mean, reference.variance, 32, reference.samples_per_pixel, 16);
+    const std::size_t per_channel = blocks.z.size() / blocks.channels.size();
+    double largest = 0;
+    for (std::size_t i = 0; i < blocks.z.size(); ++i) {
+        // Relative to the image's mean: dark blocks have little to lose.
+        const Channel &channel = reference.mean.channels[i / per_channel];
+        largest = std::max(largest, std::fabs(blocks.difference[i]) / spread_of(reference.mean, channel.name).mean);
+    }
+    const double ratio = compare_means(mean, reference.mean).ratio;
+    fmt::print(
+        "{} extents away: mean ratio {:.4f}, largest error of a block {:.2f} % of the mean, largest |z| {:.1f}\n",
+        extents, ratio, 100 * largest, blocks.largest);
+    EXPECT_NEAR(ratio, 1, extents < 500 ? 0.005 : 0.03);
+    EXPECT_LT(largest, extents < 500 ? 0.03 : 0.1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Numbers, FarAway, ::testing::Values(10.0, 100.0, 1000.0));
+
+} // namespace
+} // namespace gradus::testing

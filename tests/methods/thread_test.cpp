@@ -1,0 +1,42 @@
+// The same image from one thread and from two, whatever the batches: runs of the program, for the number of threads is
+// settled once a process.
+#include "runtime/io/image_io.h"
+#include "tests/driver/child_process.h"
+
+#include <cstring>
+
+namespace gradus {
+namespace {
+
+class Threads : public ProgramTest, public ::testing::WithParamInterface<const char *> {};
+
+TEST_P(Threads, DoNotChangeTheImage) {
+    const auto render = [&](const std::string &output, const std::string &threads, const std::string &batch_size) {
+        const Outcome outcome = run({"render", std::string(GRADUS_ROOT) + "/scenes/" + GetParam() + ".xml", "-o",
+                                     output, "--size", "160x120", "--spp", "4", "--seed", "11", "--quiet", "--nthreads",
+                                     threads, "--batch-size", batch_size});
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        return read_image(at(output));
+    };
+    const Image one = render("one.exr", "1", "0");
+    for (const char *batch_size : {"0", "1000"}) {
+        const Image two = render("two.exr", "2", batch_size);
+        ASSERT_EQ(one.channels.size(), two.channels.size());
+        for (const Channel &channel : one.channels)
+            EXPECT_EQ(std::memcmp(channel.values.data(), two.find(channel.name)->values.data(),
+                                  sizeof(float) * channel.values.size()),
+                      0)
+                << channel.name << ", batch size " << batch_size;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Program, Threads, ::testing::Values("cornell-box", "plates", "materials"),
+                         [](const auto &info) {
+                             std::string name = info.param;
+                             for (char &c : name)
+                                 c = c == '-' ? '_' : c;
+                             return name;
+                         });
+
+} // namespace
+} // namespace gradus

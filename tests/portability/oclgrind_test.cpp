@@ -1,0 +1,126 @@
+// Every stage under oclgrind, which simulates a device and reports invalid accesses, data races, reads of
+// uninitialised memory and wrong API calls. Tiny renders, as it interprets each instruction; not one report is allowed.
+//
+// Three things are set so that oclgrind 21.10 itself works: kernels are compiled without optimisation and without
+// inlining (its checker of uninitialised memory does not know all instructions that these make), by one thread (its
+// compiler is not safe for several), hence --nthreads 1.
+#include "tests/driver/child_process.h"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+#include <set>
+
+namespace gradus {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsSupersetOf;
+
+class Oclgrind : public ProgramTest {
+  protected:
+    // GRADUS_PROGRAM is `env` here, which finds oclgrind on the path.
+    void SetUp() override {
+        ProgramTest::SetUp();
+        const Outcome version = run({"oclgrind", "--version"});
+        ASSERT_EQ(version.exit_code, 0) << "oclgrind is not installed (Debian: apt install oclgrind)\n" << version.err;
+    }
+
+    std::string report(const std::string &program) const {
+        return text_of("report.txt").empty() ? "" : program + ":\n" + text_of("report.txt").substr(0, 4000);
+    }
+
+    /// Names of the stages that had something to do.
+    std::set<std::string> render(const std::string &scene, std::vector<std::string> more) const {
+        std::vector<std::string> arguments = {"oclgrind",
+                                              "--data-races",
+                                              "--uniform-writes",
+                                              "--uninitialized",
+                                              "--check-api",
+                                              "--log",
+                                              at("report.txt"),
+                                              "--build-options",
+                                              "-cl-opt-disable -D GRADUS_FN=static",
+                                              GRADUS_BINARY,
+                                              "render",
+                                              GRADUS_SCENES + std::string("/") + scene,
+                                              "-o",
+                                              "out.exr",
+                                              "--stats",
+                                              "out.json",
+                                              "--spp",
+                                              "2",
+                                              "--nthreads",
+                                              "1",
+                                              "--quiet"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.signal, 0);
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        EXPECT_EQ(report(scene), "");
+        if (outcome.exit_code != 0)
+            return {};
+        const nlohmann::json statistics = nlohmann::json::parse(text_of("out.json"));
+        EXPECT_EQ(statistics.at("device").at("platform"), "Oclgrind");
+        EXPECT_EQ(statistics.at("non_finite"), 0);
+        std::set<std::string> stages;
+        for (const auto &stage : statistics.at("stages"))
+            if (stage.at("items") > 0)
+                stages.insert(stage.at("name"));
+        return stages;
+    }
+
+    /// Runs one work-item each on four elements of two buffers, the first of which nobody has written.
+    std::string report_of(const std::string &body) const {
+        std::ofstream(folder / "kernel.cl") << "kernel void checked(global float *in, global float *out) {\n"
+                                            << "    const size_t i = get_global_id(0);\n    " << body << "\n}\n";
+        std::ofstream(folder / "kernel.sim") << "kernel.cl\nchecked\n4 1 1\n1 1 1\n"
+                                             << "<size=16 float noinit>\n<size=16 float noinit>\n";
+        const Outcome outcome = run({"oclgrind-kernel", "--data-races", "--uniform-writes", "--uninitialized", "--log",
+                                     at("report.txt"), "kernel.sim"});
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        return report("kernel.cl");
+    }
+};
+
+TEST_F(Oclgrind, ReportsWhatItIsToFind) {
+    EXPECT_EQ(report_of("out[i] = (float)i;"), "");
+    EXPECT_THAT(report_of("out[i] = in[i];"), HasSubstr("Uninitialized value"));
+    EXPECT_THAT(report_of("out[0] = (float)i;"), HasSubstr("data race"));
+    EXPECT_THAT(report_of("out[i + 100] = (float)i;"), HasSubstr("Invalid write"));
+}
+
+// Every BSDF kind and light kind, meshes and spheres, the layers, and two batches.
+TEST_F(Oclgrind, EveryMaterialAndLight) {
+    std::vector<std::string> expected = {"camera",          "classify",       "surface",
+                                         "escape",          "connect",        "accumulate",
+                                         "partition count", "partition scan", "partition scatter"};
+    for (const std::string kind : {"diffuse", "roughconductor_ggx", "roughconductor_beckmann", "roughdielectric_ggx",
+                                   "roughdielectric_beckmann", "conductor", "dielectric", "null"}) {
+        expected.push_back("scatter " + kind);
+        expected.push_back("feature " + kind);
+        if (kind.starts_with("rough") || kind == "diffuse")
+            expected.push_back("light_sample " + kind);
+    }
+    EXPECT_THAT(render("materials.xml", {"--size", "8x8", "--aov", "--batch-size", "64"}), IsSupersetOf(expected));
+}
+
+TEST_F(Oclgrind, KernelsWithEveryTrait) {
+    render("materials.xml", {"--size", "8x8", "--all-traits", "-D", "rfilter=tent"});
+}
+
+TEST_F(Oclgrind, AnisotropicRoughness) { render("plates.xml", {"--size", "8x8"}); }
+
+TEST_F(Oclgrind, OneMaterialOneLight) { render("cornell-box.xml", {"--size", "8x8", "-D", "rfilter=gaussian"}); }
+
+TEST_F(Oclgrind, ABatchThatIsNoWholeSampleOfTheImage) {
+    render("torus-rough-glass.xml", {"--size", "12x9", "--batch-size", "64"});
+}
+
+TEST_F(Oclgrind, ACropAndRussianRoulette) {
+    render("door-ajar.xml", {"--size", "32x24", "--crop", "5,7,9,5", "--rr-depth", "2"});
+}
+
+} // namespace
+} // namespace gradus
