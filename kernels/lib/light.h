@@ -60,8 +60,7 @@ GRADUS_FN light_choice light_from_triangle(rgb radiance, vec3 p0, vec3 e1, vec3 
     const vec3 connection = v3_sub(point, place);
     const real distance_squared = r_max(v3_dot(connection, connection), R(1e-36));
     const real cosine = -v3_dot(normal, connection) / r_sqrt(distance_squared);
-    return light_from_surface(radiance, light_area_pdf(R(2) * inverse, distance_squared, cosine), place, point,
-                              normal);
+    return light_from_surface(radiance, light_area_pdf(R(2) * inverse, distance_squared, cosine), place, point, normal);
 }
 
 GRADUS_FN light_choice light_from_sphere(rgb radiance, vec3 center, real radius, real facing, real inverse_area,
@@ -77,8 +76,7 @@ GRADUS_FN light_choice light_from_sphere(rgb radiance, vec3 center, real radius,
     const real half_chord = r_sqrt(r_max(radius * radius - center_distance_squared * sine_squared, R(0)));
     const real distance = center_distance * ray_local.z - half_chord;
     const frame axis = frame_from_normal(v3_scale(to_center, R(1) / center_distance));
-    const vec3 cone_normal =
-        v3_normalize(v3_sub(v3_scale(frame_to_world(axis, ray_local), distance), to_center));
+    const vec3 cone_normal = v3_normalize(v3_sub(v3_scale(frame_to_world(axis, ray_local), distance), to_center));
     const vec3 area_normal = warp_uniform_sphere(u1, u2);
     const vec3 outward = v3(cone ? cone_normal.x : area_normal.x, cone ? cone_normal.y : area_normal.y,
                             cone ? cone_normal.z : area_normal.z);
@@ -87,8 +85,7 @@ GRADUS_FN light_choice light_from_sphere(rgb radiance, vec3 center, real radius,
     const vec3 connection = v3_sub(point, place);
     const real distance_squared = r_max(v3_dot(connection, connection), R(1e-36));
     const real cosine = -v3_dot(normal, connection) / r_sqrt(distance_squared);
-    const real pdf =
-        light_sphere_pdf(radius, facing, inverse_area, center_distance_squared, distance_squared, cosine);
+    const real pdf = light_sphere_pdf(radius, facing, inverse_area, center_distance_squared, distance_squared, cosine);
     return light_from_surface(radiance, pdf, place, point, normal);
 }
 

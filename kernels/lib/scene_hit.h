@@ -6,7 +6,8 @@
 
 GRADUS_LIB_BEGIN
 
-/* The hit of a ray with the primitive that the tracer named. Independent ifs, not if and else: PoCL vectorises those. */
+/* The hit of a ray with the primitive that the tracer named. Independent ifs, not if and else: PoCL vectorises those.
+ */
 GRADUS_FN primitive_hit primitive_hit_of(GRADUS_GLOBAL const real *triangles, GRADUS_GLOBAL const real *spheres,
                                          uint unit, uint triangle_count, uint primitive, vec3 origin, vec3 direction) {
     primitive_hit hit;
@@ -36,8 +37,8 @@ GRADUS_FN primitive_hit primitive_hit_of(GRADUS_GLOBAL const real *triangles, GR
 }
 
 /* 1 where the ray arrives against the geometric normal's back. */
-GRADUS_FN int primitive_is_behind(GRADUS_GLOBAL const real *triangles, GRADUS_GLOBAL const real *spheres,
-                                  uint unit, uint triangle_count, uint primitive, vec3 origin, vec3 direction) {
+GRADUS_FN int primitive_is_behind(GRADUS_GLOBAL const real *triangles, GRADUS_GLOBAL const real *spheres, uint unit,
+                                  uint triangle_count, uint primitive, vec3 origin, vec3 direction) {
     return v3_dot(primitive_hit_of(triangles, spheres, unit, triangle_count, primitive, origin, direction).normal,
                   direction) > R(0);
 }

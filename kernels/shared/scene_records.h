@@ -64,7 +64,7 @@
     FIELD(light, e2_x, "")                                                                                             \
     FIELD(light, e2_y, "")                                                                                             \
     FIELD(light, e2_z, "")                                                                                             \
-    FIELD(light, inverse_area, "triangles and spheres; for the density of hits")                                                                \
+    FIELD(light, inverse_area, "triangles and spheres; for the density of hits")                                       \
     FIELD(light, offset, "how far connections end before the surface")
 
 #define GRADUS_CAMERA_FIELDS(FIELD)                                                                                    \
@@ -94,7 +94,13 @@ enum light_field { GRADUS_LIGHT_FIELDS(GRADUS_RECORD_INDEX) light_stride };
 enum camera_field { GRADUS_CAMERA_FIELDS(GRADUS_RECORD_INDEX) camera_stride };
 #undef GRADUS_RECORD_INDEX
 
-enum light_kind { light_kind_triangle, light_kind_sphere, light_kind_point, light_kind_directional, light_kind_constant };
+enum light_kind {
+    light_kind_triangle,
+    light_kind_sphere,
+    light_kind_point,
+    light_kind_directional,
+    light_kind_constant
+};
 
 /* primitive_light of a primitive that does not emit. */
 #define no_light 0xFFFFFFFFu
@@ -107,7 +113,8 @@ enum light_kind { light_kind_triangle, light_kind_sphere, light_kind_point, ligh
 /* Members of a record: FIELD_OF(light, lights, 3, value_r). `unit` is an argument of each kernel and always 1: a
  * compiler that cannot know this does not join the loads of neighbouring fields into short vectors, which would stop
  * PoCL from vectorising over work-items. */
-#define FIELD_OF(record, array, index, field) ((array)[(size_t)(index) * record##_stride + record##_##field * (size_t)unit])
+#define FIELD_OF(record, array, index, field)                                                                          \
+    ((array)[(size_t)(index)*record##_stride + record##_##field * (size_t)unit])
 #define FIELD_V3(record, array, index, field)                                                                          \
     v3(FIELD_OF(record, array, index, field##_x), FIELD_OF(record, array, index, field##_y),                           \
        FIELD_OF(record, array, index, field##_z))

@@ -1,8 +1,9 @@
 /* The tables of the wavefront, declared once for host and device.
  *
- * A table is a structure of arrays: column c of row r is element c * capacity + r of one array of `real`. Columns of whole numbers keep a uint in the first four bytes of their
- * slot. Rows are dense: a stage that drops paths writes the survivors side by side, so that every later access
- * is contiguous (an access through an index column costs about three times as much on PoCL).
+ * A table is a structure of arrays: column c of row r is element c * capacity + r of one array of `real`. Columns of
+ * whole numbers keep a uint in the first four bytes of their slot. Rows are dense: a stage that drops paths writes the
+ * survivors side by side, so that every later access is contiguous (an access through an index column costs about three
+ * times as much on PoCL).
  *
  * REAL(table, column, text) and UINT(table, column, text). */
 #ifndef GRADUS_SHARED_TABLES_H
@@ -34,7 +35,7 @@
 
 /* The newest vertex of each path. Two of these tables alternate: `surface` reads the old one and writes the new. */
 #define GRADUS_VERTEX_COLUMNS(REAL, UINT)                                                                              \
-    UINT(vertex, slot, "the path's place in its pass: its row in `radiance`")                                         \
+    UINT(vertex, slot, "the path's place in its pass: its row in `radiance`")                                          \
     UINT(vertex, key_0, "random numbers: hash of seed, pixel and sample")                                              \
     UINT(vertex, key_1, "")                                                                                            \
     UINT(vertex, depth, "edges of the path before this vertex, less one: 0 at what the camera sees")                   \
@@ -53,7 +54,8 @@
     REAL(vertex, geometric_y, "")                                                                                      \
     REAL(vertex, geometric_z, "")                                                                                      \
     UINT(vertex, material, "record of the material on this side")                                                      \
-    REAL(vertex, shading_x, "from here only with TRAIT_SHADING_NORMALS: shading normal, unit, on the side of geometric") \
+    REAL(vertex, shading_x,                                                                                            \
+         "from here only with TRAIT_SHADING_NORMALS: shading normal, unit, on the side of geometric")                  \
     REAL(vertex, shading_y, "")                                                                                        \
     REAL(vertex, shading_z, "")                                                                                        \
     REAL(vertex, eta, "from here only with TRAIT_REFRACTION: product of index ratios so far, for Russian roulette")
@@ -142,9 +144,9 @@ GRADUS_LIB_END
 #define CAPACITY_OF_feature_film pixels
 
 /* Element access: AT(ray, origin_x, row) is a real, AT_UINT(ray, primitive, row) a uint. The table's pointer has the
- * table's name; AT_IN and AT_UINT_IN are for a second table of the same columns: AT_IN(vertex_old, vertex, pdf, row). */
-#define AT_IN(pointer, table, column, row)                                                                             \
-    (((pointer) + (size_t)(table##_##column) * (size_t)CAPACITY_OF_##table)[row])
+ * table's name; AT_IN and AT_UINT_IN are for a second table of the same columns: AT_IN(vertex_old, vertex, pdf, row).
+ */
+#define AT_IN(pointer, table, column, row) (((pointer) + (size_t)(table##_##column) * (size_t)CAPACITY_OF_##table)[row])
 #define AT_UINT_IN(pointer, table, column, row)                                                                        \
     (*(GRADUS_GLOBAL uint *)((pointer) + (size_t)(table##_##column) * (size_t)CAPACITY_OF_##table + (row)))
 #define AT(table, column, row) AT_IN(table, table, column, row)

@@ -17,9 +17,8 @@ GRADUS_FN int is_finite(real x) { return (as_uint((float)x) & 0x7F800000u) != 0x
         AT(table, correction_column, pixel) = s.correction;                                                            \
     }
 
-STAGE accumulate(uint count, uint slots, uint pixels, uint first_slot, uint first_pixel,
-                 __global const real *radiance, __global const real *feature, __global real *film,
-                 __global real *feature_film) {
+STAGE accumulate(uint count, uint slots, uint pixels, uint first_slot, uint first_pixel, __global const real *radiance,
+                 __global const real *feature, __global real *film, __global real *feature_film) {
     const size_t i = get_global_id(0);
     if (i >= count)
         return;

@@ -1,12 +1,18 @@
 /* camera: begins one path a row. Leaves its first ray, its random key, throughput 1 and radiance 0.
  *
- * Paths take rows `first_row` on and slots `first_slot` on. Samples are numbered pixel first: number = sample * pixels +
- * pixel of the crop; slot 0 is pixel `first_pixel` of sample `first_sample`. Random numbers go by the pixel of the full film, so that a crop equals
- * the same part of the full image. */
+ * Paths take rows `first_row` on and slots `first_slot` on. Samples are numbered pixel first: number = sample * pixels
+ * + pixel of the crop; slot 0 is pixel `first_pixel` of sample `first_sample`. Random numbers go by the pixel of the
+ * full film, so that a crop equals the same part of the full image. */
 //! traits: TRAIT_REFRACTION TRAIT_FILTER_TENT TRAIT_FILTER_GAUSSIAN TRAIT_AOV
 #include "kernels/lib/random.h"
 #include "kernels/lib/warp.h"
 #include "kernels/shared/stage.h"
+
+/* number / divisor for number < 2^31 by a multiplication (Granlund and Montgomery 1994): vector units cannot divide.
+ * See invariant_division in runtime/stages/invariant_division.h, which makes `multiplier` and `shift`. */
+GRADUS_FN uint divide(uint number, uint multiplier, uint shift) {
+    return multiplier ? mul_hi(number, multiplier) >> shift : number;
+}
 
 /* Filter importance sampling (Ernst et al. 2006): the offset from the pixel's center is drawn from the filter. */
 GRADUS_FN real filter_offset(__global const real *camera, uint unit, real u) {
@@ -19,21 +25,24 @@ GRADUS_FN real filter_offset(__global const real *camera, uint unit, real u) {
 #endif
 }
 
-STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ray, __global real *vertex, __global real *radiance,
-             __global real *feature, __global const real *camera, uint first_row, uint first_slot, uint first_pixel, uint first_sample_low, uint first_sample_high, uint pixels,
-             uint crop_x, uint crop_y, uint crop_width, uint film_width, uint seed_low, uint seed_high) {
+STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ray, __global real *vertex,
+             __global real *radiance, __global real *feature, __global const real *camera, uint first_row,
+             uint first_slot, uint first_pixel, uint first_sample_low, uint first_sample_high, uint pixels,
+             uint pixels_multiplier, uint pixels_shift, uint width_multiplier, uint width_shift, uint crop_x,
+             uint crop_y, uint crop_width, uint film_width, uint seed_low, uint seed_high) {
     const size_t i = get_global_id(0);
     if (i >= count)
         return;
     const size_t row = first_row + i;
     const uint slot = first_slot + (uint)i;
     const uint number = first_pixel + slot;
-    const uint more_samples = number / pixels;
+    const uint more_samples = divide(number, pixels_multiplier, pixels_shift);
     const uint pixel = number - more_samples * pixels;
     const uint sample_low = first_sample_low + more_samples;
     const uint sample_high = first_sample_high + (sample_low < first_sample_low ? 1u : 0u);
-    const uint y = pixel / crop_width + crop_y;
-    const uint x = pixel % crop_width + crop_x;
+    const uint line = divide(pixel, width_multiplier, width_shift);
+    const uint y = line + crop_y;
+    const uint x = pixel - line * crop_width + crop_x;
 
     const random_bits key = random_key(seed_low, seed_high, y * film_width + x, sample_low, sample_high);
     const random4 u = random_draw(key.x, key.y, random_dimension_camera);

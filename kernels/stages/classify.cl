@@ -16,8 +16,8 @@ STAGE classify(uint count, uint unit, uint capacity, __global const real *ray, _
     uint hit_bin = primitive_bin[present];
 #if TRAIT_TWO_FACED
     /* The two sides may be of different kinds. */
-    const int behind = primitive_is_behind(triangles, spheres, unit, triangle_count, present,
-                                           AT_V3(ray, origin, row), AT_V3(ray, direction, row));
+    const int behind = primitive_is_behind(triangles, spheres, unit, triangle_count, present, AT_V3(ray, origin, row),
+                                           AT_V3(ray, direction, row));
     const uint back_bin = primitive_back_bin[present];
     hit_bin = behind ? back_bin : hit_bin;
 #endif

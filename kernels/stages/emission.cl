@@ -18,8 +18,7 @@ STAGE emission(uint count, uint unit, uint first, uint capacity, uint slots, __g
     const uint primitive = AT_UINT(ray, primitive, row);
     const vec3 origin = AT_V3(ray, origin, row);
     const vec3 direction = AT_V3(ray, direction, row);
-    const primitive_hit hit =
-        primitive_hit_of(triangles, spheres, unit, triangle_count, primitive, origin, direction);
+    const primitive_hit hit = primitive_hit_of(triangles, spheres, unit, triangle_count, primitive, origin, direction);
     const real side = -v3_dot(hit.normal, direction);
     const vec3 connection = v3_sub(hit.position, origin);
     const real distance_squared = v3_dot(connection, connection);
@@ -37,8 +36,8 @@ STAGE emission(uint count, uint unit, uint first, uint capacity, uint slots, __g
                                      inverse_area, v3_dot(to_center, to_center), distance_squared, side);
     }
 #endif
-    real weight = mis_weight_bsdf(AT_IN(vertex_old, vertex, pdf, row),
-                                  pdf_light * FIELD_OF(light, lights, light, probability));
+    real weight =
+        mis_weight_bsdf(AT_IN(vertex_old, vertex, pdf, row), pdf_light * FIELD_OF(light, lights, light, probability));
     weight = side > R(0) ? weight : R(0);
 #if TRAIT_HIDE_EMITTERS
     weight = AT_UINT_IN(vertex_old, vertex, depth, row) > 0u ? weight : R(0);

@@ -4,8 +4,8 @@
 #include "kernels/lib/vertex_frame.h"
 #include "kernels/shared/stage.h"
 
-STAGE feature(uint count, uint unit, uint first, uint capacity, uint slots, __global const real *vertex, __global real *feature,
-              __global const real *camera, __global const real *materials) {
+STAGE feature(uint count, uint unit, uint first, uint capacity, uint slots, __global const real *vertex,
+              __global real *feature, __global const real *camera, __global const real *materials) {
     const size_t i = get_global_id(0);
     if (i >= count)
         return;

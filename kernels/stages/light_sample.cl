@@ -25,8 +25,8 @@ STAGE light_sample(uint count, uint unit, uint first, uint capacity, uint max_de
         return;
     const size_t row = first + i;
     const uint depth = AT_UINT(vertex, depth, row);
-    const random4 u = random_draw(AT_UINT(vertex, key_0, row), AT_UINT(vertex, key_1, row),
-                                  random_dimension_light(depth));
+    const random4 u =
+        random_draw(AT_UINT(vertex, key_0, row), AT_UINT(vertex, key_1, row), random_dimension_light(depth));
     const uint column = min((uint)(u.a * (real)light_count), light_count - 1u);
     const uint light = u.b < FIELD_OF(light, lights, column, alias_threshold) ? column : light_alias[column];
     const real probability = FIELD_OF(light, lights, light, probability);

@@ -6,15 +6,15 @@
 #include "kernels/lib/vertex_frame.h"
 #include "kernels/shared/stage.h"
 
-STAGE scatter(uint count, uint unit, uint first, uint capacity, uint max_depth, uint roulette_depth, __global real *vertex,
-              __global const real *tangent, __global real *ray, __global const real *materials) {
+STAGE scatter(uint count, uint unit, uint first, uint capacity, uint max_depth, uint roulette_depth,
+              __global real *vertex, __global const real *tangent, __global real *ray, __global const real *materials) {
     const size_t i = get_global_id(0);
     if (i >= count)
         return;
     const size_t row = first + i;
     const uint depth = AT_UINT(vertex, depth, row);
-    const random4 u = random_draw(AT_UINT(vertex, key_0, row), AT_UINT(vertex, key_1, row),
-                                  random_dimension_scatter(depth));
+    const random4 u =
+        random_draw(AT_UINT(vertex, key_0, row), AT_UINT(vertex, key_1, row), random_dimension_scatter(depth));
     const frame axes = VERTEX_FRAME(row);
     const vec3 wi = frame_to_local(axes, AT_V3(vertex, wi, row));
     const material m = material_load(materials, AT_UINT(vertex, material, row), unit);

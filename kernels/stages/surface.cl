@@ -20,17 +20,16 @@ STAGE surface(uint count, uint unit, uint first, uint capacity, __global const u
     const rgb throughput =
         rgb3(AT_IN(vertex_old, vertex, throughput_r, row), AT_IN(vertex_old, vertex, throughput_g, row),
              AT_IN(vertex_old, vertex, throughput_b, row));
-    const primitive_hit hit =
-        primitive_hit_of(triangles, spheres, unit, triangle_count, primitive, origin, direction);
+    const primitive_hit hit = primitive_hit_of(triangles, spheres, unit, triangle_count, primitive, origin, direction);
     vec3 shading = hit.normal;
 #if TRAIT_SHADING_NORMALS
 #if TRAIT_SPHERES
     if (primitive < triangle_count)
 #endif
-        shading = v3_normalize(v3_mad(v3_mad(v3_scale(FIELD_V3(normals, triangle_normals, primitive, n0),
-                                                      R(1) - hit.u - hit.v),
-                                             hit.u, FIELD_V3(normals, triangle_normals, primitive, n1)),
-                                      hit.v, FIELD_V3(normals, triangle_normals, primitive, n2)));
+        shading = v3_normalize(
+            v3_mad(v3_mad(v3_scale(FIELD_V3(normals, triangle_normals, primitive, n0), R(1) - hit.u - hit.v), hit.u,
+                          FIELD_V3(normals, triangle_normals, primitive, n1)),
+                   hit.v, FIELD_V3(normals, triangle_normals, primitive, n2)));
 #endif
     const uint sided_material = primitive_material[primitive];
     uint material_index = material_record(sided_material);

@@ -32,8 +32,8 @@ Buffer::Buffer(Device &device, const std::string &name, std::size_t bytes)
                                 "--batch-size, --size or scene",
                                 name, bytes_ >> 20, d.description.allocation_bytes >> 20, d.description.name));
     opencl_call(fmt::format("allocating {} MB for {}", bytes_ >> 20, name), [&] {
-        handle_ = std::make_shared<Handle>(
-            d, cl::Buffer(d.context, CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR, bytes_), bytes_);
+        handle_ = std::make_shared<Handle>(d, cl::Buffer(d.context, CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR, bytes_),
+                                           bytes_);
     });
 }
 

@@ -96,7 +96,8 @@ std::size_t choose(const std::vector<Found> &found, const std::string &selector)
         if (lower(found[i].description.platform + " " + found[i].description.name).find(lower(selector)) !=
             std::string::npos)
             return i;
-    throw Error(ExitCode::device, fmt::format("no OpenCL device matches \"{}\"; there are:{}", selector, list_of(found)));
+    throw Error(ExitCode::device,
+                fmt::format("no OpenCL device matches \"{}\"; there are:{}", selector, list_of(found)));
 }
 
 } // namespace

@@ -42,8 +42,7 @@ struct Kernel::Handle {
         const auto found = arguments.find(argument);
         if (found == arguments.end())
             return;
-        opencl_call("setting " + argument + " of " + request.name,
-                    [&] { kernel.setArg(found->second, bytes, value); });
+        opencl_call("setting " + argument + " of " + request.name, [&] { kernel.setArg(found->second, bytes, value); });
         is_set[found->second] = true;
     }
 };

@@ -18,9 +18,9 @@ using TraitValues = std::map<std::string, int>;
 
 /// One kernel of a program: which file, which entry, and what it is compiled for.
 struct KernelRequest {
-    std::string name;  ///< its row in the profile: "scatter diffuse"
-    std::string file;  ///< "kernels/stages/scatter.cl"
-    std::string entry; ///< "scatter"
+    std::string name;                               ///< its row in the profile: "scatter diffuse"
+    std::string file;                               ///< "kernels/stages/scatter.cl"
+    std::string entry;                              ///< "scatter"
     std::map<std::string, std::string> definitions; ///< more macros, such as BSDF=diffuse
 };
 

@@ -14,8 +14,8 @@ std::unique_ptr<Method> make_method(const std::string &name, Device &device, con
                                     const RenderOptions &options) {
     if (name == "pt")
         return std::make_unique<PathTracer>(device, scene, options);
-    throw Error(ExitCode::usage, fmt::format("there is no method \"{}\"; there is: {}", name,
-                                             fmt::join(method_names(), ", ")));
+    throw Error(ExitCode::usage,
+                fmt::format("there is no method \"{}\"; there is: {}", name, fmt::join(method_names(), ", ")));
 }
 
 } // namespace gradus

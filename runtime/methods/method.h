@@ -24,7 +24,7 @@ struct RenderOptions {
     bool all_traits = false;      ///< for measuring: compile the kernels for everything, as if the scene had it
     enum class Strategy { mis, light, bsdf };
     Strategy strategy = Strategy::mis; ///< for tests: light sampling alone or BSDF sampling alone
-    std::string dump_kernels; ///< folder for the source of each kernel as it was compiled; empty: none
+    std::string dump_kernels;          ///< folder for the source of each kernel as it was compiled; empty: none
     /// Called when a kernel has been compiled: its name, how many are ready, of how many, and its seconds.
     std::function<void(const std::string &, std::size_t, std::size_t, double)> on_compiled;
 };
@@ -37,14 +37,14 @@ struct Statistics {
         std::uint64_t items = 0; ///< rows or rays it worked on
         std::uint64_t launches = 0;
     };
-    std::vector<Stage> stages; ///< in the order in which a path meets them
-    std::map<std::string, std::uint64_t> rays;   ///< by kind: "extension", "shadow"
+    std::vector<Stage> stages;                     ///< in the order in which a path meets them
+    std::map<std::string, std::uint64_t> rays;     ///< by kind: "extension", "shadow"
     std::map<std::string, double> compile_seconds; ///< by kernel; empty where all came from a cache
-    std::uint64_t samples = 0;                   ///< paths begun
-    std::uint64_t non_finite = 0;                ///< samples left out because they were NaN or infinite
-    double render_seconds = 0;                   ///< spent in render_batch()
-    std::uint64_t device_bytes = 0;              ///< allocated on the device
-    std::uint64_t peak_host_bytes = 0;           ///< the process at its peak
+    std::uint64_t samples = 0;                     ///< paths begun
+    std::uint64_t non_finite = 0;                  ///< samples left out because they were NaN or infinite
+    double render_seconds = 0;                     ///< spent in render_batch()
+    std::uint64_t device_bytes = 0;                ///< allocated on the device
+    std::uint64_t peak_host_bytes = 0;             ///< the process at its peak
 };
 
 class Method {

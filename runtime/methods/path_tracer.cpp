@@ -1,6 +1,7 @@
 #include "runtime/methods/path_tracer.h"
 
 #include "runtime/error.h"
+#include "runtime/stages/invariant_division.h"
 #include "runtime/stages/trace_stage.h"
 
 #include <fmt/format.h>
@@ -38,9 +39,9 @@ FilmSettings with_crop(FilmSettings film) {
     }
     if (film.width == 0 || film.height == 0 || film.crop_x + film.crop_width > film.width ||
         film.crop_y + film.crop_height > film.height)
-        throw Error(ExitCode::usage, fmt::format("the crop {}x{} at {},{} does not lie in the film of {}x{}",
-                                                 film.crop_width, film.crop_height, film.crop_x, film.crop_y,
-                                                 film.width, film.height));
+        throw Error(ExitCode::usage,
+                    fmt::format("the crop {}x{} at {},{} does not lie in the film of {}x{}", film.crop_width,
+                                film.crop_height, film.crop_x, film.crop_y, film.width, film.height));
     if (std::uint64_t(film.width) * film.height >= std::numeric_limits<std::int32_t>::max())
         throw Error(ExitCode::usage, fmt::format("a film of {}x{} has too many pixels", film.width, film.height));
     return film;
@@ -72,7 +73,7 @@ void PathTracer::build_kernels(const std::vector<std::string> &kinds) {
     const auto stage = [](const std::string &name) {
         return KernelRequest{name, "kernels/stages/" + name + ".cl", name, {}};
     };
-    std::vector<KernelRequest> requests = {stage("camera"),  stage("classify"), stage("surface"),       stage("escape"),
+    std::vector<KernelRequest> requests = {stage("camera"),  stage("classify"), stage("surface"),    stage("escape"),
                                            stage("connect"), stage("emission"), FilmStage::request()};
     for (const KernelRequest &request : PartitionStage::requests())
         requests.push_back(request);
@@ -81,8 +82,8 @@ void PathTracer::build_kernels(const std::vector<std::string> &kinds) {
         const std::map<std::string, std::string> definitions = {
             {"BSDF", kind}, {"BSDF_IS_DIRAC", bsdf_kind_is_dirac(kind) ? "1" : "0"}};
         for (const char *name : {"light_sample", "scatter", "feature"})
-            requests.push_back({fmt::format("{} {}", name, kind), fmt::format("kernels/stages/{}.cl", name), name,
-                                definitions});
+            requests.push_back(
+                {fmt::format("{} {}", name, kind), fmt::format("kernels/stages/{}.cl", name), name, definitions});
     }
     KernelLibrary library(device_, traits_, precision);
     const std::vector<Kernel> built = library.build(requests, {}, options_.dump_kernels);
@@ -114,7 +115,14 @@ void PathTracer::build_kernels(const std::vector<std::string> &kinds) {
         kernel->set("slots", tables_->slots);
         kernel->set("capacity", tables_->capacity);
     }
-    camera_.set("pixels", film_settings_.crop_width * film_settings_.crop_height);
+    const std::uint32_t pixels = film_settings_.crop_width * film_settings_.crop_height;
+    const InvariantDivision by_pixels = invariant_division(pixels);
+    const InvariantDivision by_width = invariant_division(film_settings_.crop_width);
+    camera_.set("pixels", pixels);
+    camera_.set("pixels_multiplier", by_pixels.multiplier);
+    camera_.set("pixels_shift", by_pixels.shift);
+    camera_.set("width_multiplier", by_width.multiplier);
+    camera_.set("width_shift", by_width.shift);
     camera_.set("crop_x", film_settings_.crop_x);
     camera_.set("crop_y", film_settings_.crop_y);
     camera_.set("crop_width", film_settings_.crop_width);

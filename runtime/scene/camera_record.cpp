@@ -23,11 +23,16 @@ double tangent_x(const Camera &camera, double width, double height) {
     const double tangent = std::tan(camera.fov * 3.14159265358979323846 / 360);
     const double aspect = width / height;
     switch (camera.fov_axis) {
-    case Camera::FovAxis::x: return tangent;
-    case Camera::FovAxis::y: return tangent * aspect;
-    case Camera::FovAxis::smaller: return width < height ? tangent : tangent * aspect;
-    case Camera::FovAxis::larger: return width > height ? tangent : tangent * aspect;
-    case Camera::FovAxis::diagonal: return tangent / std::sqrt(1 + 1 / (aspect * aspect));
+    case Camera::FovAxis::x:
+        return tangent;
+    case Camera::FovAxis::y:
+        return tangent * aspect;
+    case Camera::FovAxis::smaller:
+        return width < height ? tangent : tangent * aspect;
+    case Camera::FovAxis::larger:
+        return width > height ? tangent : tangent * aspect;
+    case Camera::FovAxis::diagonal:
+        return tangent / std::sqrt(1 + 1 / (aspect * aspect));
     }
     return tangent;
 }

@@ -102,11 +102,11 @@ struct Camera {
 
 struct FilmSettings {
     enum class Filter { box, tent, gaussian };
-    std::uint32_t width = 768, height = 576; ///< the full film; the crop is a part of it
+    std::uint32_t width = 768, height = 576;                               ///< the full film; the crop is a part of it
     std::uint32_t crop_x = 0, crop_y = 0, crop_width = 0, crop_height = 0; ///< crop_width 0: no crop
     Filter filter = Filter::gaussian;
-    float filter_radius = 2.0f;  ///< tent: half its support in pixels; gaussian: where it is cut off
-    float filter_stddev = 0.5f;  ///< gaussian, in pixels
+    float filter_radius = 2.0f; ///< tent: half its support in pixels; gaussian: where it is cut off
+    float filter_stddev = 0.5f; ///< gaussian, in pixels
 };
 
 /// What the file asks of the renderer; the command line may override each.

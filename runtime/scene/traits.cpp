@@ -64,12 +64,18 @@ void for_each_bsdf(const Scene &scene, Visit visit) {
 std::string bsdf_kind_name(const Bsdf &bsdf) {
     const std::string distribution = bsdf.distribution == Microfacet::ggx ? "_ggx" : "_beckmann";
     switch (bsdf.kind) {
-    case BsdfKind::diffuse: return "diffuse";
-    case BsdfKind::conductor: return "conductor";
-    case BsdfKind::dielectric: return "dielectric";
-    case BsdfKind::null: return "null";
-    case BsdfKind::roughconductor: return "roughconductor" + distribution;
-    case BsdfKind::roughdielectric: return "roughdielectric" + distribution;
+    case BsdfKind::diffuse:
+        return "diffuse";
+    case BsdfKind::conductor:
+        return "conductor";
+    case BsdfKind::dielectric:
+        return "dielectric";
+    case BsdfKind::null:
+        return "null";
+    case BsdfKind::roughconductor:
+        return "roughconductor" + distribution;
+    case BsdfKind::roughdielectric:
+        return "roughdielectric" + distribution;
     }
     return "";
 }
@@ -117,13 +123,18 @@ TraitMap scene_traits(const Scene &scene) {
         if (emitter.value == Rgb{})
             continue; // black: no light
         switch (emitter.kind) {
-        case Emitter::Kind::area: break; // by the shape that bears it
+        case Emitter::Kind::area:
+            break; // by the shape that bears it
         case Emitter::Kind::constant:
             traits["TRAIT_ENVIRONMENT"] = 1;
             traits["TRAIT_LIGHT_CONSTANT"] = 1;
             break;
-        case Emitter::Kind::point: traits["TRAIT_LIGHT_POINT"] = 1; break;
-        case Emitter::Kind::directional: traits["TRAIT_LIGHT_DIRECTIONAL"] = 1; break;
+        case Emitter::Kind::point:
+            traits["TRAIT_LIGHT_POINT"] = 1;
+            break;
+        case Emitter::Kind::directional:
+            traits["TRAIT_LIGHT_DIRECTIONAL"] = 1;
+            break;
         }
     }
     traits["TRAIT_HIDE_EMITTERS"] = scene.settings.hide_emitters;

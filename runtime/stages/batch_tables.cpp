@@ -14,7 +14,7 @@ using namespace lib_float;
 namespace {
 
 // On a CPU a batch should stay near the last-level cache; a GPU wants many rows to hide its latencies.
-constexpr std::uint32_t default_batch_cpu = 1u << 16, default_batch_other = 1u << 20;
+constexpr std::uint32_t default_batch_cpu = 1u << 17, default_batch_other = 1u << 20;
 constexpr std::uint32_t least_batch = 64, largest_batch = 1u << 24;
 
 std::uint32_t vertex_column_count(const TraitMap &traits) {

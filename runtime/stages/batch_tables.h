@@ -20,8 +20,8 @@ constexpr std::uint32_t partition_chunk = 256;
 
 struct BatchTables {
     /// `bins` of the partition, the escaped included. Allocates only what the traits ask for.
-    BatchTables(Device &device, std::uint32_t capacity, std::uint32_t slots, std::uint32_t bins,
-                const TraitMap &traits, Precision precision);
+    BatchTables(Device &device, std::uint32_t capacity, std::uint32_t slots, std::uint32_t bins, const TraitMap &traits,
+                Precision precision);
 
     std::uint32_t capacity; ///< paths in flight
     std::uint32_t slots;    ///< paths of a pass

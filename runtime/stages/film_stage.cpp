@@ -97,7 +97,9 @@ Image FilmStage::image(std::uint64_t samples, std::uint64_t &non_finite) const {
 
     const HostTable features(feature_film_, count, precision_);
     const char *const axes[3] = {"X", "Y", "Z"};
-    const auto mean_feature = [&](int column, std::size_t pixel) { return features.real(column, pixel) / taken[pixel]; };
+    const auto mean_feature = [&](int column, std::size_t pixel) {
+        return features.real(column, pixel) / taken[pixel];
+    };
     for (int c = 0; c < 3; ++c)
         add(std::string("albedo.") + colors[c],
             [&](std::size_t pixel) { return mean_feature(feature_film_albedo_r + c, pixel); });

@@ -15,27 +15,36 @@ constexpr std::uint32_t cell_count = cells * cells * cells;
 constexpr std::uint32_t spread(std::uint32_t x) { return (x & 1u) | (x & 2u) << 2 | (x & 4u) << 4; }
 
 inline std::uint32_t step(float place) {
-    // As a signed number first: a NaN or an outlier must still land in some cell.
-    const int whole = static_cast<int>(place);
-    return static_cast<std::uint32_t>(whole < 0 ? 0 : whole >= cells ? cells - 1 : whole);
+    // As a signed number: a NaN or an outlier must still land in some cell.
+    return static_cast<std::uint32_t>(std::min(std::max(static_cast<int>(place), 0), cells - 1));
 }
 
-/// Keys of rows [0, count): octant, then cell; `unwanted` for rows of another state. One plain loop over columns, so
-/// that the compiler vectorises it.
-GRADUS_CLONES void make_keys(const float *ox, const float *oy, const float *oz, const float *dx, const float *dy,
-                             const float *dz, const std::uint32_t *state, std::uint32_t wanted, const float *low,
-                             const float *scale, bool by_cell, std::uint16_t unwanted, std::size_t count,
-                             std::uint16_t *keys) {
-    const float low_x = low[0], low_y = low[1], low_z = low[2];
-    const float scale_x = by_cell ? scale[0] : 0, scale_y = by_cell ? scale[1] : 0, scale_z = by_cell ? scale[2] : 0;
-    const std::uint32_t octant_step = by_cell ? cell_count : 1;
+/// Where keys are made from: plain pointers that do not overlap, so that the compiler vectorises the loop.
+struct KeyInput {
+    const float *origin[3], *direction[3];
+    const std::uint32_t *state;
+    float low[3], scale[3]; ///< scale 0: no cells
+    std::uint32_t octant_step, wanted, unwanted_key;
+};
+
+/// Keys of rows [0, count): octant, then cell; `unwanted_key` for rows of another state.
+GRADUS_CLONES void make_keys(const KeyInput &input, std::size_t count, std::uint16_t *__restrict keys) {
+    const float *__restrict ox = input.origin[0], *__restrict oy = input.origin[1], *__restrict oz = input.origin[2];
+    const float *__restrict dx = input.direction[0], *__restrict dy = input.direction[1],
+                            *__restrict dz = input.direction[2];
+    const std::uint32_t *__restrict state = input.state;
+    const float low_x = input.low[0], low_y = input.low[1], low_z = input.low[2];
+    const float scale_x = input.scale[0], scale_y = input.scale[1], scale_z = input.scale[2];
+    const std::uint32_t octant_step = input.octant_step, wanted = input.wanted, unwanted = input.unwanted_key;
     for (std::size_t i = 0; i < count; ++i) {
-        const std::uint32_t octant = (dx[i] < 0 ? 1u : 0u) | (dy[i] < 0 ? 2u : 0u) | (dz[i] < 0 ? 4u : 0u);
+        const std::uint32_t octant =
+            std::uint32_t(dx[i] < 0) | std::uint32_t(dy[i] < 0) << 1 | std::uint32_t(dz[i] < 0) << 2;
         const std::uint32_t cell = spread(step((ox[i] - low_x) * scale_x)) |
                                    spread(step((oy[i] - low_y) * scale_y)) << 1 |
                                    spread(step((oz[i] - low_z) * scale_z)) << 2;
-        const std::uint32_t key = octant * octant_step + cell;
-        keys[i] = static_cast<std::uint16_t>(state[i] == wanted ? key : unwanted);
+        // A mask, not a choice: with a branch the loop would not be vectorised.
+        const std::uint32_t mask = 0u - std::uint32_t(state[i] == wanted);
+        keys[i] = static_cast<std::uint16_t>(((octant * octant_step + cell) & mask) | (unwanted & ~mask));
     }
 }
 
@@ -64,9 +73,18 @@ const std::vector<std::uint32_t> &RayOrdering::sort(const SegmentColumns &rays, 
     const bool by_cell = order == RayOrder::cell;
     const std::uint32_t octant_keys = by_cell ? cell_count : 1, key_count = 8 * octant_keys;
     keys_.resize(count);
-    make_keys(rays.origin[0] + begin, rays.origin[1] + begin, rays.origin[2] + begin, rays.direction[0] + begin,
-              rays.direction[1] + begin, rays.direction[2] + begin, state + begin, wanted, low_.data(), scale_.data(),
-              by_cell, static_cast<std::uint16_t>(key_count), count, keys_.data());
+    KeyInput input;
+    for (int axis = 0; axis < 3; ++axis) {
+        input.origin[axis] = rays.origin[axis] + begin;
+        input.direction[axis] = rays.direction[axis] + begin;
+        input.low[axis] = low_[axis];
+        input.scale[axis] = by_cell ? scale_[axis] : 0;
+    }
+    input.state = state + begin;
+    input.octant_step = octant_keys;
+    input.wanted = wanted;
+    input.unwanted_key = key_count;
+    make_keys(input, count, keys_.data());
     // One more key than there are, for the rows that are not wanted: no branch is needed for them.
     count_.assign(key_count + 2, 0);
     for (std::size_t i = 0; i < count; ++i)

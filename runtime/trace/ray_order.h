@@ -30,8 +30,8 @@ class RayOrdering {
     static constexpr int cell_bits = 3; ///< along each axis
 
     /// The rows of [begin, end) whose `state` equals `wanted`, in order; valid until the next call.
-    const std::vector<std::uint32_t> &sort(const SegmentColumns &rays, const std::uint32_t *state,
-                                           std::uint32_t wanted, std::size_t begin, std::size_t end, RayOrder order);
+    const std::vector<std::uint32_t> &sort(const SegmentColumns &rays, const std::uint32_t *state, std::uint32_t wanted,
+                                           std::size_t begin, std::size_t end, RayOrder order);
 
     /// Places in the sorted rows at which a new octant begins, the end included; one range for RayOrder::none.
     const std::vector<std::uint32_t> &groups() const { return groups_; }

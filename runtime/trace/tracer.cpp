@@ -35,9 +35,7 @@ struct alignas(64) Valid {
     int lane[width];
 };
 
-double now() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 /// Denormals cost a hundred times a normal number, and Embree asks for this on every thread that traces.
 void flush_denormals() {
@@ -119,8 +117,8 @@ void Tracer::Implementation::add_triangles(const Scene &s) {
         return;
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto *vertices = new_buffer<Vector3>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, vertex_count);
-    auto *indices = new_buffer<std::array<std::uint32_t, 3>>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3,
-                                                             triangle_count);
+    auto *indices =
+        new_buffer<std::array<std::uint32_t, 3>>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangle_count);
     std::uint32_t first = 0;
     for (const Shape &shape : s.shapes) {
         if (shape.kind != Shape::Kind::mesh)

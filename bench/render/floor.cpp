@@ -1,0 +1,126 @@
+#include "bench/render/measurements.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace gradus::bench {
+
+namespace {
+
+/// Enough recorded calls of the tracer to stand for all, few enough to fit into memory.
+constexpr std::size_t recorded_calls = 40;
+
+/// A prime near the quotient, so that the recorded calls meet all depths of a path in turn.
+std::size_t record_interval(std::size_t calls) {
+    const std::size_t aim = std::max<std::size_t>(calls / recorded_calls, 1);
+    for (const std::size_t prime : {997u, 499u, 251u, 127u, 61u, 31u, 17u, 7u, 5u, 3u, 2u})
+        if (prime <= aim)
+            return prime;
+    return 1;
+}
+
+struct Replay {
+    double seconds_per_ray = 0;
+    std::uint64_t rays = 0;
+};
+
+/// The median of three passes: one is short.
+Replay replay(Tracer &tracer) {
+    Replay result;
+    std::vector<double> seconds;
+    for (int pass = 0; pass < 3; ++pass) {
+        double recorded_seconds = 0;
+        seconds.push_back(tracer.replay(recorded_seconds, result.rays));
+    }
+    result.seconds_per_ray = median(seconds) / double(result.rays);
+    return result;
+}
+
+/// One row of the profile as a share of the render. The tracer's row is split in two: Embree, as the replay says, and
+/// the rest of the tracer (sorting, packing, unpacking).
+struct Row {
+    std::string name;
+    double share;
+};
+
+std::vector<Row> profile(const Render &render, double floor_seconds) {
+    std::vector<Row> rows;
+    for (const Statistics::Stage &stage : render.statistics.stages)
+        if (stage.name == "trace") {
+            rows.push_back({"Embree (replay)", floor_seconds / render.seconds()});
+            rows.push_back({"trace beside Embree", (stage.seconds - floor_seconds) / render.seconds()});
+        } else {
+            rows.push_back({stage.name, stage.seconds / render.seconds()});
+        }
+    return rows;
+}
+
+} // namespace
+
+nlohmann::json measure_floor(const Settings &settings, const Job &job) {
+    RenderOptions options;
+    options.threads = settings.threads;
+    // One render is recorded and kept; its time does not count, as recording costs time.
+    PathTracer recorder(settings.device, job.scene, options);
+    const std::uint64_t batches = (recorder.total_samples() + (1u << 16) - 1) >> 16;
+    const int depth = job.scene.settings.max_depth < 0 ? 16 : job.scene.settings.max_depth;
+    recorder.tracer().record(record_interval(batches * static_cast<std::uint64_t>(depth)));
+    while (recorder.render_batch()) {
+    }
+
+    std::vector<double> ratios, render_rates, replay_rates, seconds, extension, shadow;
+    std::vector<Render> renders;
+    std::vector<double> floors;
+    std::uint64_t recorded = 0;
+    for (int i = 0; i < settings.repeats; ++i) {
+        const Replay before = replay(recorder.tracer());
+        renders.push_back(render(settings, job));
+        const Replay after = replay(recorder.tracer());
+        const Render &r = renders.back();
+        recorded = after.rays;
+        const double per_ray = 0.5 * (before.seconds_per_ray + after.seconds_per_ray);
+        floors.push_back(per_ray * double(r.rays()));
+        ratios.push_back(r.seconds() / floors.back());
+        seconds.push_back(r.seconds());
+        render_rates.push_back(double(r.rays()) / r.seconds() / 1e6);
+        replay_rates.push_back(1e-6 / per_ray);
+    }
+    // The profile of the render of the median ratio.
+    std::vector<std::size_t> order(ratios.size());
+    for (std::size_t i = 0; i < order.size(); ++i)
+        order[i] = i;
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return ratios[a] < ratios[b]; });
+    const std::size_t middle = order[order.size() / 2];
+    std::vector<Row> rows = profile(renders[middle], floors[middle]);
+
+    const Render &r = renders[middle];
+    fmt::print("{}\n  render / Embree-only replay of the same rays: {:.2f} (target 1.5, aim 1.2)\n", job.name,
+               median(ratios));
+    fmt::print("  {:.1f} M rays/s against {:.1f} M rays/s; {:.2f} M samples/s, {:.2f} rays a sample, "
+               "{:.2f} M of {:.1f} M rays recorded\n",
+               median(render_rates), median(replay_rates), double(r.statistics.samples) / r.seconds() / 1e6,
+               double(r.rays()) / double(r.statistics.samples), double(recorded) / 1e6, double(r.rays()) / 1e6);
+    nlohmann::json stages = nlohmann::json::array();
+    for (const Row &row : rows) {
+        fmt::print("  {:32} {:6.1f} %\n", row.name, 100 * row.share);
+        stages.push_back({{"name", row.name}, {"share", row.share}});
+    }
+    std::sort(rows.begin(), rows.end(), [](const Row &a, const Row &b) { return a.share > b.share; });
+    std::erase_if(rows, [](const Row &row) { return row.name.starts_with("Embree"); });
+    fmt::print("  the difference is mostly {} ({:.1f} %), {} ({:.1f} %) and {} ({:.1f} %)\n\n", rows[0].name,
+               100 * rows[0].share, rows[1].name, 100 * rows[1].share, rows[2].name, 100 * rows[2].share);
+    return {{"job", job.name},
+            {"ratio", spread(ratios)},
+            {"target", 1.5},
+            {"aim", 1.2},
+            {"render_seconds", spread(seconds)},
+            {"render_mrays_per_second", spread(render_rates)},
+            {"replay_mrays_per_second", spread(replay_rates)},
+            {"samples", r.statistics.samples},
+            {"rays", r.statistics.rays},
+            {"recorded_rays", recorded},
+            {"profile", stages}};
+}
+
+} // namespace gradus::bench

@@ -1,0 +1,98 @@
+// gradus-bench-render: how near a render comes to its floor, and what specialised kernels and ordered rays gain.
+#include "bench/render/measurements.h"
+#include "runtime/error.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <set>
+
+namespace {
+
+struct Arguments {
+    std::vector<std::string> scenes;
+    std::set<std::string> parts = {"floor", "specialisation", "order"};
+    std::string json, device;
+    std::uint64_t samples_per_pixel = 64;
+    int threads = 0, repeats = 5;
+    bool no_roulette_only = false;
+};
+
+struct SceneSize {
+    std::string path;
+    std::uint32_t width = 0, height = 0;
+};
+
+SceneSize parse_scene(const std::string &text) {
+    SceneSize s;
+    const std::size_t colon = text.rfind(':');
+    if (colon == std::string::npos || std::sscanf(text.c_str() + colon + 1, "%ux%u", &s.width, &s.height) != 2 ||
+        s.width == 0 || s.height == 0)
+        throw gradus::Error(gradus::ExitCode::usage, fmt::format("'{}' is not SCENE.xml:WxH", text));
+    s.path = text.substr(0, colon);
+    return s;
+}
+
+int run(const Arguments &arguments) {
+    using namespace gradus;
+    using namespace gradus::bench;
+    Device device(arguments.device, arguments.threads);
+    const Settings settings{device, arguments.threads, arguments.repeats};
+    nlohmann::json results = {{"device", device.description().name},
+                              {"platform", device.description().platform},
+                              {"threads", arguments.threads},
+                              {"repeats", arguments.repeats}};
+    for (const char *part : {"floor", "specialisation", "order"})
+        if (arguments.parts.contains(part))
+            results[part] = nlohmann::json::array();
+    for (const std::string &text : arguments.scenes) {
+        const SceneSize s = parse_scene(text);
+        const Job compared = load_job(s.path, s.width, s.height, arguments.samples_per_pixel, false);
+        render(settings, load_job(s.path, s.width, s.height, 1, false)); // wakes the machine, fills the kernel cache
+        if (arguments.parts.contains("floor")) {
+            if (!arguments.no_roulette_only)
+                results["floor"].push_back(
+                    measure_floor(settings, load_job(s.path, s.width, s.height, arguments.samples_per_pixel, true)));
+            results["floor"].push_back(measure_floor(settings, compared));
+        }
+        if (arguments.parts.contains("specialisation"))
+            results["specialisation"].push_back(measure_specialisation(settings, compared));
+        if (arguments.parts.contains("order"))
+            results["order"].push_back(measure_ray_order(settings, compared));
+        std::fflush(stdout);
+    }
+    if (!arguments.json.empty()) {
+        std::ofstream file(arguments.json);
+        file << results.dump(2) << "\n";
+        if (!file.flush())
+            throw Error(ExitCode::output, "cannot write " + arguments.json);
+    }
+    return 0;
+}
+
+} // namespace
+
+int main(int argc, char **argv) {
+    Arguments arguments;
+    CLI::App app("Render benchmarks in one process. Every figure is a ratio, the median of --repeats turns");
+    app.add_option("SCENES", arguments.scenes, "SCENE.xml:WxH")->required();
+    app.add_option("--parts", arguments.parts, "Any of floor, specialisation, order")
+        ->check(CLI::IsMember({"floor", "specialisation", "order"}))
+        ->delimiter(',');
+    app.add_option("--spp", arguments.samples_per_pixel, "Samples a pixel")->capture_default_str();
+    app.add_option("--repeats", arguments.repeats, "Turns")->check(CLI::Range(1, 1000))->capture_default_str();
+    app.add_option("--nthreads", arguments.threads, "Processor threads; 0: all")->check(CLI::Range(0, 4096));
+    app.add_option("--device", arguments.device, "OpenCL device, as gradus takes it");
+    app.add_flag("--no-roulette-only", arguments.no_roulette_only, "Leave out the floor with the file's own settings");
+    app.add_option("--json", arguments.json, "Also write all figures to this file");
+    CLI11_PARSE(app, argc, argv);
+    try {
+        return run(arguments);
+    } catch (const gradus::Error &error) {
+        std::cerr << "gradus-bench-render: error: " << error.what() << "\n";
+        return static_cast<int>(error.code);
+    }
+}

@@ -1,0 +1,18 @@
+// The measurements of gradus-bench-render, one file each. Each prints its table and returns the same as JSON. What is
+// compared takes turns (A B A B), so that a machine that slows down slows both; medians over the turns count.
+#pragma once
+
+#include "bench/render/job.h"
+
+namespace gradus::bench {
+
+/// Render time against the time in which Embree alone traces the very same rays in the same order: the floor.
+nlohmann::json measure_floor(const Settings &settings, const Job &job);
+
+/// Kernels compiled for the scene against kernels with every trait on: time, and the largest difference of the images.
+nlohmann::json measure_specialisation(const Settings &settings, const Job &job);
+
+/// Orders in which rays are traced.
+nlohmann::json measure_ray_order(const Settings &settings, const Job &job);
+
+} // namespace gradus::bench

@@ -1,0 +1,55 @@
+#include "bench/render/measurements.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace gradus::bench {
+
+namespace {
+
+struct Difference {
+    double largest = 0, relative = 0; // of a pixel's channel; relative to the brighter one
+    std::size_t pixels = 0;           // values that differ
+};
+
+Difference difference(const Image &a, const Image &b) {
+    Difference d;
+    for (const Channel &channel : a.channels) {
+        const std::vector<float> &other = b.find(channel.name)->values;
+        for (std::size_t i = 0; i < other.size(); ++i) {
+            const double x = channel.values[i], y = other[i], gap = std::abs(x - y);
+            d.largest = std::max(d.largest, gap);
+            d.relative = std::max(d.relative, gap > 0 ? gap / std::max(std::abs(x), std::abs(y)) : 0.0);
+            d.pixels += gap > 0;
+        }
+    }
+    return d;
+}
+
+} // namespace
+
+nlohmann::json measure_specialisation(const Settings &settings, const Job &job) {
+    RenderOptions everything;
+    everything.all_traits = true;
+    std::vector<double> kernels, renders;
+    Difference d;
+    for (int i = 0; i < settings.repeats; ++i) {
+        const Render own = render(settings, job), all = render(settings, job, everything);
+        kernels.push_back(all.kernel_seconds() / own.kernel_seconds());
+        renders.push_back(all.seconds() / own.seconds());
+        d = difference(own.image, all.image);
+    }
+    fmt::print("{}\n  every trait on / specialised: kernels {:.2f}, render {:.2f}; largest difference of the images "
+               "{:.3g} ({:.3g} relative), {} values differ\n\n",
+               job.name, median(kernels), median(renders), d.largest, d.relative, d.pixels);
+    return {{"job", job.name},
+            {"kernel_ratio", spread(kernels)},
+            {"render_ratio", spread(renders)},
+            {"largest_difference", d.largest},
+            {"largest_relative_difference", d.relative},
+            {"values_that_differ", d.pixels}};
+}
+
+} // namespace gradus::bench
