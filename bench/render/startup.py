@@ -65,7 +65,7 @@ def main():
         results.append(record)
         print(f"{scene.name} 128x128 1 spp\n  warm cache: {record['warm_seconds']:.2f} s (target under 1 s)\n"
               f"  empty cache: {record['cold_seconds']:.2f} s, of these compiling {record['cold_compile_seconds']:.2f} s "
-              f"({len(record['kernels'])} kernels, one after the other at their first launch)")
+              f"({len(record['kernels'])} kernels, summed over threads), prepared after {record['cold_prepare_seconds']:.2f} s")
         slowest = max(record["kernels"].items(), key=lambda item: item[1])
         print(f"  slowest kernel: {slowest[0]}, {slowest[1]:.2f} s")
         for name, seconds in record["slow_kernels"].items():

@@ -86,7 +86,10 @@ void PathTracer::build_kernels(const std::vector<std::string> &kinds) {
                 {fmt::format("{} {}", name, kind), fmt::format("kernels/stages/{}.cl", name), name, definitions});
     }
     KernelLibrary library(device_, traits_, precision);
-    const std::vector<Kernel> built = library.build(requests, {}, options_.dump_kernels);
+    const auto count_seconds = [this](const std::string &name, std::size_t, std::size_t, double seconds) {
+        statistics_.compile_seconds[name] += seconds;
+    };
+    const std::vector<Kernel> built = library.build(requests, count_seconds, options_.dump_kernels);
     camera_ = built[0];
     classify_ = built[1];
     surface_ = built[2];
@@ -160,7 +163,7 @@ void PathTracer::warm(std::vector<Kernel *> kernels) {
         finish(device_);
         kernels[i]->reset_usage();
         const double seconds = seconds_since(start);
-        statistics_.compile_seconds[kernels[i]->name()] = seconds;
+        statistics_.compile_seconds[kernels[i]->name()] += seconds; // to what its program took
         if (options_.on_compiled)
             options_.on_compiled(kernels[i]->name(), i + 1, kernels.size(), seconds);
     }
@@ -200,6 +203,10 @@ bool PathTracer::render_batch() {
         kernel.launch(items);
     };
 
+    if (settings_.max_depth == 0) { // no path begins, so none sets its row to zero
+        tables_->radiance.clear();
+        tables_->feature.clear();
+    }
     int newest = 0;
     std::uint32_t begun = 0;    // paths of this pass
     std::uint32_t vertices = 0; // rows of the newest vertices; the same rows of the ray table hold what they sent out

@@ -1,5 +1,7 @@
 #include "runtime/scene/light_table.h"
 
+#include <map>
+
 namespace gradus {
 
 AliasTable make_alias_table(const std::vector<double> &weights) {
@@ -31,6 +33,35 @@ AliasTable make_alias_table(const std::vector<double> &weights) {
         }
     }
     return table; // what is left over is 1 but for rounding
+}
+
+std::vector<double> light_weights(const std::vector<LightPower> &lights) {
+    std::map<std::uint32_t, double> emitters; // power of each
+    double finite_power = 0;
+    std::size_t finite_emitters = 0;
+    for (const LightPower &light : lights) {
+        emitters[light.emitter] += light.power;
+        if (!light.at_infinity)
+            finite_power += light.power;
+    }
+    for (const auto &[emitter, power] : emitters)
+        finite_emitters += 1;
+    for (const LightPower &light : lights)
+        finite_emitters -= light.at_infinity ? 1 : 0;
+    if (finite_emitters > 0)
+        for (const LightPower &light : lights)
+            if (light.at_infinity)
+                emitters[light.emitter] = finite_power / static_cast<double>(finite_emitters);
+    double total = 0;
+    for (const auto &[emitter, power] : emitters)
+        total += power;
+    std::vector<double> weights;
+    for (const LightPower &light : lights) {
+        const double power = emitters[light.emitter];
+        const double part = light.at_infinity ? 1 : light.power / power;
+        weights.push_back(part * (0.5 * power / total + 0.5 / static_cast<double>(emitters.size())));
+    }
+    return weights;
 }
 
 } // namespace gradus

@@ -56,13 +56,13 @@ Bounds scene_bounds(const Scene &scene) {
 /// Grows the lights and, with them, the weights by which they are chosen.
 struct LightBuilder {
     SceneTables &tables;
-    std::vector<double> weights;
+    std::vector<LightPower> powers;
     bool has_environment = false;
 
     /// A new light; returns its number and its record.
-    std::uint32_t add(light_kind kind, Rgb value, double power, float *&record) {
-        const std::size_t number = weights.size();
-        weights.push_back(power);
+    std::uint32_t add(light_kind kind, Rgb value, LightPower power, float *&record) {
+        const std::size_t number = powers.size();
+        powers.push_back(power);
         tables.light_kinds.push_back(kind);
         tables.lights.resize((number + 1) * light_stride, 0.0f);
         record = &tables.lights[number * light_stride];
@@ -73,15 +73,15 @@ struct LightBuilder {
     }
 
     void finish() {
-        tables.light_count = static_cast<std::uint32_t>(weights.size());
+        tables.light_count = static_cast<std::uint32_t>(powers.size());
         // A black light follows the last: what the environment is where there is none.
-        tables.lights.resize((weights.size() + 1) * light_stride, 0.0f);
+        tables.lights.resize((powers.size() + 1) * light_stride, 0.0f);
         if (!has_environment)
             tables.environment_light = tables.light_count;
-        if (weights.empty())
+        if (powers.empty())
             return;
-        const AliasTable alias = make_alias_table(weights);
-        for (std::size_t i = 0; i < weights.size(); ++i) {
+        const AliasTable alias = make_alias_table(light_weights(powers));
+        for (std::size_t i = 0; i < powers.size(); ++i) {
             tables.lights[i * light_stride + light_probability] = alias.probability[i];
             tables.lights[i * light_stride + light_alias_threshold] = alias.threshold[i];
         }
@@ -145,7 +145,8 @@ void add_mesh(const Scene &scene, const Shape &shape, const TraitMap &traits, Sc
             const double power = pi * area * luminance(radiance);
             if (power > 0) {
                 float *light_record;
-                light = lights.add(light_kind_triangle, radiance, power, light_record);
+                light = lights.add(light_kind_triangle, radiance, {power, std::uint32_t(shape.emitter), false},
+                                   light_record);
                 put(light_record, light_p_x, p0);
                 put(light_record, light_e1_x, e1);
                 put(light_record, light_e2_x, e2);
@@ -175,7 +176,7 @@ void add_sphere(const Scene &scene, const Shape &shape, SceneTables &tables, Lig
         const double power = pi * area * luminance(radiance);
         if (power > 0) {
             float *light_record;
-            light = lights.add(light_kind_sphere, radiance, power, light_record);
+            light = lights.add(light_kind_sphere, radiance, {power, std::uint32_t(shape.emitter), false}, light_record);
             put(light_record, light_p_x, sphere.center);
             light_record[light_e1_x] = sphere.radius;
             light_record[light_e1_y] = facing;
@@ -189,19 +190,21 @@ void add_sphere(const Scene &scene, const Shape &shape, SceneTables &tables, Lig
 /// Lights without a surface. Those at infinity count with what crosses a disk as wide as the scene.
 void add_other_lights(const Scene &scene, double radius, SceneTables &tables, LightBuilder &lights) {
     const double disk = pi * radius * radius;
-    for (const Emitter &emitter : scene.emitters) {
+    for (std::uint32_t number = 0; number < scene.emitters.size(); ++number) {
+        const Emitter &emitter = scene.emitters[number];
         const double value = luminance(emitter.value);
         if (emitter.kind == Emitter::Kind::area || !(value > 0))
             continue;
         float *record;
         if (emitter.kind == Emitter::Kind::constant) {
-            tables.environment_light = lights.add(light_kind_constant, emitter.value, pi * value * disk, record);
+            tables.environment_light =
+                lights.add(light_kind_constant, emitter.value, {pi * value * disk, number, true}, record);
             lights.has_environment = true;
         } else if (emitter.kind == Emitter::Kind::point) {
-            lights.add(light_kind_point, emitter.value, 4 * pi * value, record);
+            lights.add(light_kind_point, emitter.value, {4 * pi * value, number, false}, record);
             put(record, light_p_x, emitter.position);
         } else {
-            lights.add(light_kind_directional, emitter.value, value * disk, record);
+            lights.add(light_kind_directional, emitter.value, {value * disk, number, true}, record);
             put(record, light_p_x, -1.0f * emitter.direction);
         }
     }

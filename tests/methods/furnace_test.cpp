@@ -89,7 +89,7 @@ TEST(Furnace, LightSamplingAddsNothingAndLosesNothing) {
     for (const ConvexShape shape : both_shapes)
         for (const auto strategy : {RenderOptions::Strategy::mis, RenderOptions::Strategy::light}) {
             SCOPED_TRACE(fmt::format("{} strategy {}", name_of(shape), int(strategy)));
-            const Image image = render(furnace(shape, material_of(diffuse(1)), 64, 64).scene, with(strategy)).image;
+            const Image image = render(furnace(shape, material_of(diffuse(1)), 64, 256).scene, with(strategy)).image;
             const Spread spread = spread_of(image);
             EXPECT_GT(spread.standard_error, 0);
             EXPECT_LT(spread.standard_error, 2e-3);

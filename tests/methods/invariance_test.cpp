@@ -10,12 +10,6 @@ namespace {
 
 class Invariance : public ::testing::TestWithParam<const char *> {
   protected:
-    /// More samples than the largest batch below holds, and no multiple of any batch.
-    Scene scene() const {
-        Scene scene = own_scene(std::string(GetParam()) + ".xml", 321, 241);
-        scene.settings.samples_per_pixel = 5;
-        return scene;
-    }
     Scene small_scene() const {
         Scene scene = own_scene(std::string(GetParam()) + ".xml", 64, 48);
         scene.settings.samples_per_pixel = 4;
@@ -23,14 +17,27 @@ class Invariance : public ::testing::TestWithParam<const char *> {
     }
 };
 
-TEST_P(Invariance, ToTheBatchSize) {
-    RenderOptions options;
-    options.batch_size = 65536;
-    const Image image = render(scene(), options).image;
-    for (const std::uint32_t batch_size : {1000u, 333'333u}) {
+void expect_same_for_batch_sizes(const Scene &scene, std::initializer_list<std::uint32_t> batch_sizes) {
+    const Image image = render(scene).image;
+    for (const std::uint32_t batch_size : batch_sizes) {
+        RenderOptions options;
         options.batch_size = batch_size;
-        EXPECT_TRUE(equal_bits(image, render(scene(), options).image)) << "batch size " << batch_size;
+        EXPECT_TRUE(equal_bits(image, render(scene, options).image)) << "batch size " << batch_size;
     }
+}
+
+TEST_P(Invariance, ToTheBatchSize) {
+    Scene scene = own_scene(std::string(GetParam()) + ".xml", 81, 61); // 19764 samples
+    scene.settings.samples_per_pixel = 4;
+    expect_same_for_batch_sizes(scene, {64, 1000, 5000});
+}
+
+// More samples than the largest batch holds.
+TEST(LargeBatches, DoNotChangeTheImage) {
+    Scene scene = own_scene("cornell-box.xml", 321, 241);
+    scene.settings.samples_per_pixel = 5;
+    scene.settings.max_depth = 4;
+    expect_same_for_batch_sizes(scene, {10'000, 65'536, 333'333});
 }
 
 TEST_P(Invariance, ToTheCrop) {
@@ -70,23 +77,24 @@ TEST_P(Invariance, NotToTheSeed) {
     EXPECT_FALSE(equal_bits(image, render(small_scene(), high).image));
 }
 
-// Kernels with every trait on compute the same, but a compiler may join multiplications and additions otherwise.
-TEST_P(Invariance, ToSpecialisation) {
+// Kernels with every trait on compute the same, but a compiler may join multiplications and additions otherwise. What
+// that changes in the last bits sends a path another way now and then: past an edge, or on with Russian roulette.
+TEST_P(Invariance, ToSpecialisationButForRounding) {
     RenderOptions options;
     const Image special = render(small_scene(), options).image;
     options.all_traits = true;
     const Image general = render(small_scene(), options).image;
-    double largest = 0;
-    std::size_t different = 0;
+    std::size_t different = 0, far = 0, count = 0;
     for (const Channel &channel : special.channels)
         for (std::size_t i = 0; i < channel.values.size(); ++i) {
             const double a = channel.values[i], b = general.find(channel.name)->values[i];
+            ++count;
             different += a != b ? 1 : 0;
-            largest = std::max(largest, std::fabs(a - b) / std::max(1.0, std::fabs(a)));
+            far += std::fabs(a - b) > 1e-4 * std::max(0.1, std::fabs(a)) ? 1 : 0;
         }
-    fmt::print("{}: {} of {} values differ between specialised and general kernels, at most by {:.2g}\n", GetParam(),
-               different, 3 * special.channels[0].values.size(), largest);
-    EXPECT_LE(largest, 1e-6);
+    fmt::print("{}: of {} values {} differ between specialised and general kernels, {} by more than 1e-4\n", GetParam(),
+               count, different, far);
+    EXPECT_LE(far, count / 100);
 }
 
 INSTANTIATE_TEST_SUITE_P(Image, Invariance, ::testing::Values("cornell-box", "plates", "materials"),
@@ -97,27 +105,30 @@ INSTANTIATE_TEST_SUITE_P(Image, Invariance, ::testing::Values("cornell-box", "pl
                          });
 
 TEST(PartialImage, DividesEachPixelByItsOwnCount) {
-    SceneMaker maker(20, 3); // 400 pixels
+    constexpr std::uint32_t pixels = 50 * 50;
+    SceneMaker maker(50, 3);
     maker.look({0, 0, -3}, {0, 0, 0}, 40);
     maker.sphere({0, 0, 0}, 0.5f, maker.material(diffuse(1)));
     maker.environment(1);
     RenderOptions options;
     options.strategy = RenderOptions::Strategy::bsdf;
-    options.batch_size = 128;
+    options.batch_size = 64;
     const std::unique_ptr<Method> method = make_method("pt", shared_device(), maker.scene, options);
-    std::uint64_t batches = 0;
-    do {
+    std::size_t within_a_sample = 0;
+    for (;;) {
         const Image image = method->image();
         const std::uint64_t done = method->done_samples();
-        EXPECT_EQ(done, 128 * batches);
-        for (std::uint32_t i = 0; i < 400; ++i)
+        within_a_sample += done > 0 && done < pixels ? 1 : 0;
+        for (std::uint32_t i = 0; i < pixels; ++i)
             ASSERT_NEAR(image.find("G")->values[i], i < done ? 1 : 0, 1e-5) << "pixel " << i << " after " << done;
-        ++batches;
-    } while (method->render_batch());
-    EXPECT_EQ(method->done_samples(), 1200u);
+        if (done == method->total_samples())
+            break;
+        EXPECT_EQ(method->render_batch(), method->done_samples() < 3 * pixels);
+        ASSERT_GT(method->done_samples(), done);
+    }
+    EXPECT_GT(within_a_sample, 0u) << "no image was partial";
+    EXPECT_EQ(method->done_samples(), 3 * pixels);
     EXPECT_FALSE(method->render_batch());
-    EXPECT_NEAR(spread_of(method->image()).least, 1, 1e-5);
-    EXPECT_NEAR(spread_of(method->image()).most, 1, 1e-5);
 }
 
 } // namespace

@@ -1,0 +1,152 @@
+// The records of a scene: lights with their powers, and primitives in their order.
+#include "runtime/scene/scene_tables.h"
+
+#include "tests/support/small_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+// After GoogleTest, which has template parameters of the names of its macros.
+#include "kernels/shared/scene_records.h"
+
+namespace gradus::testing {
+namespace {
+
+using namespace lib_float;
+
+SceneTables tables_of(const Scene &scene) { return make_scene_tables(scene, scene_traits(scene)); }
+
+float light_value(const SceneTables &tables, std::size_t light, int field) {
+    return tables.lights.at(light * light_stride + std::size_t(field));
+}
+
+constexpr double luminance(double r, double g, double b) { return 0.2126 * r + 0.7152 * g + 0.0722 * b; }
+
+TEST(LightPowers, DecideHowOftenALightIsChosen) {
+    SceneMaker maker(4, 1);
+    const std::uint32_t material = maker.material(diffuse(0.5));
+    // Two triangles of area 3, radiance 2, 1, 4.
+    maker.parallelogram({0, 0, 0}, {2, 0, 0}, {0, 3, 0}, material, maker.emitter(Emitter::Kind::area, {2, 1, 4}));
+    // Bounds: x 0 to 2, y 0 to 3, z 0 to 6: of diagonal 7.
+    maker.parallelogram({0, 0, 6}, {2, 0, 0}, {0, 3, 0}, material);
+    maker.sphere({1, 1.5f, 3}, 0.5f, material, maker.emitter(Emitter::Kind::area, {3, 3, 3}));
+    maker.point_light({1, 2, 3}, {5, 6, 7});
+    maker.directional_light({0.5f, 0.25f, 1}, {0, -0.6f, 0.8f});
+    maker.environment(0.125);
+    maker.emitter(Emitter::Kind::point, {0, 0, 0}); // black: no light
+    const SceneTables tables = tables_of(maker.scene);
+
+    const double radius = 3.5, disk = M_PI * radius * radius;
+    const double power[] = {
+        M_PI * 3 * luminance(2, 1, 4), M_PI * 3 * luminance(2, 1, 4),  M_PI * 4 * M_PI * 0.25 * 3,
+        4 * M_PI * luminance(1, 2, 3), disk * luminance(0.5, 0.25, 1), M_PI * disk * 0.125,
+    };
+    const std::uint32_t kinds[] = {light_kind_triangle, light_kind_triangle,    light_kind_sphere,
+                                   light_kind_point,    light_kind_directional, light_kind_constant};
+    double total = 0;
+    for (const double p : power)
+        total += p;
+    ASSERT_EQ(tables.light_count, 6u);
+    for (std::size_t i = 0; i < 6; ++i) {
+        EXPECT_EQ(tables.light_kinds[i], kinds[i]) << "light " << i;
+        EXPECT_NEAR(light_value(tables, i, light_probability), power[i] / total, 1e-6) << "light " << i;
+    }
+    EXPECT_EQ(tables.environment_light, 5u);
+    EXPECT_GT(tables.scene_diameter, 7);
+    EXPECT_FLOAT_EQ(light_value(tables, 0, light_inverse_area), float(1 / 3.0));
+    EXPECT_FLOAT_EQ(light_value(tables, 2, light_inverse_area), float(1 / M_PI));
+    EXPECT_EQ(light_value(tables, 3, light_p_x), 5);
+    EXPECT_EQ(light_value(tables, 3, light_p_z), 7);
+    // Towards the light.
+    EXPECT_FLOAT_EQ(light_value(tables, 4, light_p_y), 0.6f);
+    EXPECT_FLOAT_EQ(light_value(tables, 4, light_p_z), -0.8f);
+    EXPECT_EQ(light_value(tables, 4, light_value_b), 1);
+}
+
+TEST(Lights, AreNoneInADarkScene) {
+    SceneMaker maker(4, 1);
+    maker.cube(maker.material(diffuse(0.5)), maker.emitter(Emitter::Kind::area, {0, 0, 0}));
+    const SceneTables tables = tables_of(maker.scene);
+    EXPECT_EQ(tables.light_count, 0u);
+    // What escaping paths read: black.
+    for (const int field : {light_value_r, light_value_g, light_value_b})
+        EXPECT_EQ(light_value(tables, tables.environment_light, field), 0);
+    for (const std::uint32_t light : tables.primitive_light)
+        EXPECT_EQ(light, no_light);
+}
+
+TEST(Primitives, AreTrianglesFirstAndThenSpheres) {
+    SceneMaker maker(4, 1);
+    const std::uint32_t red = maker.material(diffuse(0.2)), blue = maker.material(diffuse(0.7));
+    const std::int32_t lamp = maker.emitter(Emitter::Kind::area, {1, 1, 1});
+    maker.sphere({1, 2, 3}, 0.25f, blue);
+    maker.cube(red);
+    maker.sphere({4, 5, 6}, 0.5f, red, lamp, true);
+    maker.parallelogram({0, 0, 9}, {1, 0, 0}, {0, 2, 0}, blue, lamp);
+    const SceneTables tables = tables_of(maker.scene);
+    ASSERT_EQ(tables.triangle_count, 14u);
+    ASSERT_EQ(tables.primitive_material.size(), 16u);
+    ASSERT_EQ(tables.primitive_light.size(), 16u);
+    const std::uint32_t expected_material[] = {red, blue, blue, red};
+    const std::size_t places[] = {0, 12, 14, 15};
+    for (int i = 0; i < 4; ++i)
+        EXPECT_EQ(material_record(tables.primitive_material[places[i]]), expected_material[i]) << places[i];
+    EXPECT_EQ(tables.primitive_light[0], no_light);
+    EXPECT_EQ(tables.primitive_light[12], 0u);
+    EXPECT_EQ(tables.primitive_light[13], 1u);
+    EXPECT_EQ(tables.primitive_light[14], no_light);
+    EXPECT_EQ(tables.primitive_light[15], 2u);
+    EXPECT_EQ(tables.spheres.at(sphere_center_y), 2);
+    EXPECT_EQ(tables.spheres.at(sphere_facing), 1);
+    EXPECT_EQ(tables.spheres.at(sphere_stride + sphere_radius), 0.5f);
+    EXPECT_EQ(tables.spheres.at(sphere_stride + sphere_facing), -1);
+    const float *last = &tables.triangles.at(12 * triangle_stride);
+    EXPECT_EQ(last[triangle_p0_z], 9);
+    EXPECT_EQ(last[triangle_e1_x], 1);
+    EXPECT_EQ(last[triangle_e2_y], 2);
+}
+
+TEST(Primitives, BringTheirOptionalRecordsOnlyWhereATraitAsks) {
+    SceneMaker maker(4, 1);
+    const std::uint32_t material = maker.material(diffuse(0.5));
+    maker.cube(material);
+    SceneTables plain = tables_of(maker.scene);
+    EXPECT_TRUE(plain.triangle_normals.empty());
+    EXPECT_TRUE(plain.triangle_tangents.empty());
+    EXPECT_TRUE(plain.spheres.empty());
+
+    maker.scene.materials[material].front.kind = BsdfKind::roughconductor;
+    maker.scene.materials[material].front.alpha_v = 0.5f;
+    maker.scene.meshes[0].normals.assign(maker.scene.meshes[0].positions.size(), {0, 1, 0});
+    const SceneTables full = tables_of(maker.scene);
+    EXPECT_EQ(full.triangle_normals.size(), std::size_t(12 * normals_stride));
+    EXPECT_EQ(full.triangle_normals.at(normals_n1_y), 1);
+    EXPECT_EQ(full.triangle_tangents.size(), std::size_t(12 * triangle_tangent_stride));
+    EXPECT_GT(table_bytes(full), table_bytes(plain));
+}
+
+// dp/du of a triangle whose texture coordinates are stretched, turned and mirrored.
+TEST(Primitives, HaveTangentsAlongU) {
+    SceneMaker maker(4, 1);
+    Bsdf brushed;
+    brushed.kind = BsdfKind::roughconductor;
+    brushed.alpha_v = 0.5f;
+    maker.parallelogram({0, 0, 0}, {2, 0, 0}, {0, 3, 0}, maker.material(brushed));
+    Mesh &mesh = maker.scene.meshes[0];
+    const auto along = [&](std::array<float, 2> a, std::array<float, 2> b, std::array<float, 2> c) {
+        mesh.texcoords = {a, b, c, {0, 0}}; // the second triangle has others
+        const SceneTables tables = tables_of(maker.scene);
+        const float *t = tables.triangle_tangents.data();
+        return normalize(Double3{t[0], t[1], t[2]});
+    };
+    // The first triangle: (0, 0), (2, 0), (2, 3). u = x / 2, v = y / 3.
+    EXPECT_NEAR(along({0, 0}, {1, 0}, {1, 1})[0], 1, 1e-6);
+    EXPECT_NEAR(along({1, 0}, {0, 0}, {0, 1})[0], -1, 1e-6) << "mirrored";
+    EXPECT_NEAR(along({0, 0}, {0, 1}, {1, 1})[1], 1, 1e-6) << "u along y";
+    // u = x / 2 + y / 3, v = y / 3: u grows at a constant v only along x.
+    EXPECT_NEAR(along({0, 0}, {1, 0}, {2, 1})[0], 1, 1e-6) << "sheared";
+}
+
+} // namespace
+} // namespace gradus::testing
