@@ -2,7 +2,6 @@
  * are in solid angle at the place, and do not include the probability of choosing the light. */
 #ifndef GRADUS_LIB_LIGHT_H
 #define GRADUS_LIB_LIGHT_H
-//! traits: TRAIT_LIGHT_TRIANGLE TRAIT_LIGHT_SPHERE TRAIT_LIGHT_POINT TRAIT_LIGHT_DIRECTIONAL TRAIT_LIGHT_CONSTANT
 #include "kernels/lib/frame.h"
 #include "kernels/lib/vector.h"
 #include "kernels/lib/warp.h"

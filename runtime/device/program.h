@@ -31,6 +31,8 @@ constexpr std::size_t real_bytes(Precision precision) { return precision == Prec
 /// A compiled kernel with its arguments.
 class Kernel {
   public:
+    /// False for one that was never built: what a scene does not need.
+    bool valid() const { return handle_ != nullptr; }
     const std::string &name() const;
 
     /// Gives every argument whose name is the buffer's name that buffer. Arguments of other names stay as they are.

@@ -70,38 +70,57 @@ PathTracer::PathTracer(Device &device, const Scene &scene, const RenderOptions &
 }
 
 void PathTracer::build_kernels(const std::vector<std::string> &kinds) {
-    const auto stage = [](const std::string &name) {
-        return KernelRequest{name, "kernels/stages/" + name + ".cl", name, {}};
+    struct Wanted {
+        Kernel *place;
+        KernelRequest request;
     };
-    std::vector<KernelRequest> requests = {stage("camera"),  stage("classify"), stage("surface"),    stage("escape"),
-                                           stage("connect"), stage("emission"), FilmStage::request()};
-    for (const KernelRequest &request : PartitionStage::requests())
-        requests.push_back(request);
-    const std::size_t first_kind = requests.size();
-    for (const std::string &kind : kinds) {
-        const std::map<std::string, std::string> definitions = {
-            {"BSDF", kind}, {"BSDF_IS_DIRAC", bsdf_kind_is_dirac(kind) ? "1" : "0"}};
-        for (const char *name : {"light_sample", "scatter", "feature"})
-            requests.push_back(
-                {fmt::format("{} {}", name, kind), fmt::format("kernels/stages/{}.cl", name), name, definitions});
+    std::vector<Wanted> wanted;
+    const auto want = [&](Kernel &place, const std::string &stage) {
+        wanted.push_back({&place, {stage, "kernels/stages/" + stage + ".cl", stage, {}}});
+    };
+    want(camera_, "camera");
+    want(classify_, "classify");
+    want(surface_, "surface");
+    want(connect_, "connect");
+    if (traits_.at("TRAIT_ENVIRONMENT"))
+        want(escape_, "escape");
+    if (traits_.at("TRAIT_LIGHT_TRIANGLE") || traits_.at("TRAIT_LIGHT_SPHERE"))
+        want(emission_, "emission");
+    wanted.push_back({&accumulate_, FilmStage::request()});
+    const std::vector<KernelRequest> partition = PartitionStage::requests();
+    partition_kernels_.resize(partition.size());
+    for (std::size_t i = 0; i < partition.size(); ++i)
+        wanted.push_back({&partition_kernels_[i], partition[i]});
+    kinds_.resize(kinds.size());
+    for (std::size_t k = 0; k < kinds.size(); ++k) {
+        KindKernels &kind = kinds_[k];
+        kind.is_dirac = bsdf_kind_is_dirac(kinds[k]);
+        const auto want_variant = [&](Kernel &place, const std::string &stage) {
+            wanted.push_back({&place,
+                              {stage + " " + kinds[k],
+                               "kernels/stages/" + stage + ".cl",
+                               stage,
+                               {{"BSDF", kinds[k]}, {"BSDF_IS_DIRAC", kind.is_dirac ? "1" : "0"}}}});
+        };
+        if (options_.aov)
+            want_variant(kind.feature, "feature");
+        if (samples_lights(kind))
+            want_variant(kind.light_sample, "light_sample");
+        want_variant(kind.scatter, "scatter");
     }
+
+    std::vector<KernelRequest> requests;
+    for (const Wanted &w : wanted)
+        requests.push_back(w.request);
     KernelLibrary library(device_, traits_, precision);
-    const auto count_seconds = [this](const std::string &name, std::size_t, std::size_t, double seconds) {
-        statistics_.compile_seconds[name] += seconds;
-    };
-    const std::vector<Kernel> built = library.build(requests, count_seconds, options_.dump_kernels);
-    camera_ = built[0];
-    classify_ = built[1];
-    surface_ = built[2];
-    escape_ = built[3];
-    connect_ = built[4];
-    emission_ = built[5];
-    accumulate_ = built[6];
-    partition_kernels_.assign(built.begin() + 7, built.begin() + 10);
-    for (std::size_t i = 0; i < kinds.size(); ++i) {
-        const std::size_t first = first_kind + 3 * i;
-        kinds_.push_back({built[first], built[first + 1], built[first + 2], bsdf_kind_is_dirac(kinds[i])});
-    }
+    const std::vector<Kernel> built = library.build(
+        requests,
+        [&](const std::string &name, std::size_t, std::size_t, double seconds) {
+            statistics_.compile_seconds[name] += seconds;
+        },
+        options_.dump_kernels);
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+        *wanted[i].place = built[i];
 
     for (Kernel *kernel : all_kernels()) {
         scene_buffers_->bind(*kernel);
@@ -142,13 +161,10 @@ std::vector<Kernel *> PathTracer::all_kernels() {
     std::vector<Kernel *> kernels = {&camera_, &classify_, &surface_, &escape_, &connect_, &emission_, &accumulate_};
     for (Kernel &kernel : partition_kernels_)
         kernels.push_back(&kernel);
-    for (KindKernels &kind : kinds_) {
-        if (samples_lights(kind))
-            kernels.push_back(&kind.light_sample);
-        kernels.push_back(&kind.scatter);
-        if (options_.aov)
-            kernels.push_back(&kind.feature);
-    }
+    for (KindKernels &kind : kinds_)
+        for (Kernel *kernel : {&kind.feature, &kind.light_sample, &kind.scatter})
+            kernels.push_back(kernel);
+    std::erase_if(kernels, [](const Kernel *kernel) { return !kernel->valid(); });
     return kernels;
 }
 
@@ -162,10 +178,9 @@ void PathTracer::warm(std::vector<Kernel *> kernels) {
         kernels[i]->launch(tables_->capacity);
         finish(device_);
         kernels[i]->reset_usage();
-        const double seconds = seconds_since(start);
-        statistics_.compile_seconds[kernels[i]->name()] += seconds; // to what its program took
+        const double total = statistics_.compile_seconds[kernels[i]->name()] += seconds_since(start);
         if (options_.on_compiled)
-            options_.on_compiled(kernels[i]->name(), i + 1, kernels.size(), seconds);
+            options_.on_compiled(kernels[i]->name(), i + 1, kernels.size(), total);
     }
 }
 
@@ -198,6 +213,8 @@ bool PathTracer::render_batch() {
     camera_.set("first_sample_low", static_cast<std::uint32_t>(first_sample));
     camera_.set("first_sample_high", static_cast<std::uint32_t>(first_sample >> 32));
     const auto run = [](Kernel &kernel, std::uint32_t first, std::uint32_t items) {
+        if (items == 0)
+            return;
         kernel.set("first", first);
         kernel.set("count", items);
         kernel.launch(items);
@@ -228,6 +245,8 @@ bool PathTracer::render_batch() {
         const std::vector<std::uint32_t> &range = partition_->run(rays);
         const std::uint32_t escaped = range[1], hits = range.back() - escaped;
         for (Kernel *kernel : {&surface_, &escape_, &emission_}) {
+            if (!kernel->valid())
+                continue;
             kernel->bind("vertex_old", tables_->vertex[newest]);
             kernel->bind("vertex", tables_->vertex[1 - newest]);
         }
@@ -241,13 +260,12 @@ bool PathTracer::render_batch() {
         for (std::size_t k = 0; k < kinds_.size(); ++k) {
             const std::uint32_t first = range[1 + 2 * k] - escaped, items = range[3 + 2 * k] - range[1 + 2 * k];
             KindKernels &kind = kinds_[k];
-            for (Kernel *kernel : {&kind.light_sample, &kind.scatter, &kind.feature})
+            for (Kernel *kernel : {&kind.feature, &kind.light_sample, &kind.scatter}) {
+                if (!kernel->valid())
+                    continue;
                 kernel->bind("vertex", tables_->vertex[newest]);
-            if (options_.aov)
-                run(kind.feature, first, items);
-            if (samples_lights(kind))
-                run(kind.light_sample, first, items);
-            run(kind.scatter, first, items);
+                run(*kernel, first, items);
+            }
         }
     }
     film_->accumulate(paths, first_pixel);
@@ -267,6 +285,8 @@ Statistics PathTracer::statistics() const {
     Statistics s = statistics_;
     // The kernels of a stage may be several; a path meets them in this order.
     const auto stage = [&](const Kernel &kernel) {
+        if (!kernel.valid())
+            return;
         const Kernel::Usage usage = kernel.usage();
         s.stages.push_back({kernel.name(), usage.seconds, usage.items, usage.launches});
     };

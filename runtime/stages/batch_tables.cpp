@@ -56,15 +56,19 @@ std::uint32_t choose_batch_size(Device &device, std::uint32_t requested, std::ui
                                 Precision precision) {
     const DeviceDescription &d = device.description();
     const std::size_t per_path = batch_bytes_per_path(traits, precision);
-    const std::size_t largest_table = real_bytes(precision) * vertex_column_count(traits);
+    const std::size_t largest_table =
+        real_bytes(precision) *
+        std::max<std::size_t>(vertex_column_count(traits),
+                              batches_a_pass * (traits.at("TRAIT_AOV") ? int(feature_columns) : int(radiance_columns)));
     // Half the memory is for the scene and for others; one table may not pass the largest allocation.
     const std::uint64_t fits =
         std::min<std::uint64_t>(d.memory_bytes / 2 / per_path, d.allocation_bytes / largest_table);
     if (fits < least_batch)
         throw Error(ExitCode::device, fmt::format("{} has not enough memory for {} paths", d.name, least_batch));
     std::uint64_t size = requested ? requested : d.type == "cpu" ? default_batch_cpu : default_batch_other;
-    size = std::min<std::uint64_t>({size, fits, largest_batch, std::max<std::uint64_t>(samples, 1)});
-    return static_cast<std::uint32_t>((size + least_batch - 1) / least_batch * least_batch);
+    size = std::min<std::uint64_t>({size, largest_batch, std::max<std::uint64_t>(samples, 1)});
+    const std::uint64_t rounded_up = (size + least_batch - 1) / least_batch * least_batch;
+    return static_cast<std::uint32_t>(std::min(rounded_up, fits / least_batch * least_batch));
 }
 
 } // namespace gradus

@@ -123,7 +123,8 @@ TEST(PartialImage, DividesEachPixelByItsOwnCount) {
             ASSERT_NEAR(image.find("G")->values[i], i < done ? 1 : 0, 1e-5) << "pixel " << i << " after " << done;
         if (done == method->total_samples())
             break;
-        EXPECT_EQ(method->render_batch(), method->done_samples() < 3 * pixels);
+        const bool more = method->render_batch();
+        EXPECT_EQ(more, method->done_samples() < 3 * pixels);
         ASSERT_GT(method->done_samples(), done);
     }
     EXPECT_GT(within_a_sample, 0u) << "no image was partial";

@@ -1,0 +1,49 @@
+#include "runtime/device/device.h"
+
+#include "runtime/error.h"
+
+#include <gmock/gmock.h>
+
+namespace gradus {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(Device, IsFoundByNumberAndByAPartOfItsName) {
+    const std::vector<DeviceDescription> devices = list_devices();
+    ASSERT_FALSE(devices.empty());
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+        const Device device(std::to_string(i));
+        EXPECT_EQ(device.description().name, devices[i].name);
+        EXPECT_EQ(device.description().platform, devices[i].platform);
+    }
+    std::string part = devices[0].platform.substr(0, 8);
+    for (char &c : part)
+        c = char(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
+    EXPECT_EQ(Device(part).description().platform, devices[0].platform) << "in any case";
+}
+
+TEST(Device, SaysWhatThereIsWhereNoneMatches) {
+    for (const char *selector : {"no such device", "4711", "99999999999999999999"})
+        try {
+            const Device device(selector);
+            FAIL() << selector << " was found: " << device.description().name;
+        } catch (const Error &error) {
+            EXPECT_EQ(error.code, ExitCode::device);
+            EXPECT_THAT(error.what(), HasSubstr(selector));
+            for (const DeviceDescription &device : list_devices())
+                EXPECT_THAT(error.what(), HasSubstr(device.name));
+        }
+}
+
+TEST(Device, IsAProcessorUnlessToldOtherwise) {
+    const Device device("");
+    EXPECT_EQ(device.description().type, "cpu");
+    EXPECT_GT(device.description().compute_units, 0u);
+    EXPECT_GT(device.description().memory_bytes, 0u);
+    EXPECT_GT(device.description().allocation_bytes, 0u);
+    EXPECT_LE(device.description().allocation_bytes, device.description().memory_bytes);
+}
+
+} // namespace
+} // namespace gradus

@@ -1,0 +1,149 @@
+// The embedded kernel sources, put together; and that each declares the traits that it depends on.
+#include "runtime/device/embedded_kernels.h"
+#include "runtime/device/kernel_source.h"
+#include "runtime/error.h"
+#include "runtime/scene/traits.h"
+
+#include <gmock/gmock.h>
+
+#include <regex>
+#include <sstream>
+
+namespace gradus {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::vector<std::string> lines_of(const std::string &text) {
+    std::vector<std::string> lines;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);)
+        lines.push_back(line);
+    return lines;
+}
+
+std::vector<std::string> stage_files() {
+    std::vector<std::string> files;
+    for (const EmbeddedKernel &file : embedded_kernels())
+        if (file.path.ends_with(".cl"))
+            files.push_back(file.path);
+    return files;
+}
+
+/// The text without comments, strings and the lines that declare traits.
+std::string code_of(const std::string &text) {
+    std::string code;
+    for (const std::string &line : lines_of(text))
+        if (!line.starts_with("//!"))
+            code += line + "\n";
+    static const std::regex comment(R"(/\*[^*]*\*+(?:[^/*][^*]*\*+)*/|//[^\n]*)");
+    static const std::regex string(R"("[^"\n]*")");
+    return std::regex_replace(std::regex_replace(code, comment, " "), string, " ");
+}
+
+std::set<std::string> traits_used_in(const std::string &text) {
+    static const std::regex name(R"(\b(TRAIT_\w+|STRATEGY)\b)");
+    const std::string code = code_of(text);
+    std::set<std::string> names;
+    for (std::sregex_iterator i(code.begin(), code.end(), name), end; i != end; ++i)
+        names.insert(i->str());
+    return names;
+}
+
+std::set<std::string> missing(const std::set<std::string> &wanted, const std::set<std::string> &there) {
+    std::set<std::string> result;
+    for (const std::string &name : wanted)
+        if (!there.contains(name))
+            result.insert(name);
+    return result;
+}
+
+TEST(EmbeddedKernels, HoldEveryStage) {
+    EXPECT_THAT(stage_files(), ::testing::IsSupersetOf({"kernels/stages/camera.cl", "kernels/stages/surface.cl",
+                                                        "kernels/stages/scatter.cl", "kernels/stages/accumulate.cl"}));
+    for (const EmbeddedKernel &file : embedded_kernels())
+        EXPECT_FALSE(file.text.empty()) << file.path;
+}
+
+// A name that a file uses without a declaration would be 0 in its kernels, whatever the scene.
+TEST(KernelTraits, AreDeclaredByWhoeverUsesThem) {
+    std::size_t found = 0;
+    for (const EmbeddedKernel &file : embedded_kernels()) {
+        const std::set<std::string> used = traits_used_in(file.text);
+        found += used.size();
+        EXPECT_THAT(missing(used, kernel_source(file.path).traits), ::testing::IsEmpty()) << file.path;
+    }
+    EXPECT_GT(found, 20u) << "the scan finds no names";
+}
+
+// A name that a kernel is compiled for without any use of it would compile the kernel anew for nothing.
+TEST(KernelTraits, AreUsedByEachStageThatHasThem) {
+    for (const std::string &path : stage_files()) {
+        const KernelSource source = kernel_source(path);
+        EXPECT_THAT(missing(source.traits, traits_used_in(source.text)), ::testing::IsEmpty()) << path;
+    }
+}
+
+TEST(KernelTraits, AreThoseThatAMethodKnows) {
+    std::set<std::string> known = {"TRAIT_AOV", "STRATEGY"}; // of the render, not of the scene
+    for (const auto &[name, value] : scene_traits(Scene{}))
+        known.insert(name);
+    std::set<std::string> declared;
+    for (const std::string &path : stage_files())
+        declared.merge(kernel_source(path).traits);
+    EXPECT_THAT(missing(declared, known), ::testing::IsEmpty());
+    EXPECT_THAT(missing(known, declared), ::testing::IsEmpty()) << "no kernel asks for these";
+}
+
+TEST(KernelSource, HoldsEachFileOnce) {
+    for (const std::string &path : stage_files()) {
+        std::set<std::string> begun;
+        for (const std::string &line : lines_of(kernel_source(path).text)) {
+            if (line.starts_with("#line 1 \"")) {
+                EXPECT_TRUE(begun.insert(line).second) << path << " holds twice: " << line;
+            }
+            EXPECT_FALSE(line.starts_with("#include \"")) << path << ": " << line;
+        }
+        EXPECT_TRUE(begun.contains("#line 1 \"" + path + "\""));
+    }
+}
+
+// A compiler's message names file and line by the #line directives.
+TEST(KernelSource, NumbersItsLinesAsTheirFilesDo) {
+    static const std::regex directive(R"(#line (\d+) "([^"]+)\")");
+    for (const std::string &path : stage_files()) {
+        std::vector<std::string> file;
+        std::string name;
+        std::size_t next = 0, checked = 0;
+        for (const std::string &line : lines_of(kernel_source(path).text)) {
+            std::smatch match;
+            if (std::regex_match(line, match, directive)) {
+                next = std::stoul(match[1]);
+                name = match[2];
+                for (const EmbeddedKernel &embedded : embedded_kernels())
+                    if (embedded.path == name)
+                        file = lines_of(embedded.text);
+                continue;
+            }
+            ASSERT_GE(next, 1u) << "text before the first #line";
+            ASSERT_LE(next, file.size()) << name;
+            ASSERT_EQ(line, file[next - 1]) << name << ":" << next;
+            ++next;
+            ++checked;
+        }
+        EXPECT_GT(checked, 20u) << path;
+    }
+}
+
+TEST(KernelSource, OfAFileThatIsNotThereIsAnError) {
+    try {
+        kernel_source("kernels/stages/nowhere.cl");
+        FAIL();
+    } catch (const Error &error) {
+        EXPECT_EQ(error.code, ExitCode::device);
+        EXPECT_THAT(error.what(), HasSubstr("kernels/stages/nowhere.cl"));
+    }
+}
+
+} // namespace
+} // namespace gradus

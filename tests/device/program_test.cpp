@@ -1,0 +1,132 @@
+// Building kernels and launching them.
+#include "runtime/device/kernel_source.h"
+#include "runtime/device/program.h"
+#include "runtime/error.h"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <unistd.h>
+
+namespace gradus {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// The stage that needs least: it sums up the counts of chunks.
+const KernelRequest scan = {
+    "partition scan", "kernels/stages/partition.cl", "partition_scan", {{"PARTITION_CHUNK", "4"}}};
+
+class Program : public ::testing::Test {
+  protected:
+    Device device;
+    KernelLibrary library{device, {}};
+};
+
+TEST_F(Program, LaunchesWithArgumentsByName) {
+    Kernel kernel = library.build({scan})[0];
+    EXPECT_EQ(kernel.name(), "partition scan");
+    const std::vector<std::uint32_t> counts = {3, 1, 4, 1, 5, 9};
+    constexpr std::uint32_t canary = 0xC0FFEE;
+    const std::vector<std::uint32_t> canaries(8, canary);
+    const Buffer offset(device, "offset", counts.data(), 24), range(device, "range", canaries.data(), 32);
+    kernel.bind(offset);
+    kernel.bind(range);
+    kernel.set("bins", 3);
+    kernel.set("chunks", 2);
+    kernel.set("no_such_argument", 5); // left out in silence
+    kernel.launch(1);
+    std::vector<std::uint32_t> result(8);
+    range.read(result.data(), 32);
+    EXPECT_THAT(result, ::testing::ElementsAre(0, 4, 9, 23, canary, canary, canary, canary));
+}
+
+TEST_F(Program, WillNotLaunchWithoutAnArgument) {
+    Kernel kernel = library.build({scan})[0];
+    const Buffer offset(device, "offset", 64), range(device, "range", 64);
+    kernel.bind(offset);
+    kernel.set("bins", 1);
+    kernel.set("chunks", 1);
+    try {
+        kernel.launch(1);
+        FAIL() << "launched without its range";
+    } catch (const std::logic_error &error) {
+        EXPECT_THAT(error.what(), HasSubstr("partition scan"));
+        EXPECT_THAT(error.what(), HasSubstr("range"));
+    }
+    kernel.bind(range);
+    EXPECT_NO_THROW(kernel.launch(1));
+}
+
+TEST_F(Program, CountsItsLaunches) {
+    Kernel kernel = library.build({scan})[0];
+    const std::vector<std::uint32_t> zeros(64);
+    const Buffer offset(device, "offset", zeros.data(), 256), range(device, "range", 256);
+    kernel.bind(offset);
+    kernel.bind(range);
+    kernel.set("bins", 1);
+    kernel.set("chunks", 1);
+    for (int i = 0; i < 300; ++i)
+        kernel.launch(7);
+    kernel.launch(0); // nothing to do
+    const Kernel::Usage usage = kernel.usage();
+    EXPECT_EQ(usage.launches, 300u);
+    EXPECT_EQ(usage.items, 2100u);
+    EXPECT_GT(usage.seconds, 0);
+    kernel.reset_usage();
+    EXPECT_EQ(kernel.usage().launches, 0u);
+    EXPECT_EQ(kernel.usage().seconds, 0);
+}
+
+TEST_F(Program, ThatDoesNotCompileIsNamedWithTheCompilersLog) {
+    KernelRequest broken = {
+        "scatter broken", "kernels/stages/scatter.cl", "scatter", {{"BSDF", "nonsense"}, {"BSDF_IS_DIRAC", "0"}}};
+    try {
+        library.build({broken});
+        FAIL();
+    } catch (const Error &error) {
+        EXPECT_EQ(error.code, ExitCode::device);
+        EXPECT_THAT(error.what(), HasSubstr("scatter broken"));
+        EXPECT_THAT(error.what(), HasSubstr("nonsense_sample"));
+        EXPECT_THAT(error.what(), HasSubstr("kernels/stages/scatter.cl")) << "the real file, by #line";
+    }
+}
+
+TEST_F(Program, ReportsEachKernelThatIsBuilt) {
+    std::vector<KernelRequest> requests(3, scan);
+    for (std::size_t i = 0; i < requests.size(); ++i)
+        requests[i].name = "scan " + std::to_string(i);
+    std::size_t calls = 0;
+    const std::vector<Kernel> kernels =
+        library.build(requests, [&](const std::string &, std::size_t built, std::size_t of, double seconds) {
+            EXPECT_EQ(built, ++calls);
+            EXPECT_EQ(of, 3u);
+            EXPECT_GE(seconds, 0);
+        });
+    EXPECT_EQ(calls, 3u);
+    for (std::size_t i = 0; i < requests.size(); ++i)
+        EXPECT_EQ(kernels[i].name(), requests[i].name) << "in the order of the requests";
+}
+
+// What a kernel is compiled for is what it declares, and nothing else.
+TEST_F(Program, IsCompiledForTheTraitsThatItDeclares) {
+    KernelLibrary with_traits(device, {{"TRAIT_AOV", 1}, {"TRAIT_SPHERES", 1}});
+    const std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / ("gradus-dump-" + std::to_string(getpid()));
+    with_traits.build({{"accumulate", "kernels/stages/accumulate.cl", "accumulate", {}}}, {}, folder.string());
+    std::ifstream file(folder / "accumulate.cl");
+    std::string options;
+    std::getline(file, options);
+    std::ostringstream rest;
+    rest << file.rdbuf();
+    std::filesystem::remove_all(folder);
+    EXPECT_THAT(options, HasSubstr("-D TRAIT_AOV=1"));
+    EXPECT_THAT(options, Not(HasSubstr("TRAIT_SPHERES")));
+    EXPECT_EQ(rest.str(), kernel_source("kernels/stages/accumulate.cl").text);
+}
+
+} // namespace
+} // namespace gradus

@@ -1,0 +1,132 @@
+// The film: sums that lose nothing, samples that are not finite, and which pixel gets which sample.
+#include "runtime/stages/film_stage.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+// After GoogleTest, which has template parameters of the names of its macros.
+#include "kernels/shared/tables.h"
+
+namespace gradus {
+namespace {
+
+using namespace lib_float;
+
+class Film : public ::testing::Test {
+  protected:
+    static TraitValues traits(bool aov) {
+        return {{"TRAIT_REFRACTION", 0}, {"TRAIT_AOV", aov}, {"TRAIT_ANISOTROPIC", 0}, {"TRAIT_SHADING_NORMALS", 0}};
+    }
+    Device device;
+};
+
+/// Sets the radiance of slots [0, count) to value(slot, channel).
+template <class Value>
+void set_radiance(const BatchTables &tables, std::uint32_t count, Value value) {
+    const auto view = tables.radiance.map(Access::read_write);
+    auto *radiance = view.template as<float>();
+    for (int c = 0; c < 3; ++c)
+        for (std::uint32_t slot = 0; slot < count; ++slot)
+            radiance[std::size_t(radiance_value_r + c) * tables.slots + slot] = float(value(slot, c));
+}
+
+struct FilmUnderTest {
+    FilmUnderTest(Device &device, std::uint32_t slots, std::uint32_t width, std::uint32_t height,
+                  const TraitValues &traits)
+        : tables(device, 64, slots, 2, traits, Precision::single),
+          film(device, KernelLibrary(device, traits).build({FilmStage::request()})[0], tables, width, height, traits,
+               Precision::single) {}
+    BatchTables tables;
+    FilmStage film;
+};
+
+TEST_F(Film, GivesEachPixelItsSamplesWhateverTheBatches) {
+    constexpr std::uint32_t pixels = 7 * 3, samples = 100;
+    const auto value = [](std::uint64_t sample, int c) { return double(sample % pixels) * 3 + c; };
+    for (const std::uint32_t batch : {1u, 5u, 21u, 22u, 50u, 100u}) {
+        FilmUnderTest test(device, 128, 7, 3, traits(false));
+        for (std::uint32_t done = 0; done < samples; done += batch) {
+            const std::uint32_t count = std::min(batch, samples - done);
+            set_radiance(test.tables, count, [&](std::uint32_t slot, int c) { return value(done + slot, c); });
+            test.film.accumulate(count, done % pixels);
+        }
+        std::uint64_t non_finite = 0;
+        const Image image = test.film.image(samples, non_finite);
+        EXPECT_EQ(non_finite, 0u);
+        EXPECT_EQ(image.width, 7u);
+        EXPECT_EQ(image.height, 3u);
+        for (int c = 0; c < 3; ++c)
+            for (std::uint32_t pixel = 0; pixel < pixels; ++pixel)
+                ASSERT_EQ(image.find(c == 0   ? "R"
+                                     : c == 1 ? "G"
+                                              : "B")
+                              ->values[pixel],
+                          float(value(pixel, c)))
+                    << "batches of " << batch << ", pixel " << pixel;
+    }
+}
+
+// Without compensation a float sum of 1e4 and a million of 1e-3 is off by more than a hundred: 1e-3 is hardly more
+// than half of its last place.
+TEST_F(Film, LosesNothingToRounding) {
+    constexpr std::uint32_t slots = 8192, many = 1'000'000;
+    FilmUnderTest test(device, slots, 1, 1, traits(false));
+    set_radiance(test.tables, 1, [](std::uint32_t, int) { return 1e4; });
+    test.film.accumulate(1, 0);
+    set_radiance(test.tables, slots, [](std::uint32_t, int) { return 1e-3; });
+    for (std::uint32_t done = 0; done < many; done += slots)
+        test.film.accumulate(std::min(slots, many - done), 0);
+    std::uint64_t non_finite = 0;
+    const Image image = test.film.image(many + 1, non_finite);
+    const double expected = (1e4 + many * double(1e-3f)) / (many + 1.0);
+    for (const Channel &channel : image.channels)
+        EXPECT_NEAR(channel.values[0], expected, 1e-6 * expected) << channel.name;
+    // The same with plain sums, to see that the case is hard.
+    float plain = 1e4f;
+    for (std::uint32_t i = 0; i < many; ++i)
+        plain += 1e-3f;
+    EXPECT_GT(std::fabs(plain / (many + 1.0) - expected), 1e-3 * expected);
+}
+
+TEST_F(Film, LeavesOutAndCountsWhatIsNotFinite) {
+    constexpr std::uint32_t pixels = 4;
+    FilmUnderTest test(device, 64, 2, 2, traits(false));
+    const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+    // Three samples of each pixel. Pixel 0: all good. 1: a NaN in one channel. 2: infinities. 3: none that is good.
+    const auto value = [&](std::uint32_t slot, int c) -> double {
+        const std::uint32_t pixel = slot % pixels, sample = slot / pixels;
+        if ((pixel == 1 && sample == 0 && c == 2) || (pixel == 3 && c == 0))
+            return nan;
+        if (pixel == 2 && sample > 0)
+            return sample == 1 ? infinity : -infinity;
+        return 1 + sample;
+    };
+    set_radiance(test.tables, 12, value);
+    test.film.accumulate(12, 0);
+    std::uint64_t non_finite = 0;
+    const Image image = test.film.image(12, non_finite);
+    EXPECT_EQ(non_finite, 6u);
+    for (const Channel &channel : image.channels) {
+        EXPECT_EQ(channel.values[0], 2) << channel.name;
+        EXPECT_EQ(channel.values[1], 2.5f) << channel.name;
+        EXPECT_EQ(channel.values[2], 1) << channel.name;
+        EXPECT_EQ(channel.values[3], 0) << channel.name;
+    }
+}
+
+TEST_F(Film, KnowsTheVarianceOfItsMean) {
+    FilmUnderTest test(device, 64, 1, 1, traits(true));
+    test.tables.feature.clear();
+    set_radiance(test.tables, 4, [](std::uint32_t slot, int c) { return (c + 1) * double(slot); }); // 0, 1, 2, 3
+    test.film.accumulate(4, 0);
+    std::uint64_t non_finite = 0;
+    const Image image = test.film.image(4, non_finite);
+    // Sample variance 5/3, over 4.
+    EXPECT_FLOAT_EQ(image.find("variance.R")->values[0], float(5.0 / 12));
+    EXPECT_FLOAT_EQ(image.find("variance.B")->values[0], float(9 * 5.0 / 12));
+}
+
+} // namespace
+} // namespace gradus
