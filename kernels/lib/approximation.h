@@ -2,7 +2,7 @@
  * OpenCL vectorises over work-items, where its own functions do not.
  *
  * The coefficients are our own minimax fits (Lawson iteration on Chebyshev nodes, fitted in double). Each function
- * states its domain and its largest error in the float build; tests/kernels/test_approximation.cpp holds them to it.
+ * states its domain and its largest error in the float build; tests/kernels/approximation_test.cpp holds them to it.
  * The double build is the reference: it calls the accurate built-ins. ULP: units in the last place of a float. */
 #ifndef GRADUS_LIB_APPROXIMATION_H
 #define GRADUS_LIB_APPROXIMATION_H

@@ -15,7 +15,7 @@ using TraitMap = std::map<std::string, int>;
 
 TraitMap scene_traits(const Scene &scene);
 
-/// The same as a list, with the settings of a render left out, for `gradus inspect`.
+/// The same as a list, in the order in which `gradus inspect` prints them.
 std::vector<std::pair<std::string, int>> trait_list(const Scene &scene);
 
 /// One line that says what a trait stands for; empty for an unknown one.

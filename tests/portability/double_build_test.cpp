@@ -19,6 +19,8 @@ using namespace testing;
 constexpr double visible = 1e-3, allowed_fraction = 5e-3;
 /// Half of all rows are at least this near, some ten roundings of float.
 constexpr double allowed_median = 2e-6;
+/// Less than this is nothing: the tail of a narrow lobe goes below what float holds, and double still holds it.
+constexpr double negligible = 1e-30;
 constexpr std::uint32_t bounces = 5;
 
 class DoubleBuild : public ::testing::TestWithParam<const char *> {
@@ -85,7 +87,7 @@ class DoubleBuild : public ::testing::TestWithParam<const char *> {
         for (std::size_t c = 0; c < a.values.size(); ++c) {
             const double x = a.values[c][row], y = b.values[c][row];
             if (columns[c].is_uint) {
-                error = std::max(error, x == y ? 0.0 : 1.0);
+                error = std::max(error, x == y || is_negligible(columns, c, a, b, row) ? 0.0 : 1.0);
                 continue;
             }
             if (!std::isfinite(x) || !std::isfinite(y)) { // a column that nobody has written yet, or an error
@@ -93,13 +95,25 @@ class DoubleBuild : public ::testing::TestWithParam<const char *> {
                 continue;
             }
             const auto stem = [&](std::size_t i) { return columns[i].name.substr(0, columns[i].name.rfind('_')); };
-            double scale = 1e-12;
+            double scale = negligible;
             for (std::size_t i = 0; i < a.values.size(); ++i)
                 if (i == c || (!columns[i].is_uint && stem(i) == stem(c)))
                     scale = std::max(scale, std::abs(b.values[i][row]));
             error = std::max(error, std::min(1.0, std::abs(x - y) / scale));
         }
         return error;
+    }
+
+    /// A shadow ray that only one of them asks for, for a gain of nothing.
+    static bool is_negligible(const std::vector<Column> &columns, std::size_t c, const Content &a, const Content &b,
+                              std::size_t row) {
+        if (columns[c].name != "open")
+            return false;
+        double gain = 0;
+        for (std::size_t i = 0; i < columns.size(); ++i)
+            if (columns[i].name.starts_with("value_"))
+                gain = std::max({gain, std::abs(a.values[i][row]), std::abs(b.values[i][row])});
+        return gain < negligible;
     }
 
     void run(const std::string &stage, const std::string &kind, std::uint32_t first, std::uint32_t count,

@@ -5,7 +5,18 @@
 #include <algorithm>
 #include <cstring>
 
+#include "kernels/shared/tables.h"
+
 namespace gradus::testing {
+
+#define GRADUS_TEST_REAL(table, column, text) {#column, false},
+#define GRADUS_TEST_UINT(table, column, text) {#column, true},
+const std::vector<Column> ray_table = {GRADUS_RAY_COLUMNS(GRADUS_TEST_REAL, GRADUS_TEST_UINT)};
+const std::vector<Column> shadow_table = {GRADUS_SHADOW_COLUMNS(GRADUS_TEST_REAL, GRADUS_TEST_UINT)};
+const std::vector<Column> vertex_table = {GRADUS_VERTEX_COLUMNS(GRADUS_TEST_REAL, GRADUS_TEST_UINT)};
+const std::vector<Column> tangent_table = {GRADUS_TANGENT_COLUMNS(GRADUS_TEST_REAL, GRADUS_TEST_UINT)};
+const std::vector<Column> radiance_table = {GRADUS_RADIANCE_COLUMNS(GRADUS_TEST_REAL, GRADUS_TEST_UINT)};
+const std::vector<Column> feature_table = {GRADUS_FEATURE_COLUMNS(GRADUS_TEST_REAL, GRADUS_TEST_UINT)};
 
 Wavefront::Wavefront(Device &device, const Scene &scene, const TraitMap &traits, const SceneTables &scene_tables,
                      Precision precision)

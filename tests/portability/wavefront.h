@@ -2,7 +2,6 @@
 // double build with the float build on equal inputs.
 #pragma once
 
-#include "kernels/shared/tables.h"
 #include "runtime/scene/scene_tables.h"
 #include "runtime/stages/film_stage.h"
 #include "runtime/stages/partition_stage.h"
@@ -10,6 +9,7 @@
 #include "runtime/trace/tracer.h"
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -20,16 +20,8 @@ struct Column {
     bool is_uint;
 };
 
-#define GRADUS_TEST_REAL(table, column, text) {#column, false},
-#define GRADUS_TEST_UINT(table, column, text) {#column, true},
-inline const std::vector<Column> ray_table = {GRADUS_RAY_COLUMNS(GRADUS_TEST_REAL, GRADUS_TEST_UINT)};
-inline const std::vector<Column> shadow_table = {GRADUS_SHADOW_COLUMNS(GRADUS_TEST_REAL, GRADUS_TEST_UINT)};
-inline const std::vector<Column> vertex_table = {GRADUS_VERTEX_COLUMNS(GRADUS_TEST_REAL, GRADUS_TEST_UINT)};
-inline const std::vector<Column> tangent_table = {GRADUS_TANGENT_COLUMNS(GRADUS_TEST_REAL, GRADUS_TEST_UINT)};
-inline const std::vector<Column> radiance_table = {GRADUS_RADIANCE_COLUMNS(GRADUS_TEST_REAL, GRADUS_TEST_UINT)};
-inline const std::vector<Column> feature_table = {GRADUS_FEATURE_COLUMNS(GRADUS_TEST_REAL, GRADUS_TEST_UINT)};
-#undef GRADUS_TEST_REAL
-#undef GRADUS_TEST_UINT
+/// The columns of kernels/shared/tables.h, whose short macro names are not for headers.
+extern const std::vector<Column> ray_table, shadow_table, vertex_table, tangent_table, radiance_table, feature_table;
 
 /// The content of a table, all reals as double. Columns that the traits leave out are missing.
 struct Content {
