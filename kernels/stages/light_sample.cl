@@ -79,10 +79,10 @@ STAGE light_sample(uint count, uint unit, uint first, uint capacity, uint max_de
     }
 #endif
 
-    const frame axes = VERTEX_FRAME(row);
+    const material m = material_load(materials, AT_UINT(vertex, material, row), unit);
+    const frame axes = VERTEX_FRAME(row, m);
     const vec3 wi = frame_to_local(axes, AT_V3(vertex, wi, row));
     const vec3 wo = frame_to_local(axes, s.direction);
-    const material m = material_load(materials, AT_UINT(vertex, material, row), unit);
     const rgb reflected = PASTE(BSDF, _eval)(m, wi, wo);
     const real pdf_bsdf = PASTE(BSDF, _pdf)(m, wi, wo);
     const real weight = mis_weight_light(s.pdf * probability, pdf_bsdf) / probability;

@@ -15,9 +15,9 @@ STAGE scatter(uint count, uint unit, uint first, uint capacity, uint max_depth, 
     const uint depth = AT_UINT(vertex, depth, row);
     const random4 u =
         random_draw(AT_UINT(vertex, key_0, row), AT_UINT(vertex, key_1, row), random_dimension_scatter(depth));
-    const frame axes = VERTEX_FRAME(row);
-    const vec3 wi = frame_to_local(axes, AT_V3(vertex, wi, row));
     const material m = material_load(materials, AT_UINT(vertex, material, row), unit);
+    const frame axes = VERTEX_FRAME(row, m);
+    const vec3 wi = frame_to_local(axes, AT_V3(vertex, wi, row));
     const bsdf_sample s = PASTE(BSDF, _sample)(m, wi, u.a, u.b, u.c);
 
     rgb throughput = rgb_mul(AT_RGB(vertex, throughput, row), s.weight);

@@ -38,16 +38,15 @@ AliasTable make_alias_table(const std::vector<double> &weights) {
 std::vector<double> light_weights(const std::vector<LightPower> &lights) {
     std::map<std::uint32_t, double> emitters; // power of each
     double finite_power = 0;
-    std::size_t finite_emitters = 0;
+    std::size_t at_infinity = 0;
     for (const LightPower &light : lights) {
         emitters[light.emitter] += light.power;
-        if (!light.at_infinity)
+        if (light.at_infinity)
+            ++at_infinity; // each is an emitter of its own
+        else
             finite_power += light.power;
     }
-    for (const auto &[emitter, power] : emitters)
-        finite_emitters += 1;
-    for (const LightPower &light : lights)
-        finite_emitters -= light.at_infinity ? 1 : 0;
+    const std::size_t finite_emitters = emitters.size() - at_infinity;
     if (finite_emitters > 0)
         for (const LightPower &light : lights)
             if (light.at_infinity)

@@ -39,6 +39,8 @@ struct FilterCase {
     }
 };
 
+void PrintTo(const FilterCase &c, std::ostream *out) { *out << c.name; }
+
 class Filter : public ::testing::TestWithParam<FilterCase> {};
 
 TEST_P(Filter, SpreadsAnEdgeByItsIntegral) {

@@ -151,6 +151,8 @@ struct WalkCase {
     Bsdf bsdf;
 };
 
+void PrintTo(const WalkCase &c, std::ostream *out) { *out << c.name; }
+
 class FurnaceWalk : public ::testing::TestWithParam<WalkCase> {};
 
 /// Mean of a channel and its standard error, from the variance of each pixel.
@@ -222,7 +224,10 @@ INSTANTIATE_TEST_SUITE_P(Furnace, FurnaceWalk, ::testing::ValuesIn(walk_cases())
                          [](const auto &info) { return info.param.name; });
 
 // Every point of a closed room of emission E and albedo a has radiance E (1 + a + a^2 + ...).
-class Room : public ::testing::TestWithParam<ConvexShape> {};
+class Room : public ::testing::TestWithParam<const char *> {
+  protected:
+    static ConvexShape shape() { return GetParam() == std::string("cube") ? ConvexShape::cube : ConvexShape::sphere; }
+};
 
 SceneMaker room(ConvexShape shape, double emission, double albedo, std::uint64_t samples) {
     SceneMaker maker(32, samples);
@@ -241,7 +246,7 @@ TEST_P(Room, OfInfiniteDepthIsAGeometricSeries) {
     for (const double albedo : {0.5, 0.8})
         for (const auto strategy : {RenderOptions::Strategy::mis, RenderOptions::Strategy::bsdf}) {
             SCOPED_TRACE(fmt::format("albedo {} strategy {}", albedo, int(strategy)));
-            SceneMaker maker = room(GetParam(), 0.7, albedo, 256);
+            SceneMaker maker = room(shape(), 0.7, albedo, 256);
             maker.scene.settings.rr_depth = 5;
             const Spread spread = spread_of(render(maker.scene, with(strategy)).image);
             const double expected = 0.7 / (1 - albedo);
@@ -253,7 +258,7 @@ TEST_P(Room, OfInfiniteDepthIsAGeometricSeries) {
 // With BSDF sampling alone each path finds E at each of its vertices: no noise.
 TEST_P(Room, OfDepthNHasNTerms) {
     for (int depth = 0; depth <= 6; ++depth) {
-        SceneMaker maker = room(GetParam(), 0.7, 0.8, 4);
+        SceneMaker maker = room(shape(), 0.7, 0.8, 4);
         maker.scene.settings.max_depth = depth;
         const Spread spread = spread_of(render(maker.scene, with(RenderOptions::Strategy::bsdf)).image);
         const double expected = 0.7 * (1 - std::pow(0.8, depth)) / (1 - 0.8);
@@ -265,8 +270,7 @@ TEST_P(Room, OfDepthNHasNTerms) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Furnace, Room, ::testing::ValuesIn(both_shapes),
-                         [](const auto &info) { return name_of(info.param); });
+INSTANTIATE_TEST_SUITE_P(Furnace, Room, ::testing::Values("sphere", "cube"));
 
 } // namespace
 } // namespace gradus::testing
