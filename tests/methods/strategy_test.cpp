@@ -8,10 +8,10 @@ namespace {
 class Strategies : public ::testing::TestWithParam<const char *> {};
 
 TEST_P(Strategies, Agree) {
-    constexpr std::size_t seeds = 16;
-    constexpr std::uint64_t samples_per_pixel = 24;
+    constexpr std::size_t seeds = 12;
+    constexpr std::uint64_t samples_per_pixel = 32;
     const std::string name = GetParam();
-    Scene scene = own_scene(name + ".xml", 96, 72);
+    Scene scene = own_scene(name + ".xml", 64, 48);
     scene.settings.samples_per_pixel = samples_per_pixel;
     // BSDF sampling cannot meet lights of no extent.
     std::erase_if(scene.emitters, [](const Emitter &emitter) {

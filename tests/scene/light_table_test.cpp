@@ -32,8 +32,9 @@ void expect_exact(const std::vector<double> &weights) {
         // Thresholds are floats: half a unit in the last place of 1 a column, each way.
         EXPECT_NEAR(share[i], expected, 6e-8) << "entry " << i << " of " << weights.size();
         EXPECT_NEAR(table.probability[i], expected, 6e-8 * expected);
-        if (weights[i] == 0) // would be divided by its probability
+        if (weights[i] == 0) { // would be divided by its probability
             EXPECT_EQ(share[i], 0) << "entry " << i;
+        }
     }
 }
 

@@ -37,20 +37,19 @@ TEST(LightPowers, DecideHowOftenALightIsChosen) {
     maker.emitter(Emitter::Kind::point, {0, 0, 0}); // black: no light
     const SceneTables tables = tables_of(maker.scene);
 
-    const double radius = 3.5, disk = M_PI * radius * radius;
-    const double power[] = {
-        M_PI * 3 * luminance(2, 1, 4), M_PI * 3 * luminance(2, 1, 4),  M_PI * 4 * M_PI * 0.25 * 3,
-        4 * M_PI * luminance(1, 2, 3), disk * luminance(0.5, 0.25, 1), M_PI * disk * 0.125,
-    };
+    // Half the choice by power, half in equal shares, for each of the five emitters. The two at infinity count as the
+    // mean of the others.
+    const double rectangle = M_PI * 6 * luminance(2, 1, 4), ball = M_PI * 4 * M_PI * 0.25 * 3;
+    const double point = 4 * M_PI * luminance(1, 2, 3), mean = (rectangle + ball + point) / 3;
+    const auto chosen = [&](double power) { return 0.5 * power / (5 * mean) + 0.5 / 5; };
+    const double probability[] = {chosen(rectangle) / 2, chosen(rectangle) / 2, chosen(ball),
+                                  chosen(point),         chosen(mean),          chosen(mean)};
     const std::uint32_t kinds[] = {light_kind_triangle, light_kind_triangle,    light_kind_sphere,
                                    light_kind_point,    light_kind_directional, light_kind_constant};
-    double total = 0;
-    for (const double p : power)
-        total += p;
     ASSERT_EQ(tables.light_count, 6u);
     for (std::size_t i = 0; i < 6; ++i) {
         EXPECT_EQ(tables.light_kinds[i], kinds[i]) << "light " << i;
-        EXPECT_NEAR(light_value(tables, i, light_probability), power[i] / total, 1e-6) << "light " << i;
+        EXPECT_NEAR(light_value(tables, i, light_probability), probability[i], 1e-6) << "light " << i;
     }
     EXPECT_EQ(tables.environment_light, 5u);
     EXPECT_GT(tables.scene_diameter, 7);
@@ -62,6 +61,18 @@ TEST(LightPowers, DecideHowOftenALightIsChosen) {
     EXPECT_FLOAT_EQ(light_value(tables, 4, light_p_y), 0.6f);
     EXPECT_FLOAT_EQ(light_value(tables, 4, light_p_z), -0.8f);
     EXPECT_EQ(light_value(tables, 4, light_value_b), 1);
+}
+
+// By what they send through a disk as wide as the scene where there is nothing else to measure them by.
+TEST(LightPowers, AtInfinityCountAmongThemselves) {
+    SceneMaker maker(4, 1);
+    maker.sphere({0, 0, 0}, 1, maker.material(diffuse(0.5)));
+    maker.directional_light({3, 3, 3}, {0, 0, 1});
+    maker.environment(1);
+    const SceneTables tables = tables_of(maker.scene);
+    ASSERT_EQ(tables.light_count, 2u);
+    EXPECT_NEAR(light_value(tables, 0, light_probability), 0.5 * 3 / (3 + M_PI) + 0.25, 1e-6);
+    EXPECT_NEAR(light_value(tables, 1, light_probability), 0.5 * M_PI / (3 + M_PI) + 0.25, 1e-6);
 }
 
 TEST(Lights, AreNoneInADarkScene) {
