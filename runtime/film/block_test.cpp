@@ -162,7 +162,9 @@ void judge(BlockTest &test) {
     }
     const double chance = 2 * normal_upper_tail(3);
     test.expected_over_three = chance * double(test.tested);
-    test.over_three_limit = binomial_limit(test.tested, chance, false_alarm);
+    // The channels of a block share their paths, and one block may count once for each: the trials are the blocks.
+    const std::size_t channels = std::max<std::size_t>(1, test.channels.size());
+    test.over_three_limit = channels * binomial_limit((test.tested + channels - 1) / channels, chance, false_alarm);
     test.largest_limit = sidak_limit(test.tested, false_alarm);
 }
 

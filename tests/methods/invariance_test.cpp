@@ -77,12 +77,6 @@ TEST_P(Invariance, NotToTheSeed) {
     EXPECT_FALSE(equal_bits(image, render(small_scene(), high).image));
 }
 
-RenderOptions with_all_traits() {
-    RenderOptions options;
-    options.all_traits = true;
-    return options;
-}
-
 // Kernels with every trait on compute the same, but a compiler may join multiplications and additions otherwise. What
 // that changes in the last bits sends a path another way now and then: past an edge, or on with Russian roulette.
 TEST_P(Invariance, ToSpecialisationButForRounding) {
