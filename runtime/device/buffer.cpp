@@ -20,7 +20,7 @@ struct Buffer::Handle {
 
     Device::Implementation &device;
     cl::Buffer memory;
-    std::size_t bytes;
+    std::size_t bytes; ///< that we allocated: 0 for a caller's
 };
 
 Buffer::Buffer(Device &device, const std::string &name, std::size_t bytes)
@@ -45,6 +45,24 @@ Buffer::Buffer(Device &device, const std::string &name, const void *data, std::s
         else
             clear();
     });
+}
+
+Buffer Buffer::wrap(Device &device, const std::string &name, _cl_mem *memory) {
+    if (!memory)
+        throw Error(ExitCode::device, fmt::format("{}: the OpenCL memory object is null", name));
+    Device::Implementation &d = device.implementation();
+    Buffer buffer;
+    buffer.name_ = name;
+    opencl_call("taking the memory of " + name, [&] {
+        const cl::Buffer object(memory, true);
+        if (object.getInfo<CL_MEM_TYPE>() != CL_MEM_OBJECT_BUFFER)
+            throw Error(ExitCode::device, fmt::format("{}: the OpenCL memory object is not a buffer", name));
+        if (object.getInfo<CL_MEM_CONTEXT>()() != d.context())
+            throw Error(ExitCode::device, fmt::format("{}: the OpenCL buffer belongs to another context", name));
+        buffer.bytes_ = object.getInfo<CL_MEM_SIZE>();
+        buffer.handle_ = std::make_shared<Handle>(d, object, 0);
+    });
+    return buffer;
 }
 
 const void *Buffer::argument() const { return &handle_->memory(); }

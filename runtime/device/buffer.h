@@ -7,6 +7,8 @@
 #include <span>
 #include <string>
 
+struct _cl_mem; // cl_mem, as OpenCL's headers declare it
+
 namespace gradus {
 
 enum class Access { read, write, read_write };
@@ -20,6 +22,10 @@ class Buffer {
     Buffer(Device &device, const std::string &name, std::size_t bytes);
     /// The same with its content.
     Buffer(Device &device, const std::string &name, const void *data, std::size_t bytes);
+
+    /// A caller's cl_mem, which is retained and not counted as ours. It must be a buffer of the device's context:
+    /// throws Error(ExitCode::device) where it is not. Maps and reads need a buffer that the host may access.
+    static Buffer wrap(Device &device, const std::string &name, _cl_mem *memory);
 
     const std::string &name() const { return name_; }
     std::size_t bytes() const { return bytes_; }

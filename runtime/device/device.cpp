@@ -125,6 +125,26 @@ Device::Device(const std::string &selector, int threads) : implementation_(std::
     });
 }
 
+Device::Device(_cl_context *context, _cl_command_queue *queue) : implementation_(std::make_unique<Implementation>()) {
+    if (!context || !queue)
+        throw Error(ExitCode::device, "a device needs an OpenCL context and a queue; one of them is null");
+    opencl_call("taking an OpenCL context and queue", [&] {
+        Implementation &i = *implementation_;
+        i.context = cl::Context(context, true);
+        i.queue = cl::CommandQueue(queue, true);
+        if (i.queue.getInfo<CL_QUEUE_CONTEXT>()() != context)
+            throw Error(ExitCode::device, "the OpenCL queue belongs to another context");
+        const cl_command_queue_properties properties = i.queue.getInfo<CL_QUEUE_PROPERTIES>();
+        if (properties & CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE)
+            throw Error(ExitCode::device, "the OpenCL queue runs out of order; make one without "
+                                          "CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE");
+        i.profiles = properties & CL_QUEUE_PROFILING_ENABLE;
+        i.device = i.queue.getInfo<CL_QUEUE_DEVICE>();
+        i.description = describe(cl::Platform(i.device.getInfo<CL_DEVICE_PLATFORM>()), i.device);
+        i.compile_threads = std::max(1u, std::thread::hardware_concurrency());
+    });
+}
+
 Device::~Device() = default;
 
 const DeviceDescription &Device::description() const { return implementation_->description; }

@@ -6,6 +6,10 @@
 #include <string>
 #include <vector>
 
+// cl_context and cl_command_queue, as OpenCL's headers declare them: this header does not ask for those.
+struct _cl_context;
+struct _cl_command_queue;
+
 namespace gradus {
 
 struct DeviceDescription {
@@ -27,6 +31,10 @@ class Device {
     /// platform's or device's name in any case. `threads`: how many cores a CPU device may use, 0 for all; takes
     /// effect only for the first device of a process. Throws Error with the list of what there is.
     explicit Device(const std::string &selector = "", int threads = 0);
+    /// A caller's cl_context and cl_command_queue; both are retained. Everything is enqueued on that queue, so it comes
+    /// after what the caller enqueued there before. Without CL_QUEUE_PROFILING_ENABLE kernel times are 0. Throws
+    /// Error(ExitCode::device) for null, for a queue of another context, or for one that runs out of order.
+    Device(_cl_context *context, _cl_command_queue *queue);
     ~Device();
     Device(const Device &) = delete;
     Device &operator=(const Device &) = delete;

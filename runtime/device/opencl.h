@@ -9,15 +9,28 @@
 #define CL_HPP_ENABLE_EXCEPTIONS
 #include <CL/opencl.hpp>
 
+#include <future>
+#include <map>
+#include <mutex>
+#include <string>
+
 namespace gradus {
+
+/// Programs that were built for a device, by source and options.
+struct ProgramCache {
+    std::mutex mutex;
+    std::map<std::string, std::shared_future<cl::Program>> programs;
+};
 
 struct Device::Implementation {
     DeviceDescription description;
     cl::Device device;
     cl::Context context;
     cl::CommandQueue queue;
+    bool profiles = true;         ///< the queue times what runs on it
     unsigned compile_threads = 1; ///< kernels that are compiled at a time
     std::uint64_t allocated_bytes = 0, peak_bytes = 0;
+    ProgramCache built;
 };
 
 /// Runs a function and turns an OpenCL error into an Error that says what was being done.

@@ -71,11 +71,13 @@ void Kernel::launch(std::size_t items) {
     const std::size_t padded = (items + group - 1) / group * group;
     if (padded == 0)
         return;
+    const bool profiles = handle_->device->profiles;
     opencl_call("launching " + name(), [&] {
         cl::Event event;
         handle_->device->queue.enqueueNDRangeKernel(handle_->kernel, cl::NullRange, cl::NDRange(padded),
-                                                    cl::NDRange(group), nullptr, &event);
-        handle_->pending.push_back(std::move(event));
+                                                    cl::NDRange(group), nullptr, profiles ? &event : nullptr);
+        if (profiles)
+            handle_->pending.push_back(std::move(event));
     });
     handle_->usage.launches += 1;
     handle_->usage.items += items;
@@ -130,6 +132,42 @@ void dump(const std::string &folder, const KernelRequest &request, const std::st
         throw Error(ExitCode::output, "cannot write kernel sources to " + folder);
 }
 
+cl::Program build_program(Device::Implementation &device, const std::string &text, const std::string &options,
+                          const std::string &name) {
+    cl::Program program(device.context, text);
+    try {
+        program.build({device.device}, options.c_str());
+    } catch (const cl::Error &) {
+        throw Error(ExitCode::device,
+                    fmt::format("kernel {} does not compile for {}:\n{}", name, device.description.name,
+                                program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.device)));
+    }
+    return program;
+}
+
+/// Builds a program, or takes the one that was built from the same source with the same options, or waits for it.
+cl::Program built_program(Device::Implementation &device, const std::string &text, const std::string &options,
+                          const std::string &name) {
+    std::promise<cl::Program> promise;
+    std::shared_future<cl::Program> program;
+    bool here = false;
+    {
+        const std::lock_guard lock(device.built.mutex);
+        auto [found, is_new] = device.built.programs.try_emplace(options + '\n' + text);
+        if (is_new)
+            found->second = promise.get_future().share();
+        program = found->second;
+        here = is_new;
+    }
+    if (here)
+        try {
+            promise.set_value(build_program(device, text, options, name));
+        } catch (...) {
+            promise.set_exception(std::current_exception());
+        }
+    return program.get();
+}
+
 } // namespace
 
 std::vector<Kernel> KernelLibrary::build(const std::vector<KernelRequest> &requests, const Progress &progress,
@@ -153,14 +191,7 @@ std::vector<Kernel> KernelLibrary::build(const std::vector<KernelRequest> &reque
         handle->precision = precision_;
         handle->work_group_size = work_group_size();
         opencl_call("compiling kernel " + request.name, [&] {
-            handle->program = cl::Program(d.context, source.text);
-            try {
-                handle->program.build({d.device}, options.c_str());
-            } catch (const cl::Error &) {
-                throw Error(ExitCode::device,
-                            fmt::format("kernel {} does not compile for {}:\n{}", request.name, d.description.name,
-                                        handle->program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(d.device)));
-            }
+            handle->program = built_program(d, source.text, options, request.name);
             handle->kernel = cl::Kernel(handle->program, request.entry.c_str());
             const cl_uint count = handle->kernel.getInfo<CL_KERNEL_NUM_ARGS>();
             for (cl_uint i = 0; i < count; ++i) {

@@ -3,6 +3,7 @@
 
 #include "runtime/device/buffer.h"
 #include "runtime/device/device.h"
+#include "runtime/device/precision.h"
 
 #include <cstdint>
 #include <functional>
@@ -24,10 +25,6 @@ struct KernelRequest {
     std::map<std::string, std::string> definitions; ///< more macros, such as BSDF=diffuse
 };
 
-enum class Precision { single, relaxed, double_ };
-
-constexpr std::size_t real_bytes(Precision precision) { return precision == Precision::double_ ? 8 : 4; }
-
 /// A compiled kernel with its arguments.
 class Kernel {
   public:
@@ -46,7 +43,7 @@ class Kernel {
     /// Enqueues `items` work-items. Every argument must have been set: throws std::logic_error that names it.
     void launch(std::size_t items);
 
-    /// What all launches so far took on the device. Waits for them.
+    /// What all launches so far took on the device. Waits for them, where the queue times them; else seconds are 0.
     struct Usage {
         double seconds = 0;
         std::uint64_t launches = 0, items = 0;

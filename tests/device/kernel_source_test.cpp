@@ -42,7 +42,7 @@ std::string code_of(const std::string &text) {
 }
 
 std::set<std::string> traits_used_in(const std::string &text) {
-    static const std::regex name(R"(\b(TRAIT_\w+|STRATEGY)\b)");
+    static const std::regex name(R"(\b(TRAIT_\w+|STRATEGY|SOLVER_(?:CHANNELS|WEIGHTED|JOINT))\b)");
     const std::string code = code_of(text);
     std::set<std::string> names;
     for (std::sregex_iterator i(code.begin(), code.end(), name), end; i != end; ++i)
@@ -85,7 +85,8 @@ TEST(KernelTraits, AreUsedByEachStageThatHasThem) {
 }
 
 TEST(KernelTraits, AreThoseThatAMethodKnows) {
-    std::set<std::string> known = {"TRAIT_AOV", "STRATEGY"}; // of the render, not of the scene
+    // Of the render and of the solver, not of the scene.
+    std::set<std::string> known = {"TRAIT_AOV", "STRATEGY", "SOLVER_CHANNELS", "SOLVER_WEIGHTED", "SOLVER_JOINT"};
     for (const auto &[name, value] : scene_traits(Scene{}))
         known.insert(name);
     std::set<std::string> declared;

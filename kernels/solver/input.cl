@@ -1,0 +1,57 @@
+/* From the caller's planes to the system for u = I - I0: what the differences of I0 lack of the given ones. A value
+ * that is NaN or infinite is missing; the tests are on the bits, which no compiler option takes away. */
+#include "kernels/solver/grid.h"
+
+/* Contiguous even where it is not inside and must not be read. */
+#define PACKED_AT(channel) (((size_t)(channel)*height + y) * width + x)
+
+GRADUS_FN bool is_finite(float value) { return (as_uint(value) & 0x7f800000u) != 0x7f800000u; }
+
+/* A plane of the caller's, `missing_value` where it is missing; `valid` is 1 where all channels are there; and the
+ * number missing. */
+SOLVE import_plane(GRID, uint edge_columns, uint edge_rows, real missing_value, uint partials,
+                   __global const float *packed, __global real *imported, __global real *valid,
+                   __global real *partial) {
+    SOLVER_PLACE_OF_ALL_CHANNELS
+    /* Differences have one column or row less than the image. */
+    const bool inside = x < edge_columns && y < edge_rows;
+    uint missing = 0;
+#pragma unroll
+    for (uint channel = 0; channel < SOLVER_CHANNELS; ++channel)
+        missing |= is_finite(inside ? packed[PACKED_AT(channel)] : 0.0f) ? 0 : 1;
+#pragma unroll
+    for (uint channel = 0; channel < SOLVER_CHANNELS; ++channel) {
+        const real value = inside ? packed[PACKED_AT(channel)] : 0.0f;
+        imported[GRID_AT(channel, x, y)] = missing ? missing_value : value;
+    }
+    valid[GRID_AT(0, x, y)] = inside && missing == 0 ? R(1) : R(0);
+    partial[tile * SOLVER_TILE + item] = missing;
+}
+
+/* gradient_x = Gx - Dx I0 and gradient_y likewise, 0 where Gx or Gy is missing. */
+SOLVE gradient_residual(GRID, __global const real *base, __global const real *dx, __global const real *dy,
+                        __global const real *valid_dx, __global const real *valid_dy, __global real *gradient_x,
+                        __global real *gradient_y) {
+    SOLVER_PLACE
+    const size_t at = GRID_AT(channel, x, y), w = GRID_AT(0, x, y);
+    gradient_x[at] = valid_dx[w] * (dx[at] - (base[at + 1] - base[at]));
+    gradient_y[at] = valid_dy[w] * (dy[at] - (base[at + row] - base[at]));
+}
+
+/* right_side = the transposed differences of the weighted gradient residual. */
+SOLVE right_side(GRID, WEIGHTS_OF_DIAGONAL, __global const real *gradient_x, __global const real *gradient_y,
+                 __global real *right_side) {
+    SOLVER_PLACE
+    const size_t at = GRID_AT(channel, x, y);
+    const cell_weights c = CELL(x, y);
+    right_side[at] = (c.left * gradient_x[at - 1] - c.right * gradient_x[at]) +
+                     (c.up * gradient_y[at - row] - c.down * gradient_y[at]);
+}
+
+/* u = start - base, where there is a start and it is finite; else 0. */
+SOLVE start(GRID, uint has_start, __global const real *base, __global const float *packed, __global real *u) {
+    SOLVER_PLACE
+    const size_t at = GRID_AT(channel, x, y);
+    const float value = has_start && x < width ? packed[PACKED_AT(channel)] : NAN;
+    u[at] = is_finite(value) ? value - base[at] : R(0);
+}

@@ -1,0 +1,49 @@
+/* What iterations do with the operator A: residuals and smoothing. */
+#include "kernels/solver/grid.h"
+
+/* residual = right_side - A u. */
+SOLVE residual(GRID, WEIGHTS_OF_DIAGONAL, __global const real *u, __global const real *right_side,
+               __global real *residual) {
+    SOLVER_PLACE
+    residual[GRID_AT(channel, x, y)] = RESIDUAL(x, y);
+}
+
+/* Two steps of smoothing that start at zero: first = step_0 right_side / D, smoothed = first + step_1 (right_side - A
+ * first) / D, D being the diagonal of A. `first` is computed where it is needed. */
+SOLVE smooth_twice_from_zero(GRID, WEIGHTS, real step_0, real step_1, __global const real *right_side,
+                             __global real *smoothed) {
+    SOLVER_PLACE
+    const size_t at = GRID_AT(channel, x, y), w = WEIGHT_AT(x, y);
+    const cell_weights c = CELL(x, y);
+    const real b = right_side[at];
+    const real here = b * inverse_diagonal[w];
+    const real left = right_side[at - 1] * inverse_diagonal[w - 1];
+    const real right = right_side[at + 1] * inverse_diagonal[w + 1];
+    const real up = right_side[at - row] * inverse_diagonal[w - row];
+    const real down = right_side[at + row] * inverse_diagonal[w + row];
+    const real a = c.data * here + (c.left * (here - left) + c.right * (here - right)) +
+                   (c.up * (here - up) + c.down * (here - down));
+    smoothed[at] = step_0 * here + step_1 * inverse_diagonal[w] * (b - step_0 * a);
+}
+
+/* One step of smoothing, or of Jacobi's method: smoothed = u + step_size (right_side - A u) / D. */
+SOLVE smooth(GRID, WEIGHTS, real step_size, __global const real *u, __global const real *right_side,
+             __global real *smoothed) {
+    SOLVER_PLACE
+    const size_t at = GRID_AT(channel, x, y);
+    smoothed[at] = u[at] + step_size * inverse_diagonal[WEIGHT_AT(x, y)] * RESIDUAL(x, y);
+}
+
+/* to = from. */
+SOLVE copy(GRID, __global const real *from, __global real *to) {
+    SOLVER_PLACE
+    to[GRID_AT(channel, x, y)] = from[GRID_AT(channel, x, y)];
+}
+
+/* The inverse of the operator's diagonal; 0 where no weight is left, and in the border. */
+SOLVE invert_diagonal(GRID, WEIGHTS_OF_DIAGONAL, __global real *inverse_diagonal) {
+    SOLVER_PLACE
+    const cell_weights c = CELL(x, y);
+    const real diagonal = c.data + ((c.left + c.right) + (c.up + c.down));
+    inverse_diagonal[WEIGHT_AT(x, y)] = diagonal > R(0) ? R(1) / diagonal : R(0);
+}

@@ -1,0 +1,226 @@
+#include "solver/linear_solver.h"
+
+#include "kernels/shared/solver_shared.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace gradus::solver {
+
+namespace {
+
+/// A residual that is read back waits for the device. That is cheap where the host is the device; elsewhere only every
+/// so many iterations are looked at, and the solve may do that many more than it needs.
+constexpr int iterations_between_looks = 8;
+
+constexpr std::uint32_t history_slots = SOLVER_SCALAR_SLOTS - SOLVER_HISTORY;
+
+/// Conjugate gradients compute their residual anew after so many steps, which keeps rounding errors from adding up.
+constexpr int steps_between_true_residuals = 50;
+
+constexpr int stagnating_cycles = 4;
+
+} // namespace
+
+/// Follows the residuals of the channels that are solved together, and says when to stop. Iteration k leaves its
+/// squared norm in slot(k).
+struct LinearSolver::Progress {
+    Sums &sums;
+    const Request &request;
+    Planes channels;
+    double reference_norm;
+    bool host_is_device;
+    int iterations = 0;
+    bool converged = false;
+    std::vector<std::vector<double>> norms; ///< by channel of `channels`: ||b||, or what stands for it, then residuals
+
+    static std::uint32_t slot(int iteration) { return SOLVER_HISTORY + std::uint32_t(iteration) % history_slots; }
+
+    /// To be called after iteration `done` (0: the start) left its norm; true where no more is needed.
+    bool finished(int done) {
+        iterations = done;
+        const bool last = done >= request.iterations;
+        if (!request.watch)
+            return last;
+        if (!last && done % (host_is_device ? 1 : iterations_between_looks) != 0)
+            return false;
+        norms.resize(channels.count);
+        bool all_small = true, hopeless = true;
+        for (std::uint32_t c = 0; c < channels.count; ++c) {
+            std::vector<double> &of = norms[c];
+            while (int(of.size()) <= done)
+                of.push_back(std::sqrt(sums.read(slot(int(of.size())), channels.first + c)));
+            // From u = 0, the first residual is b itself.
+            const double norm = reference_norm > 0 ? reference_norm : of.front();
+            all_small = all_small && of.back() <= request.tolerance * norm;
+            hopeless = hopeless && (!std::isfinite(of.back()) || stagnates(of));
+        }
+        converged = all_small;
+        return last || converged || hopeless;
+    }
+
+    /// Rounding errors are all that is left: a cycle that works divides the residual by ten.
+    bool stagnates(const std::vector<double> &of) const {
+        return request.method == LinearMethod::multigrid && int(of.size()) > stagnating_cycles &&
+               of.back() > 0.7 * of[of.size() - 1 - stagnating_cycles];
+    }
+};
+
+LinearSolver::LinearSolver(const PlaneMaker &make, Multigrid &multigrid, Sums &sums, std::uint32_t channels)
+    : make_(make), multigrid_(multigrid), sums_(sums), channels_(channels) {}
+
+LinearReport LinearSolver::solve(Kernels &kernels, const Request &request, const Buffer &b, Buffer &u,
+                                 double reference_norm) {
+    const bool host_is_device = make_.device().description().type == "cpu";
+    const std::uint32_t together = host_is_device ? 1 : channels_;
+    LinearReport report;
+    report.converged = true;
+    std::vector<std::vector<double>> norms;
+    for (std::uint32_t first = 0; first < channels_; first += together) {
+        Progress progress{sums_, request, {first, together}, reference_norm, host_is_device, 0, false, {}};
+        switch (request.method) {
+        case LinearMethod::jacobi:
+            jacobi(kernels, b, u, progress);
+            break;
+        case LinearMethod::cg:
+            conjugate_gradients(kernels, false, b, u, progress);
+            break;
+        case LinearMethod::pcg:
+            conjugate_gradients(kernels, true, b, u, progress);
+            break;
+        case LinearMethod::multigrid:
+        case LinearMethod::automatic:
+            multigrid(kernels, b, u, progress);
+            break;
+        }
+        report.iterations = std::max(report.iterations, progress.iterations);
+        report.converged = report.converged && progress.converged;
+        norms.insert(norms.end(), progress.norms.begin(), progress.norms.end());
+    }
+    if (!request.watch)
+        return report;
+    double whole = 0;
+    for (const std::vector<double> &of : norms)
+        whole += reference_norm > 0 ? reference_norm * reference_norm : of.front() * of.front();
+    for (int i = 0; i <= report.iterations; ++i) {
+        double squares = 0;
+        for (const std::vector<double> &of : norms) {
+            const double residual = of[std::min<std::size_t>(i, of.size() - 1)];
+            squares += residual * residual;
+        }
+        report.residuals.push_back(whole > 0 ? std::sqrt(squares / whole) : 0);
+    }
+    return report;
+}
+
+/// The hierarchy's right side = b - A u.
+void LinearSolver::residual(Kernels &kernels, const Buffer &b, const Buffer &u, Planes channels) {
+    Kernel &kernel = kernels.residual;
+    multigrid_.system().bind(kernel);
+    kernel.bind("u", u);
+    kernel.bind("right_side", b);
+    kernel.bind("residual", multigrid_.right_side());
+    multigrid_.system().grid.launch(kernel, channels);
+}
+
+void LinearSolver::jacobi(Kernels &kernels, const Buffer &b, Buffer &u, Progress &progress) {
+    const Grid &grid = multigrid_.system().grid;
+    if (!other_.valid())
+        other_ = make_.planes("u", grid, channels_);
+    Kernel &kernel = kernels.smooth;
+    const Buffer *from = &u, *to = &other_;
+    for (int done = 0;; ++done, std::swap(from, to)) {
+        const Buffer &r = multigrid_.right_side();
+        if (progress.request.watch) {
+            residual(kernels, b, *from, progress.channels);
+            sums_.product(kernels, progress.channels, r, r, Progress::slot(done));
+        }
+        if (progress.finished(done))
+            break;
+        multigrid_.system().bind(kernel);
+        kernel.set_real("step_size", progress.request.damping);
+        kernel.bind("u", *from);
+        kernel.bind("right_side", b);
+        kernel.bind("smoothed", *to);
+        grid.launch(kernel, progress.channels);
+    }
+    if (from == &u)
+        return;
+    Kernel &copy = kernels.copy;
+    copy.bind("from", other_);
+    copy.bind("to", u);
+    grid.launch(copy, progress.channels);
+}
+
+void LinearSolver::multigrid(Kernels &kernels, const Buffer &b, Buffer &u, Progress &progress) {
+    const Buffer &r = multigrid_.right_side();
+    for (int done = 0;; ++done) {
+        if (progress.request.watch || done < progress.request.iterations)
+            residual(kernels, b, u, progress.channels);
+        if (progress.request.watch)
+            sums_.product(kernels, progress.channels, r, r, Progress::slot(done));
+        if (progress.finished(done))
+            return;
+        multigrid_.cycle_onto(kernels, progress.channels, u);
+    }
+}
+
+void LinearSolver::conjugate_gradients(Kernels &kernels, bool preconditioned, const Buffer &b, Buffer &u,
+                                       Progress &progress) {
+    const Grid &grid = multigrid_.system().grid;
+    const Planes channels = progress.channels;
+    if (!image_.valid()) {
+        for (Buffer &direction : directions_)
+            direction = make_.planes("direction", grid, channels_);
+        image_ = make_.planes("image", grid, channels_);
+    }
+    const Buffer &r = multigrid_.right_side(); // which is what a cycle is given
+    // Plain conjugate gradients need the norm for beta, too.
+    const bool norms = progress.request.watch || !preconditioned;
+    for (int done = 0;; ++done) {
+        // Rounding errors make the residual that is carried along and the true one part; a fresh start costs one step's
+        // conjugacy.
+        const bool fresh = done % steps_between_true_residuals == 0;
+        if (fresh)
+            residual(kernels, b, u, channels);
+        if (norms)
+            sums_.product(kernels, channels, r, r, Progress::slot(done));
+        if (progress.finished(done))
+            return;
+        std::uint32_t numerator = Progress::slot(done), divisor = Progress::slot(std::max(done - 1, 0));
+        if (preconditioned) {
+            // The cycle is not symmetric, so beta is that of Polak and Ribiere: <z, r - r_old> / <z_old, r_old>, where
+            // r - r_old = -alpha image, so beta = -<z, image> / <direction, image> (Notay 2000).
+            multigrid_.cycle(kernels, channels);
+            sums_.products(kernels, channels, multigrid_.solution(), r, image_, slot_residual_product,
+                           slot_image_product);
+            numerator = slot_image_product;
+            divisor = slot_direction_product;
+        }
+        Kernel &direction = kernels.direction;
+        multigrid_.system().bind(direction);
+        sums_.bind(direction);
+        direction.set_real("factor", fresh ? 0 : preconditioned ? -1 : 1);
+        direction.set("numerator", numerator);
+        direction.set("divisor", divisor);
+        direction.bind("z", preconditioned ? multigrid_.solution() : r);
+        direction.bind("old_direction", directions_[(done + 1) % 2]);
+        direction.bind("direction", directions_[done % 2]);
+        direction.bind("image", image_);
+        grid.launch(direction, channels);
+        sums_.product(kernels, channels, directions_[done % 2], image_, slot_direction_product);
+
+        Kernel &advance = kernels.advance;
+        sums_.bind(advance);
+        advance.set("numerator", preconditioned ? std::uint32_t(slot_residual_product) : Progress::slot(done));
+        advance.set("divisor", slot_direction_product);
+        advance.bind("direction", directions_[done % 2]);
+        advance.bind("image", image_);
+        advance.bind("u", u);
+        advance.bind("residual", r);
+        grid.launch(advance, channels);
+    }
+}
+
+} // namespace gradus::solver

@@ -1,0 +1,197 @@
+#include "solver/multigrid.h"
+
+#include "kernels/shared/solver_shared.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace gradus::solver {
+
+namespace {
+
+/// With uniform weights, a grid whose data term outweighs its edges so far is solved by smoothing alone.
+constexpr double dominant_data_weight = 64;
+
+/// Steps that damp the upper three quarters of the spectrum most: the inverse roots of the Chebyshev polynomial of
+/// degree `steps` on [1/2, 2].
+double chebyshev_step(int i, int steps) {
+    return 1 / (1.25 + 0.75 * std::cos(std::numbers::pi * (2 * i + 1) / (2 * steps)));
+}
+
+/// The columns (or rows) of a grid, as kernels/solver/grid.h multiplies them.
+struct Line {
+    std::vector<double> before, after, size, inside;
+
+    /// `covered`: columns of the finest grid that all of these stand for; `pitch`: that each but the last stands for.
+    Line(std::uint32_t count, std::uint32_t covered, double pitch, std::size_t padded)
+        : before(padded), after(padded), size(padded), inside(padded) {
+        for (std::uint32_t i = 0; i < count; ++i) {
+            before[i] = i > 0;
+            after[i] = i + 1 < count;
+            size[i] = i + 1 < count ? 1 : (covered - (count - 1) * pitch) / pitch;
+            inside[i] = 1;
+        }
+    }
+};
+
+/// A kernel of transfer.cl: an item for 8 coarse columns of each of `rows` rows.
+void launch_transfer(Kernel &kernel, const Grid &fine, const Grid &coarse, std::uint32_t rows, Planes planes) {
+    kernel.set("height", fine.height);
+    kernel.set("row", fine.row);
+    kernel.set("plane", fine.plane);
+    kernel.set("coarse_width", coarse.width);
+    kernel.set("coarse_height", coarse.height);
+    kernel.set("coarse_row", coarse.row);
+    kernel.set("coarse_plane", coarse.plane);
+    kernel.set("first_channel", planes.first);
+    kernel.set("channel_count", planes.count);
+    const std::size_t tiles = (coarse.width - 1) / SOLVER_TILE + 1;
+    launch_groups(kernel, tiles * ((rows - 1) / 8 + 1) * planes.count);
+}
+
+} // namespace
+
+void System::bind(Kernel &kernel) const {
+    kernel.set_real("data", data);
+    for (const Buffer *buffer : {&column_left, &column_right, &column_size, &row_up, &row_down, &row_size})
+        kernel.bind(*buffer);
+    kernel.bind(inverse_diagonal);
+    if (weight_x.valid()) {
+        kernel.bind(weight_x);
+        kernel.bind(weight_y);
+        kernel.bind(weight_data);
+        kernel.set("weight_plane", weight_plane);
+    }
+}
+
+Multigrid::Multigrid(const PlaneMaker &make, std::uint32_t width, std::uint32_t height, std::uint32_t channels)
+    : make_(make) {
+    double pitch = 1;
+    for (std::uint32_t w = width, h = height;; w = (w + 1) / 2, h = (h + 1) / 2, pitch *= 2) {
+        Level level;
+        System &system = level.system;
+        system.grid = Grid(w, h);
+        const Line columns(w, width, pitch, system.grid.row + SOLVER_MARGIN);
+        const Line rows(h, height, pitch, h + SOLVER_MARGIN);
+        system.column_left = make.reals("column_left", columns.before);
+        system.column_right = make.reals("column_right", columns.after);
+        system.column_size = make.reals("column_size", columns.size);
+        system.column_inside = make.reals("column_inside", columns.inside);
+        system.row_up = make.reals("row_up", rows.before);
+        system.row_down = make.reals("row_down", rows.after);
+        system.row_size = make.reals("row_size", rows.size);
+        system.inverse_diagonal = make.planes("inverse_diagonal", system.grid, 1);
+        level.right_side = make.planes("right_side", system.grid, channels);
+        level.smoothed = make.planes("smoothed", system.grid, channels);
+        level.other = make.planes("smoothed", system.grid, channels);
+        levels_.push_back(std::move(level));
+        if (w == 1 && h == 1 && levels_.size() > 1)
+            break;
+    }
+}
+
+void Multigrid::invert_diagonal(Kernels &kernels, System &system) {
+    system.bind(kernels.invert_diagonal);
+    system.grid.launch(kernels.invert_diagonal, {0, kernels.weight_planes});
+}
+
+void Multigrid::invert_finest_diagonal(Kernels &kernels) { invert_diagonal(kernels, system()); }
+
+void Multigrid::set_uniform(Kernels &kernels, double data) {
+    used_ = 0;
+    for (Level &level : levels_) {
+        level.system.data = data;
+        invert_diagonal(kernels, level.system);
+        ++used_;
+        if (data > dominant_data_weight && used_ > 1)
+            break;
+        data *= 4;
+    }
+}
+
+void Multigrid::allocate_weights(std::uint32_t planes) {
+    for (Level &level : levels_) {
+        System &system = level.system;
+        const std::uint32_t plane = planes > 1 ? system.grid.plane : 0;
+        if (system.weight_x.valid() && system.weight_plane == plane)
+            continue;
+        system.weight_plane = plane;
+        system.weight_x = make_.planes("weight_x", system.grid, planes);
+        system.weight_y = make_.planes("weight_y", system.grid, planes);
+        system.weight_data = make_.planes("weight_data", system.grid, planes);
+        system.inverse_diagonal = make_.planes("inverse_diagonal", system.grid, planes);
+    }
+}
+
+void Multigrid::coarsen_weights(Kernels &kernels) {
+    used_ = levels_.size();
+    invert_diagonal(kernels, levels_.front().system);
+    for (std::size_t i = 0; i + 1 < levels_.size(); ++i) {
+        const System &fine = levels_[i].system;
+        System &coarse = levels_[i + 1].system;
+        Kernel &kernel = kernels.coarsen_weights;
+        fine.bind(kernel);
+        kernel.set("coarse_weight_plane", coarse.weight_plane);
+        kernel.bind("coarse_weight_x", coarse.weight_x);
+        kernel.bind("coarse_weight_y", coarse.weight_y);
+        kernel.bind("coarse_weight_data", coarse.weight_data);
+        launch_transfer(kernel, fine.grid, coarse.grid, coarse.grid.height, {0, kernels.weight_planes});
+        invert_diagonal(kernels, coarse);
+    }
+}
+
+void Multigrid::run_cycle(Kernels &kernels, Planes channels, const Buffer *onto) {
+    // With weights that jump, a third step gains less than it costs.
+    const bool third_step = kernels.weights == Weights::uniform;
+    const int steps = third_step ? 3 : 2;
+    for (std::size_t i = 0; i < used_; ++i) {
+        Level &level = levels_[i];
+        const Grid &grid = level.system.grid;
+        Kernel &twice = kernels.smooth_twice_from_zero;
+        level.system.bind(twice);
+        twice.bind(level.right_side);
+        twice.bind("smoothed", third_step ? level.other : level.smoothed);
+        // A single pixel is solved exactly by one plain step.
+        const bool single = grid.width == 1 && grid.height == 1;
+        twice.set_real("step_0", single ? 1 : chebyshev_step(0, steps));
+        twice.set_real("step_1", single ? 0 : chebyshev_step(1, steps));
+        grid.launch(twice, channels);
+        if (third_step) {
+            Kernel &smooth = kernels.smooth;
+            level.system.bind(smooth);
+            smooth.bind("u", level.other);
+            smooth.bind(level.right_side);
+            smooth.bind("smoothed", level.smoothed);
+            smooth.set_real("step_size", single ? 0 : chebyshev_step(2, 3));
+            grid.launch(smooth, channels);
+        }
+        if (i + 1 == used_)
+            break;
+        Kernel &residual = kernels.residual;
+        level.system.bind(residual);
+        residual.bind("u", level.smoothed);
+        residual.bind(level.right_side);
+        residual.bind("residual", level.other);
+        grid.launch(residual, channels);
+        Level &next = levels_[i + 1];
+        Kernel &restrict_sum = kernels.restrict_sum;
+        restrict_sum.bind("fine", level.other);
+        restrict_sum.bind("coarse", next.right_side);
+        launch_transfer(restrict_sum, grid, next.system.grid, next.system.grid.height, channels);
+    }
+    for (std::size_t i = used_ - 1; i-- > 0;) {
+        Level &level = levels_[i];
+        const Level &next = levels_[i + 1];
+        Kernel &kernel = i == 0 && onto ? kernels.prolong_onto : kernels.prolong;
+        kernel.bind("coarse", next.smoothed);
+        kernel.bind("coarse_left", next.system.column_left);
+        kernel.bind("coarse_right", next.system.column_right);
+        kernel.bind(level.system.column_inside);
+        kernel.bind("smoothed", level.smoothed);
+        kernel.bind("u", i == 0 && onto ? *onto : level.smoothed);
+        launch_transfer(kernel, level.system.grid, next.system.grid, level.system.grid.height, channels);
+    }
+}
+
+} // namespace gradus::solver

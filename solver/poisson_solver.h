@@ -1,0 +1,125 @@
+// Screened Poisson reconstruction: the image whose differences are nearest to given ones, and which is near to a given
+// image. A library of its own: it needs an OpenCL device and knows nothing of scenes or renderers.
+#pragma once
+
+#include "runtime/device/buffer.h"
+#include "runtime/device/device.h"
+#include "runtime/device/precision.h"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace gradus {
+
+enum class PoissonNorm {
+    l1, ///< sum |Dx I - Gx| + sum |Dy I - Gy| + alpha sum |I - I0|, |.| over the channels of a pixel; robust
+    l2  ///< ||Dx I - Gx||^2 + ||Dy I - Gy||^2 + alpha^2 ||I - I0||^2; linear, so unbiased where its inputs are
+};
+
+enum class LinearMethod {
+    automatic, ///< multigrid for uniform weights, pcg for others
+    jacobi,
+    cg,
+    pcg,      ///< conjugate gradients preconditioned by a multigrid cycle
+    multigrid ///< cycles on their own
+};
+
+/// Planes of an image: channel c at row y and column x is element (c * height + y) * width + x, 32-bit float.
+/// `Planes` is `const float *` (host) or `const Buffer *` (device). Those that are left null are not there.
+template <class Planes>
+struct PoissonImages {
+    Planes primal{}; ///< I0
+    Planes dx{};     ///< Gx(x, y), an estimate of I(x + 1, y) - I(x, y); the last column is not read
+    Planes dy{};     ///< Gy(x, y), an estimate of I(x, y + 1) - I(x, y); the last row is not read
+    Planes direct{}; ///< added to the reconstruction as it is
+    Planes start{};  ///< where the iteration starts; else at I0
+    /// Variances of primal, dx and dy, by pixel and channel: all three or none.
+    Planes primal_variance{}, dx_variance{}, dy_variance{};
+};
+using HostImages = PoissonImages<const float *>;
+using DeviceImages = PoissonImages<const Buffer *>;
+
+struct PoissonOptions {
+    PoissonNorm norm = PoissonNorm::l1;
+    /// At least 0. With 0, I0 decides the mean of each channel and nothing else.
+    double alpha = 0.2;
+    /// alpha^2 = (mean variance of dx and dy) / (mean variance of primal) instead (Kettunen et al. 2015, eq. 12). Needs
+    /// the variances.
+    bool alpha_from_variances = false;
+    /// L2: each equation is weighted by its inverse variance, relative to the mean variance of its image, instead of
+    /// equally (after Rousselle et al. 2016). Needs the variances. The mean of I0 is then not kept.
+    bool weigh_by_variance = false;
+    LinearMethod method = LinearMethod::automatic;
+    /// L2: the relative residual ||b - A u|| / ||b|| of the system for u = I - I0 at which to stop. L1: the relative
+    /// decrease of the objective from one reweighting to the next. 0: 1e-5 and 1e-4.
+    double tolerance = 0;
+    /// At most so many: steps or cycles (L2), reweightings (L1). 0: enough to reach the tolerance where the method can.
+    int iterations = 0;
+    /// Steps of the inner solver for each reweighting (L1).
+    int inner_iterations = 2;
+    /// Jacobi's step; 1 is the plain method. Above 0 and at most 1.
+    double damping = 1;
+    /// L1: one weight for all channels of a pixel (true), or one for each: |.| is then the sum of absolute values.
+    bool joint_channels = true;
+    /// L1: adds a smooth image that brings local means back to those of I0 (mean_correction.h).
+    bool keep_mean = true;
+};
+
+struct KernelTime {
+    std::string name;
+    double seconds = 0;
+    std::uint64_t launches = 0;
+};
+
+struct PoissonReport {
+    std::string method; ///< "multigrid", or "irls, pcg" and the like
+    double alpha = 0;   ///< as used
+    int iterations = 0; ///< steps or cycles in all
+    int reweightings = 0;
+    bool converged = false;         ///< the tolerance was reached
+    std::vector<double> residuals;  ///< relative, over all channels: at the start and after each step (L2)
+    std::vector<double> objectives; ///< of the L1 norm, before each reweighting and at the end, without the correction
+    double objective = 0;           ///< of the norm that was asked for, at the end, without the correction
+    /// Pixels of each input with a NaN or an infinity in any channel, which were treated as missing.
+    std::uint64_t missing_primal = 0, missing_dx = 0, missing_dy = 0;
+    std::uint64_t filled = 0;       ///< pixels without any valid input, which took the mean of their neighbours
+    std::vector<double> correction; ///< mean of the correction, by channel (L1 with keep_mean)
+    double seconds = 0;             ///< wall time
+    std::vector<KernelTime> kernels;
+};
+
+/// Solves problems of one size on one device. Buffers and kernels are made once and used again.
+///
+/// The system is solved for I - I0, which avoids cancellation. L2 with uniform weights keeps the mean of each channel
+/// of I0. Sums have a fixed order: equal inputs give equal bits on one device.
+class PoissonSolver {
+  public:
+    /// Throws Error(ExitCode::usage) for a size or channel count of 0 (or over 8 channels), Error(ExitCode::device)
+    /// where the device has no room.
+    PoissonSolver(Device &device, std::uint32_t width, std::uint32_t height, std::uint32_t channels = 3,
+                  Precision precision = Precision::single);
+    ~PoissonSolver();
+    PoissonSolver(const PoissonSolver &) = delete;
+    PoissonSolver &operator=(const PoissonSolver &) = delete;
+
+    /// Writes channels * height * width floats to `result`. Throws Error(ExitCode::usage) for options out of their
+    /// range, variances that are needed and missing, or images that are missing.
+    PoissonReport solve(const HostImages &images, const PoissonOptions &options, float *result);
+    /// The same in device memory; `result` may be one of the inputs.
+    PoissonReport solve(const DeviceImages &images, const PoissonOptions &options, Buffer &result);
+
+    std::uint32_t width() const;
+    std::uint32_t height() const;
+    std::uint32_t channels() const;
+
+    struct Implementation; ///< solver/implementation.h
+
+  private:
+    std::unique_ptr<Implementation> implementation_;
+};
+
+const char *method_name(LinearMethod method);
+
+} // namespace gradus

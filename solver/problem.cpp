@@ -1,0 +1,226 @@
+#include "solver/problem.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gradus::solver {
+
+Problem::Problem(Workspace &workspace) : workspace_(workspace), fill_(workspace) {
+    const PlaneMaker &make = workspace.make;
+    const Grid &grid = workspace.grid();
+    base_ = make.planes("base", grid, workspace.channels);
+    gradient_x_ = make.planes("gradient_x", grid, workspace.channels);
+    gradient_y_ = make.planes("gradient_y", grid, workspace.channels);
+    right_side_ = make.planes("right_side", grid, workspace.channels);
+    u_ = make.planes("u", grid, workspace.channels);
+    valid_primal_ = make.planes("valid_primal", grid, 1);
+    valid_dx_ = make.planes("valid_dx", grid, 1);
+    valid_dy_ = make.planes("valid_dy", grid, 1);
+}
+
+double Problem::import_plane(const Buffer &packed, const Buffer &imported, const Buffer &valid, std::uint32_t columns,
+                             std::uint32_t rows, double missing_value) {
+    Kernels &kernels = workspace_.kernels(Weights::uniform);
+    Kernel &kernel = kernels.import_plane;
+    kernel.set_real("missing_value", missing_value);
+    workspace_.sums.bind(kernel);
+    kernel.set("edge_columns", columns);
+    kernel.set("edge_rows", rows);
+    kernel.bind("packed", packed);
+    kernel.bind("imported", imported);
+    kernel.bind("valid", valid);
+    workspace_.grid().launch(kernel, {0, 1});
+    workspace_.sums.sum(kernels, slot_sum, 1);
+    return workspace_.sums.read(slot_sum)[0];
+}
+
+void Problem::import(const DeviceImages &images, PoissonReport &report) {
+    const Grid &grid = workspace_.grid();
+    const std::uint32_t w = grid.width, h = grid.height;
+    const double missing = import_plane(*images.primal, base_, valid_primal_, w, h);
+    const double missing_x = import_plane(*images.dx, gradient_x_, valid_dx_, w - 1, h);
+    const double missing_y = import_plane(*images.dy, gradient_y_, valid_dy_, w, h - 1);
+    report.missing_primal = static_cast<std::uint64_t>(missing);
+    report.missing_dx = static_cast<std::uint64_t>(missing_x);
+    report.missing_dy = static_cast<std::uint64_t>(missing_y);
+    held_is_known_ = false;
+    anything_missing_ = missing + missing_x + missing_y > 0;
+    edges_ = double(w - 1) * h + double(w) * (h - 1) - missing_x - missing_y;
+    if (missing > 0)
+        fill_.run(base_, valid_primal_);
+    Kernel &kernel = workspace_.kernels(Weights::uniform).gradient_residual;
+    kernel.bind("base", base_);
+    kernel.bind("dx", gradient_x_);
+    kernel.bind("dy", gradient_y_);
+    kernel.bind(valid_dx_);
+    kernel.bind(valid_dy_);
+    kernel.bind(gradient_x_);
+    kernel.bind(gradient_y_);
+    grid.launch(kernel, {0, workspace_.channels});
+}
+
+double Problem::mean_variance(const Buffer &packed, Buffer &variance, Buffer &valid, std::uint32_t columns,
+                              std::uint32_t rows) {
+    if (columns == 0 || rows == 0)
+        return 0;
+    if (!variance.valid())
+        variance = workspace_.make.planes("variance", workspace_.grid(), workspace_.channels);
+    import_plane(packed, variance, valid, columns, rows, -1);
+    workspace_.sums.sum_of(workspace_.kernels(Weights::uniform), variance, slot_sum, true);
+    return workspace_.sums.read_total(slot_sum) / (double(columns) * rows * workspace_.channels);
+}
+
+void Problem::import_variances(const DeviceImages &images) {
+    const std::uint32_t w = workspace_.grid().width, h = workspace_.grid().height;
+    // A missing variance reads as -1, which is all that needs to be known of it.
+    Buffer valid = workspace_.make.planes("valid", workspace_.grid(), 1);
+    const double x = mean_variance(*images.dx_variance, dx_variance_, valid, w - 1, h);
+    const double y = mean_variance(*images.dy_variance, dy_variance_, valid, w, h - 1);
+    mean_primal_variance_ = mean_variance(*images.primal_variance, primal_variance_, valid, w, h);
+    const double horizontal = double(w - 1) * h, vertical = double(w) * (h - 1);
+    gradient_variance_ = (x * horizontal + y * vertical) / std::max(horizontal + vertical, 1.0);
+    for (Buffer *variance : {&dx_variance_, &dy_variance_})
+        if (!variance->valid())
+            *variance = workspace_.make.planes("variance", workspace_.grid(), workspace_.channels);
+}
+
+double Problem::alpha_from_variances() const {
+    return mean_primal_variance_ > 0 ? std::sqrt(std::max(gradient_variance_, 0.0) / mean_primal_variance_) : 1;
+}
+
+void Problem::make_base_weights(Kernels &kernels, bool by_variance) {
+    const Grid &grid = workspace_.grid();
+    const std::uint32_t planes = kernels.weight_planes;
+    const auto bytes = grid.plane * planes * real_bytes(workspace_.make.precision());
+    if (!base_x_.valid() || base_x_.bytes() < bytes) {
+        base_x_ = workspace_.make.planes("base_x", grid, planes);
+        base_y_ = workspace_.make.planes("base_y", grid, planes);
+        base_data_ = workspace_.make.planes("base_data", grid, planes);
+    }
+    workspace_.multigrid.allocate_weights(planes);
+    Kernel &kernel = kernels.base_weights;
+    kernel.set("weight_plane", workspace_.system().weight_plane);
+    kernel.set("by_variances", by_variance);
+    kernel.set_real("mean_gradient_variance", gradient_variance_);
+    kernel.set_real("mean_primal_variance", mean_primal_variance_);
+    kernel.bind(valid_primal_);
+    kernel.bind(valid_dx_);
+    kernel.bind(valid_dy_);
+    kernel.bind("primal_variance", by_variance ? primal_variance_ : u_);
+    kernel.bind("dx_variance", by_variance ? dx_variance_ : u_);
+    kernel.bind("dy_variance", by_variance ? dy_variance_ : u_);
+    kernel.bind(base_x_);
+    kernel.bind(base_y_);
+    kernel.bind(base_data_);
+    grid.launch(kernel, {0, planes});
+}
+
+void Problem::bind(Kernel &kernel) const {
+    kernel.bind(gradient_x_);
+    kernel.bind(gradient_y_);
+    if (base_x_.valid()) {
+        kernel.bind(base_x_);
+        kernel.bind(base_y_);
+        kernel.bind(base_data_);
+    }
+}
+
+void Problem::use_least_squares_weights(Kernels &kernels, double alpha) {
+    if (kernels.weights == Weights::uniform) {
+        workspace_.multigrid.set_uniform(kernels, alpha * alpha);
+        return;
+    }
+    Kernel &kernel = kernels.least_squares_weights;
+    workspace_.system().bind(kernel);
+    bind(kernel);
+    kernel.set_real("alpha", alpha);
+    workspace_.grid().launch(kernel, {0, kernels.weight_planes});
+    workspace_.multigrid.coarsen_weights(kernels);
+}
+
+void Problem::make_right_side(Kernels &kernels) {
+    Kernel &kernel = kernels.right_side;
+    workspace_.system().bind(kernel);
+    bind(kernel);
+    kernel.bind(right_side_);
+    workspace_.grid().launch(kernel, {0, workspace_.channels});
+}
+
+void Problem::start(const DeviceImages &images) {
+    Kernel &kernel = workspace_.kernels(Weights::uniform).start;
+    kernel.set("has_start", images.start != nullptr);
+    kernel.bind("base", base_);
+    kernel.bind("packed", images.start ? *images.start : *images.primal);
+    kernel.bind("u", u_);
+    workspace_.grid().launch(kernel, {0, workspace_.channels});
+}
+
+double Problem::squared_norm(Kernels &kernels) {
+    Kernel &kernel = kernels.squared_norm;
+    workspace_.system().bind(kernel);
+    workspace_.sums.bind(kernel);
+    bind(kernel);
+    kernel.bind("u", u_);
+    workspace_.grid().launch(kernel, {0, workspace_.channels});
+    workspace_.sums.sum(kernels, slot_sum, workspace_.channels);
+    return workspace_.sums.read_total(slot_sum);
+}
+
+void Problem::find_held(Kernels &kernels) {
+    held_is_known_ = true;
+    not_held_ = 0;
+    if (!anything_missing_)
+        return;
+    const Grid &grid = workspace_.grid();
+    if (!held_.valid())
+        held_ = workspace_.make.planes("valid", grid, 1);
+    Kernel &kernel = kernels.mark_held;
+    workspace_.system().bind(kernel);
+    workspace_.sums.bind(kernel);
+    kernel.bind("valid", held_);
+    grid.launch(kernel, {0, 1});
+    workspace_.sums.sum(kernels, slot_sum, 1);
+    not_held_ = static_cast<std::uint64_t>(workspace_.sums.read(slot_sum)[0]);
+}
+
+double Problem::norm_of_right_side() {
+    Kernels &kernels = workspace_.kernels(Weights::uniform);
+    workspace_.sums.product(kernels, {0, workspace_.channels}, right_side_, right_side_, slot_sum);
+    const double right_side = workspace_.sums.read_total(slot_sum);
+    workspace_.sums.product(kernels, {0, workspace_.channels}, base_, base_, slot_sum);
+    return std::sqrt(std::max(right_side, 1e-12 * workspace_.sums.read_total(slot_sum)));
+}
+
+std::uint64_t Problem::compose(Kernels &kernels, const DeviceImages &images, bool keep_mean, Buffer &result) {
+    const Grid &grid = workspace_.grid();
+    if (keep_mean)
+        workspace_.sums.sum_of(kernels, u_, slot_mean);
+    const double mean_factor = keep_mean ? 1 / (double(grid.width) * grid.height) : 0;
+    if (!held_is_known_)
+        find_held(kernels);
+    if (not_held_ > 0) {
+        if (!zero_.valid())
+            zero_ = workspace_.make.planes("base", grid, workspace_.channels);
+        Kernel &add = kernels.add_base;
+        workspace_.sums.bind(add);
+        add.set("mean_slot", slot_mean);
+        add.set_real("mean_factor", mean_factor);
+        add.bind("base", base_);
+        add.bind("u", u_);
+        grid.launch(add, {0, workspace_.channels});
+        fill_.run(u_, held_);
+    }
+    Kernel &compose = kernels.compose;
+    workspace_.sums.bind(compose);
+    compose.set("mean_slot", slot_mean);
+    compose.set_real("mean_factor", not_held_ > 0 ? 0 : mean_factor);
+    compose.set("has_direct", images.direct != nullptr);
+    compose.bind("base", not_held_ > 0 ? zero_ : base_);
+    compose.bind("u", u_);
+    compose.bind("direct", images.direct ? *images.direct : *images.primal);
+    compose.bind("packed", result);
+    grid.launch(compose, {0, workspace_.channels});
+    return not_held_;
+}
+
+} // namespace gradus::solver

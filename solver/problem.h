@@ -1,0 +1,69 @@
+// The system for u = I - I0, made from the caller's images.
+#pragma once
+
+#include "solver/fill.h"
+#include "solver/poisson_solver.h"
+#include "solver/workspace.h"
+
+namespace gradus::solver {
+
+class Problem {
+  public:
+    explicit Problem(Workspace &workspace);
+
+    /// Reads I0, Gx and Gy. What is NaN or infinite is missing: I0 is filled from its neighbours there, and counted.
+    void import(const DeviceImages &images, PoissonReport &report);
+    /// Reads the variances, and their means. A variance that is missing or below zero removes its equation from
+    /// weighted problems.
+    void import_variances(const DeviceImages &images);
+    /// Kettunen et al. 2015, eq. 12.
+    double alpha_from_variances() const;
+
+    bool anything_missing() const { return anything_missing_; }
+    /// Weights of the equations before any norm: 0 for what is missing, else 1 or by inverse variance.
+    void make_base_weights(Kernels &kernels, bool by_variance);
+    /// Sets the finest system to the base weights, those of the data term times alpha^2.
+    void use_least_squares_weights(Kernels &kernels, double alpha);
+    /// The right side for the weights of the finest system.
+    void make_right_side(Kernels &kernels);
+    /// u = start - I0, or 0.
+    void start(const DeviceImages &images);
+    /// The squared norm that the weights of the finest system give u.
+    double squared_norm(Kernels &kernels);
+
+    /// ||b||, but at least a millionth of ||I0||: less is the rounding of I0's differences.
+    double norm_of_right_side();
+
+    /// Notes which pixels the weights of the finest system hold. compose() does it where nothing did since import().
+    void find_held(Kernels &kernels);
+    /// Writes I0 + u (+ direct). With `keep_mean`, u's mean is taken off first. Pixels that no equation holds take the
+    /// mean of their neighbours; returns their number.
+    std::uint64_t compose(Kernels &kernels, const DeviceImages &images, bool keep_mean, Buffer &result);
+
+    const Buffer &valid_primal() const { return valid_primal_; }
+    const Buffer &base() const { return base_; }
+    const Buffer &right_side() const { return right_side_; }
+    Buffer &u() { return u_; }
+    /// Binds gradient_x, gradient_y and the base weights.
+    void bind(Kernel &kernel) const;
+    /// How many differences are not missing.
+    double edges() const { return edges_; }
+
+  private:
+    double import_plane(const Buffer &packed, const Buffer &imported, const Buffer &valid, std::uint32_t columns,
+                        std::uint32_t rows, double missing_value = 0);
+    double mean_variance(const Buffer &packed, Buffer &variance, Buffer &valid, std::uint32_t columns,
+                         std::uint32_t rows);
+
+    Workspace &workspace_;
+    Fill fill_;
+    Buffer base_, gradient_x_, gradient_y_, right_side_, u_;
+    Buffer valid_primal_, valid_dx_, valid_dy_;
+    Buffer primal_variance_, dx_variance_, dy_variance_;
+    Buffer base_x_, base_y_, base_data_, zero_, held_;
+    bool anything_missing_ = false, held_is_known_ = false;
+    std::uint64_t not_held_ = 0;
+    double edges_ = 0, gradient_variance_ = 0, mean_primal_variance_ = 0;
+};
+
+} // namespace gradus::solver

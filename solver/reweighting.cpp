@@ -1,0 +1,93 @@
+#include "solver/reweighting.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+namespace gradus::solver {
+
+namespace {
+
+constexpr int default_reweightings = 20;
+/// Of the scale.
+constexpr double first_regularisation = 3, regularisation_factor = 0.5, least_regularisation = 1e-6, cut_at = 10;
+/// How far a step is extrapolated: 1 is not at all. From the third reweighting on, when weights have settled.
+constexpr double extrapolation = 1.8;
+constexpr int first_extrapolated = 3;
+/// The first step has the longest way.
+constexpr int more_first_iterations = 1;
+
+double total(const std::vector<double> &values, std::uint32_t planes) {
+    return std::accumulate(values.begin(), values.begin() + planes, 0.0);
+}
+
+} // namespace
+
+double Reweighting::scale_of(Kernels &kernels, Problem &problem) {
+    Kernel &kernel = kernels.residual_scale;
+    workspace_.system().bind(kernel);
+    workspace_.sums.bind(kernel);
+    problem.bind(kernel);
+    kernel.bind("u", problem.u());
+    workspace_.grid().launch(kernel, {0, kernels.weight_planes});
+    workspace_.sums.sum_two(kernels, slot_sum, slot_second_sum, kernels.weight_planes);
+    const double edges = total(workspace_.sums.read(slot_second_sum), kernels.weight_planes);
+    return edges > 0 ? std::pow(total(workspace_.sums.read(slot_sum), kernels.weight_planes) / edges, 4) : 0;
+}
+
+Reweighting::Norm Reweighting::reweight(Kernels &kernels, Problem &problem, double alpha, double scale,
+                                        double regularisation, double cut) {
+    Kernel &kernel = kernels.reweight;
+    workspace_.system().bind(kernel);
+    workspace_.sums.bind(kernel);
+    problem.bind(kernel);
+    kernel.set_real("alpha", alpha);
+    kernel.set_real("scale", scale);
+    kernel.set_real("regularisation", regularisation);
+    kernel.set_real("cut", cut);
+    kernel.bind("u", problem.u());
+    workspace_.grid().launch(kernel, {0, kernels.weight_planes});
+    workspace_.sums.sum_two(kernels, slot_sum, slot_second_sum, kernels.weight_planes);
+    return {total(workspace_.sums.read(slot_sum), kernels.weight_planes),
+            total(workspace_.sums.read(slot_second_sum), kernels.weight_planes)};
+}
+
+void Reweighting::run(Kernels &kernels, Problem &problem, double alpha, const PoissonOptions &options,
+                      PoissonReport &report) {
+    const double tolerance = options.tolerance > 0 ? options.tolerance : 1e-4;
+    const int most = options.iterations > 0 ? options.iterations : default_reweightings;
+    if (!previous_.valid())
+        previous_ = workspace_.make.planes("previous", workspace_.grid(), workspace_.channels);
+    LinearSolver::Request request;
+    request.method = options.method == LinearMethod::automatic ? LinearMethod::pcg : options.method;
+    request.damping = options.damping;
+    request.watch = false;
+
+    const double scale = scale_of(kernels, problem);
+    double regularisation = first_regularisation * scale, before = 0;
+    for (int k = 0;; ++k) {
+        // Where nothing is left to minimise, weights of 1 stand in.
+        const Norm norm = scale > 0 ? reweight(kernels, problem, alpha, scale, regularisation, cut_at * scale)
+                                    : reweight(kernels, problem, alpha, 1, 1, 1);
+        report.objectives.push_back(norm.all);
+        report.converged = scale == 0 || (k > 1 && std::abs(before - norm.cut) <= tolerance * norm.cut);
+        if (report.converged || k == most)
+            break;
+        before = norm.cut;
+        workspace_.multigrid.coarsen_weights(kernels);
+        Kernel &extrapolate = kernels.extrapolate;
+        extrapolate.set_real("factor", k >= first_extrapolated ? extrapolation - 1 : 0);
+        extrapolate.bind("u", problem.u());
+        extrapolate.bind(previous_);
+        workspace_.grid().launch(extrapolate, {0, workspace_.channels});
+        problem.make_right_side(kernels);
+        request.iterations = options.inner_iterations + (k == 0 ? more_first_iterations : 0);
+        report.iterations += workspace_.linear.solve(kernels, request, problem.right_side(), problem.u()).iterations;
+        ++report.reweightings;
+        regularisation = std::max(regularisation * regularisation_factor, least_regularisation * scale);
+    }
+    report.objective = report.objectives.back();
+}
+
+} // namespace gradus::solver

@@ -1,0 +1,59 @@
+// Sums over images, on the device, in a fixed order.
+#pragma once
+
+#include "solver/grid.h"
+#include "solver/kernels.h"
+
+#include <vector>
+
+namespace gradus::solver {
+
+/// Places of scalars, each with a value for every channel.
+enum Slot : std::uint32_t {
+    slot_direction_product, ///< <direction, A direction>
+    slot_residual_product,  ///< <z, residual>
+    slot_image_product,     ///< <z, A direction>
+    slot_sum,               ///< anything
+    slot_second_sum,
+    slot_mean,
+};
+
+class Sums {
+  public:
+    /// For kernels that leave up to two sums over `grid` for each of `channels` planes.
+    Sums(const PlaneMaker &make, const Grid &grid, std::uint32_t channels);
+
+    /// What kernels call `partial`.
+    const Buffer &partial() const { return partial_; }
+    /// Binds `partial`, `partials` and `scalars`.
+    void bind(Kernel &kernel) const;
+
+    /// Adds the parts that a kernel left. `planes`: how many planes each sum has (channels, or 1: then the result is
+    /// that of channel 0).
+    void sum(Kernels &kernels, std::uint32_t slot, std::uint32_t planes);
+    void sum_two(Kernels &kernels, std::uint32_t slot, std::uint32_t second, std::uint32_t planes);
+    /// <a, b> of planes whose borders are zero; and <a, c>.
+    void product(Kernels &kernels, Planes planes, const Buffer &a, const Buffer &b, std::uint32_t slot);
+    void products(Kernels &kernels, Planes planes, const Buffer &a, const Buffer &b, const Buffer &c,
+                  std::uint32_t slot, std::uint32_t second);
+    /// The sum of each channel of a, or of what of it is above zero.
+    void sum_of(Kernels &kernels, const Buffer &a, std::uint32_t slot, bool positive = false);
+
+    /// The scalar of each channel. Waits for the device.
+    std::vector<double> read(std::uint32_t slot) const;
+    double read(std::uint32_t slot, std::uint32_t channel) const;
+    double read_total(std::uint32_t slot) const;
+
+  private:
+    /// Goes on from `count` parts for each sum and plane.
+    void run(Kernels &kernels, const Buffer *from, std::uint32_t count, std::uint32_t sums, std::uint32_t slot,
+             std::uint32_t second, Planes planes);
+    void run_products(Kernels &kernels, Kernel &kernel, Planes planes, std::uint32_t sums, std::uint32_t slot,
+                      std::uint32_t second);
+
+    Precision precision_;
+    std::uint32_t channels_, partials_, plane_;
+    Buffer partial_, reduced_[2], scalars_;
+};
+
+} // namespace gradus::solver
