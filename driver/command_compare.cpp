@@ -1,8 +1,8 @@
 #include "driver/commands.h"
 #include "driver/comparison.h"
+#include "driver/output_files.h"
 #include "driver/standard_streams.h"
 #include "runtime/error.h"
-#include "runtime/io/atomic_file.h"
 #include "runtime/io/image_io.h"
 
 #include <CLI/CLI.hpp>
@@ -54,14 +54,8 @@ int run_compare(Arguments arguments) {
     const Comparison comparison = compare_images(arguments.request);
     if (!arguments.error_image.empty())
         write_error_image(comparison, arguments.error_image);
-    if (!arguments.json.empty()) {
-        const std::string text =
-            comparison_json(comparison).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
-        if (arguments.json == "-")
-            print_result(text);
-        else
-            write_file_atomically(arguments.json, text.data(), text.size());
-    }
+    if (!arguments.json.empty())
+        write_json(comparison_json(comparison), arguments.json);
     if (arguments.json != "-")
         print_result(comparison_text(comparison));
     const bool failed = arguments.check && !comparison.failures.empty();

@@ -26,13 +26,13 @@ void add_render_command(CLI::App &app, const Services &services, std::function<i
     add_scene_options(command, request->scene);
 
     const char *output = "Output";
-    command.add_option("-o,--output", request->output, "Image to write: 32-bit float EXR, replaced in one step")
+    command.add_option("-o,--output", request->outputs.image, "Image to write: 32-bit float EXR, replaced in one step")
         ->required()
         ->type_name("FILE.exr")
         ->group(output);
-    command.add_flag("--png", request->png, "Also write a PNG beside it: sRGB curve, exposure 1, clamped")
+    command.add_flag("--png", request->outputs.png, "Also write a PNG beside it: sRGB curve, exposure 1, clamped")
         ->group(output);
-    command.add_option("--stats", request->statistics, "Write statistics as JSON; - is stdout")
+    command.add_option("--stats", request->outputs.statistics, "Write statistics as JSON; - is stdout")
         ->type_name("FILE")
         ->group(output);
     command.add_option("--write-partial", request->partial_interval, "Write the image so far every so many seconds")

@@ -16,6 +16,7 @@ void add_render_command(CLI::App &app, const Services &services, std::function<i
 void add_inspect_command(CLI::App &app, const Services &services, std::function<int()> &chosen);
 void add_devices_command(CLI::App &app, const Services &services, std::function<int()> &chosen);
 void add_compare_command(CLI::App &app, std::function<int()> &chosen);
+void add_solve_command(CLI::App &app, const Services &services, std::function<int()> &chosen);
 void add_warm_command(CLI::App &app, const Services &services, std::function<int()> &chosen);
 
 } // namespace gradus

@@ -1,4 +1,5 @@
 #include "driver/program.h"
+#include "driver/solve_job.h"
 #include "runtime/scene/traits.h"
 
 int main(int argc, char **argv) {
@@ -12,6 +13,15 @@ int main(int argc, char **argv) {
         const auto device = std::make_shared<gradus::Device>(selector, options.threads);
         return gradus::PreparedMethod{device, device->description(),
                                       gradus::make_method(method, *device, scene, options)};
+    };
+    services.prepare_solver = [](const std::string &selector, int threads, std::uint32_t width, std::uint32_t height,
+                                 std::uint32_t channels) {
+        const auto device = std::make_shared<gradus::Device>(selector, threads);
+        gradus::check_images_fit(device->description(), width, height, channels);
+        const auto solver = std::make_shared<gradus::PoissonSolver>(*device, width, height, channels);
+        return gradus::PreparedSolver{device, device->description(),
+                                      [solver](const gradus::HostImages &images, const gradus::PoissonOptions &options,
+                                               float *result) { return solver->solve(images, options, result); }};
     };
     return gradus::run_program(argc, argv, services);
 }

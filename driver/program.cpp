@@ -14,13 +14,15 @@
 namespace gradus {
 namespace {
 
-constexpr const char *description = "gradus renders Mitsuba scene files with OpenCL kernels.";
+constexpr const char *description =
+    "gradus renders Mitsuba scene files with OpenCL kernels, and reconstructs images from gradients.";
 
 constexpr const char *examples = R"(Examples:
   gradus render scene.xml -o out.exr                      as the file says
   gradus render scene.xml -o out.exr --spp 256 --png      more samples, and a PNG to look at
   gradus render scene.xml -o out.exr --time 60            as good as it gets in a minute
   gradus inspect scene.xml                                what the scene holds
+  gradus solve layers.exr -o out.exr                      an image from its gradients
   gradus compare out.exr reference.exr                    how far from the truth
   gradus warm scene.xml                                   compile the kernels ahead
   gradus devices                                          the OpenCL devices of this machine
@@ -67,6 +69,7 @@ int run_program(int argc, const char *const *argv, const Services &services) {
         add_inspect_command(app, services, chosen);
         add_devices_command(app, services, chosen);
         add_compare_command(app, chosen);
+        add_solve_command(app, services, chosen);
         add_warm_command(app, services, chosen);
         try {
             app.parse(argc, argv);

@@ -3,11 +3,9 @@
 #include "driver/interrupt.h"
 #include "driver/program.h"
 #include "driver/progress.h"
-#include "driver/standard_streams.h"
 #include "driver/statistics_json.h"
 #include "runtime/error.h"
 #include "runtime/film/metrics.h"
-#include "runtime/io/atomic_file.h"
 #include "runtime/io/image_io.h"
 
 #include <fmt/format.h>
@@ -15,7 +13,6 @@
 
 #include <chrono>
 #include <cstdio>
-#include <filesystem>
 
 namespace gradus {
 namespace {
@@ -26,20 +23,6 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 
 /// The sampler's count where only the time ends a render: more than any render takes, and far from overflow.
 constexpr std::uint64_t endless_samples_per_pixel = std::uint64_t(1) << 30;
-
-void check_outputs(const RenderRequest &request) {
-    if (std::filesystem::path(request.output).extension() != ".exr")
-        throw Error(ExitCode::usage,
-                    fmt::format("the output '{}' must end in .exr; --png writes a PNG beside it", request.output));
-    check_writable(request.output);
-    if (request.png)
-        check_writable(png_path(request.output));
-    if (!request.statistics.empty() && request.statistics != "-") {
-        if (request.statistics == request.output)
-            throw Error(ExitCode::usage, "--stats and --output name the same file");
-        check_writable(request.statistics);
-    }
-}
 
 /// The render while it runs: the method and what is written of it.
 class RenderJob {
@@ -120,7 +103,7 @@ class RenderJob {
     /// A partial image that cannot be written is no reason to lose the render: the disk may have room again at the end.
     void write_partial() {
         try {
-            write_image(current_image(true), request_.output);
+            write_image(current_image(true), request_.outputs.image);
         } catch (const Error &error) {
             progress_.message(fmt::format("gradus: warning: {}; the render goes on", error.what()));
         }
@@ -147,31 +130,20 @@ class RenderJob {
 
     void write_results() {
         const Image image = current_image(record_.interrupted);
-        write_image(image, request_.output);
-        if (request_.png)
-            write_png(image, png_path(request_.output));
+        write_image(image, request_.outputs.image);
+        if (request_.outputs.png)
+            write_png(image, png_path(request_.outputs.image));
         const Statistics statistics = prepared_.method->statistics();
         record_.wall_seconds = seconds_since(job_start_);
-        if (!request_.statistics.empty())
-            write_statistics(statistics);
+        if (!request_.outputs.statistics.empty())
+            write_json(statistics_to_json(record_, statistics), request_.outputs.statistics);
         if (statistics.non_finite > 0)
             progress_.message(fmt::format("gradus: warning: {} samples were NaN or infinite and were left out",
                                           statistics.non_finite));
         if (const std::uint64_t count = count_non_finite(image); count > 0)
             progress_.message(fmt::format("gradus: warning: {} values of the image are NaN or infinite", count));
         progress_.message(fmt::format("{}wrote {}: {:.6g} samples a pixel", record_.interrupted ? "interrupted; " : "",
-                                      request_.output, record_.samples_per_pixel));
-    }
-
-    void write_statistics(const Statistics &statistics) const {
-        // A path in the file system need not be UTF-8.
-        const std::string text =
-            statistics_to_json(record_, statistics).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
-            "\n";
-        if (request_.statistics == "-")
-            print_result(text);
-        else
-            write_file_atomically(request_.statistics, text.data(), text.size());
+                                      request_.outputs.image, record_.samples_per_pixel));
     }
 
     const RenderRequest &request_;
@@ -186,12 +158,8 @@ class RenderJob {
 
 } // namespace
 
-std::string png_path(const std::string &output) {
-    return std::filesystem::path(output).replace_extension(".png").string();
-}
-
 int run_render(const RenderRequest &request, const Services &services) {
-    check_outputs(request);
+    check_outputs(request.outputs);
     return RenderJob(request, services).run();
 }
 

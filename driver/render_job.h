@@ -2,6 +2,7 @@
 #pragma once
 
 #include "driver/method_request.h"
+#include "driver/output_files.h"
 #include "driver/scene_request.h"
 
 #include <string>
@@ -11,18 +12,14 @@ namespace gradus {
 struct RenderRequest {
     SceneRequest scene;
     MethodRequest method;
-    std::string output;          ///< must end in .exr
-    std::string statistics;      ///< path of the JSON; "-": stdout; empty: none
+    OutputFiles outputs;
     double time_limit = 0;       ///< seconds of rendering; 0: none
     double partial_interval = 0; ///< seconds between images so far; 0: none
-    bool png = false, quiet = false;
+    bool quiet = false;
 };
 
 /// Renders and writes. Returns ExitCode::success, or ExitCode::interrupted after a signal, when the image of the
 /// samples so far was written. Throws Error. That the outputs can be written is checked before anything else.
 int run_render(const RenderRequest &request, const Services &services);
-
-/// The path of the picture beside an image: its extension replaced by .png.
-std::string png_path(const std::string &output);
 
 } // namespace gradus

@@ -4,7 +4,9 @@
 #include "runtime/device/device.h"
 #include "runtime/io/load_scene.h"
 #include "runtime/methods/method.h"
+#include "solver/poisson_solver.h"
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -20,6 +22,13 @@ struct PreparedMethod {
     std::unique_ptr<Method> method;
 };
 
+/// A Poisson solver for images of one size, and the device that it runs on.
+struct PreparedSolver {
+    std::shared_ptr<void> device; ///< outlives the solver
+    DeviceDescription description;
+    std::function<PoissonReport(const HostImages &, const PoissonOptions &, float *result)> solve;
+};
+
 struct Services {
     std::function<LoadedScene(const std::string &path, const LoadOptions &)> load_scene;
     std::function<std::vector<DeviceDescription>()> list_devices;
@@ -28,6 +37,10 @@ struct Services {
     std::function<PreparedMethod(const std::string &method, const std::string &device, const Scene &,
                                  const RenderOptions &)>
         prepare;
+    /// Opens the device and makes a solver for images of that size on it.
+    std::function<PreparedSolver(const std::string &device, int threads, std::uint32_t width, std::uint32_t height,
+                                 std::uint32_t channels)>
+        prepare_solver;
     /// The traits that specialise the kernels of a scene, by name.
     std::function<std::vector<std::pair<std::string, int>>(const Scene &)> traits;
 };

@@ -15,6 +15,14 @@ std::uint64_t peak_memory_bytes() {
     return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024; // Linux counts in KiB
 }
 
+nlohmann::json device_json(const DeviceDescription &device) {
+    return {{"name", device.name},
+            {"platform", device.platform},
+            {"version", device.version},
+            {"driver", device.driver},
+            {"type", device.type}};
+}
+
 nlohmann::json statistics_to_json(const RenderRecord &record, const Statistics &statistics) {
     using nlohmann::json;
     const double seconds = statistics.render_seconds;
@@ -40,12 +48,7 @@ nlohmann::json statistics_to_json(const RenderRecord &record, const Statistics &
     return {{"version", version()},
             {"scene", record.scene},
             {"method", record.method},
-            {"device",
-             {{"name", record.device.name},
-              {"platform", record.device.platform},
-              {"version", record.device.version},
-              {"driver", record.device.driver},
-              {"type", record.device.type}}},
+            {"device", device_json(record.device)},
             {"seed", record.seed},
             {"width", record.width},
             {"height", record.height},

@@ -26,6 +26,9 @@ struct RenderRecord {
 /// spent rendering. Described in docs/command-line.md.
 nlohmann::json statistics_to_json(const RenderRecord &record, const Statistics &statistics);
 
+/// Which device did the work: name, platform, version, driver and type.
+nlohmann::json device_json(const DeviceDescription &device);
+
 /// The most memory that this process had in use so far, in bytes.
 std::uint64_t peak_memory_bytes();
 

@@ -33,6 +33,7 @@ constexpr Entry entries[] = {
     {&Kernels::reduce_plane, "sum", "reduce_plane", false},
     {&Kernels::finish_sum, "sum", "finish_sum", false},
     {&Kernels::start, "input", "start", false},
+    {&Kernels::start_between_neighbours, "input", "start_between_neighbours", true},
     {&Kernels::import_plane, "input", "import_plane", false},
     {&Kernels::gradient_residual, "input", "gradient_residual", false},
     {&Kernels::right_side, "input", "right_side", false},

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace gradus::solver {
@@ -19,6 +20,14 @@ constexpr std::uint32_t history_slots = SOLVER_SCALAR_SLOTS - SOLVER_HISTORY;
 /// Conjugate gradients compute their residual anew after so many steps, which keeps rounding errors from adding up.
 constexpr int steps_between_true_residuals = 50;
 
+/// And forget their directions after so many, as those are no longer conjugate; earlier would lose what they have
+/// learnt of the spectrum.
+constexpr int steps_between_fresh_directions = 400;
+
+/// Preconditioned, steps and beta are about 1. What is far more comes from rounding errors, where nothing is left to
+/// do.
+constexpr double largest_preconditioned_ratio = 8;
+
 constexpr int stagnating_cycles = 4;
 
 } // namespace
@@ -30,6 +39,7 @@ struct LinearSolver::Progress {
     const Request &request;
     Planes channels;
     double reference_norm;
+    double least_tolerance; ///< less is rounding errors alone
     bool host_is_device;
     int iterations = 0;
     bool converged = false;
@@ -53,7 +63,7 @@ struct LinearSolver::Progress {
                 of.push_back(std::sqrt(sums.read(slot(int(of.size())), channels.first + c)));
             // From u = 0, the first residual is b itself.
             const double norm = reference_norm > 0 ? reference_norm : of.front();
-            all_small = all_small && of.back() <= request.tolerance * norm;
+            all_small = all_small && of.back() <= std::max(request.tolerance, least_tolerance) * norm;
             hopeless = hopeless && (!std::isfinite(of.back()) || stagnates(of));
         }
         converged = all_small;
@@ -74,11 +84,14 @@ LinearReport LinearSolver::solve(Kernels &kernels, const Request &request, const
                                  double reference_norm) {
     const bool host_is_device = make_.device().description().type == "cpu";
     const std::uint32_t together = host_is_device ? 1 : channels_;
+    const double epsilon = make_.precision() == Precision::double_ ? std::numeric_limits<double>::epsilon()
+                                                                   : std::numeric_limits<float>::epsilon();
     LinearReport report;
     report.converged = true;
     std::vector<std::vector<double>> norms;
     for (std::uint32_t first = 0; first < channels_; first += together) {
-        Progress progress{sums_, request, {first, together}, reference_norm, host_is_device, 0, false, {}};
+        Progress progress{sums_, request, {first, together}, reference_norm, epsilon / 64, host_is_device, 0,
+                          false, {}};
         switch (request.method) {
         case LinearMethod::jacobi:
             jacobi(kernels, b, u, progress);
@@ -176,13 +189,11 @@ void LinearSolver::conjugate_gradients(Kernels &kernels, bool preconditioned, co
         image_ = make_.planes("image", grid, channels_);
     }
     const Buffer &r = multigrid_.right_side(); // which is what a cycle is given
+    const double bound = preconditioned ? largest_preconditioned_ratio : std::numeric_limits<float>::max();
     // Plain conjugate gradients need the norm for beta, too.
     const bool norms = progress.request.watch || !preconditioned;
     for (int done = 0;; ++done) {
-        // Rounding errors make the residual that is carried along and the true one part; a fresh start costs one step's
-        // conjugacy.
-        const bool fresh = done % steps_between_true_residuals == 0;
-        if (fresh)
+        if (done % steps_between_true_residuals == 0)
             residual(kernels, b, u, channels);
         if (norms)
             sums_.product(kernels, channels, r, r, Progress::slot(done));
@@ -201,7 +212,8 @@ void LinearSolver::conjugate_gradients(Kernels &kernels, bool preconditioned, co
         Kernel &direction = kernels.direction;
         multigrid_.system().bind(direction);
         sums_.bind(direction);
-        direction.set_real("factor", fresh ? 0 : preconditioned ? -1 : 1);
+        direction.set_real("factor", done % steps_between_fresh_directions == 0 ? 0 : preconditioned ? -1 : 1);
+        direction.set_real("bound", bound);
         direction.set("numerator", numerator);
         direction.set("divisor", divisor);
         direction.bind("z", preconditioned ? multigrid_.solution() : r);
@@ -213,6 +225,7 @@ void LinearSolver::conjugate_gradients(Kernels &kernels, bool preconditioned, co
 
         Kernel &advance = kernels.advance;
         sums_.bind(advance);
+        advance.set_real("bound", bound);
         advance.set("numerator", preconditioned ? std::uint32_t(slot_residual_product) : Progress::slot(done));
         advance.set("divisor", slot_direction_product);
         advance.bind("direction", directions_[done % 2]);

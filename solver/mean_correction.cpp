@@ -2,6 +2,7 @@
 
 #include "kernels/shared/solver_shared.h"
 
+#include <cmath>
 #include <utility>
 
 namespace gradus::solver {
@@ -9,7 +10,7 @@ namespace gradus::solver {
 namespace {
 
 constexpr double smoothness = 0.1;
-/// Of the mean of I0, what is below zero left out: darker pixels count as this bright.
+/// Of the mean of I, which has no outliers: darker pixels count as this bright.
 constexpr double least_brightness = 1e-3;
 /// Each divides the error by about ten, and this much less than the noise of I0 is enough.
 constexpr int steps = 4;
@@ -30,8 +31,10 @@ std::vector<double> MeanCorrection::add(Kernels &kernels, Problem &problem) {
     const Grid &grid = workspace_.grid();
     Sums &sums = workspace_.sums;
     const double pixels = double(grid.width) * grid.height;
-    sums.sum_of(kernels, problem.base(), slot_sum, true);
-    const double mean = sums.read_total(slot_sum) / (pixels * workspace_.channels);
+    sums.sum_of(kernels, problem.base(), slot_sum);
+    sums.sum_of(kernels, problem.u(), slot_second_sum);
+    const double mean =
+        std::abs(sums.read_total(slot_sum) + sums.read_total(slot_second_sum)) / (pixels * workspace_.channels);
     if (mean == 0)
         return std::vector<double>(workspace_.channels, 0);
     const double least = least_brightness * mean;

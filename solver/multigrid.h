@@ -38,7 +38,7 @@ class Multigrid {
     /// Where cycle() expects the right side, which it keeps.
     const Buffer &right_side() const { return levels_.front().right_side; }
 
-    /// Makes all systems those of uniform weights: 1 for edges, `data` for the data term.
+    /// Makes all systems those of uniform weights: 1 for edges, `data` for the data term. Cycles then keep the mean.
     void set_uniform(Kernels &kernels, double data);
     /// Allocates the weights of all levels, `planes` of each.
     void allocate_weights(std::uint32_t planes);

@@ -27,7 +27,7 @@ constexpr std::uint32_t most_channels = 8;
 int default_iterations(LinearMethod method) {
     switch (method) {
     case LinearMethod::jacobi:
-        return 2000;
+        return 4000;
     case LinearMethod::cg:
         return 1000;
     default:
@@ -119,6 +119,8 @@ void PoissonSolver::Implementation::least_squares(const DeviceImages &images, co
     request.damping = options.damping;
     const double norm = images.start ? problem.norm_of_right_side() : 0;
     problem.start(images);
+    if (uniform && images.start)
+        problem.remove_mean(kernels);
     const LinearReport linear = workspace.linear.solve(kernels, request, problem.right_side(), problem.u(), norm);
     report.method = method_name(request.method);
     report.iterations = linear.iterations;
@@ -132,8 +134,7 @@ void PoissonSolver::Implementation::absolute_values(const DeviceImages &images, 
                                                     double alpha, Buffer &result, PoissonReport &report) {
     Kernels &kernels = workspace.kernels(options.joint_channels ? Weights::joint : Weights::per_channel);
     problem.make_base_weights(kernels, false);
-    problem.start(images);
-    reweighting.run(kernels, problem, alpha, options, report);
+    reweighting.run(kernels, problem, alpha, images, options, report);
     report.method = fmt::format(
         "irls, {}", method_name(options.method == LinearMethod::automatic ? LinearMethod::pcg : options.method));
     if (options.keep_mean) {
@@ -143,7 +144,8 @@ void PoissonSolver::Implementation::absolute_values(const DeviceImages &images, 
         problem.find_held(kernels);
         report.correction = mean_correction->add(kernels, problem);
     }
-    report.filled = problem.compose(kernels, images, false, result);
+    // Without a data term, no equation but this one tells the mean.
+    report.filled = problem.compose(kernels, images, alpha == 0 && !problem.anything_missing(), result);
 }
 
 PoissonReport PoissonSolver::Implementation::solve(const DeviceImages &images, const PoissonOptions &options,

@@ -34,7 +34,7 @@ struct PoissonImages {
     Planes dx{};     ///< Gx(x, y), an estimate of I(x + 1, y) - I(x, y); the last column is not read
     Planes dy{};     ///< Gy(x, y), an estimate of I(x, y + 1) - I(x, y); the last row is not read
     Planes direct{}; ///< added to the reconstruction as it is
-    Planes start{};  ///< where the iteration starts; else at I0
+    Planes start{};  ///< where the iteration starts, else near I0; for L1 only where its norm is less than there
     /// Variances of primal, dx and dy, by pixel and channel: all three or none.
     Planes primal_variance{}, dx_variance{}, dy_variance{};
 };
@@ -53,7 +53,7 @@ struct PoissonOptions {
     bool weigh_by_variance = false;
     LinearMethod method = LinearMethod::automatic;
     /// L2: the relative residual ||b - A u|| / ||b|| of the system for u = I - I0 at which to stop. L1: the relative
-    /// decrease of the objective from one reweighting to the next. 0: 1e-5 and 1e-4.
+    /// decrease of the objective from one reweighting to the next. 0: 1e-5 and 1e-4. At least the rounding error.
     double tolerance = 0;
     /// At most so many: steps or cycles (L2), reweightings (L1). 0: enough to reach the tolerance where the method can.
     int iterations = 0;
@@ -61,7 +61,8 @@ struct PoissonOptions {
     int inner_iterations = 2;
     /// Jacobi's step; 1 is the plain method. Above 0 and at most 1.
     double damping = 1;
-    /// L1: one weight for all channels of a pixel (true), or one for each: |.| is then the sum of absolute values.
+    /// One weight for all channels of a pixel (true), or one for each. L1: |.| is then the sum of absolute values. L2
+    /// weighted by variance: one weight goes by the mean variance of the channels.
     bool joint_channels = true;
     /// L1: adds a smooth image that brings local means back to those of I0 (mean_correction.h).
     bool keep_mean = true;

@@ -155,6 +155,36 @@ void Problem::start(const DeviceImages &images) {
     workspace_.grid().launch(kernel, {0, workspace_.channels});
 }
 
+void Problem::start_between_neighbours(Kernels &kernels) {
+    Kernel &kernel = kernels.start_between_neighbours;
+    bind(kernel);
+    kernel.bind("base", base_);
+    kernel.bind("u", u_);
+    workspace_.grid().launch(kernel, {0, workspace_.channels});
+}
+
+void Problem::remove_mean(Kernels &kernels) {
+    const Grid &grid = workspace_.grid();
+    workspace_.sums.sum_of(kernels, u_, slot_mean);
+    add_to_u(kernels, zero(), 1 / (double(grid.width) * grid.height));
+}
+
+void Problem::add_to_u(Kernels &kernels, const Buffer &image, double mean_factor) {
+    Kernel &add = kernels.add_base;
+    workspace_.sums.bind(add);
+    add.set("mean_slot", slot_mean);
+    add.set_real("mean_factor", mean_factor);
+    add.bind("base", image);
+    add.bind("u", u_);
+    workspace_.grid().launch(add, {0, workspace_.channels});
+}
+
+const Buffer &Problem::zero() {
+    if (!zero_.valid())
+        zero_ = workspace_.make.planes("base", workspace_.grid(), workspace_.channels);
+    return zero_;
+}
+
 double Problem::squared_norm(Kernels &kernels) {
     Kernel &kernel = kernels.squared_norm;
     workspace_.system().bind(kernel);
@@ -199,15 +229,7 @@ std::uint64_t Problem::compose(Kernels &kernels, const DeviceImages &images, boo
     if (!held_is_known_)
         find_held(kernels);
     if (not_held_ > 0) {
-        if (!zero_.valid())
-            zero_ = workspace_.make.planes("base", grid, workspace_.channels);
-        Kernel &add = kernels.add_base;
-        workspace_.sums.bind(add);
-        add.set("mean_slot", slot_mean);
-        add.set_real("mean_factor", mean_factor);
-        add.bind("base", base_);
-        add.bind("u", u_);
-        grid.launch(add, {0, workspace_.channels});
+        add_to_u(kernels, base_, mean_factor);
         fill_.run(u_, held_);
     }
     Kernel &compose = kernels.compose;
@@ -215,7 +237,7 @@ std::uint64_t Problem::compose(Kernels &kernels, const DeviceImages &images, boo
     compose.set("mean_slot", slot_mean);
     compose.set_real("mean_factor", not_held_ > 0 ? 0 : mean_factor);
     compose.set("has_direct", images.direct != nullptr);
-    compose.bind("base", not_held_ > 0 ? zero_ : base_);
+    compose.bind("base", not_held_ > 0 ? zero() : base_);
     compose.bind("u", u_);
     compose.bind("direct", images.direct ? *images.direct : *images.primal);
     compose.bind("packed", result);

@@ -28,6 +28,10 @@ class Problem {
     void make_right_side(Kernels &kernels);
     /// u = start - I0, or 0.
     void start(const DeviceImages &images);
+    /// u = 0, cut to what the differences give from the neighbours: an outlier of I0 does not stay.
+    void start_between_neighbours(Kernels &kernels);
+    /// Takes the mean of u off: uniform weights keep that of I0.
+    void remove_mean(Kernels &kernels);
     /// The squared norm that the weights of the finest system give u.
     double squared_norm(Kernels &kernels);
 
@@ -54,6 +58,9 @@ class Problem {
                         std::uint32_t rows, double missing_value = 0);
     double mean_variance(const Buffer &packed, Buffer &variance, Buffer &valid, std::uint32_t columns,
                          std::uint32_t rows);
+    /// u += image - the sum in slot_mean times mean_factor.
+    void add_to_u(Kernels &kernels, const Buffer &image, double mean_factor);
+    const Buffer &zero();
 
     Workspace &workspace_;
     Fill fill_;

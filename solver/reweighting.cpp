@@ -15,8 +15,9 @@ constexpr double first_regularisation = 3, regularisation_factor = 0.5, least_re
 /// How far a step is extrapolated: 1 is not at all. From the third reweighting on, when weights have settled.
 constexpr double extrapolation = 1.8;
 constexpr int first_extrapolated = 3;
-/// The first step has the longest way.
-constexpr int more_first_iterations = 1;
+/// The first step has the longest way, and weights that are nearly equal.
+constexpr double first_tolerance = 1e-2;
+constexpr int most_first_iterations = 20;
 
 double total(const std::vector<double> &values, std::uint32_t planes) {
     return std::accumulate(values.begin(), values.begin() + planes, 0.0);
@@ -53,8 +54,20 @@ Reweighting::Norm Reweighting::reweight(Kernels &kernels, Problem &problem, doub
             total(workspace_.sums.read(slot_second_sum), kernels.weight_planes)};
 }
 
-void Reweighting::run(Kernels &kernels, Problem &problem, double alpha, const PoissonOptions &options,
-                      PoissonReport &report) {
+void Reweighting::start(Kernels &kernels, Problem &problem, double alpha, const DeviceImages &images) {
+    problem.start_between_neighbours(kernels);
+    if (!images.start)
+        return;
+    // Reweighting hardly leaves a poor start, so one that is worse than our own is not taken.
+    const auto norm = [&] { return reweight(kernels, problem, alpha, 1, 1, 1).all; };
+    const double own = norm();
+    problem.start(images);
+    if (!(norm() < own))
+        problem.start_between_neighbours(kernels);
+}
+
+void Reweighting::run(Kernels &kernels, Problem &problem, double alpha, const DeviceImages &images,
+                      const PoissonOptions &options, PoissonReport &report) {
     const double tolerance = options.tolerance > 0 ? options.tolerance : 1e-4;
     const int most = options.iterations > 0 ? options.iterations : default_reweightings;
     if (!previous_.valid())
@@ -62,8 +75,8 @@ void Reweighting::run(Kernels &kernels, Problem &problem, double alpha, const Po
     LinearSolver::Request request;
     request.method = options.method == LinearMethod::automatic ? LinearMethod::pcg : options.method;
     request.damping = options.damping;
-    request.watch = false;
 
+    start(kernels, problem, alpha, images);
     const double scale = scale_of(kernels, problem);
     double regularisation = first_regularisation * scale, before = 0;
     for (int k = 0;; ++k) {
@@ -72,6 +85,8 @@ void Reweighting::run(Kernels &kernels, Problem &problem, double alpha, const Po
                                     : reweight(kernels, problem, alpha, 1, 1, 1);
         report.objectives.push_back(norm.all);
         report.converged = scale == 0 || (k > 1 && std::abs(before - norm.cut) <= tolerance * norm.cut);
+        if (k == 0) // which pixels no equation holds is told by this
+            workspace_.multigrid.invert_finest_diagonal(kernels);
         if (report.converged || k == most)
             break;
         before = norm.cut;
@@ -82,7 +97,9 @@ void Reweighting::run(Kernels &kernels, Problem &problem, double alpha, const Po
         extrapolate.bind(previous_);
         workspace_.grid().launch(extrapolate, {0, workspace_.channels});
         problem.make_right_side(kernels);
-        request.iterations = options.inner_iterations + (k == 0 ? more_first_iterations : 0);
+        request.watch = k == 0;
+        request.tolerance = first_tolerance;
+        request.iterations = k == 0 ? most_first_iterations : options.inner_iterations;
         report.iterations += workspace_.linear.solve(kernels, request, problem.right_side(), problem.u()).iterations;
         ++report.reweightings;
         regularisation = std::max(regularisation * regularisation_factor, least_regularisation * scale);

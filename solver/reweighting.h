@@ -17,13 +17,16 @@ namespace gradus::solver {
 class Reweighting {
   public:
     explicit Reweighting(Workspace &workspace) : workspace_(workspace) {}
-    /// Improves problem.u() from where it is.
-    void run(Kernels &kernels, Problem &problem, double alpha, const PoissonOptions &options, PoissonReport &report);
+    /// Leaves the solution in problem.u().
+    void run(Kernels &kernels, Problem &problem, double alpha, const DeviceImages &images,
+             const PoissonOptions &options, PoissonReport &report);
 
   private:
     struct Norm {
         double all = 0, cut = 0;
     };
+    /// Sets u to where the iteration starts.
+    void start(Kernels &kernels, Problem &problem, double alpha, const DeviceImages &images);
     /// A typical |residual| of an edge at u.
     double scale_of(Kernels &kernels, Problem &problem);
     /// Sets the weights for u and returns the norm of u, and the norm with each term cut at `cut`.

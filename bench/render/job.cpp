@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 
 namespace gradus::bench {
@@ -77,18 +76,6 @@ Render render(const Settings &settings, const Job &job, const RenderOptions &opt
         throw Error(ExitCode::failure,
                     fmt::format("{}: {} samples were not finite", job.name, result.statistics.non_finite));
     return result;
-}
-
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    const std::size_t middle = values.size() / 2;
-    return values.size() % 2 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-}
-
-nlohmann::json spread(const std::vector<double> &values) {
-    return {{"median", median(values)},
-            {"least", *std::min_element(values.begin(), values.end())},
-            {"largest", *std::max_element(values.begin(), values.end())}};
 }
 
 } // namespace gradus::bench

@@ -1,6 +1,7 @@
 // A scene with the settings that it is measured at, and one render of it.
 #pragma once
 
+#include "bench/spread.h"
 #include "runtime/device/device.h"
 #include "runtime/methods/path_tracer.h"
 
@@ -45,10 +46,5 @@ struct Render {
 /// a render is no measurement.
 Render render(const Settings &settings, const Job &job, const RenderOptions &options = {},
               const std::function<void(PathTracer &)> &prepare = {});
-
-/// The middle value; the mean of the two middle ones of an even number.
-double median(std::vector<double> values);
-/// median, least and largest.
-nlohmann::json spread(const std::vector<double> &values);
 
 } // namespace gradus::bench

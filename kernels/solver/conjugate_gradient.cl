@@ -2,13 +2,13 @@
 #include "kernels/solver/grid.h"
 
 /* direction = z + beta old_direction, and image = A direction.
- * beta = factor * SCALAR(numerator) / SCALAR(divisor). */
-SOLVE direction(GRID, WEIGHTS_OF_DIAGONAL, real factor, uint numerator, uint divisor, __global const real *scalars,
-                __global const real *z, __global const real *old_direction, __global real *direction,
-                __global real *image) {
+ * beta = factor * SCALAR(numerator) / SCALAR(divisor), at most `bound` in size. */
+SOLVE direction(GRID, WEIGHTS_OF_DIAGONAL, real factor, real bound, uint numerator, uint divisor,
+                __global const real *scalars, __global const real *z, __global const real *old_direction,
+                __global real *direction, __global real *image) {
     SOLVER_PLACE
     const size_t at = GRID_AT(channel, x, y);
-    const real beta = factor * SCALAR_RATIO(numerator, divisor);
+    const real beta = factor * r_clamp(SCALAR_RATIO(numerator, divisor), -bound, bound);
     const cell_weights c = CELL(x, y);
     const real here = z[at] + beta * old_direction[at];
     const real left = z[at - 1] + beta * old_direction[at - 1];
@@ -21,12 +21,13 @@ SOLVE direction(GRID, WEIGHTS_OF_DIAGONAL, real factor, uint numerator, uint div
     image[at] = a;
 }
 
-/* u += alpha direction, residual -= alpha image, alpha = SCALAR(numerator) / SCALAR(divisor). */
-SOLVE advance(GRID, uint numerator, uint divisor, __global const real *scalars, __global const real *direction,
-              __global const real *image, __global real *u, __global real *residual) {
+/* u += alpha direction, residual -= alpha image, alpha = SCALAR(numerator) / SCALAR(divisor), at most `bound` in
+ * size. */
+SOLVE advance(GRID, real bound, uint numerator, uint divisor, __global const real *scalars,
+              __global const real *direction, __global const real *image, __global real *u, __global real *residual) {
     SOLVER_PLACE
     const size_t at = GRID_AT(channel, x, y);
-    const real alpha = SCALAR_RATIO(numerator, divisor);
+    const real alpha = r_clamp(SCALAR_RATIO(numerator, divisor), -bound, bound);
     u[at] += alpha * direction[at];
     residual[at] -= alpha * image[at];
 }

@@ -48,6 +48,23 @@ SOLVE right_side(GRID, WEIGHTS_OF_DIAGONAL, __global const real *gradient_x, __g
                      (c.up * gradient_y[at - row] - c.down * gradient_y[at]);
 }
 
+/* u = 0, cut to between the second least and the second largest value that the differences give from the neighbours. So
+ * a pixel of I0 that is far off by itself does not stay where it is. But not where I0 + u would lose more than three
+ * digits to cancellation, which would be noise to all equations of the pixel. */
+SOLVE start_between_neighbours(GRID, __global const real *base, __global const real *gradient_x,
+                               __global const real *gradient_y, __global real *u) {
+    SOLVER_PLACE
+    const size_t at = GRID_AT(channel, x, y);
+    const real left = gradient_x[at - 1], right = -gradient_x[at];
+    const real up = gradient_y[at - row], down = -gradient_y[at];
+    const real less_x = r_min(left, right), more_x = r_max(left, right);
+    const real less_y = r_min(up, down), more_y = r_max(up, down);
+    const real lower = r_min(r_max(less_x, less_y), r_min(more_x, more_y));
+    const real upper = r_max(r_min(more_x, more_y), r_max(less_x, less_y));
+    const real between = r_clamp(R(0), lower, upper);
+    u[at] = r_abs(between) <= R(1000) * r_abs(base[at] + between) ? between : R(0);
+}
+
 /* u = start - base, where there is a start and it is finite; else 0. */
 SOLVE start(GRID, uint has_start, __global const real *base, __global const float *packed, __global real *u) {
     SOLVER_PLACE

@@ -17,12 +17,17 @@
     if (coarse_x >= coarse_width || vector_row >= (rows))                                                              \
         return;
 
+/* Even and odd ones of 16 elements in two vectors of 8. Written out: oclgrind loses track of swizzles between vectors
+ * of different lengths. */
+#define EVEN(a, b) ((real8)((a).s0, (a).s2, (a).s4, (a).s6, (b).s0, (b).s2, (b).s4, (b).s6))
+#define ODD(a, b) ((real8)((a).s1, (a).s3, (a).s5, (a).s7, (b).s1, (b).s3, (b).s5, (b).s7))
+
 /* coarse = the sum of `fine` over 2 x 2 pixels. Borders of `fine` are zero. */
 SOLVE restrict_sum(uint height, uint row, uint plane, COARSE, __global const real *fine, __global real *coarse) {
     SOLVER_VECTOR_PLACE(coarse_height)
     __global const real *from = fine + GRID_AT(channel, 2 * coarse_x, 2 * vector_row);
-    const real16 sum = vload16(0, from) + vload16(0, from + row);
-    vstore8(sum.even + sum.odd, 0, coarse + COARSE_AT(coarse_x, vector_row));
+    const real8 low = vload8(0, from) + vload8(0, from + row), high = vload8(1, from) + vload8(1, from + row);
+    vstore8(EVEN(low, high) + ODD(low, high), 0, coarse + COARSE_AT(coarse_x, vector_row));
 }
 
 /* The fine pixels that 8 coarse ones give in a row, linear between the centres of coarse pixels and constant beyond the
@@ -69,11 +74,13 @@ SOLVE coarsen_weights(uint row, uint weight_plane, COARSE, uint coarse_weight_pl
     SOLVER_VECTOR_PLACE(coarse_height)
     const uint at = channel * weight_plane + (2 * vector_row + 1) * row + SOLVER_MARGIN + 2 * coarse_x;
     const uint to = channel * coarse_weight_plane + (vector_row + 1) * coarse_row + SOLVER_MARGIN + coarse_x;
-    const real16 wx = vload16(0, weight_x + at) + vload16(0, weight_x + at + row);
-    const real16 wy = vload16(0, weight_y + at + row);
-    const real16 wd = vload16(0, weight_data + at) + vload16(0, weight_data + at + row);
-    vstore8(R(0.5) * wx.odd, 0, coarse_weight_x + to);
-    vstore8(R(0.5) * (wy.even + wy.odd), 0, coarse_weight_y + to);
-    vstore8(wd.even + wd.odd, 0, coarse_weight_data + to);
+    const real8 x_low = vload8(0, weight_x + at) + vload8(0, weight_x + at + row);
+    const real8 x_high = vload8(1, weight_x + at) + vload8(1, weight_x + at + row);
+    const real8 y_low = vload8(0, weight_y + at + row), y_high = vload8(1, weight_y + at + row);
+    const real8 data_low = vload8(0, weight_data + at) + vload8(0, weight_data + at + row);
+    const real8 data_high = vload8(1, weight_data + at) + vload8(1, weight_data + at + row);
+    vstore8(R(0.5) * ODD(x_low, x_high), 0, coarse_weight_x + to);
+    vstore8(R(0.5) * (EVEN(y_low, y_high) + ODD(y_low, y_high)), 0, coarse_weight_y + to);
+    vstore8(EVEN(data_low, data_high) + ODD(data_low, data_high), 0, coarse_weight_data + to);
 }
 #endif

@@ -71,7 +71,7 @@ void ChildProcess::send(int signal) const { ::kill(process_, signal); }
 
 Outcome ChildProcess::wait() {
     int status = 0;
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(240);
     while (::waitpid(process_, &status, WNOHANG) == 0) {
         if (std::chrono::steady_clock::now() > deadline)
             ::kill(process_, SIGKILL);

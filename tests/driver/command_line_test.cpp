@@ -15,7 +15,7 @@ TEST_F(CommandLine, HelpAndVersion) {
     EXPECT_EQ(run({"--version"}).out, "gradus 0.1.0\n");
     const Outcome help = run({"--help"});
     EXPECT_EQ(help.exit_code, 0);
-    for (const char *word : {"render", "inspect", "devices", "compare", "warm", "Examples:", "130"})
+    for (const char *word : {"render", "inspect", "devices", "compare", "solve", "warm", "Examples:", "130"})
         EXPECT_THAT(help.out, HasSubstr(word));
     const Outcome render = run({"render", "--help"});
     EXPECT_EQ(render.exit_code, 0);
@@ -24,7 +24,15 @@ TEST_F(CommandLine, HelpAndVersion) {
           "--rr-depth", "--nthreads", "--device", "--batch-size",    "--define",       "--strict",     "--quiet",
           "--stats",    "--aov",      "--png",    "--write-partial", "--dump-kernels", "--all-traits", "--strategy"})
         EXPECT_THAT(render.out, HasSubstr(option));
-    for (const char *command : {"inspect", "devices", "compare", "warm"})
+    const Outcome solve = run({"solve", "--help"});
+    for (const char *option :
+         {"--primal",          "--dx",          "--dy",          "--direct",   "--layers",      "--layer ",
+          "--variance-primal", "--variance-dx", "--variance-dy", "--output",   "--png",         "--stats",
+          "--quiet",           "--norm",        "--alpha",       "--weights",  "--per-channel", "--no-mean-correction",
+          "--method",          "--tolerance",   "--iterations",  "--damping",  "--device",      "--nthreads",
+          "L1   least",        "L2   least",    "Examples:",     "very_direct"})
+        EXPECT_THAT(solve.out, HasSubstr(option));
+    for (const char *command : {"inspect", "devices", "compare", "solve", "warm"})
         EXPECT_EQ(run({command, "--help"}).exit_code, 0) << command;
 }
 

@@ -4,9 +4,11 @@
 //   nan=1        one value of the image is NaN
 //   warn=TEXT    the loader warns
 // The image is R = seed, G = samples a pixel so far, B = 0.5; the film is 8x6 with 4 samples a pixel.
+// A solve gives the primal; the device named "too small" has no room for it.
 #include "driver/program.h"
 #include "runtime/error.h"
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <limits>
@@ -93,6 +95,25 @@ class FakeMethod : public Method {
     std::uint32_t width_ = 0, height_ = 0;
 };
 
+PreparedSolver prepare_fake_solver(const std::string &device, int, std::uint32_t width, std::uint32_t height,
+                                   std::uint32_t channels) {
+    if (device == "too small")
+        throw Error(ExitCode::device, "the fake device is too small for " + std::to_string(width) + "x" +
+                                          std::to_string(height) + " pixels");
+    PreparedSolver solver;
+    solver.description.name = "fake device";
+    solver.solve = [count = std::size_t(width) * height * channels](const HostImages &images, const PoissonOptions &,
+                                                                    float *result) {
+        std::copy(images.primal, images.primal + count, result);
+        PoissonReport report;
+        report.method = "fake method";
+        report.converged = true;
+        report.seconds = 0.25;
+        return report;
+    };
+    return solver;
+}
+
 } // namespace
 } // namespace gradus
 
@@ -111,5 +132,6 @@ int main(int argc, char **argv) {
         prepared.method = std::make_unique<gradus::FakeMethod>(scene, options);
         return prepared;
     };
+    services.prepare_solver = gradus::prepare_fake_solver;
     return gradus::run_program(argc, argv, services);
 }

@@ -1,0 +1,199 @@
+#include "driver/gradient_layers.h"
+
+#include "runtime/error.h"
+#include "runtime/io/image_io.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <optional>
+
+namespace gradus {
+namespace {
+
+struct Names {
+    const char *name, *option; ///< as Gradus writes the layer; the option that names a file of its own
+    /// What other renderers call it, too; small letters and no separators (simplified()).
+    std::vector<std::string> usual;
+};
+
+const std::map<GradientLayer, Names> all_names = {
+    {GradientLayer::primal, {"primal", "--primal", {"primal", "throughput"}}},
+    {GradientLayer::dx, {"dx", "--dx", {"dx", "gradientx", "gradx"}}},
+    {GradientLayer::dy, {"dy", "--dy", {"dy", "gradienty", "grady"}}},
+    {GradientLayer::direct, {"direct", "--direct", {"direct", "verydirect"}}},
+    {GradientLayer::primal_variance,
+     {"primal_variance", "--variance-primal", {"primalvariance", "varianceprimal", "throughputvariance"}}},
+    {GradientLayer::dx_variance, {"dx_variance", "--variance-dx", {"dxvariance", "variancedx", "gradientxvariance"}}},
+    {GradientLayer::dy_variance, {"dy_variance", "--variance-dy", {"dyvariance", "variancedy", "gradientyvariance"}}}};
+
+/// Small letters and digits alone, so that Gradient_X and gradientX are one.
+std::string simplified(const std::string &name) {
+    std::string text;
+    for (const unsigned char c : name)
+        if (std::isalnum(c))
+            text += static_cast<char>(std::tolower(c));
+    return text;
+}
+
+/// Channels by the name of their layer; those outside of any have the empty one.
+using Layers = std::map<std::string, std::vector<const Channel *>>;
+
+Layers layers_of(const Image &image) {
+    Layers layers;
+    for (const Channel &channel : image.channels) {
+        const std::size_t dot = channel.name.rfind('.');
+        layers[dot == std::string::npos ? "" : channel.name.substr(0, dot)].push_back(&channel);
+    }
+    return layers;
+}
+
+std::string last_part(const std::string &channel) { return channel.substr(channel.rfind('.') + 1); }
+
+std::string letters_of(const std::vector<const Channel *> &channels) {
+    std::vector<std::string> letters;
+    for (const Channel *channel : channels)
+        letters.push_back(last_part(channel->name));
+    return fmt::format("{}", fmt::join(letters, ", "));
+}
+
+/// "dx (R, G, B); primal (R, G, B)", for messages.
+std::string list_of(const Layers &layers) {
+    std::vector<std::string> list;
+    for (const auto &[name, channels] : layers)
+        list.push_back(fmt::format("{} ({})", name.empty() ? "channels without a layer" : name, letters_of(channels)));
+    return fmt::format("{}", fmt::join(list, "; "));
+}
+
+[[noreturn]] void fail(const std::string &message) { throw Error(ExitCode::image, message); }
+
+/// Where the image is in a file: the layer's name, or nothing. `alone`: the file was given for this image.
+std::optional<std::string> find_layer(const Image &image, const Layers &layers, GradientLayer layer,
+                                      const GradientSources &sources, bool alone) {
+    if (const auto asked = sources.names.find(layer); asked != sources.names.end())
+        return layers.count(asked->second) ? std::optional(asked->second) : std::nullopt;
+    // The channels of a file's first part do not bear the part's name.
+    const auto part = image.metadata.find("oiio:subimagename");
+    const std::string first_part = part == image.metadata.end() ? "" : simplified(part->second);
+    for (const std::string &usual : all_names.at(layer).usual) {
+        for (const auto &[name, channels] : layers)
+            if (simplified(name) == usual)
+                return name;
+        if (first_part == usual && layers.count(""))
+            return "";
+    }
+    return alone && layers.count("") ? std::optional<std::string>("") : std::nullopt;
+}
+
+/// One image as it was found.
+struct Found {
+    std::string where; ///< for messages
+    std::uint32_t width = 0, height = 0;
+    std::vector<std::string> channels;
+    std::vector<float> values; ///< one plane after the other
+};
+
+/// Takes the colours of a layer.
+Found take_colours(const Image &image, const std::vector<const Channel *> &layer, const std::string &where) {
+    std::map<std::string, const Channel *> colours;
+    for (const Channel *channel : layer) {
+        std::string letter = last_part(channel->name);
+        std::transform(letter.begin(), letter.end(), letter.begin(), [](unsigned char c) { return std::toupper(c); });
+        if (letter != "A")
+            colours[letter] = channel;
+    }
+    Found found{where, image.width, image.height, {}, {}};
+    if (colours.count("R") && colours.count("G") && colours.count("B"))
+        found.channels = {"R", "G", "B"};
+    else if (colours.count("Y") && colours.size() == 1)
+        found.channels = {"Y"};
+    else
+        fail(fmt::format("{} has the channels {}: there must be R, G and B, or Y alone", where, letters_of(layer)));
+    for (const std::string &letter : found.channels) {
+        const std::vector<float> &values = colours.at(letter)->values;
+        found.values.insert(found.values.end(), values.begin(), values.end());
+    }
+    return found;
+}
+
+bool is_variance(GradientLayer layer) {
+    return layer == GradientLayer::primal_variance || layer == GradientLayer::dx_variance ||
+           layer == GradientLayer::dy_variance;
+}
+
+/// Which images each file holds, so that every file is read once.
+std::map<std::string, std::vector<GradientLayer>> files_to_read(const GradientSources &sources) {
+    std::map<std::string, std::vector<GradientLayer>> files;
+    for (const GradientLayer layer : gradient_layers) {
+        if (is_variance(layer) && !sources.variances)
+            continue;
+        const auto own = sources.files.find(layer);
+        if (own != sources.files.end())
+            files[own->second].push_back(layer);
+        else if (!sources.layered.empty())
+            files[sources.layered].push_back(layer);
+        else if (layer != GradientLayer::direct)
+            throw Error(ExitCode::usage, fmt::format("there is no {}: give {} FILE, or one file with layers",
+                                                     layer_name(layer), all_names.at(layer).option));
+    }
+    return files;
+}
+
+/// Adds what one file holds to `found`, and the metadata of the primal's file to `images`.
+void read_file(const std::string &path, const std::vector<GradientLayer> &wanted, const GradientSources &sources,
+               std::map<GradientLayer, Found> &found, GradientImages &images) {
+    const Image image = read_image(path);
+    const Layers layers = layers_of(image);
+    for (const GradientLayer layer : wanted) {
+        const bool alone = sources.files.count(layer) > 0;
+        const auto name = find_layer(image, layers, layer, sources, alone);
+        if (!name && layer == GradientLayer::direct && !alone && !sources.names.count(layer))
+            continue;
+        if (!name)
+            fail(fmt::format("'{}' has no layer for {}; it has: {}. Name it with --layer {}=NAME", path,
+                             layer_name(layer), list_of(layers), layer_name(layer)));
+        const std::string where = name->empty() ? fmt::format("'{}'", path) : fmt::format("{} of '{}'", *name, path);
+        found[layer] = take_colours(image, layers.at(*name), where);
+        if (layer == GradientLayer::primal)
+            images.metadata = image.metadata;
+    }
+}
+
+/// Everything is measured by the primal.
+void check_equal(const Found &primal, const Found &other) {
+    if (other.width != primal.width || other.height != primal.height)
+        fail(fmt::format("sizes differ: {} is {}x{}, {} is {}x{}", primal.where, primal.width, primal.height,
+                         other.where, other.width, other.height));
+    if (other.channels != primal.channels)
+        fail(fmt::format("channels differ: {} has {}, {} has {}", primal.where, fmt::join(primal.channels, ", "),
+                         other.where, fmt::join(other.channels, ", ")));
+}
+
+} // namespace
+
+const char *layer_name(GradientLayer layer) { return all_names.at(layer).name; }
+
+const float *GradientImages::find(GradientLayer layer) const {
+    const auto at = planes.find(layer);
+    return at == planes.end() ? nullptr : at->second.data();
+}
+
+GradientImages read_gradient_images(const GradientSources &sources) {
+    GradientImages images;
+    std::map<GradientLayer, Found> found;
+    for (const auto &[path, wanted] : files_to_read(sources))
+        read_file(path, wanted, sources, found, images);
+    const Found &primal = found.at(GradientLayer::primal);
+    for (const auto &[layer, other] : found)
+        check_equal(primal, other);
+    images.width = primal.width;
+    images.height = primal.height;
+    images.channels = primal.channels;
+    for (auto &[layer, image] : found)
+        images.planes[layer] = std::move(image.values);
+    return images;
+}
+
+} // namespace gradus

@@ -1,0 +1,52 @@
+// The images that a reconstruction starts from, as renderers write them: a file each, or layers of one file.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace gradus {
+
+enum class GradientLayer { primal, dx, dy, direct, primal_variance, dx_variance, dy_variance };
+
+inline constexpr std::array gradient_layers = {
+    GradientLayer::primal,          GradientLayer::dx,          GradientLayer::dy,         GradientLayer::direct,
+    GradientLayer::primal_variance, GradientLayer::dx_variance, GradientLayer::dy_variance};
+
+/// The name of a layer as Gradus writes it: "primal", "dx_variance".
+const char *layer_name(GradientLayer layer);
+
+/// Where the images are.
+struct GradientSources {
+    std::string layered;                        ///< a file that holds them as layers; empty: none
+    std::map<GradientLayer, std::string> files; ///< files of their own, which go before the layers
+    /// Names of layers, in whichever file; without one, those of docs/command-line.md. An empty name means the channels
+    /// outside of any layer.
+    std::map<GradientLayer, std::string> names;
+    bool variances = false; ///< whether they are asked for; if not they are not read
+};
+
+struct GradientImages {
+    std::uint32_t width = 0, height = 0;
+    std::vector<std::string> channels; ///< "R", "G", "B", or "Y" alone
+    /// Planes: channel c at row y and column x is element (c * height + y) * width + x. What is not there is left out.
+    std::map<GradientLayer, std::vector<float>> planes;
+    std::map<std::string, std::string> metadata; ///< of the primal's file
+
+    /// The planes of a layer, or nullptr.
+    const float *find(GradientLayer layer) const;
+};
+
+/// Reads primal, dx and dy, direct where there is one, and the variances where they are asked for.
+///
+/// In a file an image is the layer that the sources name, or else the first layer of one of its usual names in any
+/// case, or else, in a file of its own, the channels outside of any layer. Colours are the channels R, G and B, or Y
+/// where it stands alone; alpha is ignored.
+///
+/// Throws Error(ExitCode::usage) where an image has neither file nor layer, Error(ExitCode::image) for files that
+/// cannot be read, layers that are missing, and sizes or channels that differ.
+GradientImages read_gradient_images(const GradientSources &sources);
+
+} // namespace gradus

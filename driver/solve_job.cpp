@@ -1,0 +1,182 @@
+#include "driver/solve_job.h"
+
+#include "driver/program.h"
+#include "driver/solve_report.h"
+#include "driver/standard_streams.h"
+#include "runtime/error.h"
+#include "runtime/film/metrics.h"
+#include "runtime/io/image_io.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <filesystem>
+#include <new>
+
+namespace gradus {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+[[noreturn]] void fail(const std::string &message) { throw Error(ExitCode::usage, message); }
+
+bool is_variance(GradientLayer layer) { return layer >= GradientLayer::primal_variance; }
+
+bool same_file(const std::string &first, const std::string &second) {
+    std::error_code not_there;
+    return std::filesystem::equivalent(first, second, not_there);
+}
+
+/// An output in the place of an input would destroy what a render may have taken hours for.
+void check_inputs_are_kept(const SolveRequest &request) {
+    std::vector<std::string> outputs{request.outputs.image, request.outputs.statistics};
+    if (request.outputs.png)
+        outputs.push_back(png_path(request.outputs.image));
+    std::vector<std::string> inputs{request.sources.layered};
+    for (const auto &[layer, path] : request.sources.files)
+        inputs.push_back(path);
+    for (const std::string &output : outputs)
+        for (const std::string &input : inputs)
+            if (same_file(output, input))
+                fail(fmt::format("'{}' is an image to read, and would be replaced", output));
+}
+
+void check_options(const SolveRequest &request) {
+    if (request.options.weigh_by_variance && request.options.norm == PoissonNorm::l1)
+        fail("--weights variance is for the norm L2: add --norm L2");
+    if (request.damping && request.options.method != LinearMethod::jacobi)
+        fail("--damping is for one method: add --method jacobi");
+}
+
+class SolveJob {
+  public:
+    SolveJob(SolveRequest request, const Services &services) : request_(std::move(request)), services_(services) {
+        PoissonOptions &options = request_.options;
+        options.damping = request_.damping.value_or(options.damping);
+        request_.sources.variances = options.alpha_from_variances || options.weigh_by_variance;
+    }
+
+    void run() {
+        if (!request_.sources.variances)
+            for (const auto &[layer, path] : request_.sources.files)
+                if (is_variance(layer))
+                    warn(fmt::format("'{}' is not read: only --alpha auto and --weights variance use variances", path));
+        images_ = read_gradient_images(request_.sources);
+        solve();
+        write_results();
+    }
+
+  private:
+    void warn(const std::string &text) const {
+        if (!request_.quiet)
+            print_message("gradus: warning: " + text + "\n");
+    }
+
+    void solve() {
+        const auto channels = static_cast<std::uint32_t>(images_.channels.size());
+        const auto start = Clock::now();
+        const PreparedSolver solver =
+            services_.prepare_solver(request_.device, request_.threads, images_.width, images_.height, channels);
+        record_.prepare_seconds = seconds_since(start);
+        record_.norm = request_.options.norm == PoissonNorm::l1 ? "L1" : "L2";
+        record_.weights = request_.options.weigh_by_variance ? "variance" : "uniform";
+        record_.width = images_.width;
+        record_.height = images_.height;
+        record_.channels = channels;
+        record_.device = solver.description;
+
+        HostImages planes;
+        planes.primal = images_.find(GradientLayer::primal);
+        planes.dx = images_.find(GradientLayer::dx);
+        planes.dy = images_.find(GradientLayer::dy);
+        planes.direct = images_.find(GradientLayer::direct);
+        planes.primal_variance = images_.find(GradientLayer::primal_variance);
+        planes.dx_variance = images_.find(GradientLayer::dx_variance);
+        planes.dy_variance = images_.find(GradientLayer::dy_variance);
+        result_.resize(std::size_t(images_.width) * images_.height * channels);
+        report_ = solver.solve(planes, request_.options, result_.data());
+        images_.planes.clear();
+    }
+
+    Image result_image() const {
+        Image image;
+        image.width = images_.width;
+        image.height = images_.height;
+        const std::size_t pixels = std::size_t(images_.width) * images_.height;
+        for (std::size_t c = 0; c < images_.channels.size(); ++c) {
+            const auto plane = result_.begin() + static_cast<std::ptrdiff_t>(c * pixels);
+            image.channels.push_back({images_.channels[c], {plane, plane + static_cast<std::ptrdiff_t>(pixels)}});
+        }
+        // What was rendered stays known, so that `gradus compare` finds seeds and sample counts.
+        for (const char *key : {"scene", "seed", "samples", "spp", "crop", "partial"})
+            if (const auto at = images_.metadata.find(key); at != images_.metadata.end())
+                image.metadata[key] = at->second;
+        image.metadata["version"] = version();
+        image.metadata["method"] = report_.method;
+        image.metadata["norm"] = record_.norm;
+        image.metadata["weights"] = record_.weights;
+        image.metadata["alpha"] = fmt::format("{}", report_.alpha);
+        image.metadata["device"] = record_.device.name;
+        image.metadata["seconds"] = fmt::format("{:.3f}", report_.seconds);
+        return image;
+    }
+
+    void write_results() {
+        Image image = result_image();
+        write_image(image, request_.outputs.image);
+        if (const std::uint64_t count = count_non_finite(image); count > 0)
+            warn(fmt::format("{} values of the image are NaN or infinite", count));
+        // L1 comes ever closer and is stopped by count as a rule; L2 that does not arrive is not the solution.
+        if (!report_.converged && request_.options.iterations == 0 && request_.options.norm == PoissonNorm::l2)
+            warn("the tolerance was not reached");
+        if (request_.outputs.png) {
+            if (image.channels.size() == 1) // a picture has three
+                image.channels = {
+                    {"R", image.channels[0].values}, {"G", image.channels[0].values}, {"B", image.channels[0].values}};
+            write_png(image, png_path(request_.outputs.image));
+        }
+        record_.wall_seconds = seconds_since(start_);
+        if (!request_.outputs.statistics.empty())
+            write_json(solve_report_json(record_, report_), request_.outputs.statistics);
+        if (!request_.quiet && request_.outputs.statistics != "-")
+            print_result(solve_report_text(report_));
+    }
+
+    SolveRequest request_;
+    const Services &services_;
+    const Clock::time_point start_ = Clock::now();
+    GradientImages images_;
+    std::vector<float> result_;
+    PoissonReport report_;
+    SolveRecord record_;
+};
+
+} // namespace
+
+void check_images_fit(const DeviceDescription &device, std::uint32_t width, std::uint32_t height,
+                      std::uint32_t channels) {
+    const std::uint64_t bytes = std::uint64_t(width) * height * channels * sizeof(float);
+    if (bytes > device.allocation_bytes)
+        throw Error(
+            ExitCode::device,
+            fmt::format("images of {}x{} pixels are too large for {}: with {} channels they have {} MB each, and "
+                        "it allocates {} MB at once",
+                        width, height, device.name, channels, bytes >> 20, device.allocation_bytes >> 20));
+}
+
+int run_solve(SolveRequest request, const Services &services) {
+    check_options(request);
+    check_inputs_are_kept(request);
+    check_outputs(request.outputs);
+    try {
+        SolveJob(std::move(request), services).run();
+    } catch (const std::bad_alloc &) {
+        throw Error(ExitCode::device, "out of memory: the images are too large for this machine");
+    }
+    return static_cast<int>(ExitCode::success);
+}
+
+} // namespace gradus

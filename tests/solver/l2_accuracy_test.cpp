@@ -1,0 +1,73 @@
+// The L2 solution against the direct one in double precision: every method, at several tolerances, for images of every
+// awkward size.
+#include "tests/solver/solver_fixture.h"
+
+namespace gradus::testing {
+namespace {
+
+class L2Accuracy : public ::testing::TestWithParam<LinearMethod> {
+  protected:
+    LinearMethod method() const { return GetParam(); }
+
+    /// Jacobi's method takes 1e5 steps at alpha = 0.02.
+    std::vector<double> alphas() const {
+        return method() == LinearMethod::jacobi ? std::vector{0.2, 2.0} : std::vector{0.02, 0.2, 2.0};
+    }
+
+    void check(std::uint32_t width, std::uint32_t height, std::uint32_t channels,
+               const std::vector<double> &some_alphas) {
+        const PoissonProblem problem = make_poisson_problem(width, height, channels, width + 31 * height);
+        PoissonSolver &solver = solver_for(problem);
+        for (const double alpha : some_alphas) {
+            const std::vector<double> reference = solve_directly(problem, alpha);
+            const double floor = float_floor(problem, alpha, reference);
+            // |error| <= |residual| / alpha^2, and tolerances are relative to the residual at the primal.
+            const double at_start = residual_norm(problem, alpha, unit_weights(problem), to_double(problem.primal));
+            const double safe = at_start > 0 ? std::min(1.0, alpha * alpha * norm(reference) / at_start) : 1.0;
+            for (const double level : {1e-3, 1e-5, 0.0}) {
+                PoissonOptions options = l2_options(method(), alpha, std::max(level * safe, 1e-9));
+                options.iterations = enough_steps(method(), alpha, 1e9 / safe);
+                const Solution solution = solve(solver, problem.images(), options);
+                const double error = relative_error(solution.image, reference);
+                EXPECT_LE(error, std::max(level, floor))
+                    << width << " x " << height << ", alpha " << alpha << ", level " << level << ", "
+                    << solution.report.iterations << " steps";
+                worst_ = std::max(worst_, error / std::max(level, floor));
+            }
+        }
+    }
+
+    void TearDown() override { std::printf("largest error: %.2f of what is allowed\n", worst_); }
+
+  private:
+    double worst_ = 0;
+};
+
+TEST_P(L2Accuracy, OfTinyImages) {
+    constexpr std::uint32_t sizes[][2] = {{1, 1}, {2, 1}, {1, 2}, {2, 2}, {3, 2}, {5, 4}, {17, 9}, {16, 16}, {33, 3}};
+    for (const auto &[width, height] : sizes)
+        check(width, height, 3, alphas());
+}
+
+TEST_P(L2Accuracy, OfLines) {
+    check(1, 301, 3, alphas());
+    check(301, 1, 3, alphas());
+    check(1024, 1, 3, alphas());
+    check(2, 257, 3, alphas());
+}
+
+TEST_P(L2Accuracy, OfOddSizes) {
+    check(129, 65, 3, alphas());
+    check(333, 501, 3, {0.2});
+}
+
+TEST_P(L2Accuracy, OfSmallRenders) {
+    check(640, 360, 3, {0.2});
+    check(97, 60, 8, {0.2});
+    check(640, 360, 1, {alphas()[0], 2.0});
+}
+
+INSTANTIATE_TEST_SUITE_P(Solver, L2Accuracy, ::testing::ValuesIn(linear_methods), method_parameter_name);
+
+} // namespace
+} // namespace gradus::testing

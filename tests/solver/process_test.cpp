@@ -1,0 +1,53 @@
+// The solver in processes of their own: with other numbers of threads, and under oclgrind.
+#include "tests/driver/child_process.h"
+
+#include <gmock/gmock.h>
+
+namespace gradus {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class SolverProcess : public ProgramTest {
+  protected:
+    /// What solver_digest says, run by `command`. GRADUS_PROGRAM is `env` here.
+    Outcome digests(std::vector<std::string> command, const std::string &width, const std::string &height,
+                    const std::string &threads) const {
+        command.insert(command.end(), {GRADUS_SOLVER_DIGEST, width, height, threads});
+        const Outcome outcome = run(command);
+        EXPECT_EQ(outcome.signal, 0);
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        EXPECT_THAT(outcome.out, HasSubstr("L2, missing"));
+        EXPECT_THAT(outcome.out, Not(HasSubstr("not finite")));
+        return outcome;
+    }
+};
+
+TEST_F(SolverProcess, GivesTheSameBitsWithAnyNumberOfThreads) {
+    const Outcome one = digests({}, "333", "201", "1");
+    EXPECT_THAT(one.err, HasSubstr(" 1 compute units"));
+    for (const std::string threads : {"2", "3", "7"}) {
+        const Outcome more = digests({}, "333", "201", threads);
+        EXPECT_THAT(more.err, HasSubstr(" " + threads + " compute units"));
+        EXPECT_EQ(more.out, one.out) << threads << " threads";
+    }
+}
+
+/// As in tests/portability/oclgrind_test.cpp, which shows that these options find what they are to find. One size is
+/// odd on every level of multigrid and wider than a work-group.
+TEST_F(SolverProcess, IsCleanUnderOclgrind) {
+    const Outcome version = run({"oclgrind", "--version"});
+    ASSERT_EQ(version.exit_code, 0) << "oclgrind is not installed (Debian: apt install oclgrind)\n" << version.err;
+    for (const auto &[width, height] : {std::pair{"67", "3"}, {"1", "1"}}) {
+        const Outcome outcome =
+            digests({"oclgrind", "--data-races", "--uniform-writes", "--uninitialized", "--check-api", "--log",
+                     at("report.txt"), "--build-options", "-cl-opt-disable -D GRADUS_FN=static"},
+                    width, height, "1");
+        EXPECT_THAT(outcome.err, HasSubstr("Oclgrind"));
+        EXPECT_EQ(text_of("report.txt").substr(0, 4000), "") << width << " x " << height;
+    }
+}
+
+} // namespace
+} // namespace gradus

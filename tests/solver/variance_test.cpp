@@ -1,0 +1,177 @@
+// Weights and alpha from variances.
+#include "runtime/error.h"
+#include "tests/solver/solver_fixture.h"
+
+namespace gradus::testing {
+namespace {
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+
+/// The mean variance of the equations that there are, all channels together.
+class Mean {
+  public:
+    Mean &add(const std::vector<float> &variance, const std::vector<double> &unit) {
+        for (std::size_t i = 0; i < variance.size(); ++i) {
+            sum_ += unit[i] > 0 ? variance[i] : 0;
+            count_ += unit[i];
+        }
+        return *this;
+    }
+    double value() const { return sum_ / count_; }
+
+  private:
+    double sum_ = 0, count_ = 0;
+};
+
+double mean_of_primal(const PoissonProblem &problem) {
+    return Mean().add(problem.primal_variance, unit_weights(problem).primal).value();
+}
+
+double mean_of_gradients(const PoissonProblem &problem) {
+    const PoissonWeights units = unit_weights(problem);
+    return Mean().add(problem.dx_variance, units.dx).add(problem.dy_variance, units.dy).value();
+}
+
+/// The mean over the channels, for all of them.
+void share(std::vector<float> &variance, std::size_t pixels) {
+    const std::size_t channels = variance.size() / pixels;
+    for (std::size_t i = 0; i < pixels; ++i) {
+        double sum = 0;
+        for (std::size_t c = 0; c < channels; ++c)
+            sum += variance[c * pixels + i];
+        for (std::size_t c = 0; c < channels; ++c)
+            variance[c * pixels + i] = float(sum / double(channels));
+    }
+}
+
+/// Mean over variance, with a hundredth of the mean added to the latter. Both differences share a mean, or one would
+/// count for more than the other. With `joint`, all channels of a pixel share their weights.
+PoissonWeights inverse_variances(PoissonProblem problem, bool joint) {
+    PoissonWeights weights = unit_weights(problem);
+    if (joint)
+        for (std::vector<float> *variance : {&problem.primal_variance, &problem.dx_variance, &problem.dy_variance})
+            share(*variance, problem.pixels());
+    const double primal = mean_of_primal(problem), gradient = mean_of_gradients(problem);
+    for (std::size_t i = 0; i < weights.primal.size(); ++i) {
+        weights.primal[i] *= primal / (problem.primal_variance[i] + 0.01 * primal);
+        weights.dx[i] *= gradient / (problem.dx_variance[i] + 0.01 * gradient);
+        weights.dy[i] *= gradient / (problem.dy_variance[i] + 0.01 * gradient);
+    }
+    return weights;
+}
+
+PoissonOptions weighted_options(LinearMethod method = LinearMethod::automatic, double tolerance = 1e-6) {
+    PoissonOptions options = l2_options(method, 0.2, tolerance);
+    options.weigh_by_variance = true;
+    return options;
+}
+
+Solution solve_with_variances(const PoissonProblem &problem, const PoissonOptions &options) {
+    PoissonSolver &solver = solver_for(problem);
+    return solve(solver, problem.images_with_variances(), options);
+}
+
+class Variances : public ::testing::TestWithParam<LinearMethod> {};
+
+/// Jacobi's method takes too many steps where some weights are small, unless alpha is large.
+TEST_P(Variances, WeighEquationsAsInTheReference) {
+    for (const bool joint : {true, false})
+        for (const auto &[width, height] : {std::pair{75u, 43u}, {1u, 301u}, {301u, 1u}}) {
+            const PoissonProblem problem = make_poisson_problem(width, height, 3, 1);
+            const PoissonWeights weights = inverse_variances(problem, joint);
+            PoissonOptions options = weighted_options(GetParam());
+            options.joint_channels = joint;
+            options.alpha = GetParam() == LinearMethod::jacobi ? 2 : 0.2;
+            const std::vector<double> reference =
+                solve_weighted(problem, options.alpha, weights, to_double(problem.primal), 20000, 1e-13);
+            const Solution solution = solve_with_variances(problem, options);
+            EXPECT_LE(relative_error(solution.image, reference), 1e-3) << width << " x " << height << ", " << joint;
+            EXPECT_NEAR(relative_residual(problem, options.alpha, weights, to_double(solution.image)),
+                        solution.report.residuals.back(), 1e-6)
+                << width << " x " << height << ", " << joint;
+        }
+}
+
+INSTANTIATE_TEST_SUITE_P(Solver, Variances, ::testing::ValuesIn(linear_methods), method_parameter_name);
+
+TEST(VariancesWeights, OfEqualVariancesAreThePlainSolution) {
+    PoissonProblem problem = make_poisson_problem(75, 43, 3, 2);
+    problem.primal_variance.assign(problem.primal.size(), 3.0f);
+    problem.dx_variance.assign(problem.primal.size(), 0.25f);
+    problem.dy_variance.assign(problem.primal.size(), 0.25f);
+    EXPECT_LE(relative_error(solve_with_variances(problem, weighted_options()).image, solve_directly(problem, 0.2)),
+              1e-4);
+}
+
+TEST(VariancesWeights, DoNotDependOnTheUnit) {
+    PoissonProblem problem = make_poisson_problem(75, 43, 3, 3);
+    const Solution expected = solve_with_variances(problem, weighted_options());
+    for (std::vector<float> *plane : {&problem.primal_variance, &problem.dx_variance, &problem.dy_variance})
+        for (float &value : *plane)
+            value *= 1024;
+    EXPECT_LE(relative_error(solve_with_variances(problem, weighted_options()).image, to_double(expected.image)), 1e-6);
+}
+
+TEST(VariancesWeights, LessenTheError) {
+    const PoissonProblem problem = make_poisson_problem(129, 65, 3, 4);
+    PoissonOptions plain = l2_options(LinearMethod::automatic), weighted = weighted_options();
+    plain.alpha_from_variances = weighted.alpha_from_variances = true;
+    const std::vector<double> clean = to_double(problem.clean);
+    const double without = relative_error(solve_with_variances(problem, plain).image, clean);
+    const double with = relative_error(solve_with_variances(problem, weighted).image, clean);
+    std::printf("relative error with equal weights %.4f, by inverse variance %.4f\n", without, with);
+    EXPECT_LT(with, 0.8 * without);
+}
+
+TEST(VariancesAlpha, IsTheirRatio) {
+    const PoissonProblem problem = make_poisson_problem(75, 43, 3, 5);
+    const double expected = std::sqrt(mean_of_gradients(problem) / mean_of_primal(problem));
+    for (const PoissonNorm norm : {PoissonNorm::l1, PoissonNorm::l2}) {
+        PoissonOptions options;
+        options.norm = norm;
+        options.alpha = 77;
+        options.alpha_from_variances = true;
+        const Solution solution = solve_with_variances(problem, options);
+        EXPECT_NEAR(solution.report.alpha / expected, 1, 1e-5);
+        if (norm == PoissonNorm::l2) {
+            EXPECT_LE(relative_error(solution.image, solve_directly(problem, expected)), 1e-3);
+        }
+    }
+}
+
+/// Variances that no estimate has: they are refused or lead to a finite image, and an infinite one to no more weight
+/// than a missing input has.
+TEST(VariancesThatAreOdd, DoNotSpread) {
+    const PoissonProblem problem = make_poisson_problem(75, 43, 3, 6);
+    const auto with_odd = [&](float value, bool everywhere) {
+        PoissonProblem odd = problem;
+        for (std::vector<float> *plane : {&odd.primal_variance, &odd.dx_variance, &odd.dy_variance})
+            if (everywhere)
+                plane->assign(plane->size(), value);
+            else
+                for (std::uint32_t c = 0; c < 3; ++c)
+                    (*plane)[odd.at(c, 30, 20)] = value;
+        return odd;
+    };
+    for (const float value : {0.0f, -1.0f, nan, infinity, 1e-38f, 1e38f})
+        for (const bool everywhere : {false, true})
+            for (const bool choose_alpha : {false, true}) {
+                PoissonOptions options = weighted_options();
+                options.alpha_from_variances = choose_alpha;
+                try {
+                    const Solution solution = solve_with_variances(with_odd(value, everywhere), options);
+                    EXPECT_EQ(count_non_finite(solution.image), 0u)
+                        << value << ", everywhere " << everywhere << ", alpha chosen " << choose_alpha;
+                    EXPECT_TRUE(std::isfinite(solution.report.alpha));
+                    // Of a noise whose values stay below 60; nothing may run away.
+                    EXPECT_LE(norm(to_double(solution.image)), 2 * norm(to_double(problem.primal)))
+                        << value << ", everywhere " << everywhere << ", alpha chosen " << choose_alpha;
+                } catch (const Error &error) {
+                    EXPECT_EQ(error.code, ExitCode::usage) << value;
+                    EXPECT_TRUE(everywhere) << value << " at one pixel: " << error.what();
+                }
+            }
+}
+
+} // namespace
+} // namespace gradus::testing
