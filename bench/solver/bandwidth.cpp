@@ -14,13 +14,14 @@ namespace {
 /// kernels/solver/conjugate_gradient.cl and sum.cl. A neighbour's value in a stencil comes from the cache.
 struct Traffic {
     double needed; ///< by conjugate gradients in any form: the vectors, each read or written once by a kernel
-    double moved;  ///< with the parts of the sums, one for each value
+    double moved;  ///< with the sums, which read their vectors again
 };
 
 const std::map<std::string, Traffic> traffic_of_step = {
-    {"direction", {4, 5}}, // reads z and the old direction, writes direction, image | parts
-    {"advance", {6, 7}},   // reads direction and image, reads and writes u and residual | parts
-    {"reduce", {0, 2.27}}, // two sums | read all parts, write and read again a sixteenth and so on
+    {"direction", {4, 4}},          // reads z and the old direction, writes direction and image
+    {"advance", {6, 6}},            // reads direction and image, reads and writes u and residual
+    {"reduce_products", {0, 3.13}}, // <direction, image> and <residual, residual> | a sixteenth written for each
+    {"reduce", {0, 0.14}},          // reads that, writes a sixteenth of it
     {"finish_sum", {0, 0}}};
 
 constexpr int vectors = 5; // z (the residual), two directions, image, u

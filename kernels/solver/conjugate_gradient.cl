@@ -8,7 +8,8 @@ SOLVE direction(GRID, WEIGHTS_OF_DIAGONAL, real factor, real bound, uint numerat
                 __global real *direction, __global real *image) {
     SOLVER_PLACE
     const size_t at = GRID_AT(channel, x, y);
-    const real beta = factor * r_clamp(SCALAR_RATIO(numerator, divisor), -bound, bound);
+    const real ratio = SCALAR_RATIO(numerator, divisor);
+    const real beta = factor * r_clamp(ratio, -bound, bound);
     const cell_weights c = CELL(x, y);
     const real here = z[at] + beta * old_direction[at];
     const real left = z[at - 1] + beta * old_direction[at - 1];
@@ -27,7 +28,8 @@ SOLVE advance(GRID, real bound, uint numerator, uint divisor, __global const rea
               __global const real *direction, __global const real *image, __global real *u, __global real *residual) {
     SOLVER_PLACE
     const size_t at = GRID_AT(channel, x, y);
-    const real alpha = r_clamp(SCALAR_RATIO(numerator, divisor), -bound, bound);
+    const real ratio = SCALAR_RATIO(numerator, divisor);
+    const real alpha = r_clamp(ratio, -bound, bound);
     u[at] += alpha * direction[at];
     residual[at] -= alpha * image[at];
 }

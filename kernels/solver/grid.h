@@ -65,7 +65,7 @@
 /* A scalar that another kernel left, and a quotient of two of them, 0 where the divisor is next to nothing: a sum of
  * squares of which most underflowed. */
 #define SCALAR(slot) scalars[channel * SOLVER_SCALAR_SLOTS + (slot)]
-#define SCALAR_RATIO(a, b) (r_abs(SCALAR(b)) > R(1e-33) ? SCALAR(a) / SCALAR(b) : R(0))
+#define SCALAR_RATIO(a, b) (SCALAR(a) / (r_abs(SCALAR(b)) > R(1e-33) ? SCALAR(b) : R(1e38)))
 
 /* The weights, as kernel arguments. */
 #if SOLVER_WEIGHTED

@@ -1,0 +1,3 @@
+#define GRADUS_DOUBLE
+#define table_name shifts_in_double
+#include "tests/kernels/shift_functions.inc"

@@ -1,0 +1,2 @@
+#define table_name shifts_in_float
+#include "tests/kernels/shift_functions.inc"

@@ -1,0 +1,288 @@
+// Half-vector copies against the copy in long double, and their Jacobians against its differences.
+#include "tests/kernels/precision.h"
+#include "tests/kernels/shift_case.h"
+
+#include "kernels/lib/shift_half_vector.h"
+
+#include <cstdio>
+
+using namespace gradus::testing;
+
+namespace {
+
+constexpr double epsilon = std::numeric_limits<real>::epsilon();
+
+lib::vec3 as_real(LongVector v) { return lib::v3(real(v.x), real(v.y), real(v.z)); }
+LongVector as_long(lib::vec3 v) { return {v.x, v.y, v.z}; }
+double distance(LongVector a, LongVector b) { return double(length(a - b)); }
+
+lib::shifted_direction shifted(const ShiftCase &c) {
+    return lib::shift_half_vector(as_real(c.wi_base), as_real(c.wo_base), real(c.ior_base), as_real(c.wi_offset),
+                                  real(c.ior_offset));
+}
+
+/// The case whose directions `real` holds; wo_base stays at unit length and on its microfacet to rounding only.
+ShiftCase rounded(ShiftCase c) {
+    for (LongVector *v : {&c.wi_base, &c.wo_base, &c.wi_offset})
+        *v = as_long(as_real(*v));
+    c.ior_base = real(c.ior_base), c.ior_offset = real(c.ior_offset);
+    return c;
+}
+
+/// The shift back, from the result of the shift.
+lib::shifted_direction shifted_back(const ShiftCase &c, const lib::shifted_direction &there) {
+    return lib::shift_half_vector(as_real(c.wi_offset), there.wo, real(c.ior_offset), as_real(c.wi_base),
+                                  real(c.ior_base));
+}
+
+/// What rounding of the arguments does to the result: the normal is known to epsilon / |h|, cosines to that, a cosine
+/// from total reflection to that over itself, and Jacobians have one cosine in the denominator.
+double condition(const ShiftCase &c) {
+    const double cosine = c.microfacet_cosine();
+    return 1 / (c.half_vector_length() * cosine * cosine);
+}
+
+NumericalJacobian numerical(const ShiftCase &c) {
+    const long double cosine = c.microfacet_cosine();
+    // The copy is smooth over a share of root^2, of the cosines and of |h|.
+    const long double step = 0.02L * cosine * cosine * std::min(1.0, c.half_vector_length());
+    return solid_angle_jacobian([&](LongVector wo) { return c.copy(wo); }, c.wo_base, step);
+}
+
+struct JacobianFactors {
+    double eta, cosine, half_vector; ///< offset over base: index ratio, |wo.m|, |h|
+};
+
+JacobianFactors factors(const ShiftCase &c) {
+    const LongVector m = c.normal();
+    return {
+        double(c.offset_eta() / c.base_eta()), double(std::fabs(dot(c.wo_offset(), m) / dot(c.wo_base, m))),
+        double(length(c.wi_offset + c.offset_eta() * c.wo_offset()) / length(c.wi_base + c.base_eta() * c.wo_base))};
+}
+
+} // namespace
+
+TEST(ShiftHalfVector, DirectionAndJacobianAreThoseOfTheCopy) {
+    ShiftCases cases(1, 0.0101);
+    double largest = 0, largest_direction = 0, largest_uncertainty = 0;
+    int near_total = 0, grazing = 0, reflections = 0, different = 0;
+    for (int i = 0; i < sample_count / 20; ++i) {
+        const ShiftCase c = cases.draw();
+        const NumericalJacobian truth = numerical(c);
+        ASSERT_LT(truth.relative_error, 1e-8L) << c.microfacet_cosine() << " " << c.half_vector_length();
+        const lib::shifted_direction result = shifted(c);
+        ASSERT_TRUE(result.is_valid || c.microfacet_cosine() < 0.01 + 64 * epsilon / 0.01);
+        if (!result.is_valid)
+            continue;
+        const double error = std::fabs(result.jacobian / double(truth.value) - 1);
+        const double direction_error = distance(as_long(result.wo), c.wo_offset());
+        const double allowed = 8 * epsilon * condition(c);
+        ASSERT_LT(error, allowed + 1e-8) << c.is_reflection << " " << c.microfacet_cosine() << " " << c.base_eta()
+                                         << " " << c.offset_eta();
+        ASSERT_LT(direction_error, allowed);
+        largest = std::max(largest, error);
+        largest_direction = std::max(largest_direction, direction_error);
+        largest_uncertainty = std::max(largest_uncertainty, double(truth.relative_error));
+        const LongVector m = c.normal();
+        near_total += !c.is_reflection && std::fabs(dot(c.wo_offset(), m)) < 0.03L && c.offset_eta() < 1;
+        grazing += std::fabs(dot(c.wi_offset, m)) < 0.03L;
+        reflections += c.is_reflection;
+        different += !c.is_reflection && c.ior_base != c.ior_offset;
+    }
+    std::printf("  largest error: Jacobian %.1e, direction %.1e; the differences know it to %.1e\n"
+                "  %d reflections, %d refractions of unlike indices, %d near total reflection, %d grazing\n",
+                largest, largest_direction, largest_uncertainty, reflections, different, near_total, grazing);
+    EXPECT_LT(largest, bound(0.1, 1e-6));
+    for (const int count : {near_total, grazing, reflections, different})
+        EXPECT_GT(count, sample_count / 2000);
+}
+
+// Near 1 the half vector is short. Its normal is known to epsilon / |h|, the copied direction to epsilon.
+TEST(ShiftHalfVector, IndexRatiosNearOne) {
+    ShiftCases cases(2, 0.3);
+    for (const double contrast : {1e-4, 1e-3, 1e-2, -1e-2, -1e-3, -1e-4})
+        for (int found = 0, tries = 0; found < 200; ++tries) {
+            ASSERT_LT(tries, 100'000);
+            ShiftCase c = cases.draw();
+            if (c.is_reflection)
+                continue;
+            const LongVector m = c.normal();
+            c.ior_base = c.ior_offset = real(1 + contrast);
+            const auto wo = refracted(c.wi_base, m, c.base_eta());
+            if (!wo || c.wi_base.z * wo->z > -1e-2L)
+                continue;
+            c.wo_base = *wo;
+            const LongVector wo_offset = c.wo_offset();
+            if (!(wo_offset.z * c.wi_offset.z < -1e-2L))
+                continue;
+            ++found;
+            const lib::shifted_direction result = shifted(c);
+            ASSERT_TRUE(result.is_valid) << contrast;
+            ASSERT_LT(distance(as_long(result.wo), wo_offset), 32 * epsilon);
+            ASSERT_NEAR(result.jacobian / double(numerical(c).value), 1, 8 * epsilon * condition(c) + 1e-8);
+        }
+}
+
+TEST(ShiftHalfVector, IsUndoneByTheShiftBack) {
+    ShiftCases cases(3, 0.0101, 1e-3);
+    double largest = 0, largest_direction = 0, largest_plain = 0;
+    for (int i = 0; i < sample_count / 4; ++i) {
+        const ShiftCase c = rounded(cases.draw());
+        const lib::shifted_direction there = shifted(c);
+        // Within rounding of the bound that the cases keep to.
+        if (!there.is_valid && c.microfacet_cosine() < 0.01 + 64 * epsilon / 0.01)
+            continue;
+        ASSERT_TRUE(there.is_valid);
+        const lib::shifted_direction back = shifted_back(c, there);
+        if (!back.is_valid && c.microfacet_cosine() < 0.01 + 64 * epsilon / 0.01)
+            continue;
+        ASSERT_TRUE(back.is_valid) << c.microfacet_cosine();
+        const double error = std::fabs(double(there.jacobian) * back.jacobian - 1);
+        const double direction_error = distance(as_long(back.wo), c.wo_base);
+        ASSERT_LT(error, 16 * epsilon * condition(c)) << c.is_reflection << " " << c.microfacet_cosine();
+        ASSERT_LT(direction_error, 16 * epsilon * condition(c));
+        largest = std::max(largest, error);
+        largest_direction = std::max(largest_direction, direction_error);
+        if (c.microfacet_cosine() > 0.1 && c.half_vector_length() > 0.1)
+            largest_plain = std::max({largest_plain, error, direction_error});
+    }
+    std::printf("  largest error: product of Jacobians %.1e, direction %.1e; away from edges %.1e\n", largest,
+                largest_direction, largest_plain);
+    EXPECT_LT(largest_plain, bound(1e-4, 1e-12));
+}
+
+// Any arguments, so that every reason to fail occurs: where the shift succeeds the shift back must, and find the base.
+TEST(ShiftHalfVector, FailureIsSymmetric) {
+    ShiftCases cases(4, 0.01);
+    int succeeded = 0, at_a_bound = 0, count = 0;
+    const double iors[] = {0.4, 0.7, 0.9999, 0.99997, 1, 1.00003, 1.0001, 1.33, 1.5, 2.5};
+    for (int i = 0; i < sample_count; ++i, ++count) {
+        const auto ior = [&] { return iors[std::min(int(cases.uniform() * 10), 9)]; };
+        ShiftCase c{false, cases.draw_direction(), cases.draw_direction(), cases.draw_direction(), ior(), ior()};
+        if (i % 2) // or a base that exists
+            if (const auto wo = refracted(c.wi_base, normalized(LongVector{0, 0, 1} + 0.3L * cases.draw_direction()),
+                                          eta_of(c.wi_base, false, c.ior_base)))
+                c.wo_base = *wo;
+        c.is_reflection = c.wi_base.z * c.wo_base.z > 0;
+        c = rounded(c);
+        const lib::shifted_direction there = shifted(c);
+        if (!there.is_valid) {
+            ASSERT_EQ(there.jacobian, 0);
+            ASSERT_EQ(lib::v3_length_squared(there.wo), 0);
+            continue;
+        }
+        ++succeeded;
+        ASSERT_TRUE(there.jacobian > 0 && std::isfinite(there.jacobian));
+        ASSERT_GT(c.wi_base.z * c.wi_offset.z, 0);
+        ASSERT_EQ(there.wo.z * c.wi_offset.z > 0, c.is_reflection);
+        const lib::shifted_direction back = shifted_back(c, there);
+        if (!back.is_valid) {
+            // Allowed within rounding of a bound: the cosines' against the microfacet, or the surface's horizon.
+            const double slack = 16 * epsilon * condition(c);
+            const LongVector wo = as_long(there.wo), m = c.normal();
+            const double least = c.is_reflection ? 1e-3 : 1e-2;
+            const double horizon = double(std::min({std::fabs(wo.z), std::fabs(c.wo_base.z), std::fabs(m.z)}));
+            ASSERT_TRUE(std::fabs(c.microfacet_cosine() - least) < slack || horizon < slack)
+                << c.microfacet_cosine() << " " << horizon << " " << slack;
+            ++at_a_bound;
+        } else {
+            ASSERT_LT(distance(as_long(back.wo), c.wo_base), 16 * epsilon * condition(c));
+        }
+    }
+    std::printf("  %d of %d shifts succeed, %d of them within rounding of failure\n", succeeded, count, at_a_bound);
+    EXPECT_GT(succeeded, count / 20);
+    EXPECT_LE(at_a_bound, bound(1e-3, 0) * succeeded);
+}
+
+TEST(ShiftHalfVector, HandDerivedValues) {
+    const double s = std::sqrt(0.5);
+    const lib::vec3 wi = lib::v3(real(s), 0, real(s)), mirrored = lib::v3(real(-s), 0, real(s)), up = lib::v3(0, 0, 1);
+    // The normal is z: mirror at a quarter of the circle, and straight back.
+    lib::shifted_direction result = lib::shift_half_vector(wi, mirrored, 1, up, 1);
+    ASSERT_TRUE(result.is_valid);
+    EXPECT_NEAR(result.wo.z, 1, 4 * epsilon);
+    EXPECT_NEAR(result.jacobian, 1 / s, 4 * epsilon);
+    // From below into the thinner side, normal incidence on z, both materials alike: |h| = |1 - eta| for both.
+    const lib::vec3 down = lib::v3(0, 0, -1);
+    result = lib::shift_half_vector(down, up, R(1.5), down, R(1.5));
+    ASSERT_TRUE(result.is_valid);
+    EXPECT_NEAR(result.wo.z, 1, 4 * epsilon);
+    EXPECT_NEAR(result.jacobian, 1, 16 * epsilon);
+    // Unlike materials at normal incidence: a turn of m by e turns wo by (1 - 1 / eta) e.
+    result = lib::shift_half_vector(up, down, R(1.5), up, R(2));
+    ASSERT_TRUE(result.is_valid);
+    EXPECT_NEAR(result.jacobian, std::pow((1 - 1 / 2.0) / (1 - 1 / 1.5), 2), 32 * epsilon);
+}
+
+TEST(ShiftHalfVector, EachFailure) {
+    const auto unit = [](double x, double z) {
+        const double length = std::hypot(x, z);
+        return lib::v3(real(x / length), 0, real(z / length));
+    };
+    const lib::vec3 above = unit(0.3, 1), below = unit(-0.25, -1);
+    const auto fails = [](lib::vec3 wi, lib::vec3 wo, double ior, lib::vec3 wi_offset, double ior_offset) {
+        const lib::shifted_direction result = lib::shift_half_vector(wi, wo, real(ior), wi_offset, real(ior_offset));
+        EXPECT_TRUE(result.is_valid || (result.jacobian == 0 && lib::v3_length_squared(result.wo) == 0));
+        return !result.is_valid;
+    };
+    ASSERT_FALSE(fails(above, below, 1.5, unit(0.1, 1), 1.5));
+    ASSERT_FALSE(fails(above, unit(0.1, 1), 1.5, unit(0.1, 1), 1.5));
+    EXPECT_TRUE(fails(above, below, 1.5, unit(0.1, -1), 1.5)) << "other side";
+    EXPECT_TRUE(fails(above, unit(0.1, 1), 1.5, unit(0.1, -1), 1.5)) << "other side";
+    EXPECT_TRUE(fails(below, above, 1.5, unit(-2, -1), 1.5)) << "total reflection of the offset";
+    EXPECT_TRUE(fails(above, below, 1.5, above, 0.1)) << "total reflection, other index";
+    EXPECT_TRUE(fails(above, unit(0.9, 1), 1.5, unit(-5, 1), 1.5)) << "reflected below the horizon";
+    EXPECT_TRUE(fails(above, unit(0.3, -1), 1.5, above, 1.5)) << "no microfacet refracts so";
+    for (const double ior : {1.0, 1.00002, 0.99998, 0.0, -1.5, 1e-3, 1e5, 1e30}) {
+        EXPECT_TRUE(fails(above, below, ior, above, 1.5)) << ior;
+        EXPECT_TRUE(fails(above, below, 1.5, above, ior)) << ior;
+        EXPECT_TRUE(fails(below, above, 1.5, below, ior)) << ior;
+        EXPECT_FALSE(fails(above, unit(0.1, 1), ior, above, ior)) << "reflection does not read " << ior;
+    }
+    const lib::vec3 along = lib::v3(1, 0, 0), nothing = lib::v3(0, 0, 0);
+    for (const lib::vec3 bad : {along, nothing}) {
+        EXPECT_TRUE(fails(bad, below, 1.5, above, 1.5));
+        EXPECT_TRUE(fails(above, bad, 1.5, above, 1.5));
+        EXPECT_TRUE(fails(above, below, 1.5, bad, 1.5));
+        EXPECT_TRUE(fails(above, unit(0.1, 1), 1.5, bad, 1.5));
+    }
+    EXPECT_TRUE(fails(unit(1, 4e-4), unit(-1, 4e-4), 1.5, above, 1.5)) << "grazes the microfacet";
+    EXPECT_TRUE(fails(above, unit(-0.3, 1), 1.5, unit(1, 4e-4), 1.5)) << "grazes the microfacet";
+    EXPECT_FALSE(fails(unit(1, 4e-3), unit(-1, 4e-3), 1.5, above, 1.5));
+}
+
+// The differences would see each of these.
+TEST(ShiftHalfVector, DifferencesRefuteWrongFormulas) {
+    ShiftCases cases(5, 0.05);
+    int reflections = 0, refractions = 0, wrong_reflection = 0, no_reflection = 0;
+    int no_index = 0, index_upside_down = 0, no_cosine = 0, cosine_of_wi = 0, no_half_vector = 0, no_square = 0;
+    for (int i = 0; i < 4000; ++i) {
+        const ShiftCase c = cases.draw();
+        if (!c.is_reflection && c.ior_base == c.ior_offset)
+            continue; // the index factor is 1
+        const double truth = double(numerical(c).value);
+        const JacobianFactors f = factors(c);
+        const auto is_wrong = [&](double value) { return std::fabs(value / truth - 1) > 1e-2; };
+        if (c.is_reflection) {
+            ++reflections;
+            EXPECT_NEAR(f.cosine / truth, 1, 1e-7);
+            wrong_reflection += is_wrong(1 / f.cosine);
+            no_reflection += is_wrong(1);
+            continue;
+        }
+        ++refractions;
+        const double square = f.half_vector * f.half_vector, indices = f.eta * f.eta;
+        EXPECT_NEAR(square / (indices * f.cosine) / truth, 1, 1e-7);
+        const LongVector m = c.normal();
+        no_index += is_wrong(square / f.cosine);
+        index_upside_down += is_wrong(square * indices / f.cosine);
+        no_cosine += is_wrong(square / indices);
+        cosine_of_wi += is_wrong(square / indices / double(dot(c.wi_offset, m) / dot(c.wi_base, m)));
+        no_half_vector += is_wrong(1 / (indices * f.cosine));
+        no_square += is_wrong(f.half_vector / (indices * f.cosine));
+    }
+    for (const int refuted : {wrong_reflection, no_reflection})
+        EXPECT_GT(refuted, 0.95 * reflections);
+    for (const int refuted : {no_index, index_upside_down, no_cosine, cosine_of_wi, no_half_vector, no_square})
+        EXPECT_GT(refuted, 0.95 * refractions);
+}
