@@ -9,11 +9,12 @@
  *     refraction  wo = -(wi + (eta - 1)(eta + 1) / (c + root) m) / eta,     |d wo / d m| = |h|^2 / (eta root).
  * wo is along m - wi / eta, along = +-|h| / eta: a turn of m by a small e, normal to m, moves wo by along e in the
  * plane normal to m, and an area there is |wo.m| of the solid angle, so that |d wo / d m| = along^2 / |wo.m|. (The
- * supplement's eq. 21 lacks a factor and the line before eq. 22 a square; eqs. 20 and 23 are right, and are these.) The
- * shift's is |d wo_offset / d wo_base| = |d wo / d m| of the offset / |d wo / d m| of the base, with |h| = |(eta -
- * 1)(eta + 1)| / (c + root), which has no cancellation where eta is near 1. */
+ * supplement's eq. 21 lacks a factor and the line before eq. 22 a square; eqs. 20 and 23 are right, and are these.)
+ * The shift's Jacobian, |d wo_offset / d wo_base|, is the offset's |d wo / d m| over the base's. There |h| is taken as
+ * |eta^2 - 1| / (c + root), which has no cancellation where eta is near 1. */
 #ifndef GRADUS_LIB_SHIFT_HALF_VECTOR_H
 #define GRADUS_LIB_SHIFT_HALF_VECTOR_H
+#include "kernels/lib/ordered.h"
 #include "kernels/lib/vector.h"
 
 GRADUS_LIB_BEGIN
@@ -23,8 +24,8 @@ GRADUS_LIB_BEGIN
 #define GRADUS_HALF_VECTOR_GRAZING_REFLECTED R(1e-3)
 #define GRADUS_HALF_VECTOR_GRAZING_REFRACTED R(1e-2)
 
-/* Index ratios closer to 1 have no half vector in refraction; a ratio of 1.0001, where rough dielectrics stop, has. */
-#define GRADUS_HALF_VECTOR_SAME_INDEX R(5e-5)
+/* Refraction with a smaller |eta^2 - 1| fails: no half vector. Ratios of 1.0001, where rough dielectrics stop, pass. */
+#define GRADUS_HALF_VECTOR_SAME_INDEX R(1e-4)
 
 typedef struct {
     vec3 wo;       /* of the offset path, in the frame of its vertex; 0 where the shift fails */
@@ -56,25 +57,24 @@ GRADUS_FN shifted_direction shift_checked(vec3 wo, real jacobian, int is_valid) 
  * - wi_base and wi_offset are on different sides, or a direction lies in the surface;
  * - the base's pair has no microfacet on wi's side that turns wi into wo;
  * - the offset is totally reflected where the base refracts, or its wo has another side than the base's;
- * - it is refraction with either index ratio closer to 1 than GRADUS_HALF_VECTOR_SAME_INDEX: a ray that passes straight
+ * - it is refraction with either index ratio too near to 1 (GRADUS_HALF_VECTOR_SAME_INDEX): a ray that passes straight
  *   through has no half vector. shift_specular takes it, where such an interface is smooth;
  * - a direction grazes the microfacet: GRADUS_HALF_VECTOR_GRAZING_REFLECTED and _REFRACTED. */
 GRADUS_FN shifted_direction shift_half_vector(vec3 wi_base, vec3 wo_base, real ior_base, vec3 wi_offset,
                                               real ior_offset) {
-    const real tiny = R(1e-15);
     /* Turned by a point reflection where the paths come from below: then wi, and the normal, are above. */
     const real side = r_copysign1(wi_base.z);
     const vec3 from_base = v3_scale(wi_base, side), to_base = v3_scale(wo_base, side);
     const vec3 from = v3_scale(wi_offset, side);
     const int is_reflected = to_base.z > R(0);
     const real eta_base = is_reflected ? R(1) : shift_eta(ior_base, side);
-    const real eta = is_reflected ? R(1) : shift_eta(ior_offset, side);
     const real contrast_base = (eta_base - R(1)) * (eta_base + R(1));
+    const real eta = is_reflected ? R(1) : shift_eta(r_after(ior_offset, contrast_base), side);
     const real contrast = (eta - R(1)) * (eta + R(1));
 
     const vec3 h = v3_mad(from_base, eta_base, to_base);
     const real h_length = r_sqrt(v3_length_squared(h));
-    const vec3 normal = v3_scale(h, r_copysign1(h.z) / r_max(h_length, tiny));
+    const vec3 normal = v3_scale(h, r_copysign1(h.z) / r_max(h_length, R(1e-15)));
     /* |h| / 2 for reflection, the same for both directions. */
     const real cosine_base = is_reflected ? R(0.5) * h_length : v3_dot(from_base, normal);
     const real to_cosine_base = is_reflected ? cosine_base : -v3_dot(to_base, normal);
@@ -84,25 +84,26 @@ GRADUS_FN shifted_direction shift_half_vector(vec3 wi_base, vec3 wo_base, real i
     const real root = r_sqrt(r_max(root_squared, R(0)));
     const real inverse_eta = R(1) / eta;
     const real root_base = eta_base * to_cosine_base;
-    const real sum_base = cosine_base + root_base, sum = r_max(cosine + root, tiny);
+    const real sum_base = cosine_base + root_base, sum = r_max(cosine + root, R(1e-3));
     /* wo = along normal - wi / eta */
     const real along = is_reflected ? R(2) * cosine : -contrast * inverse_eta / sum;
     const vec3 to = v3_sub(v3_scale(normal, along), v3_scale(from, inverse_eta));
 
     const real least = is_reflected ? GRADUS_HALF_VECTOR_GRAZING_REFLECTED : GRADUS_HALF_VECTOR_GRAZING_REFRACTED;
-    const int is_index_valid = (r_abs(eta_base - R(1)) > GRADUS_HALF_VECTOR_SAME_INDEX) &
-                               (r_abs(eta - R(1)) > GRADUS_HALF_VECTOR_SAME_INDEX) & shift_ior_is_valid(ior_base) &
-                               shift_ior_is_valid(ior_offset);
+    /* r_after, here and above: base and offset would be packed into short vectors. */
+    const int is_index_valid = (r_abs(contrast_base) > GRADUS_HALF_VECTOR_SAME_INDEX) &
+                               (r_after(r_abs(contrast), root_base) > GRADUS_HALF_VECTOR_SAME_INDEX) &
+                               shift_ior_is_valid(ior_base) & shift_ior_is_valid(ior_offset);
     const int is_base_valid =
         (from_base.z > R(0)) & (to_base.z != R(0)) & (cosine_base > least) & (to_cosine_base > least);
     const int is_offset_valid = (from.z > R(0)) & (to.z != R(0)) & ((to.z > R(0)) == is_reflected) & (cosine > least) &
                                 (is_reflected | (root * inverse_eta > least));
     const int is_valid = is_base_valid & is_offset_valid & (is_reflected | is_index_valid);
 
-    /* Guarded where it will be thrown away. */
+    /* Bounded, as sum is, where it will be thrown away. */
     const real h_ratio = contrast * sum_base / (is_index_valid ? contrast_base * sum : R(1));
-    const real refracted = h_ratio * h_ratio * eta_base * root_base / r_max(eta * root, tiny);
-    const real reflected = cosine / r_max(cosine_base, tiny);
+    const real refracted = h_ratio * h_ratio * eta_base * root_base / r_max(eta * root, R(1e-6));
+    const real reflected = cosine / r_max(cosine_base, R(1e-3));
     return shift_checked(v3_scale(to, side), is_reflected ? reflected : refracted, is_valid);
 }
 

@@ -1,6 +1,7 @@
 /* The reconnection shift: the offset path goes on to the base path's next vertex (Kettunen et al. 2015). */
 #ifndef GRADUS_LIB_SHIFT_RECONNECTION_H
 #define GRADUS_LIB_SHIFT_RECONNECTION_H
+#include "kernels/lib/ordered.h"
 #include "kernels/lib/vector.h"
 
 GRADUS_LIB_BEGIN
@@ -19,11 +20,16 @@ GRADUS_LIB_BEGIN
  * is copied and the Jacobian is 1: do not call this. */
 GRADUS_FN real reconnection_jacobian(vec3 base, vec3 offset, vec3 target, vec3 target_normal) {
     const real tiny = R(1e-15);
-    const vec3 from_base = v3_sub(target, base), from_offset = v3_sub(target, offset);
+    const vec3 from_base = v3_sub(target, base);
     const real base_distance = r_sqrt(v3_length_squared(from_base));
-    const real offset_distance = r_sqrt(v3_length_squared(from_offset));
-    const real inverse_base = R(1) / r_max(base_distance, tiny), inverse_offset = R(1) / r_max(offset_distance, tiny);
+    const real inverse_base = R(1) / r_max(base_distance, tiny);
     const real base_cosine = r_abs(v3_dot(from_base, target_normal)) * inverse_base;
+    /* The like computation, one after the other. */
+    vec3 start = offset;
+    start.x = r_after(offset.x, base_cosine);
+    const vec3 from_offset = v3_sub(target, v3_ordered(start));
+    const real offset_distance = r_sqrt(v3_length_squared(from_offset));
+    const real inverse_offset = R(1) / r_max(offset_distance, tiny);
     const real offset_cosine = r_abs(v3_dot(from_offset, target_normal)) * inverse_offset;
     /* Never a product of distances: it would leave float's range. */
     const real ratio = base_distance * inverse_offset, inverse_ratio = offset_distance * inverse_base;

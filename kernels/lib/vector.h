@@ -44,6 +44,7 @@ GRADUS_FN rgb rgb3(real r, real g, real b) {
     return c;
 }
 GRADUS_FN rgb rgb_gray(real x) { return rgb3(x, x, x); }
+GRADUS_FN rgb rgb_sub(rgb a, rgb b) { return rgb3(a.r - b.r, a.g - b.g, a.b - b.b); }
 GRADUS_FN rgb rgb_add(rgb a, rgb b) { return rgb3(a.r + b.r, a.g + b.g, a.b + b.b); }
 GRADUS_FN rgb rgb_mul(rgb a, rgb b) { return rgb3(a.r * b.r, a.g * b.g, a.b * b.b); }
 GRADUS_FN rgb rgb_scale(rgb a, real s) { return rgb3(a.r * s, a.g * s, a.b * s); }

@@ -109,6 +109,113 @@
     REAL(feature_film, normal_z, "")                                                                                   \
     REAL(feature_film, depth, "")
 
+/* Gradient-domain path tracing only, from here on. A base path has four offset paths, j = 0 to 3: through the pixel to
+ * the right, left, below and above (gradient_neighbour in kernels/lib/gradient.h). */
+
+/* What the camera sees through each pixel, by slot: where the offset paths of the neighbours begin. */
+#define GRADUS_PRIMARY_COLUMNS(REAL, UINT)                                                                             \
+    UINT(primary, key_0, "random numbers of the pixel's path")                                                         \
+    UINT(primary, key_1, "")                                                                                           \
+    UINT(primary, primitive, "the primitive, or ray_escaped")                                                          \
+    UINT(primary, kind, "its BSDF kind, one of bsdf_kind; primary_none where nothing was hit")                         \
+    UINT(primary, material, "record of the material on this side")                                                     \
+    REAL(primary, position_x, "")                                                                                      \
+    REAL(primary, position_y, "")                                                                                      \
+    REAL(primary, position_z, "")                                                                                      \
+    REAL(primary, offset, "how far a new ray starts off the surface, along the geometric normal")                      \
+    REAL(primary, wi_x, "unit vector to the camera, world frame; also where nothing was hit")                          \
+    REAL(primary, wi_y, "")                                                                                            \
+    REAL(primary, wi_z, "")                                                                                            \
+    REAL(primary, geometric_x, "as in `vertex`")                                                                       \
+    REAL(primary, geometric_y, "")                                                                                     \
+    REAL(primary, geometric_z, "")                                                                                     \
+    REAL(primary, shading_x, "")                                                                                       \
+    REAL(primary, shading_y, "")                                                                                       \
+    REAL(primary, shading_z, "")                                                                                       \
+    REAL(primary, along_x, "as in `tangent`")                                                                          \
+    REAL(primary, along_y, "")                                                                                         \
+    REAL(primary, along_z, "")
+
+/* The offset paths of a path's newest vertex: offset j of row r is row j * capacity + r. All values are over the
+ * density of the base path. */
+#define GRADUS_SHIFTED_COLUMNS(REAL, UINT)                                                                             \
+    REAL(shifted, value_r, "the offset path's contribution so far, times the Jacobian of the shift")                   \
+    REAL(shifted, value_g, "")                                                                                         \
+    REAL(shifted, value_b, "")                                                                                         \
+    REAL(shifted, ratio, "its density times the Jacobian over the base's; shift_failed or shift_absent")               \
+    REAL(shifted, wi_x, "unit vector from the base's vertex to the offset's vertex before, world frame")               \
+    REAL(shifted, wi_y, "")                                                                                            \
+    REAL(shifted, wi_z, "")
+
+/* Light samples of base and offset paths before it is known which of them see the light: rows as in `shifted`.
+ * Densities are over that with which light sampling finds the light from the base path. */
+#define GRADUS_GAIN_COLUMNS(REAL, UINT)                                                                                \
+    REAL(gain, value_r, "what the offset path gains, times the Jacobian")                                              \
+    REAL(gain, value_g, "")                                                                                            \
+    REAL(gain, value_b, "")                                                                                            \
+    REAL(gain, base_bsdf, "density of BSDF sampling, base path")                                                       \
+    REAL(gain, offset_light, "density of light sampling, offset path; or shift_failed, shift_absent")                  \
+    REAL(gain, offset_bsdf, "density of BSDF sampling, offset path")
+
+/* Segments that offset paths ask about, from origin along direction to distance 1. */
+#define GRADUS_LINK_COLUMNS(REAL, UINT)                                                                                \
+    REAL(link, origin_x, "")                                                                                           \
+    REAL(link, origin_y, "")                                                                                           \
+    REAL(link, origin_z, "")                                                                                           \
+    REAL(link, direction_x, "not normalised")                                                                          \
+    REAL(link, direction_y, "")                                                                                        \
+    REAL(link, direction_z, "")                                                                                        \
+    UINT(link, open, "before tracing: 1 asks for a trace, 0 does not; after: 1 if nothing is in between")
+
+/* The base path by slot: what it gathered before its offset paths merged with it, and its throughput there. */
+#define GRADUS_PREFIX_COLUMNS(REAL, UINT)                                                                              \
+    REAL(prefix, value_r, "")                                                                                          \
+    REAL(prefix, value_g, "")                                                                                          \
+    REAL(prefix, value_b, "")                                                                                          \
+    REAL(prefix, throughput_r, "contribution over density")                                                            \
+    REAL(prefix, throughput_g, "")                                                                                     \
+    REAL(prefix, throughput_b, "")
+
+/* Offset less base, by slot: offset j of slot s is row j * slots + s. */
+#define GRADUS_DIFFERENCE_COLUMNS(REAL, UINT)                                                                          \
+    REAL(difference, value_r, "weighted difference gathered before the paths merged; at last, the whole")              \
+    REAL(difference, value_g, "")                                                                                      \
+    REAL(difference, value_b, "")                                                                                      \
+    REAL(difference, throughput_r, "of the offset path where they merged, over the base's density")                    \
+    REAL(difference, throughput_g, "")                                                                                 \
+    REAL(difference, throughput_b, "")                                                                                 \
+    REAL(difference, ratio, "as in `shifted`")
+
+/* Sums over the samples of each pixel, compensated as in `film`, and sums of squares for the variances. */
+#define GRADUS_GRADIENT_FILM_COLUMNS(REAL, UINT)                                                                       \
+    REAL(gradient_film, primal_r, "without what the camera sees of lights")                                            \
+    REAL(gradient_film, primal_g, "")                                                                                  \
+    REAL(gradient_film, primal_b, "")                                                                                  \
+    REAL(gradient_film, dx_r, "I(x + 1, y) - I(x, y); 0 in the last column")                                           \
+    REAL(gradient_film, dx_g, "")                                                                                      \
+    REAL(gradient_film, dx_b, "")                                                                                      \
+    REAL(gradient_film, dy_r, "I(x, y + 1) - I(x, y); 0 in the last row")                                              \
+    REAL(gradient_film, dy_g, "")                                                                                      \
+    REAL(gradient_film, dy_b, "")                                                                                      \
+    REAL(gradient_film, correction_first, "corrections of these nine")                                                 \
+    REAL(gradient_film, correction_1, "")                                                                              \
+    REAL(gradient_film, correction_2, "")                                                                              \
+    REAL(gradient_film, correction_3, "")                                                                              \
+    REAL(gradient_film, correction_4, "")                                                                              \
+    REAL(gradient_film, correction_5, "")                                                                              \
+    REAL(gradient_film, correction_6, "")                                                                              \
+    REAL(gradient_film, correction_7, "")                                                                              \
+    REAL(gradient_film, correction_8, "")                                                                              \
+    REAL(gradient_film, square_first, "sums of their squares")                                                         \
+    REAL(gradient_film, square_1, "")                                                                                  \
+    REAL(gradient_film, square_2, "")                                                                                  \
+    REAL(gradient_film, square_3, "")                                                                                  \
+    REAL(gradient_film, square_4, "")                                                                                  \
+    REAL(gradient_film, square_5, "")                                                                                  \
+    REAL(gradient_film, square_6, "")                                                                                  \
+    REAL(gradient_film, square_7, "")                                                                                  \
+    REAL(gradient_film, square_8, "")
+
 GRADUS_LIB_BEGIN
 
 #define GRADUS_COLUMN_INDEX(table, column, text) table##_##column,
@@ -120,6 +227,15 @@ enum radiance_column { GRADUS_RADIANCE_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUM
 enum feature_column { GRADUS_FEATURE_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) feature_columns };
 enum film_column { GRADUS_FILM_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) film_columns };
 enum feature_film_column { GRADUS_FEATURE_FILM_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) feature_film_columns };
+enum primary_column { GRADUS_PRIMARY_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) primary_columns };
+enum shifted_column { GRADUS_SHIFTED_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) shifted_columns };
+enum gain_column { GRADUS_GAIN_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) gain_columns };
+enum link_column { GRADUS_LINK_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) link_columns };
+enum prefix_column { GRADUS_PREFIX_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) prefix_columns };
+enum difference_column { GRADUS_DIFFERENCE_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) difference_columns };
+enum gradient_film_column {
+    GRADUS_GRADIENT_FILM_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) gradient_film_columns
+};
 #undef GRADUS_COLUMN_INDEX
 
 /* Values of ray_primitive that are no primitive. */
@@ -130,6 +246,13 @@ enum feature_film_column { GRADUS_FEATURE_FILM_COLUMNS(GRADUS_COLUMN_INDEX, GRAD
 
 /* The bin of a path that has ended: it is dropped. */
 #define bin_none 0xFFFFFFFFu
+
+/* primary_kind where nothing was hit. */
+#define primary_none 0xFFFFFFFFu
+
+/* Ratios below zero: the offset path failed, so that the base path counts for itself; or there is no neighbour. */
+#define shift_failed R(-1)
+#define shift_absent R(-2)
 
 GRADUS_LIB_END
 
@@ -142,6 +265,13 @@ GRADUS_LIB_END
 #define CAPACITY_OF_feature slots
 #define CAPACITY_OF_film pixels
 #define CAPACITY_OF_feature_film pixels
+#define CAPACITY_OF_primary slots
+#define CAPACITY_OF_shifted (4u * capacity)
+#define CAPACITY_OF_gain (4u * capacity)
+#define CAPACITY_OF_link (8u * capacity)
+#define CAPACITY_OF_prefix slots
+#define CAPACITY_OF_difference (4u * slots)
+#define CAPACITY_OF_gradient_film pixels
 
 /* Element access: AT(ray, origin_x, row) is a real, AT_UINT(ray, primitive, row) a uint. The table's pointer has the
  * table's name; AT_IN and AT_UINT_IN are for a second table of the same columns: AT_IN(vertex_old, vertex, pdf, row).
@@ -164,5 +294,13 @@ GRADUS_LIB_END
     AT(table, column##_r, row) = (value).r;                                                                            \
     AT(table, column##_g, row) = (value).g;                                                                            \
     AT(table, column##_b, row) = (value).b
+#define SET_RGB_IN(pointer, table, column, row, value)                                                                 \
+    AT_IN(pointer, table, column##_r, row) = (value).r;                                                                \
+    AT_IN(pointer, table, column##_g, row) = (value).g;                                                                \
+    AT_IN(pointer, table, column##_b, row) = (value).b
+#define ADD_RGB(table, column, row, value)                                                                             \
+    AT(table, column##_r, row) += (value).r;                                                                           \
+    AT(table, column##_g, row) += (value).g;                                                                           \
+    AT(table, column##_b, row) += (value).b
 
 #endif

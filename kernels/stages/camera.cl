@@ -3,16 +3,11 @@
  * Paths take rows `first_row` on and slots `first_slot` on. Samples are numbered pixel first: number = sample * pixels
  * + pixel of the crop; slot 0 is pixel `first_pixel` of sample `first_sample`. Random numbers go by the pixel of the
  * full film, so that a crop equals the same part of the full image. */
-//! traits: TRAIT_REFRACTION TRAIT_FILTER_TENT TRAIT_FILTER_GAUSSIAN TRAIT_AOV
+//! traits: TRAIT_REFRACTION TRAIT_FILTER_TENT TRAIT_FILTER_GAUSSIAN TRAIT_AOV TRAIT_SHARED_JITTER
+#include "kernels/lib/division.h"
 #include "kernels/lib/random.h"
 #include "kernels/lib/warp.h"
 #include "kernels/shared/stage.h"
-
-/* number / divisor for number < 2^31 by a multiplication (Granlund and Montgomery 1994): vector units cannot divide.
- * See invariant_division in runtime/stages/invariant_division.h, which makes `multiplier` and `shift`. */
-GRADUS_FN uint divide(uint number, uint multiplier, uint shift) {
-    return multiplier ? mul_hi(number, multiplier) >> shift : number;
-}
 
 /* Filter importance sampling (Ernst et al. 2006): the offset from the pixel's center is drawn from the filter. */
 GRADUS_FN real filter_offset(__global const real *camera, uint unit, real u) {
@@ -45,7 +40,16 @@ STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ra
     const uint x = pixel - line * crop_width + crop_x;
 
     const random_bits key = random_key(seed_low, seed_high, y * film_width + x, sample_low, sample_high);
+#if TRAIT_SHARED_JITTER
+    /* All pixels of a sample share their place within the pixel. Places follow each other in an additive sequence
+     * (Roberts 2018) from a random start: what all pixels share does not average out over the image. */
+    const random_bits start = random_key(seed_low, seed_high, 0xFFFFFFFFu, 0u, sample_high);
+    random4 u;
+    u.a = random_unit(start.x + sample_low * 3242174889u);
+    u.b = random_unit(start.y + sample_low * 2447445414u);
+#else
     const random4 u = random_draw(key.x, key.y, random_dimension_camera);
+#endif
     const real film_x = (real)x + R(0.5) + filter_offset(camera, unit, u.a);
     const real film_y = (real)y + R(0.5) + filter_offset(camera, unit, u.b);
     const vec3 direction =

@@ -1,11 +1,12 @@
-/* connect: adds to each path the light sampled from its newest vertex, where nothing is in between. */
+/* connect: adds to each path the light sampled from its newest vertex (rows `first` on), where nothing is in between. */
 #include "kernels/shared/stage.h"
 
-STAGE connect(uint count, uint capacity, uint slots, __global const real *vertex, __global const real *shadow,
+STAGE connect(uint count, uint first, uint capacity, uint slots, __global const real *vertex, __global const real *shadow,
               __global real *radiance) {
-    const size_t row = get_global_id(0);
-    if (row >= count)
+    const size_t i = get_global_id(0);
+    if (i >= count)
         return;
+    const size_t row = first + i;
     const uint slot = AT_UINT(vertex, slot, row);
     const int open = AT_UINT(shadow, open, row) != 0u;
     AT(radiance, value_r, slot) += open ? AT(shadow, value_r, row) : R(0);

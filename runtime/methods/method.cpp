@@ -1,6 +1,7 @@
 #include "runtime/methods/method.h"
 
 #include "runtime/error.h"
+#include "runtime/methods/gradient_path_tracer.h"
 #include "runtime/methods/path_tracer.h"
 
 #include <fmt/format.h>
@@ -8,12 +9,14 @@
 
 namespace gradus {
 
-std::vector<std::string> method_names() { return {"pt"}; }
+std::vector<std::string> method_names() { return {"pt", "gpt"}; }
 
 std::unique_ptr<Method> make_method(const std::string &name, Device &device, const Scene &scene,
                                     const RenderOptions &options) {
     if (name == "pt")
         return std::make_unique<PathTracer>(device, scene, options);
+    if (name == "gpt")
+        return std::make_unique<GradientPathTracer>(device, scene, options);
     throw Error(ExitCode::usage,
                 fmt::format("there is no method \"{}\"; there is: {}", name, fmt::join(method_names(), ", ")));
 }

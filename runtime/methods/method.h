@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,8 @@ struct RenderOptions {
     bool all_traits = false;      ///< for measuring: compile the kernels for everything, as if the scene had it
     enum class Strategy { mis, light, bsdf };
     Strategy strategy = Strategy::mis; ///< for tests: light sampling alone or BSDF sampling alone
+    bool reconstruction_l2 = false;    ///< gradient-domain methods: L2 instead of L1
+    std::optional<double> alpha;       ///< their weight of the primal; none: from the variances
     std::string dump_kernels;          ///< folder for the source of each kernel as it was compiled; empty: none
     /// Called when a kernel has been compiled: its name, how many are ready, of how many, and its seconds.
     std::function<void(const std::string &, std::size_t, std::size_t, double)> on_compiled;

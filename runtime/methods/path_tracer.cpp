@@ -22,12 +22,15 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-TraitMap traits_for(const Scene &scene, const RenderOptions &options) {
+TraitMap traits_for(const Scene &scene, const RenderOptions &options, const TraitMap &more) {
     TraitMap traits = scene_traits(scene);
     traits["TRAIT_AOV"] = options.aov;
+    traits["TRAIT_SHARED_JITTER"] = 0;
     if (options.all_traits)
         traits = with_all_traits(traits);
     traits["STRATEGY"] = static_cast<int>(options.strategy);
+    for (const auto &[name, value] : more)
+        traits[name] = value;
     return traits;
 }
 
@@ -50,41 +53,59 @@ FilmSettings with_crop(FilmSettings film) {
 } // namespace
 
 PathTracer::PathTracer(Device &device, const Scene &scene, const RenderOptions &options)
+    : PathTracer(device, scene, options, TraitMap()) {
+    prepare(Additions());
+}
+
+PathTracer::PathTracer(Device &device, const Scene &scene, const RenderOptions &options, const TraitMap &more_traits)
     : device_(device), options_(options), settings_(scene.settings), film_settings_(with_crop(scene.film)),
-      traits_(traits_for(scene, options)), scene_tables_(make_scene_tables(scene, traits_)),
-      tracer_(scene, options.threads) {
+      traits_(traits_for(scene, options, more_traits)), scene_tables_(make_scene_tables(scene, traits_)),
+      tracer_(scene, options.threads) {}
+
+void PathTracer::prepare(const Additions &additions) {
     const std::uint32_t pixels = film_settings_.crop_width * film_settings_.crop_height;
     total_ = pixels * settings_.samples_per_pixel;
-    const std::uint32_t bins = static_cast<std::uint32_t>(1 + 2 * scene_tables_.kinds.size());
-    const std::uint32_t capacity = choose_batch_size(device, options.batch_size, total_, traits_, precision);
-    tables_.emplace(device, capacity,
-                    static_cast<std::uint32_t>(std::min<std::uint64_t>(batches_a_pass * std::uint64_t(capacity),
-                                                                       std::max<std::uint64_t>(total_, 1))),
-                    bins, traits_, precision);
-    scene_buffers_.emplace(device, scene_tables_, precision);
-    build_kernels(scene_tables_.kinds);
-    film_.emplace(device, accumulate_, *tables_, film_settings_.crop_width, film_settings_.crop_height, traits_,
+    const std::uint32_t bins =
+        static_cast<std::uint32_t>(additions.phases * (1 + 2 * scene_tables_.kinds.size()));
+    const std::uint32_t capacity = choose_batch_size(device_, options_.batch_size, total_, traits_, precision);
+    std::uint64_t slots = std::min<std::uint64_t>(batches_a_pass * std::uint64_t(capacity),
+                                                  std::max<std::uint64_t>(total_, 1));
+    if (additions.whole_frames)
+        slots = std::max<std::uint64_t>(slots / pixels, 1) * pixels;
+    tables_.emplace(device_, capacity, static_cast<std::uint32_t>(slots), bins, traits_, precision);
+    scene_buffers_.emplace(device_, scene_tables_, precision);
+    build_kernels(scene_tables_.kinds, additions);
+    film_.emplace(device_, accumulate_, *tables_, film_settings_.crop_width, film_settings_.crop_height, traits_,
                   precision);
     partition_.emplace(partition_kernels_, *tables_, bins);
+    if (additions.bind)
+        additions.bind();
     warm(all_kernels());
 }
 
-void PathTracer::build_kernels(const std::vector<std::string> &kinds) {
-    struct Wanted {
-        Kernel *place;
-        KernelRequest request;
-    };
+KernelRequest PathTracer::request_of(const std::string &stage) {
+    return {stage, "kernels/stages/" + stage + ".cl", stage, {}};
+}
+
+KernelRequest PathTracer::request_of(const std::string &stage, const std::string &kind) {
+    return {stage + " " + kind,
+            "kernels/stages/" + stage + ".cl",
+            stage,
+            {{"BSDF", kind}, {"BSDF_IS_DIRAC", bsdf_kind_is_dirac(kind) ? "1" : "0"}}};
+}
+
+void PathTracer::build_kernels(const std::vector<std::string> &kinds, const Additions &additions) {
     std::vector<Wanted> wanted;
-    const auto want = [&](Kernel &place, const std::string &stage) {
-        wanted.push_back({&place, {stage, "kernels/stages/" + stage + ".cl", stage, {}}});
-    };
+    const auto want = [&](Kernel &place, const std::string &stage) { wanted.push_back({&place, request_of(stage)}); };
     want(camera_, "camera");
     want(classify_, "classify");
+    if (additions.phases > 1)
+        wanted.back().request.definitions["PHASES"] = std::to_string(additions.phases) + "u";
     want(surface_, "surface");
     want(connect_, "connect");
-    if (traits_.at("TRAIT_ENVIRONMENT"))
+    if (escape_wanted())
         want(escape_, "escape");
-    if (traits_.at("TRAIT_LIGHT_TRIANGLE") || traits_.at("TRAIT_LIGHT_SPHERE"))
+    if (emission_wanted())
         want(emission_, "emission");
     wanted.push_back({&accumulate_, FilmStage::request()});
     const std::vector<KernelRequest> partition = PartitionStage::requests();
@@ -96,17 +117,18 @@ void PathTracer::build_kernels(const std::vector<std::string> &kinds) {
         KindKernels &kind = kinds_[k];
         kind.is_dirac = bsdf_kind_is_dirac(kinds[k]);
         const auto want_variant = [&](Kernel &place, const std::string &stage) {
-            wanted.push_back({&place,
-                              {stage + " " + kinds[k],
-                               "kernels/stages/" + stage + ".cl",
-                               stage,
-                               {{"BSDF", kinds[k]}, {"BSDF_IS_DIRAC", kind.is_dirac ? "1" : "0"}}}});
+            wanted.push_back({&place, request_of(stage, kinds[k])});
         };
         if (options_.aov)
             want_variant(kind.feature, "feature");
         if (samples_lights(kind))
             want_variant(kind.light_sample, "light_sample");
         want_variant(kind.scatter, "scatter");
+    }
+
+    for (const Wanted &more : additions.kernels) {
+        wanted.push_back(more);
+        more_kernels_.push_back(more.place);
     }
 
     std::vector<KernelRequest> requests;
@@ -122,35 +144,44 @@ void PathTracer::build_kernels(const std::vector<std::string> &kinds) {
     for (std::size_t i = 0; i < wanted.size(); ++i)
         *wanted[i].place = built[i];
 
-    for (Kernel *kernel : all_kernels()) {
-        scene_buffers_->bind(*kernel);
-        for (const Buffer *buffer : {&tables_->ray, &tables_->shadow, &tables_->radiance, &tables_->feature,
-                                     &tables_->tangent, &tables_->bin, &tables_->index, &tables_->vertex[0]})
-            kernel->bind(*buffer);
-        kernel->bind("vertex_old", tables_->vertex[1]);
-        for (const char *number : {"count", "first", "chunks", "first_row", "first_pixel", "first_slot",
-                                   "first_sample_low", "first_sample_high"})
-            kernel->set(number, 0);
-        kernel->set("max_depth", max_depth());
-        // Mitsuba's rr_depth; a negative one means none.
-        kernel->set("roulette_depth", settings_.rr_depth < 0 ? 0xFFFFFFFFu : std::uint32_t(settings_.rr_depth));
-        kernel->set("slots", tables_->slots);
-        kernel->set("capacity", tables_->capacity);
-    }
-    const std::uint32_t pixels = film_settings_.crop_width * film_settings_.crop_height;
-    const InvariantDivision by_pixels = invariant_division(pixels);
-    const InvariantDivision by_width = invariant_division(film_settings_.crop_width);
-    camera_.set("pixels", pixels);
-    camera_.set("pixels_multiplier", by_pixels.multiplier);
-    camera_.set("pixels_shift", by_pixels.shift);
-    camera_.set("width_multiplier", by_width.multiplier);
-    camera_.set("width_shift", by_width.shift);
+    for (Kernel *kernel : all_kernels())
+        bind_common(*kernel);
+    classify_.set("bins_of_phase", static_cast<std::uint32_t>(1 + 2 * kinds.size()));
+    bind_film_place(camera_);
     camera_.set("crop_x", film_settings_.crop_x);
     camera_.set("crop_y", film_settings_.crop_y);
-    camera_.set("crop_width", film_settings_.crop_width);
     camera_.set("film_width", film_settings_.width);
     camera_.set("seed_low", static_cast<std::uint32_t>(options_.seed));
     camera_.set("seed_high", static_cast<std::uint32_t>(options_.seed >> 32));
+}
+
+void PathTracer::bind_common(Kernel &kernel) const {
+    scene_buffers_->bind(kernel);
+    for (const Buffer *buffer : {&tables_->ray, &tables_->shadow, &tables_->radiance, &tables_->feature,
+                                 &tables_->tangent, &tables_->bin, &tables_->index, &tables_->vertex[0]})
+        kernel.bind(*buffer);
+    kernel.bind("vertex_old", tables_->vertex[1]);
+    for (const char *number : {"count", "first", "chunks", "first_row", "first_pixel", "first_slot", "first_sample_low",
+                               "first_sample_high"})
+        kernel.set(number, 0);
+    kernel.set("max_depth", max_depth());
+    // Mitsuba's rr_depth; a negative one means none.
+    kernel.set("roulette_depth", settings_.rr_depth < 0 ? 0xFFFFFFFFu : std::uint32_t(settings_.rr_depth));
+    kernel.set("slots", tables_->slots);
+    kernel.set("capacity", tables_->capacity);
+}
+
+void PathTracer::bind_film_place(Kernel &kernel) const {
+    const std::uint32_t pixels = film_settings_.crop_width * film_settings_.crop_height;
+    const InvariantDivision by_pixels = invariant_division(pixels);
+    const InvariantDivision by_width = invariant_division(film_settings_.crop_width);
+    kernel.set("pixels", pixels);
+    kernel.set("pixels_multiplier", by_pixels.multiplier);
+    kernel.set("pixels_shift", by_pixels.shift);
+    kernel.set("width_multiplier", by_width.multiplier);
+    kernel.set("width_shift", by_width.shift);
+    kernel.set("crop_width", film_settings_.crop_width);
+    kernel.set("crop_height", film_settings_.crop_height);
 }
 
 bool PathTracer::samples_lights(const KindKernels &kind) const {
@@ -164,6 +195,7 @@ std::vector<Kernel *> PathTracer::all_kernels() {
     for (KindKernels &kind : kinds_)
         for (Kernel *kernel : {&kind.feature, &kind.light_sample, &kind.scatter})
             kernels.push_back(kernel);
+    kernels.insert(kernels.end(), more_kernels_.begin(), more_kernels_.end());
     std::erase_if(kernels, [](const Kernel *kernel) { return !kernel->valid(); });
     return kernels;
 }
@@ -304,6 +336,8 @@ Statistics PathTracer::statistics() const {
         stage(kind.light_sample);
         stage(kind.scatter);
     }
+    for (const Kernel *kernel : more_kernels_)
+        stage(*kernel);
     stage(accumulate_);
     std::erase_if(s.stages, [](const Statistics::Stage &row) { return row.items == 0; });
     double known = 0;

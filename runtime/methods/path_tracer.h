@@ -9,11 +9,12 @@
 #include "runtime/stages/scene_buffers.h"
 #include "runtime/trace/tracer.h"
 
+#include <functional>
 #include <optional>
 
 namespace gradus {
 
-class PathTracer final : public Method {
+class PathTracer : public Method {
   public:
     PathTracer(Device &device, const Scene &scene, const RenderOptions &options);
 
@@ -26,16 +27,40 @@ class PathTracer final : public Method {
     /// For measuring: the tracer records and replays the rays of a render.
     Tracer &tracer() { return tracer_; }
 
-  private:
+  protected:
     /// The kernels of one BSDF kind.
     struct KindKernels {
         Kernel light_sample, scatter, feature;
         bool is_dirac = false;
     };
+    /// A kernel to build, and where to keep it.
+    struct Wanted {
+        Kernel *place;
+        KernelRequest request;
+    };
+    /// What a method built on this one adds.
+    struct Additions {
+        std::uint32_t phases = 1;  ///< of `classify`
+        bool whole_frames = false; ///< a pass is some samples of every pixel
+        std::vector<Wanted> kernels;
+        std::function<void()> bind; ///< sets their arguments that are not common to all
+    };
+    /// To be followed by prepare().
+    PathTracer(Device &device, const Scene &scene, const RenderOptions &options, const TraitMap &more_traits);
+    void prepare(const Additions &additions);
+    /// Sets what all kernels need.
+    void bind_common(Kernel &kernel) const;
+    /// Sets which pixel a slot belongs to.
+    void bind_film_place(Kernel &kernel) const;
+    static KernelRequest request_of(const std::string &stage);
+    /// For one kind of BSDF.
+    static KernelRequest request_of(const std::string &stage, const std::string &kind);
 
-    void build_kernels(const std::vector<std::string> &kinds);
+    void build_kernels(const std::vector<std::string> &kinds, const Additions &additions);
     void warm(std::vector<Kernel *> kernels);
     std::vector<Kernel *> all_kernels();
+    bool escape_wanted() const { return traits_.at("TRAIT_ENVIRONMENT") != 0; }
+    bool emission_wanted() const { return traits_.at("TRAIT_LIGHT_TRIANGLE") || traits_.at("TRAIT_LIGHT_SPHERE"); }
     std::uint32_t max_depth() const;
     bool samples_lights(const KindKernels &kind) const;
     void begin_paths(std::uint32_t row, std::uint32_t slot, std::uint32_t count, const Buffer &vertex);
@@ -55,6 +80,7 @@ class PathTracer final : public Method {
     std::optional<PartitionStage> partition_;
     std::vector<Kernel> partition_kernels_;
     Kernel camera_, classify_, surface_, escape_, connect_, emission_, accumulate_;
+    std::vector<Kernel *> more_kernels_; ///< of a method built on this one
     std::vector<KindKernels> kinds_; ///< in the order of SceneTables::kinds
     Statistics statistics_;
     double trace_seconds_ = 0;

@@ -32,4 +32,23 @@ TraceCounts run_trace_stage(Tracer &tracer, const BatchTables &tables, std::uint
     return counts;
 }
 
+std::uint64_t run_link_stage(Tracer &tracer, const Buffer &link, std::uint32_t capacity, std::uint32_t count,
+                             double &trace_seconds) {
+    if (count == 0)
+        return 0;
+    const auto view = link.map(Access::read_write);
+    float *table = view.as<float>();
+    const auto column = [&](int number) { return table + std::size_t(number) * 8 * capacity; };
+    ShadowColumns s;
+    for (int axis = 0; axis < 3; ++axis) {
+        s.origin[axis] = column(link_origin_x + axis);
+        s.direction[axis] = column(link_direction_x + axis);
+    }
+    s.open = reinterpret_cast<std::uint32_t *>(column(link_open));
+    const auto start = std::chrono::steady_clock::now();
+    const TraceCounts counts = tracer.trace(RayColumns{}, 0, s, count);
+    trace_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return counts.shadow;
+}
+
 } // namespace gradus

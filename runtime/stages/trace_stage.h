@@ -12,4 +12,8 @@ namespace gradus {
 TraceCounts run_trace_stage(Tracer &tracer, const BatchTables &tables, std::uint32_t rays, std::uint32_t shadows,
                             double &trace_seconds);
 
+/// Traces the first `count` rows of a table of links (GRADUS_LINK_COLUMNS) and adds the seconds to `trace_seconds`.
+std::uint64_t run_link_stage(Tracer &tracer, const Buffer &link, std::uint32_t capacity, std::uint32_t count,
+                             double &trace_seconds);
+
 } // namespace gradus

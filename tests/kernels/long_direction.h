@@ -1,6 +1,7 @@
 // Directions in long double and numerical Jacobians between solid angles: the reference that shifts are held against.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -35,7 +36,7 @@ struct NumericalJacobian {
 /// (Ridders 1982). The entry of the tableau that differs least from its two parents is taken.
 template <class Curve>
 LongVector derivative(Curve curve, long double step, long double &error) {
-    constexpr int levels = 14;
+    constexpr int levels = 8;
     std::array<std::array<LongVector, levels>, levels> table;
     LongVector best{};
     error = std::numeric_limits<long double>::infinity();
@@ -55,15 +56,16 @@ LongVector derivative(Curve curve, long double step, long double &error) {
     return best;
 }
 
-/// |d map(w) / d w| by solid angle, for a map from unit vectors to unit vectors; step: radians, the first one.
+/// |d map / d w| by solid angle. map takes a small move of the unit vector w, at a right angle to w, and gives a unit
+/// vector, or how far that has moved; step: the first one, radians.
 template <class Map>
 NumericalJacobian solid_angle_jacobian(Map map, LongVector w, long double step) {
     const LongVector first = perpendicular(w), second = cross(w, first);
     std::array<LongVector, 2> derivatives;
     std::array<long double, 2> errors;
     for (int axis = 0; axis < 2; ++axis)
-        derivatives[axis] = derivative(
-            [&](long double t) { return map(normalized(w + t * (axis == 0 ? first : second))); }, step, errors[axis]);
+        derivatives[axis] =
+            derivative([&](long double t) { return map(t * (axis == 0 ? first : second)); }, step, errors[axis]);
     const long double value = length(cross(derivatives[0], derivatives[1]));
     const long double error = errors[0] * length(derivatives[1]) + errors[1] * length(derivatives[0]);
     return {value, error / value};

@@ -14,6 +14,13 @@ namespace {
 lib::vec3 as_real(LongVector v) { return lib::v3(real(v.x), real(v.y), real(v.z)); }
 LongVector as_long(lib::vec3 v) { return {v.x, v.y, v.z}; }
 
+/// (v + move) / |v + move| - v / |v| without cancellation: far ends hardly turn.
+LongVector moved_direction(LongVector v, LongVector move) {
+    const long double before = length(v), after = length(v + move);
+    const long double growth = dot(2.0L * v + move, move) / (before + after);
+    return (1 / after) * (move - (growth / before) * v);
+}
+
 struct Connection {
     LongVector base, offset, target, normal; ///< exact in `real`
 
@@ -30,15 +37,16 @@ struct Connection {
 
     /// A turn of the direction at base moves the target in its plane; the direction at offset follows.
     NumericalJacobian numerical() const {
-        const LongVector there = target - base;
-        const auto shifted = [&](LongVector w) {
-            const LongVector move = dot(there, normal) / dot(w, normal) * w - there;
-            return normalized((target - offset) + move);
+        const LongVector w = normalized(target - base);
+        const long double base_distance = length(target - base);
+        // The ray along w + turn meets the plane at base + base_distance k (w + turn), k = w.n / (w + turn).n.
+        const auto shifted = [&](LongVector turn) {
+            const long double k_less_one = -dot(turn, normal) / dot(w + turn, normal);
+            return moved_direction(target - offset, base_distance * (k_less_one * w + (1 + k_less_one) * turn));
         };
-        // The target moves by some |there| step / cosine^2; what counts is that against the shorter distance.
+        // A turn moves the target by |base - target| turn / cosine: small against the shorter distance.
         const long double shorter = std::min(1.0, distance(offset) / distance(base));
-        const long double step = 0.05L * cosine(base) * cosine(base) * cosine(offset) * shorter;
-        return solid_angle_jacobian(shifted, normalized(there), step);
+        return solid_angle_jacobian(shifted, w, 0.02L * cosine(base) * shorter);
     }
 };
 

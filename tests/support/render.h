@@ -30,8 +30,8 @@ struct Rendered {
 };
 
 /// Renders all samples. Values that are not finite, left out by the film, fail the test.
-inline Rendered render(const Scene &scene, const RenderOptions &options = {}) {
-    const std::unique_ptr<Method> method = make_method("pt", shared_device(), scene, options);
+inline Rendered render(const Scene &scene, const RenderOptions &options = {}, const char *name = "pt") {
+    const std::unique_ptr<Method> method = make_method(name, shared_device(), scene, options);
     while (method->render_batch()) {
     }
     Rendered result{method->image(), {}};
@@ -44,11 +44,11 @@ inline Rendered render(const Scene &scene, const RenderOptions &options = {}) {
 
 /// Images of seeds first, first + 1, ...
 inline std::vector<Image> render_seeds(const Scene &scene, std::size_t count, RenderOptions options = {},
-                                       std::uint64_t first = 1) {
+                                       std::uint64_t first = 1, const char *name = "pt") {
     std::vector<Image> images;
     for (std::size_t i = 0; i < count; ++i) {
         options.seed = first + i;
-        images.push_back(render(scene, options).image);
+        images.push_back(render(scene, options, name).image);
     }
     return images;
 }

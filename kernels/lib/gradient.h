@@ -1,0 +1,50 @@
+/* Offset paths of gradient-domain path tracing: which neighbour they go through, and where they begin. */
+#ifndef GRADUS_LIB_GRADIENT_H
+#define GRADUS_LIB_GRADIENT_H
+//! traits: TRAIT_ANISOTROPIC TRAIT_SHADING_NORMALS
+#include "kernels/lib/division.h"
+#include "kernels/lib/vertex_frame.h"
+#include "kernels/shared/stage.h"
+
+/* The film as kernel arguments: slots follow the pixels, frame after frame. */
+#define FILM_PLACE                                                                                                     \
+    uint pixels, uint pixels_multiplier, uint pixels_shift, uint width_multiplier, uint width_shift, uint crop_width,  \
+        uint crop_height
+
+typedef struct {
+    uint x, y;
+    GRADUS_NOT_IN_REGISTERS
+} film_pixel;
+
+#define PIXEL_OF(slot)                                                                                                 \
+    pixel_of(slot, pixels, pixels_multiplier, pixels_shift, width_multiplier, width_shift, crop_width)
+GRADUS_FN film_pixel pixel_of(uint slot, uint pixels, uint pixels_multiplier, uint pixels_shift, uint width_multiplier,
+                              uint width_shift, uint crop_width) {
+    const uint number = slot - divide(slot, pixels_multiplier, pixels_shift) * pixels;
+    film_pixel pixel;
+    pixel.y = divide(number, width_multiplier, width_shift);
+    pixel.x = number - pixel.y * crop_width;
+    return pixel;
+}
+
+/* The slot of neighbour j: right, left, below, above; `slot` itself where there is none. */
+GRADUS_FN uint gradient_neighbour(uint slot, uint j, film_pixel pixel, uint width, uint height) {
+    return j == 0u   ? (pixel.x + 1u < width ? slot + 1u : slot)
+           : j == 1u ? (pixel.x > 0u ? slot - 1u : slot)
+           : j == 2u ? (pixel.y + 1u < height ? slot + width : slot)
+                     : (pixel.y > 0u ? slot - width : slot);
+}
+
+#if TRAIT_SHADING_NORMALS
+#define PRIMARY_NORMAL(slot) AT_V3(primary, shading, slot)
+#else
+#define PRIMARY_NORMAL(slot) AT_V3(primary, geometric, slot)
+#endif
+#if TRAIT_ANISOTROPIC
+#define PRIMARY_FRAME(slot, m)                                                                                         \
+    frame_from_tangent(PRIMARY_NORMAL(slot), AT_V3(primary, along, slot), (m).alpha_u != (m).alpha_v)
+#else
+#define PRIMARY_FRAME(slot, m) frame_from_normal(PRIMARY_NORMAL(slot))
+#endif
+
+#endif

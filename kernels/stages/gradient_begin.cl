@@ -1,0 +1,37 @@
+/* gradient_begin: begins one base path a row from what the camera saw: its first ray, already traced. */
+//! traits: TRAIT_REFRACTION
+#include "kernels/shared/stage.h"
+
+STAGE gradient_begin(uint count, uint unit, uint capacity, uint slots, __global real *ray, __global real *vertex,
+                     __global real *radiance, __global real *direct, __global real *prefix, __global real *difference,
+                     __global const real *primary, __global const real *camera, uint first_row, uint first_slot) {
+    const size_t i = get_global_id(0);
+    if (i >= count)
+        return;
+    const size_t row = first_row + i;
+    const uint slot = first_slot + (uint)i;
+    const vec3 origin = FIELD_V3(camera, camera, 0, origin);
+    const vec3 direction = v3_neg(AT_V3(primary, wi, slot));
+    SET_V3(ray, origin, row, origin);
+    SET_V3(ray, direction, row, direction);
+    AT_UINT(ray, primitive, row) = AT_UINT(primary, primitive, slot);
+    AT_UINT(vertex, slot, row) = slot;
+    AT_UINT(vertex, key_0, row) = AT_UINT(primary, key_0, slot);
+    AT_UINT(vertex, key_1, row) = AT_UINT(primary, key_1, slot);
+    AT_UINT(vertex, depth, row) = 0u;
+    SET_RGB(vertex, throughput, row, rgb_gray(R(1)));
+    AT(vertex, pdf, row) = R(0);
+#if TRAIT_REFRACTION
+    AT(vertex, eta, row) = R(1);
+#endif
+    SET_RGB(radiance, value, slot, rgb_gray(R(0)));
+    SET_RGB_IN(direct, radiance, value, slot, rgb_gray(R(0)));
+    SET_RGB(prefix, value, slot, rgb_gray(R(0)));
+    SET_RGB(prefix, throughput, slot, rgb_gray(R(0)));
+#pragma unroll
+    for (uint j = 0; j < 4; ++j) {
+        const size_t at = (size_t)j * slots + slot;
+        SET_RGB(difference, value, at, rgb_gray(R(0)));
+        AT(difference, ratio, at) = shift_absent;
+    }
+}

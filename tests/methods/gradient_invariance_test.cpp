@@ -1,0 +1,87 @@
+// Gradient-domain path tracing: what must not change its image.
+#include "runtime/error.h"
+#include "tests/methods/reference_scene.h"
+#include "tests/support/render.h"
+
+namespace gradus::testing {
+namespace {
+
+class GradientInvariance : public ::testing::TestWithParam<const char *> {
+  protected:
+    Scene small_scene(std::uint32_t width, std::uint32_t height) const {
+        Scene scene = own_scene(std::string(GetParam()) + ".xml", width, height);
+        scene.settings.samples_per_pixel = 5;
+        return scene;
+    }
+};
+
+/// Frames of 4941 pixels: less than a pass, and more than a batch.
+TEST_P(GradientInvariance, ToTheBatchSize) {
+    const Scene scene = small_scene(81, 61);
+    const Image image = render(scene, {}, "gpt").image;
+    for (const std::uint32_t batch_size : {64u, 1000u, 5000u}) {
+        RenderOptions options;
+        options.batch_size = batch_size;
+        EXPECT_TRUE(equal_bits(image, render(scene, options, "gpt").image)) << "batch size " << batch_size;
+    }
+}
+
+TEST_P(GradientInvariance, ToTheThreadsThatTrace) {
+    const Scene scene = small_scene(48, 36);
+    RenderOptions options;
+    options.threads = 1;
+    const Image image = render(scene, options, "gpt").image;
+    options.threads = 3;
+    EXPECT_TRUE(equal_bits(image, render(scene, options, "gpt").image));
+    options.seed = 1;
+    EXPECT_FALSE(equal_bits(image, render(scene, options, "gpt").image));
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, GradientInvariance, ::testing::Values("cornell-box", "materials", "plates"),
+                         [](const auto &info) {
+                             std::string name = info.param;
+                             std::replace(name.begin(), name.end(), '-', '_');
+                             return name;
+                         });
+
+/// Films without neighbours to one side or at all, no depth, black lights.
+TEST(GradientEdges, HaveFiniteImages) {
+    for (const auto &[width, height] : {std::pair{1u, 1u}, {1u, 9u}, {9u, 1u}, {2u, 2u}})
+        for (const int max_depth : {0, 1, 2, 3, -1}) {
+            Scene scene = own_scene("cornell-box.xml", width, height);
+            scene.settings.samples_per_pixel = 3;
+            scene.settings.max_depth = max_depth;
+            const Image image = render(scene, {}, "gpt").image; // fails where a value is not finite
+            EXPECT_EQ(image.width, width);
+        }
+}
+
+/// What the camera sees of a light is no part of the primal.
+TEST(GradientDirect, HoldsTheLight) {
+    Scene scene = own_scene("cornell-box.xml", 64, 64);
+    scene.settings.samples_per_pixel = 4;
+    scene.settings.max_depth = 1;
+    const Image image = render(scene, {}, "gpt").image;
+    EXPECT_EQ(spread_of(image, "primal.G").most, 0);
+    EXPECT_EQ(spread_of(image, "dx.G").most, 0);
+    EXPECT_GT(spread_of(image, "direct.G").most, 1);
+    EXPECT_EQ(image.find("direct.G")->values, image.find("G")->values);
+}
+
+TEST(GradientOptions, L2AndAlphaAreTaken) {
+    Scene scene = own_scene("cornell-box.xml", 48, 48);
+    scene.settings.samples_per_pixel = 4;
+    RenderOptions options;
+    const Image by_default = render(scene, options, "gpt").image;
+    options.alpha = 0.01;
+    const Image small = render(scene, options, "gpt").image;
+    options.reconstruction_l2 = true;
+    const Image l2 = render(scene, options, "gpt").image;
+    EXPECT_FALSE(equal_bits(by_default, small));
+    EXPECT_FALSE(equal_bits(l2, small));
+    EXPECT_EQ(by_default.find("primal.G")->values, l2.find("primal.G")->values);
+    EXPECT_EQ(by_default.find("dx.G")->values, l2.find("dx.G")->values);
+}
+
+} // namespace
+} // namespace gradus::testing

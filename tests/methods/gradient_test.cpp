@@ -1,0 +1,153 @@
+// Gradient-domain path tracing: what it estimates. Its primal image and its differences have the means that a reference
+// of another renderer says, block by block, on every scene of ours; and its reconstruction has less noise.
+#include "runtime/film/metrics.h"
+#include "tests/methods/reference_scene.h"
+#include "tests/support/render.h"
+
+namespace gradus::testing {
+namespace {
+
+constexpr std::size_t seeds = 8;
+constexpr std::uint64_t samples_per_pixel = 16;
+
+const char *const colors[] = {"R", "G", "B"};
+
+/// An image of R, G and B from a function of channel and pixel.
+template <class Value>
+Image image_of(std::uint32_t width, std::uint32_t height, Value value) {
+    Image image;
+    image.width = width;
+    image.height = height;
+    for (int c = 0; c < 3; ++c) {
+        Channel channel{colors[c], std::vector<float>(std::size_t(width) * height)};
+        for (std::uint32_t y = 0; y < height; ++y)
+            for (std::uint32_t x = 0; x < width; ++x)
+                channel.values[std::size_t(y) * width + x] = static_cast<float>(value(c, x, y));
+        image.channels.push_back(std::move(channel));
+    }
+    return image;
+}
+
+double layer(const Image &image, const std::string &name, int c, std::uint32_t x, std::uint32_t y) {
+    return pixel(image, x, y, name.empty() ? colors[c] : name + "." + colors[c]);
+}
+
+/// The primal image and what the camera sees of lights: what the path tracer estimates.
+Image whole(const Image &image) {
+    return image_of(image.width, image.height, [&](int c, std::uint32_t x, std::uint32_t y) {
+        return layer(image, "primal", c, x, y) + layer(image, "direct", c, x, y);
+    });
+}
+
+/// Differences to the right or downwards of one layer; 0 at the border.
+Image differences(const Image &image, const std::string &name, bool right) {
+    return image_of(image.width, image.height, [&](int c, std::uint32_t x, std::uint32_t y) {
+        const std::uint32_t to_x = right ? x + 1 : x, to_y = right ? y : y + 1;
+        return to_x < image.width && to_y < image.height
+                   ? layer(image, name, c, to_x, to_y) - layer(image, name, c, x, y)
+                   : 0.0;
+    });
+}
+
+class GradientReference : public ::testing::TestWithParam<const char *> {
+  protected:
+    void SetUp() override {
+        reference_ = own_reference(GetParam());
+        reference_.scene.settings.samples_per_pixel = samples_per_pixel;
+        images_ = render_seeds(reference_.scene, seeds, {}, 1, "gpt");
+    }
+
+    /// The differences against those of the reference, times the sign that they have in a third, independent image: a
+    /// shift whose differences are too small everywhere shows in every block.
+    ::testing::AssertionResult differences_agree(bool right) {
+        const char *name = right ? "dx" : "dy";
+        Scene scene = reference_.scene;
+        scene.settings.samples_per_pixel = 64;
+        RenderOptions options;
+        options.seed = 4711;
+        const Image signs = differences(render(scene, options).image, "", right);
+        const auto signed_by = [&](const Image &image) {
+            return image_of(image.width, image.height, [&](int c, std::uint32_t x, std::uint32_t y) {
+                return layer(image, "", c, x, y) * (layer(signs, "", c, x, y) < 0 ? -1 : 1);
+            });
+        };
+        std::vector<Image> ours;
+        for (const Image &image : images_) {
+            const Image seen = differences(image, "direct", right);
+            ours.push_back(signed_by(image_of(image.width, image.height, [&](int c, std::uint32_t x, std::uint32_t y) {
+                return layer(image, name, c, x, y) + layer(seen, "", c, x, y);
+            })));
+        }
+        ReferenceScene expected = reference_;
+        expected.name = reference_.name + "-" + name;
+        expected.mean = signed_by(differences(reference_.mean, "", right));
+        const Image &variance = reference_.variance;
+        expected.variance = image_of(variance.width, variance.height, [&](int c, std::uint32_t x, std::uint32_t y) {
+            const std::uint32_t to_x = right ? x + 1 : x, to_y = right ? y : y + 1;
+            return to_x < variance.width && to_y < variance.height
+                       ? layer(variance, "", c, to_x, to_y) + layer(variance, "", c, x, y)
+                       : 0.0;
+        });
+        expected.samples_per_pixel = 0; // the noise of differences is none of the reference's
+        return agrees(ours, double(samples_per_pixel), expected);
+    }
+
+    ReferenceScene reference_;
+    std::vector<Image> images_;
+};
+
+TEST_P(GradientReference, IsMetByPrimalAndDifferences) {
+    std::vector<Image> primals;
+    for (const Image &image : images_)
+        primals.push_back(whole(image));
+    ReferenceScene expected = reference_;
+    expected.name += "-primal";
+    EXPECT_TRUE(agrees(primals, double(samples_per_pixel), expected));
+    EXPECT_TRUE(differences_agree(true));
+    EXPECT_TRUE(differences_agree(false));
+
+    // The reconstruction may not lose light, nor add noise.
+    double ratio = 0, ours = 0, plain = 0;
+    for (const Image &image : images_) {
+        const Image final = image_of(image.width, image.height, [&](int c, std::uint32_t x, std::uint32_t y) {
+            return layer(image, "", c, x, y);
+        });
+        ratio += compare_means(final, whole(image)).ratio / double(seeds);
+        ours += relative_mse(final, reference_.mean) / double(seeds);
+        plain += relative_mse(whole(image), reference_.mean) / double(seeds);
+    }
+    std::printf("%s: relMSE of %d samples reconstructed %.2e, primal %.2e: %.1f times less; mean over the primal's "
+                "%.5f\n",
+                GetParam(), int(samples_per_pixel), ours, plain, plain / ours, ratio);
+    EXPECT_NEAR(ratio, 1, 0.01);
+    EXPECT_LE(ours, 1.1 * plain);
+}
+
+INSTANTIATE_TEST_SUITE_P(Image, GradientReference,
+                         ::testing::Values("cornell-box", "torus-rough-glass", "plates", "holes-7", "holes-14",
+                                           "holes-28", "door-ajar", "materials"),
+                         [](const auto &info) {
+                             std::string name = info.param;
+                             std::replace(name.begin(), name.end(), '-', '_');
+                             return name;
+                         });
+
+/// The difference between two pixels that look alike is nothing, whatever the noise of the primal.
+TEST(GradientNoise, OfAPlainWallIsFarBelowThePrimals) {
+    Scene scene = own_scene("cornell-box.xml", 128, 128);
+    scene.settings.samples_per_pixel = 16;
+    RenderOptions options;
+    options.aov = true;
+    const Image image = render(scene, options, "gpt").image;
+    double primal = 0, gradient = 0;
+    for (std::uint32_t y = 40; y < 60; ++y)
+        for (std::uint32_t x = 54; x < 74; ++x) {
+            primal += layer(image, "primal_variance", 1, x, y);
+            gradient += layer(image, "dx_variance", 1, x, y);
+        }
+    std::printf("variance of dx over that of the primal, back wall: %.4f\n", gradient / primal);
+    EXPECT_LT(gradient, 0.2 * primal);
+}
+
+} // namespace
+} // namespace gradus::testing
