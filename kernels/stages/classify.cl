@@ -7,14 +7,15 @@
 #include "kernels/lib/scene_hit.h"
 #include "kernels/shared/stage.h"
 
+#ifdef PHASES
+#define PHASE_ARGUMENTS , __global const real *vertex_old, uint bins_of_phase
+#else
+#define PHASE_ARGUMENTS
+#endif
+
 STAGE classify(uint count, uint unit, uint capacity, __global const real *ray, __global uint *bin,
                __global const uint *primitive_bin, __global const uint *primitive_back_bin,
-               __global const real *triangles, __global const real *spheres, uint triangle_count
-#ifdef PHASES
-                     ,
-                     __global const real *vertex_old, uint bins_of_phase
-#endif
-) {
+               __global const real *triangles, __global const real *spheres, uint triangle_count PHASE_ARGUMENTS) {
     const size_t row = get_global_id(0);
     if (row >= count)
         return;

@@ -161,7 +161,8 @@ std::string trait_description(const std::string &name) {
 TraitMap with_all_traits(TraitMap traits) {
     for (auto &[name, value] : traits) {
         // The filter and hidden emitters change the picture; the rest only makes room for what is not there.
-        const bool setting = name.starts_with("TRAIT_FILTER") || name == "TRAIT_HIDE_EMITTERS";
+        const bool setting =
+            name.starts_with("TRAIT_FILTER") || name == "TRAIT_HIDE_EMITTERS" || name == "TRAIT_SHARED_JITTER";
         if (!setting)
             value = 1;
     }

@@ -33,6 +33,7 @@ class DoubleBuild : public ::testing::TestWithParam<const char *> {
         scene.settings.samples_per_pixel = 4;
         TraitMap traits = scene_traits(scene);
         traits["TRAIT_AOV"] = 1;
+        traits["TRAIT_SHARED_JITTER"] = 0;
         traits["STRATEGY"] = 0;
         scene_tables = make_scene_tables(scene, traits);
         single = std::make_unique<Wavefront>(device(), scene, traits, scene_tables, Precision::single);

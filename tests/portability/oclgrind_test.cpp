@@ -15,6 +15,7 @@
 namespace gradus {
 namespace {
 
+using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsSupersetOf;
 
@@ -104,6 +105,23 @@ TEST_F(Oclgrind, EveryMaterialAndLight) {
             expected.push_back("light_sample " + kind);
     }
     EXPECT_THAT(render("materials.xml", {"--size", "8x8", "--aov", "--batch-size", "64"}), IsSupersetOf(expected));
+}
+
+// The same by gradient-domain path tracing; the reconstruction's kernels have a test of their own.
+TEST_F(Oclgrind, GradientsOfEveryMaterialAndLight) {
+    std::vector<std::string> expected = {
+        "primary begin",    "primary surface", "gradient_begin",     "shift",
+        "settle",           "close links",     "gradient connect 1", "gradient connect 2",
+        "gradient_combine", "shift escaped",   "gradient escape",    "gradient_accumulate"};
+    for (const std::string kind : {"diffuse", "roughconductor_ggx", "conductor", "dielectric"})
+        expected.push_back("scatter 1 " + kind);
+    EXPECT_THAT(render("materials.xml", {"--method", "gpt", "--norm", "L2", "--size", "8x8", "--batch-size", "64"}),
+                IsSupersetOf(expected));
+}
+
+TEST_F(Oclgrind, GradientsOfOneMaterialAndLight) {
+    EXPECT_THAT(render("cornell-box.xml", {"--method", "gpt", "--norm", "L2", "--size", "9x7"}),
+                Contains("gradient_scatter diffuse"));
 }
 
 TEST_F(Oclgrind, KernelsWithEveryTrait) {
