@@ -1,11 +1,10 @@
 /* From the caller's planes to the system for u = I - I0: what the differences of I0 lack of the given ones. A value
- * that is NaN or infinite is missing; the tests are on the bits, which no compiler option takes away. */
+ * that is NaN or infinite is missing. */
+#include "kernels/lib/finite.h"
 #include "kernels/solver/grid.h"
 
 /* Contiguous even where it is not inside and must not be read. */
 #define PACKED_AT(channel) (((size_t)(channel)*height + y) * width + x)
-
-GRADUS_FN bool is_finite(float value) { return (as_uint(value) & 0x7f800000u) != 0x7f800000u; }
 
 /* A plane of the caller's, `missing_value` where it is missing; `valid` is 1 where all channels are there; and the
  * number missing. */

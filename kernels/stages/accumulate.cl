@@ -2,10 +2,8 @@
  * cyclically. A sample with a NaN or an infinity is left out and counted. */
 //! traits: TRAIT_AOV
 #include "kernels/lib/compensated.h"
+#include "kernels/lib/finite.h"
 #include "kernels/shared/stage.h"
-
-/* By the bits: relaxed arithmetic may remove isfinite(). */
-GRADUS_FN int is_finite(real x) { return (as_uint((float)x) & 0x7F800000u) != 0x7F800000u; }
 
 #define ADD(table, column, correction_column, x)                                                                       \
     {                                                                                                                  \

@@ -1,8 +1,9 @@
-/* connect: adds to each path the light sampled from its newest vertex (rows `first` on), where nothing is in between. */
+/* connect: adds to each path the light sampled from its newest vertex (rows `first` on), where nothing is in between.
+ */
 #include "kernels/shared/stage.h"
 
-STAGE connect(uint count, uint first, uint capacity, uint slots, __global const real *vertex, __global const real *shadow,
-              __global real *radiance) {
+STAGE connect(uint count, uint first, uint capacity, uint slots, __global const real *vertex,
+              __global const real *shadow, __global real *radiance) {
     const size_t i = get_global_id(0);
     if (i >= count)
         return;

@@ -1,9 +1,9 @@
 /* gradient_combine: joins what paths gathered before and after their offset paths merged with them: by slot, the primal
  * sample, the four differences, and in `radiance` the whole sample, with what the camera sees of lights. */
+#include "kernels/lib/finite.h"
 #include "kernels/lib/vector.h"
 #include "kernels/shared/stage.h"
 
-GRADUS_FN int is_finite(real x) { return (as_uint((float)x) & 0x7F800000u) != 0x7F800000u; }
 #define IS_FINITE_RGB(v) (is_finite((v).r) && is_finite((v).g) && is_finite((v).b))
 
 STAGE gradient_combine(uint count, uint slots, __global real *radiance, __global const real *direct,
@@ -25,9 +25,9 @@ STAGE gradient_combine(uint count, uint slots, __global real *radiance, __global
         const real ratio = AT(difference, ratio, at);
         const int merged = ratio >= R(0);
         /* Only paths that merged have set their throughput. */
-        const rgb throughput = rgb3(merged ? AT(difference, throughput_r, at) : R(0),
-                                    merged ? AT(difference, throughput_g, at) : R(0),
-                                    merged ? AT(difference, throughput_b, at) : R(0));
+        const rgb throughput =
+            rgb3(merged ? AT(difference, throughput_r, at) : R(0), merged ? AT(difference, throughput_g, at) : R(0),
+                 merged ? AT(difference, throughput_b, at) : R(0));
         const real weight = ratio < R(-1.5) ? R(0) : merged ? R(1) / (R(1) + ratio) : R(1);
         const rgb change = rgb_scale(rgb_sub(rgb_mul(throughput, after), base), weight);
         const rgb sum = rgb_add(AT_RGB(difference, value, at), change);

@@ -81,11 +81,10 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint to, uint capacit
         const vec3 offset_connection = v3_sub(hit.position, from), offset_to_center = v3_sub(center, from);
         const real offset_distance_squared = r_max(v3_dot(offset_connection, offset_connection), R(1e-36));
         const real cosine = -v3_dot(hit.normal, offset_connection) / r_sqrt(offset_distance_squared);
-        const real offset_pdf = light_sphere_pdf(radius, facing, inverse_area,
-                                                 v3_dot(offset_to_center, offset_to_center), offset_distance_squared,
-                                                 cosine);
-        const real jacobian = side > R(0) ? r_max(cosine, R(0)) / side * distance_squared / offset_distance_squared
-                                          : R(0);
+        const real offset_pdf = light_sphere_pdf(
+            radius, facing, inverse_area, v3_dot(offset_to_center, offset_to_center), offset_distance_squared, cosine);
+        const real jacobian =
+            side > R(0) ? r_max(cosine, R(0)) / side * distance_squared / offset_distance_squared : R(0);
         offset_light = is_sphere && base_light > R(0) ? jacobian * offset_pdf * probability / bsdf_pdf : offset_light;
 #endif
         const real weight = R(1) / (R(1) + base_light + offset_light + open * r_max(ratio, R(0)));

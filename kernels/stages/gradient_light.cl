@@ -54,8 +54,7 @@ STAGE gradient_light(uint count, uint unit, uint first, uint capacity, uint slot
     const vec3 wo = frame_to_local(axes, s.direction);
     const vec3 wi = frame_to_local(axes, AT_V3(vertex, wi, row));
     const real base_bsdf = PASTE(BSDF, _pdf)(m, wi, wo) * inverse_light_pdf;
-    const rgb base =
-        rgb_mul(rgb_mul(AT_RGB(vertex, throughput, row), arriving), PASTE(BSDF, _eval)(m, wi, wo));
+    const rgb base = rgb_mul(rgb_mul(AT_RGB(vertex, throughput, row), arriving), PASTE(BSDF, _eval)(m, wi, wo));
     real any_offset = R(0);
 
 #if FIRST
@@ -86,7 +85,8 @@ STAGE gradient_light(uint count, uint unit, uint first, uint capacity, uint slot
         real jacobian = R(1);
         jacobian = is_point ? nearer : jacobian;
         jacobian = is_surface ? (cosine > R(0) && base_cosine > R(0) ? nearer * cosine / base_cosine : R(0)) : jacobian;
-        /* The same point of the same light: chosen with the same density by area. Spheres are sampled by their cones. */
+        /* The same point of the same light: chosen with the same density by area. Spheres are sampled by their cones.
+         */
         real offset_light = jacobian > R(0) ? R(1) : R(0);
 #if TRAIT_LIGHT_SPHERE
         const vec3 to_center = v3_sub(FIELD_V3(light, lights, chosen.light, p), from);
@@ -128,9 +128,9 @@ STAGE gradient_light(uint count, uint unit, uint first, uint capacity, uint slot
         const real ratio = AT(shifted, ratio, at);
         const vec3 offset_wi = frame_to_local(axes, AT_V3(shifted, wi, at));
         const int is_there = ratio >= R(0);
-        const rgb value = rgb_scale(
-            rgb_mul(rgb_mul(AT_RGB(shifted, value, at), arriving), PASTE(BSDF, _eval)(m, offset_wi, wo)),
-            is_there ? R(1) : R(0));
+        const rgb value =
+            rgb_scale(rgb_mul(rgb_mul(AT_RGB(shifted, value, at), arriving), PASTE(BSDF, _eval)(m, offset_wi, wo)),
+                      is_there ? R(1) : R(0));
         SET_RGB(gain, value, at, value);
         AT(gain, base_bsdf, at) = base_bsdf;
         AT(gain, offset_light, at) = ratio;
@@ -142,8 +142,7 @@ STAGE gradient_light(uint count, uint unit, uint first, uint capacity, uint slot
     const vec3 geometric = AT_V3(vertex, geometric, row);
     const real off = AT(vertex, offset, row) * r_copysign1(v3_dot(geometric, s.direction));
     const vec3 origin = v3_mad(position, off, geometric);
-    const vec3 target =
-        v3_mad(v3_add(position, s.connection), FIELD_OF(light, lights, chosen.light, offset), s.normal);
+    const vec3 target = v3_mad(v3_add(position, s.connection), FIELD_OF(light, lights, chosen.light, offset), s.normal);
     SET_V3(shadow, origin, row, origin);
     SET_V3(shadow, direction, row, v3_sub(target, origin));
     SET_RGB(shadow, value, row, base);

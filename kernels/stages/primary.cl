@@ -1,5 +1,5 @@
-/* primary: keeps what the camera sees through each pixel, by slot, before the paths begin: their own first vertices, and
- * those of their neighbours' offset paths. */
+/* primary: keeps what the camera sees through each pixel, by slot, before the paths begin: their own first vertices,
+ * and those of their neighbours' offset paths. */
 //! traits: TRAIT_SHADING_NORMALS TRAIT_ANISOTROPIC
 #include "kernels/shared/stage.h"
 

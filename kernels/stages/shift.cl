@@ -27,8 +27,8 @@ STAGE shift(uint count, uint unit, uint first, uint to, uint capacity, uint slot
     const vec3 base_direction = AT_V3(ray, direction, row);
 #if !ESCAPED
     const uint primitive = AT_UINT(ray, primitive, row);
-    const primitive_hit hit = primitive_hit_of(triangles, spheres, unit, triangle_count, primitive,
-                                               AT_V3(ray, origin, row), base_direction);
+    const primitive_hit hit =
+        primitive_hit_of(triangles, spheres, unit, triangle_count, primitive, AT_V3(ray, origin, row), base_direction);
     const real base_side = v3_dot(hit.normal, v3_sub(base, hit.position));
     real offset = R(0);
 #if TRAIT_TRIANGLES && TRAIT_SPHERES

@@ -2,12 +2,11 @@
 
 #include "kernels/shared/material.h"
 #include "kernels/shared/tables.h"
+#include "runtime/methods/gradient_image.h"
 #include "runtime/stages/trace_stage.h"
-#include "solver/poisson_solver.h"
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 
 namespace gradus {
 
@@ -75,7 +74,8 @@ std::vector<PathTracer::Wanted> GradientPathTracer::wanted_kernels() {
         {&gradient_accumulate_, request_of("gradient_accumulate")},
     };
     if (escape_wanted()) {
-        wanted.push_back({&shift_escaped_, variant(request_of("shift"), "shift escaped", "shift", with("ESCAPED", "1"))});
+        wanted.push_back(
+            {&shift_escaped_, variant(request_of("shift"), "shift escaped", "shift", with("ESCAPED", "1"))});
         wanted.push_back({&escape_second_, variant(request_of("gradient_emission"), "gradient escape",
                                                    "gradient_emission", {{"ESCAPED", "1"}})});
     }
@@ -91,10 +91,10 @@ std::vector<PathTracer::Wanted> GradientPathTracer::wanted_kernels() {
         lights.is_dirac = bsdf_kind_is_dirac(kinds[k]);
         if (samples_lights(lights)) {
             const KernelRequest light = request_of("gradient_light", kinds[k]);
-            wanted.push_back({&kind.light_first, variant(light, "gradient_light 1 " + kinds[k], "gradient_light",
-                                                         with("FIRST", "1"))});
-            wanted.push_back({&kind.light_second, variant(light, "gradient_light 2 " + kinds[k], "gradient_light",
-                                                          with("FIRST", "0"))});
+            wanted.push_back({&kind.light_first,
+                              variant(light, "gradient_light 1 " + kinds[k], "gradient_light", with("FIRST", "1"))});
+            wanted.push_back({&kind.light_second,
+                              variant(light, "gradient_light 2 " + kinds[k], "gradient_light", with("FIRST", "0"))});
         }
         wanted.push_back({&kind.scatter_first, variant(request_of("scatter", kinds[k]), "scatter 1 " + kinds[k],
                                                        "scatter", {{"KEEP_DARK", "1"}})});
@@ -108,7 +108,10 @@ void GradientPathTracer::allocate() {
         return Buffer(device_, name, columns * rows * sizeof(float));
     };
     const std::size_t capacity = tables_->capacity, slots = tables_->slots;
-    primary_ = table("primary", primary_columns, slots);
+    const std::size_t primary_needs = traits_.at("TRAIT_ANISOTROPIC")       ? primary_columns
+                                      : traits_.at("TRAIT_SHADING_NORMALS") ? primary_along_x
+                                                                            : primary_shading_x;
+    primary_ = table("primary", primary_needs, slots);
     shifted_ = table("shifted", shifted_columns, 4 * capacity);
     gain_ = table("gain", gain_columns, 4 * capacity);
     link_ = table("link", link_columns, 8 * capacity);
@@ -193,8 +196,8 @@ void GradientPathTracer::connect(const Vertices &vertices, const Buffer &vertex)
     run(connect_, later, vertices.count - later);
 }
 
-/// Adds the light that paths have met. The links of second vertices start at `link_first`: those of surfaces, then those
-/// of escaped paths.
+/// Adds the light that paths have met. The links of second vertices start at `link_first`: those of surfaces, then
+/// those of escaped paths.
 void GradientPathTracer::emit(const std::vector<std::uint32_t> &range, std::uint32_t link_first) {
     const std::size_t kinds = kinds_.size();
     const auto bin = [&](std::uint32_t phase, std::size_t kind) { return phases + 2 * (phase * kinds + kind); };
@@ -265,8 +268,8 @@ bool GradientPathTracer::render_batch() {
         run(classify_, 0, rays);
         const std::vector<std::uint32_t> &range = partition_->run(rays);
         const Vertices next = ranges_of(range);
-        for (Kernel *kernel : {&surface_, &escape_, &emission_, &shift_, &shift_escaped_, &emission_second_,
-                               &escape_second_}) {
+        for (Kernel *kernel :
+             {&surface_, &escape_, &emission_, &shift_, &shift_escaped_, &emission_second_, &escape_second_}) {
             if (!kernel->valid())
                 continue;
             kernel->bind("vertex_old", old_vertex);
@@ -287,8 +290,8 @@ bool GradientPathTracer::render_batch() {
             shift_escaped_.set("link_stride", second_escaped);
             run(shift_escaped_, range[1], second_escaped);
         }
-        statistics_.rays["offset"] += run_link_stage(
-            tracer_, link_, tables_->capacity, link_first + 4 * (seconds + second_escaped), trace_seconds_);
+        statistics_.rays["offset"] += run_link_stage(tracer_, link_, tables_->capacity,
+                                                     link_first + 4 * (seconds + second_escaped), trace_seconds_);
         connect(vertices, old_vertex);
         emit(range, link_first);
         settle_.set("link_stride", seconds);
@@ -338,91 +341,13 @@ bool GradientPathTracer::render_batch() {
     return done_ < total_;
 }
 
-/// Means of primal, dx and dy after so many samples of each pixel, or the variances of these means.
-std::vector<Channel> GradientPathTracer::read_film(std::uint64_t frames, bool variances) const {
-    const std::size_t pixels = film_->pixels();
-    std::vector<float> film(pixels * gradient_film_columns);
-    gradient_film_.read(film.data(), film.size() * sizeof(float));
-    const double n = double(std::max<std::uint64_t>(frames, 1));
-    std::vector<Channel> channels;
-    for (int image = 0; image < 3; ++image)
-        for (int c = 0; c < 3; ++c) {
-            const char *const names[] = {"primal", "dx", "dy"}, *const colors[] = {"R", "G", "B"};
-            Channel channel{std::string(names[image]) + (variances ? "_variance." : ".") + colors[c],
-                            std::vector<float>(pixels)};
-            const int number = 3 * image + c;
-            const auto column = [&](int first, std::size_t pixel) {
-                return double(film[std::size_t(first + number) * pixels + pixel]);
-            };
-            for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-                const double mean =
-                    (column(gradient_film_primal_r, pixel) + column(gradient_film_correction_first, pixel)) / n;
-                const double square = column(gradient_film_square_first, pixel) / n;
-                const double variance = n > 1 ? std::max(0.0, square - mean * mean) / (n - 1) : 0.0;
-                channel.values[pixel] = static_cast<float>(variances ? variance : mean);
-            }
-            channels.push_back(std::move(channel));
-        }
-    return channels;
-}
-
 Image GradientPathTracer::image() {
     statistics_.non_finite = 0;
     const Image whole = film_->image(done_, statistics_.non_finite);
-    const std::uint64_t frames = done_ / film_->pixels();
-    std::vector<Channel> layers = read_film(frames, false), variances = read_film(frames, true);
-    const std::size_t pixels = film_->pixels();
-    const auto planes = [&](const std::vector<Channel> &from, int image) {
-        std::vector<float> joined;
-        for (int c = 0; c < 3; ++c)
-            joined.insert(joined.end(), from[3 * image + c].values.begin(), from[3 * image + c].values.end());
-        return joined;
-    };
-    const std::vector<float> primal = planes(layers, 0), dx = planes(layers, 1), dy = planes(layers, 2);
-    const std::vector<float> primal_variance = planes(variances, 0), dx_variance = planes(variances, 1),
-                             dy_variance = planes(variances, 2);
-    // What is not in the primal is what the camera sees of lights.
-    std::vector<float> direct(3 * pixels);
-    for (int c = 0; c < 3; ++c)
-        for (std::size_t i = 0; i < pixels; ++i) {
-            const float seen = whole.channels[c].values[i] - primal[c * pixels + i];
-            // Where nothing is seen, the difference is rounding.
-            direct[c * pixels + i] = std::abs(seen) > 1e-6f * std::abs(primal[c * pixels + i]) ? seen : 0.0f;
-        }
-
-    HostImages images;
-    images.primal = primal.data();
-    images.dx = dx.data();
-    images.dy = dy.data();
-    images.direct = direct.data();
-    images.primal_variance = primal_variance.data();
-    images.dx_variance = dx_variance.data();
-    images.dy_variance = dy_variance.data();
-    PoissonOptions options;
-    options.norm = options_.reconstruction_l2 ? PoissonNorm::l2 : PoissonNorm::l1;
-    options.alpha_from_variances = !options_.alpha && frames > 1;
-    options.alpha = options_.alpha.value_or(0.2);
-    std::vector<float> result(3 * pixels);
     if (!solver_)
         solver_ = std::make_unique<PoissonSolver>(device_, film_settings_.crop_width, film_settings_.crop_height, 3);
-    solver_->solve(images, options, result.data());
-
-    Image image;
-    image.width = whole.width;
-    image.height = whole.height;
-    const auto add = [&](const std::string &layer, const std::vector<float> &joined) {
-        const char *const colors[] = {"R", "G", "B"};
-        for (int c = 0; c < 3; ++c)
-            image.channels.push_back(
-                {layer + colors[c], {joined.begin() + c * pixels, joined.begin() + (c + 1) * pixels}});
-    };
-    add("", result);
-    add("direct.", direct);
-    for (std::vector<Channel> *channels : {&layers, &variances})
-        if (channels == &layers || options_.aov)
-            image.channels.insert(image.channels.end(), channels->begin(), channels->end());
-    image.channels.insert(image.channels.end(), whole.channels.begin() + 3, whole.channels.end());
-    return image;
+    return reconstruct(*solver_, whole, read_gradient_film(gradient_film_, film_->pixels(), done_ / film_->pixels()),
+                       options_);
 }
 
 } // namespace gradus

@@ -47,7 +47,6 @@ class GradientPathTracer final : public PathTracer {
     void connect(const Vertices &vertices, const Buffer &vertex);
     void emit(const std::vector<std::uint32_t> &range, std::uint32_t link_first);
     Vertices ranges_of(const std::vector<std::uint32_t> &range) const;
-    std::vector<Channel> read_film(std::uint64_t frames, bool squares) const;
 
     Kernel primary_begin_, primary_surface_, begin_, shift_, shift_escaped_, settle_, close_links_;
     Kernel emission_second_, escape_second_, connect_first_, connect_second_, combine_, gradient_accumulate_;

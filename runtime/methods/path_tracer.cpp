@@ -65,11 +65,10 @@ PathTracer::PathTracer(Device &device, const Scene &scene, const RenderOptions &
 void PathTracer::prepare(const Additions &additions) {
     const std::uint32_t pixels = film_settings_.crop_width * film_settings_.crop_height;
     total_ = pixels * settings_.samples_per_pixel;
-    const std::uint32_t bins =
-        static_cast<std::uint32_t>(additions.phases * (1 + 2 * scene_tables_.kinds.size()));
+    const std::uint32_t bins = static_cast<std::uint32_t>(additions.phases * (1 + 2 * scene_tables_.kinds.size()));
     const std::uint32_t capacity = choose_batch_size(device_, options_.batch_size, total_, traits_, precision);
-    std::uint64_t slots = std::min<std::uint64_t>(batches_a_pass * std::uint64_t(capacity),
-                                                  std::max<std::uint64_t>(total_, 1));
+    std::uint64_t slots =
+        std::min<std::uint64_t>(batches_a_pass * std::uint64_t(capacity), std::max<std::uint64_t>(total_, 1));
     if (additions.whole_frames)
         slots = std::max<std::uint64_t>(slots / pixels, 1) * pixels;
     tables_.emplace(device_, capacity, static_cast<std::uint32_t>(slots), bins, traits_, precision);

@@ -81,7 +81,7 @@ class PathTracer : public Method {
     std::vector<Kernel> partition_kernels_;
     Kernel camera_, classify_, surface_, escape_, connect_, emission_, accumulate_;
     std::vector<Kernel *> more_kernels_; ///< of a method built on this one
-    std::vector<KindKernels> kinds_; ///< in the order of SceneTables::kinds
+    std::vector<KindKernels> kinds_;     ///< in the order of SceneTables::kinds
     Statistics statistics_;
     double trace_seconds_ = 0;
 };
