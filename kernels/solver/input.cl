@@ -68,6 +68,8 @@ SOLVE start_between_neighbours(GRID, __global const real *base, __global const r
 SOLVE start(GRID, uint has_start, __global const real *base, __global const float *packed, __global real *u) {
     SOLVER_PLACE
     const size_t at = GRID_AT(channel, x, y);
-    const float value = has_start && x < width ? packed[PACKED_AT(channel)] : NAN;
-    u[at] = is_finite(value) ? value - base[at] : R(0);
+    /* No NAN of our own: relaxed arithmetic may take it for anything. */
+    const bool given = has_start && x < width;
+    const float value = given ? packed[PACKED_AT(channel)] : 0.0f;
+    u[at] = given && is_finite(value) ? value - base[at] : R(0);
 }

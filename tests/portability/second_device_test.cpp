@@ -32,43 +32,49 @@ class SecondDevice : public ::testing::TestWithParam<const char *> {
         scene.settings.samples_per_pixel = samples_per_pixel;
         return scene;
     }
-    static Image render(Device &device, const Scene &scene, std::uint64_t seed) {
+    static Image render(Device &device, const Scene &scene, std::uint64_t seed, const char *name = "pt") {
         RenderOptions options;
         options.seed = seed;
-        const auto method = make_method("pt", device, scene, options);
+        const auto method = make_method(name, device, scene, options);
         while (method->render_batch()) {
         }
         const Image image = method->image();
         EXPECT_EQ(method->statistics().non_finite, 0u);
         return image;
     }
-    static std::vector<Image> render_seeds(Device &device, const Scene &scene, std::uint64_t first_seed) {
+    static std::vector<Image> render_seeds(Device &device, const Scene &scene, std::uint64_t first_seed,
+                                           const char *name) {
         std::vector<Image> images;
         for (std::size_t i = 0; i < seeds; ++i)
-            images.push_back(render(device, scene, first_seed + i));
+            images.push_back(render(device, scene, first_seed + i, name));
         return images;
+    }
+
+    /// Other seeds, so that the images are independent: any difference of their means beyond chance is an error of one.
+    static void expect_agreement(const char *name, std::uint64_t spp) {
+        const Scene own = scene(spp);
+        const auto reference = testing::mean_and_variance(render_seeds(first(), own, 1, name));
+        const std::vector<Image> images = render_seeds(second(), own, 101, name);
+        for (const int block : {0, 16}) {
+            const BlockTest test = block_z_test(images, reference.mean, reference.variance, double(spp),
+                                                double(spp * seeds), block, int(seeds));
+            EXPECT_TRUE(test.passed()) << "block " << block << ": largest |z| " << test.largest << ", limit "
+                                       << test.largest_limit << "; " << test.over_three << " over 3, limit "
+                                       << test.over_three_limit;
+            ::testing::Test::RecordProperty(block ? "largest_z_of_blocks" : "largest_z_of_image",
+                                            std::to_string(test.largest));
+            std::printf("  %s: largest |z| %.2f of %zu (limit %.2f), %zu over 3 (limit %zu)\n",
+                        block ? "blocks" : "image ", test.largest, test.tested, test.largest_limit, test.over_three,
+                        test.over_three_limit);
+        }
     }
 };
 
 TEST_P(SecondDevice, IsNotTheFirst) { EXPECT_NE(first().description().platform, second().description().platform); }
 
-// Other seeds, so that the images are independent: any difference of their means beyond chance is an error of one.
-TEST_P(SecondDevice, ImagesOfOtherSeedsAgreeStatistically) {
-    constexpr std::uint64_t spp = 32;
-    const Scene own = scene(spp);
-    const auto reference = testing::mean_and_variance(render_seeds(first(), own, 1));
-    const std::vector<Image> images = render_seeds(second(), own, 101);
-    for (const int block : {0, 16}) {
-        const BlockTest test = block_z_test(images, reference.mean, reference.variance, double(spp),
-                                            double(spp * seeds), block, int(seeds));
-        EXPECT_TRUE(test.passed()) << "block " << block << ": largest |z| " << test.largest << ", limit "
-                                   << test.largest_limit << "; " << test.over_three << " over 3, limit "
-                                   << test.over_three_limit;
-        RecordProperty(block ? "largest_z_of_blocks" : "largest_z_of_image", std::to_string(test.largest));
-        std::printf("  %s: largest |z| %.2f of %zu (limit %.2f), %zu over 3 (limit %zu)\n", block ? "blocks" : "image ",
-                    test.largest, test.tested, test.largest_limit, test.over_three, test.over_three_limit);
-    }
-}
+TEST_P(SecondDevice, ImagesOfOtherSeedsAgreeStatistically) { expect_agreement("pt", 32); }
+
+TEST_P(SecondDevice, ReconstructedImagesOfOtherSeedsAgreeStatistically) { expect_agreement("gpt", 8); }
 
 // The random numbers are whole numbers, so both devices walk the same paths but where rounding decides otherwise.
 TEST_P(SecondDevice, TheSameSeedGivesNearlyTheSamePixels) {
