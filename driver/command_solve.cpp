@@ -1,12 +1,11 @@
 #include "driver/commands.h"
+#include "driver/reconstruction_options.h"
 #include "driver/solve_job.h"
 #include "runtime/error.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cmath>
 #include <map>
 #include <memory>
 #include <optional>
@@ -40,25 +39,9 @@ const std::map<std::string, LinearMethod> methods{{"auto", LinearMethod::automat
                                                   {"pcg", LinearMethod::pcg},
                                                   {"multigrid", LinearMethod::multigrid}};
 
-/// The number that the whole text is, or nothing; NaN and infinity are none.
-std::optional<double> finite_number(const std::string &text) {
-    double number = 0;
-    const auto [stop, failure] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (failure != std::errc{} || stop != text.data() + text.size() || !std::isfinite(number))
-        return std::nullopt;
-    return number;
-}
-
 /// A check for CLI11: the complaint about a text, or nothing.
 CLI::Validator check(const char *kind, std::function<std::string(std::string &)> complaint) {
     return CLI::Validator(std::move(complaint), kind);
-}
-
-std::string complain_about_alpha(std::string &text) {
-    const auto number = finite_number(text);
-    return text == "auto" || (number && *number >= 0)
-               ? ""
-               : fmt::format("'{}' is neither a number from 0 on nor auto", text);
 }
 
 std::string complain_about_method(std::string &text) {
@@ -155,28 +138,13 @@ void add_output_options(CLI::App &command, SolveRequest &request) {
 void add_problem_options(CLI::App &command, SolveRequest &request) {
     const char *group = "What is solved";
     PoissonOptions &options = request.options;
-    command
-        .add_option_function<std::string>(
-            "--norm",
-            [&options](const std::string &name) {
-                options.norm = name.back() == '1' ? PoissonNorm::l1 : PoissonNorm::l2;
-            },
-            "L1: robust; L2: linear")
-        ->check(CLI::IsMember({"L1", "L2"}, CLI::ignore_case))
-        ->default_str("L1")
-        ->group(group);
-    command
-        .add_option_function<std::string>(
-            "--alpha",
-            [&options](const std::string &text) {
-                options.alpha_from_variances = text == "auto";
-                options.alpha = finite_number(text).value_or(options.alpha);
-            },
-            "Weight of the primal, from 0 (its mean alone) on; auto: from the variances")
-        ->type_name("NUMBER|auto")
-        ->check(check("", complain_about_alpha))
-        ->default_str("0.2")
-        ->group(group);
+    add_norm_option(command, group, [&options](PoissonNorm norm) { options.norm = norm; });
+    add_alpha_option(command, group, "0.2",
+                     "Weight of the primal, from 0 (its mean alone) on; auto: from the variances",
+                     [&options](std::optional<double> alpha) {
+                         options.alpha_from_variances = !alpha;
+                         options.alpha = alpha.value_or(options.alpha);
+                     });
     command
         .add_option_function<std::string>(
             "--weights", [&options](const std::string &name) { options.weigh_by_variance = name == "variance"; },

@@ -118,11 +118,6 @@ Found take_colours(const Image &image, const std::vector<const Channel *> &layer
     return found;
 }
 
-bool is_variance(GradientLayer layer) {
-    return layer == GradientLayer::primal_variance || layer == GradientLayer::dx_variance ||
-           layer == GradientLayer::dy_variance;
-}
-
 /// Which images each file holds, so that every file is read once.
 std::map<std::string, std::vector<GradientLayer>> files_to_read(const GradientSources &sources) {
     std::map<std::string, std::vector<GradientLayer>> files;
@@ -172,6 +167,11 @@ void check_equal(const Found &primal, const Found &other) {
 }
 
 } // namespace
+
+bool is_variance(GradientLayer layer) {
+    return layer == GradientLayer::primal_variance || layer == GradientLayer::dx_variance ||
+           layer == GradientLayer::dy_variance;
+}
 
 const char *layer_name(GradientLayer layer) { return all_names.at(layer).name; }
 

@@ -18,6 +18,8 @@ inline constexpr std::array gradient_layers = {
 /// The name of a layer as Gradus writes it: "primal", "dx_variance".
 const char *layer_name(GradientLayer layer);
 
+bool is_variance(GradientLayer layer);
+
 /// Where the images are.
 struct GradientSources {
     std::string layered;                        ///< a file that holds them as layers; empty: none

@@ -1,10 +1,10 @@
 #include "driver/method_request.h"
 
+#include "driver/reconstruction_options.h"
+
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cmath>
 #include <map>
 #include <optional>
 
@@ -32,33 +32,10 @@ void add_method_options(CLI::App &command, const Services &services, MethodReque
     command.add_flag("--aov", request.options.aov, "Also write albedo, normal, depth and variance layers")
         ->group(group);
     const char *reconstruction = "Reconstruction (gpt)";
-    command
-        .add_option_function<std::string>(
-            "--norm", [&request](const std::string &name) { request.options.reconstruction_l2 = name.back() == '2'; },
-            "L1: robust; L2: linear")
-        ->check(CLI::IsMember({"L1", "L2"}, CLI::ignore_case))
-        ->default_str("L1")
-        ->group(reconstruction);
-    command
-        .add_option_function<std::string>(
-            "--alpha",
-            [&request](const std::string &text) {
-                request.options.alpha = text == "auto" ? std::nullopt : std::optional(std::stod(text));
-            },
-            "Weight of the primal image against its differences; auto: from their variances")
-        ->type_name("NUMBER|auto")
-        ->check(CLI::Validator(
-            [](std::string &text) {
-                double number = 0;
-                const auto [stop, failure] = std::from_chars(text.data(), text.data() + text.size(), number);
-                const bool is_number = failure == std::errc{} && stop == text.data() + text.size();
-                return text == "auto" || (is_number && std::isfinite(number) && number >= 0)
-                           ? std::string()
-                           : fmt::format("'{}' is neither a number from 0 on nor auto", text);
-            },
-            ""))
-        ->default_str("auto")
-        ->group(reconstruction);
+    add_norm_option(command, reconstruction, [&request](PoissonNorm norm) { request.options.norm = norm; });
+    add_alpha_option(command, reconstruction, "auto",
+                     "Weight of the primal image against its differences; auto: from their variances",
+                     [&request](std::optional<double> alpha) { request.options.alpha = alpha; });
     const char *measuring = "For measuring";
     command
         .add_option("--dump-kernels", request.options.dump_kernels, "Write the source of each kernel to this folder")

@@ -7,6 +7,7 @@
 #include "runtime/error.h"
 #include "runtime/film/metrics.h"
 #include "runtime/io/image_io.h"
+#include "runtime/seconds_since.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -18,8 +19,6 @@ namespace gradus {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 /// The sampler's count where only the time ends a render: more than any render takes, and far from overflow.
 constexpr std::uint64_t endless_samples_per_pixel = std::uint64_t(1) << 30;

@@ -6,6 +6,7 @@
 #include "runtime/error.h"
 #include "runtime/film/metrics.h"
 #include "runtime/io/image_io.h"
+#include "runtime/seconds_since.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -19,11 +20,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
 [[noreturn]] void fail(const std::string &message) { throw Error(ExitCode::usage, message); }
-
-bool is_variance(GradientLayer layer) { return layer >= GradientLayer::primal_variance; }
 
 bool same_file(const std::string &first, const std::string &second) {
     std::error_code not_there;

@@ -45,7 +45,6 @@ void Problem::import(const DeviceImages &images, PoissonReport &report) {
     report.missing_dy = static_cast<std::uint64_t>(missing_y);
     held_is_known_ = false;
     anything_missing_ = missing + missing_x + missing_y > 0;
-    edges_ = double(w - 1) * h + double(w) * (h - 1) - missing_x - missing_y;
     if (missing > 0)
         fill_.run(base_, valid_primal_);
     Kernel &kernel = workspace_.kernels(Weights::uniform).gradient_residual;

@@ -50,8 +50,6 @@ class Problem {
     Buffer &u() { return u_; }
     /// Binds gradient_x, gradient_y and the base weights.
     void bind(Kernel &kernel) const;
-    /// How many differences are not missing.
-    double edges() const { return edges_; }
 
   private:
     double import_plane(const Buffer &packed, const Buffer &imported, const Buffer &valid, std::uint32_t columns,
@@ -70,7 +68,7 @@ class Problem {
     Buffer base_x_, base_y_, base_data_, zero_, held_;
     bool anything_missing_ = false, held_is_known_ = false;
     std::uint64_t not_held_ = 0;
-    double edges_ = 0, gradient_variance_ = 0, mean_primal_variance_ = 0;
+    double gradient_variance_ = 0, mean_primal_variance_ = 0;
 };
 
 } // namespace gradus::solver

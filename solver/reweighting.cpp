@@ -85,10 +85,11 @@ void Reweighting::run(Kernels &kernels, Problem &problem, double alpha, const De
                                     : reweight(kernels, problem, alpha, 1, 1, 1);
         report.objectives.push_back(norm.all);
         report.converged = scale == 0 || (k > 1 && std::abs(before - norm.cut) <= tolerance * norm.cut);
-        if (k == 0) // which pixels no equation holds is told by this
-            workspace_.multigrid.invert_finest_diagonal(kernels);
-        if (report.converged || k == most)
+        if (report.converged || k == most) {
+            if (k == 0) // no solve did it, and it tells which pixels no equation holds
+                workspace_.multigrid.invert_finest_diagonal(kernels);
             break;
+        }
         before = norm.cut;
         workspace_.multigrid.coarsen_weights(kernels);
         Kernel &extrapolate = kernels.extrapolate;

@@ -1,12 +1,12 @@
 // gradus-bench-render: how near a render comes to its floor, and what specialised kernels and ordered rays gain.
 #include "bench/render/measurements.h"
+#include "bench/write_results.h"
 #include "runtime/error.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <fstream>
 #include <iostream>
 #include <set>
 
@@ -64,12 +64,7 @@ int run(const Arguments &arguments) {
             results["order"].push_back(measure_ray_order(settings, compared));
         std::fflush(stdout);
     }
-    if (!arguments.json.empty()) {
-        std::ofstream file(arguments.json);
-        file << results.dump(2) << "\n";
-        if (!file.flush())
-            throw Error(ExitCode::output, "cannot write " + arguments.json);
-    }
+    write_results(results, arguments.json);
     return 0;
 }
 

@@ -1,12 +1,12 @@
 // gradus-bench-solver: error against time for each method of the Poisson solver, and its distance from its rivals.
 #include "bench/solver/measurements.h"
+#include "bench/write_results.h"
 #include "runtime/error.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <fstream>
 #include <iostream>
 #include <set>
 #include <thread>
@@ -59,12 +59,7 @@ int run(const Arguments &arguments) {
             Problem problem(settings, width, height);
             results["curves"].push_back(measure_curves(settings, problem));
         }
-    if (!arguments.json.empty()) {
-        std::ofstream file(arguments.json);
-        file << results.dump(2) << "\n";
-        if (!file.flush())
-            throw Error(ExitCode::output, "cannot write " + arguments.json);
-    }
+    write_results(results, arguments.json);
     return 0;
 }
 

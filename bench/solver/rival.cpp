@@ -1,6 +1,7 @@
 #include "bench/solver/rival.h"
 
 #include "bench/solver/bands.h"
+#include "runtime/seconds_since.h"
 #include "runtime/trace/clones.h"
 
 #include <fftw3.h>
@@ -14,10 +15,6 @@
 namespace gradus::bench {
 
 namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 /// A row of the right side, but for the differences to the rows above and below.
 GRADUS_CLONES void add_row(float *b, const float *primal, const float *dx, std::size_t width, float alpha2) {

@@ -36,6 +36,26 @@ GRADUS_FN primitive_hit primitive_hit_of(GRADUS_GLOBAL const real *triangles, GR
     return hit;
 }
 
+/* How far rays start off a primitive. */
+GRADUS_FN real primitive_offset(GRADUS_GLOBAL const real *triangles, GRADUS_GLOBAL const real *spheres, uint unit,
+                                uint triangle_count, uint primitive) {
+    real offset = R(0);
+    (void)triangles, (void)spheres, (void)triangle_count;
+#if TRAIT_TRIANGLES && TRAIT_SPHERES
+    if (primitive < triangle_count)
+#endif
+#if TRAIT_TRIANGLES
+        offset = FIELD_OF(triangle, triangles, primitive, offset);
+#endif
+#if TRAIT_TRIANGLES && TRAIT_SPHERES
+    if (primitive >= triangle_count)
+#endif
+#if TRAIT_SPHERES
+        offset = FIELD_OF(sphere, spheres, primitive - triangle_count, offset);
+#endif
+    return offset;
+}
+
 /* 1 where the ray arrives against the geometric normal's back. */
 GRADUS_FN int primitive_is_behind(GRADUS_GLOBAL const real *triangles, GRADUS_GLOBAL const real *spheres, uint unit,
                                   uint triangle_count, uint primitive, vec3 origin, vec3 direction) {

@@ -3,11 +3,11 @@
  * Paths take rows `first_row` on and slots `first_slot` on. Samples are numbered pixel first: number = sample * pixels
  * + pixel of the crop; slot 0 is pixel `first_pixel` of sample `first_sample`. Random numbers go by the pixel of the
  * full film, so that a crop equals the same part of the full image. */
-//! traits: TRAIT_REFRACTION TRAIT_FILTER_TENT TRAIT_FILTER_GAUSSIAN TRAIT_AOV TRAIT_SHARED_JITTER
+//! traits: TRAIT_FILTER_TENT TRAIT_FILTER_GAUSSIAN TRAIT_AOV TRAIT_SHARED_JITTER
+#include "kernels/lib/begin_path.h"
 #include "kernels/lib/division.h"
 #include "kernels/lib/random.h"
 #include "kernels/lib/warp.h"
-#include "kernels/shared/stage.h"
 
 /* Filter importance sampling (Ernst et al. 2006): the offset from the pixel's center is drawn from the filter. */
 GRADUS_FN real filter_offset(__global const real *camera, uint unit, real u) {
@@ -60,15 +60,7 @@ STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ra
     SET_V3(ray, direction, row, direction);
     AT_UINT(ray, primitive, row) = ray_pending;
 
-    AT_UINT(vertex, slot, row) = slot;
-    AT_UINT(vertex, key_0, row) = key.x;
-    AT_UINT(vertex, key_1, row) = key.y;
-    AT_UINT(vertex, depth, row) = 0u;
-    SET_RGB(vertex, throughput, row, rgb_gray(R(1)));
-    AT(vertex, pdf, row) = R(0);
-#if TRAIT_REFRACTION
-    AT(vertex, eta, row) = R(1);
-#endif
+    BEGIN_PATH(row, slot, key.x, key.y)
     SET_RGB(radiance, value, slot, rgb_gray(R(0)));
 #if TRAIT_AOV
     SET_RGB(feature, albedo, slot, rgb_gray(R(0)));

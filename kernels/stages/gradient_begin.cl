@@ -1,6 +1,5 @@
 /* gradient_begin: begins one base path a row from what the camera saw: its first ray, already traced. */
-//! traits: TRAIT_REFRACTION
-#include "kernels/shared/stage.h"
+#include "kernels/lib/begin_path.h"
 
 STAGE gradient_begin(uint count, uint unit, uint capacity, uint slots, __global real *ray, __global real *vertex,
                      __global real *radiance, __global real *direct, __global real *prefix, __global real *difference,
@@ -15,15 +14,7 @@ STAGE gradient_begin(uint count, uint unit, uint capacity, uint slots, __global 
     SET_V3(ray, origin, row, origin);
     SET_V3(ray, direction, row, direction);
     AT_UINT(ray, primitive, row) = AT_UINT(primary, primitive, slot);
-    AT_UINT(vertex, slot, row) = slot;
-    AT_UINT(vertex, key_0, row) = AT_UINT(primary, key_0, slot);
-    AT_UINT(vertex, key_1, row) = AT_UINT(primary, key_1, slot);
-    AT_UINT(vertex, depth, row) = 0u;
-    SET_RGB(vertex, throughput, row, rgb_gray(R(1)));
-    AT(vertex, pdf, row) = R(0);
-#if TRAIT_REFRACTION
-    AT(vertex, eta, row) = R(1);
-#endif
+    BEGIN_PATH(row, slot, AT_UINT(primary, key_0, slot), AT_UINT(primary, key_1, slot))
     SET_RGB(radiance, value, slot, rgb_gray(R(0)));
     SET_RGB_IN(direct, radiance, value, slot, rgb_gray(R(0)));
     SET_RGB(prefix, value, slot, rgb_gray(R(0)));

@@ -1,7 +1,7 @@
 /* gradient_combine: joins what paths gathered before and after their offset paths merged with them: by slot, the primal
  * sample, the four differences, and in `radiance` the whole sample, with what the camera sees of lights. */
 #include "kernels/lib/finite.h"
-#include "kernels/lib/vector.h"
+#include "kernels/lib/weighted_difference.h"
 #include "kernels/shared/stage.h"
 
 #define IS_FINITE_RGB(v) (is_finite((v).r) && is_finite((v).g) && is_finite((v).b))
@@ -28,8 +28,7 @@ STAGE gradient_combine(uint count, uint slots, __global real *radiance, __global
         const rgb throughput =
             rgb3(merged ? AT(difference, throughput_r, at) : R(0), merged ? AT(difference, throughput_g, at) : R(0),
                  merged ? AT(difference, throughput_b, at) : R(0));
-        const real weight = ratio < R(-1.5) ? R(0) : merged ? R(1) / (R(1) + ratio) : R(1);
-        const rgb change = rgb_scale(rgb_sub(rgb_mul(throughput, after), base), weight);
+        const rgb change = weighted_difference(base, rgb_mul(throughput, after), R(0), ratio, ratio);
         const rgb sum = rgb_add(AT_RGB(difference, value, at), change);
         SET_RGB(difference, value, at, sum);
         finite = finite && IS_FINITE_RGB(sum);

@@ -3,6 +3,7 @@
  * still does, so this is no failure of the shift.
  *
  * FIRST: each offset path has a connection of its own. Else all end in the base's vertex and share one. */
+#include "kernels/lib/weighted_difference.h"
 #include "kernels/shared/stage.h"
 
 STAGE gradient_connect(uint count, uint first, uint capacity, uint slots, __global const real *vertex,
@@ -33,11 +34,8 @@ STAGE gradient_connect(uint count, uint first, uint capacity, uint slots, __glob
         const real offset_seen = seen;
 #endif
         const rgb offset = rgb_scale(AT_RGB(gain, value, at), offset_seen);
-        const real weight = R(1) / (R(1) + base_bsdf + offset_light + offset_seen * AT(gain, offset_bsdf, at));
-        const int failed = offset_light < R(0), absent = offset_light < R(-1.5);
-        const real base_weight = absent ? R(0) : failed ? R(1) / (R(1) + base_bsdf) : weight;
-        const real offset_weight = failed ? R(0) : weight;
-        const rgb change = rgb_sub(rgb_scale(offset, offset_weight), rgb_scale(base, base_weight));
+        const rgb change = weighted_difference(base, offset, base_bsdf,
+                                               offset_light + offset_seen * AT(gain, offset_bsdf, at), offset_light);
         const size_t to = (size_t)j * slots + slot;
         ADD_RGB(difference, value, to, change);
     }

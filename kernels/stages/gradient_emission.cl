@@ -5,6 +5,7 @@
 #include "kernels/lib/light.h"
 #include "kernels/lib/mis.h"
 #include "kernels/lib/scene_hit.h"
+#include "kernels/lib/weighted_difference.h"
 
 STAGE gradient_emission(uint count, uint unit, uint first, uint to, uint capacity, uint slots,
                         __global const uint *index, __global const real *ray, __global const real *vertex_old,
@@ -87,11 +88,7 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint to, uint capacit
             side > R(0) ? r_max(cosine, R(0)) / side * distance_squared / offset_distance_squared : R(0);
         offset_light = is_sphere && base_light > R(0) ? jacobian * offset_pdf * probability / bsdf_pdf : offset_light;
 #endif
-        const real weight = R(1) / (R(1) + base_light + offset_light + open * r_max(ratio, R(0)));
-        const int failed = ratio < R(0), absent = ratio < R(-1.5);
-        const real base_weight = absent ? R(0) : failed ? R(1) / (R(1) + base_light) : weight;
-        const real offset_weight = failed ? R(0) : weight;
-        const rgb change = rgb_sub(rgb_scale(offset, offset_weight), rgb_scale(base, base_weight));
+        const rgb change = weighted_difference(base, offset, base_light, offset_light + open * ratio, ratio);
         const size_t to_slot = (size_t)j * slots + slot;
         ADD_RGB(difference, value, to_slot, change);
     }

@@ -10,12 +10,6 @@
 #include "kernels/lib/light_sampling.h"
 #include "kernels/lib/mis.h"
 
-#if LIGHT_KINDS > 1
-#define IS_LIGHT(name, trait) ((trait) && chosen.kind == light_kind_##name)
-#else
-#define IS_LIGHT(name, trait) (trait)
-#endif
-
 STAGE gradient_light(uint count, uint unit, uint first, uint capacity, uint slots, uint max_depth,
                      __global const real *vertex, __global const real *tangent, __global real *shadow,
                      __global real *gain, __global const real *materials, __global const real *lights,
@@ -59,8 +53,9 @@ STAGE gradient_light(uint count, uint unit, uint first, uint capacity, uint slot
 
 #if FIRST
     const vec3 light_point = v3_add(position, s.connection);
-    const int is_surface = IS_LIGHT(triangle, TRAIT_LIGHT_TRIANGLE) | IS_LIGHT(sphere, TRAIT_LIGHT_SPHERE);
-    const int is_point = IS_LIGHT(point, TRAIT_LIGHT_POINT);
+    const int is_surface =
+        IS_LIGHT(chosen, triangle, TRAIT_LIGHT_TRIANGLE) | IS_LIGHT(chosen, sphere, TRAIT_LIGHT_SPHERE);
+    const int is_point = IS_LIGHT(chosen, point, TRAIT_LIGHT_POINT);
     const real base_distance_squared = v3_dot(s.connection, s.connection);
     const real base_cosine = -v3_dot(s.normal, s.direction);
     const real end_offset = FIELD_OF(light, lights, chosen.light, offset);
@@ -94,7 +89,8 @@ STAGE gradient_light(uint count, uint unit, uint first, uint capacity, uint slot
             light_sphere_pdf(FIELD_OF(light, lights, chosen.light, e1_x), FIELD_OF(light, lights, chosen.light, e1_y),
                              FIELD_OF(light, lights, chosen.light, inverse_area), v3_dot(to_center, to_center),
                              point_distance_squared, cosine);
-        offset_light = IS_LIGHT(sphere, 1) ? (s.pdf > R(0) ? jacobian * sphere_pdf / s.pdf : R(0)) : offset_light;
+        offset_light =
+            IS_LIGHT(chosen, sphere, 1) ? (s.pdf > R(0) ? jacobian * sphere_pdf / s.pdf : R(0)) : offset_light;
 #endif
         const material offset_material = material_load(materials, material_index, unit);
         const frame offset_axes = PRIMARY_FRAME(neighbour, offset_material);
@@ -108,9 +104,8 @@ STAGE gradient_light(uint count, uint unit, uint first, uint capacity, uint slot
         AT(gain, offset_light, at) = neighbour == slot ? shift_absent : is_rough ? offset_light : shift_failed;
         AT(gain, offset_bsdf, at) = f.pdf * jacobian * inverse_light_pdf;
 
-        const vec3 geometric = AT_V3(primary, geometric, neighbour);
-        const real off = AT(primary, offset, neighbour) * r_copysign1(v3_dot(geometric, direction));
-        const vec3 origin = v3_mad(from, off, geometric);
+        const vec3 origin =
+            ray_origin(from, AT_V3(primary, geometric, neighbour), AT(primary, offset, neighbour), direction);
         const vec3 infinite = v3_add(from, s.connection);
         const vec3 end = v3(finite ? light_point.x : infinite.x, finite ? light_point.y : infinite.y,
                             finite ? light_point.z : infinite.z);
@@ -139,12 +134,7 @@ STAGE gradient_light(uint count, uint unit, uint first, uint capacity, uint slot
     }
 #endif
 
-    const vec3 geometric = AT_V3(vertex, geometric, row);
-    const real off = AT(vertex, offset, row) * r_copysign1(v3_dot(geometric, s.direction));
-    const vec3 origin = v3_mad(position, off, geometric);
-    const vec3 target = v3_mad(v3_add(position, s.connection), FIELD_OF(light, lights, chosen.light, offset), s.normal);
-    SET_V3(shadow, origin, row, origin);
-    SET_V3(shadow, direction, row, v3_sub(target, origin));
+    CONNECT_TO_LIGHT(row, position, chosen)
     SET_RGB(shadow, value, row, base);
     AT_UINT(shadow, open, row) = allowed && r_max(rgb_max(base), any_offset) > R(0) ? 1u : 0u;
 }

@@ -68,9 +68,8 @@ STAGE gradient_scatter(uint count, uint unit, uint first, uint capacity, uint sl
 #endif
 
     const vec3 direction = v3_normalize(frame_to_world(axes, s.wo));
-    const vec3 geometric = AT_V3(vertex, geometric, row);
-    const real off = AT(vertex, offset, row) * r_copysign1(v3_dot(geometric, direction));
-    const vec3 origin = v3_mad(AT_V3(vertex, position, row), off, geometric);
+    const vec3 origin =
+        ray_origin(AT_V3(vertex, position, row), AT_V3(vertex, geometric, row), AT(vertex, offset, row), direction);
     AT_UINT(vertex, depth, row) = depth + 1u;
     SET_RGB(vertex, throughput, row, rgb_gray(alive ? brightest / survival : R(0)));
     AT(vertex, pdf, row) = BSDF_IS_DIRAC ? R(0) : s.pdf;

@@ -32,12 +32,7 @@ STAGE light_sample(uint count, uint unit, uint first, uint capacity, uint max_de
     const real weight = mis_weight_light(s.pdf * probability, pdf_bsdf) / probability;
     const rgb gain = rgb_scale(rgb_mul(rgb_mul(AT_RGB(vertex, throughput, row), s.value), reflected), weight);
 
-    const vec3 geometric = AT_V3(vertex, geometric, row);
-    const real off = AT(vertex, offset, row) * r_copysign1(v3_dot(geometric, s.direction));
-    const vec3 origin = v3_mad(position, off, geometric);
-    const vec3 target = v3_mad(v3_add(position, s.connection), FIELD_OF(light, lights, chosen.light, offset), s.normal);
-    SET_V3(shadow, origin, row, origin);
-    SET_V3(shadow, direction, row, v3_sub(target, origin));
+    CONNECT_TO_LIGHT(row, position, chosen)
     SET_RGB(shadow, value, row, gain);
     AT_UINT(shadow, open, row) = depth + 1u < max_depth && rgb_max(gain) > R(0) ? 1u : 0u;
 }

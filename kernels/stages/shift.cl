@@ -4,7 +4,6 @@
  *
  * The shift fails where a first vertex is of a Dirac kind, where the neighbour saw nothing, where the second vertex
  * would be seen from its other side. */
-//! traits: TRAIT_SPHERES TRAIT_TRIANGLES
 #include "kernels/lib/bsdf_any.h"
 #include "kernels/lib/gradient.h"
 #include "kernels/lib/scene_hit.h"
@@ -30,19 +29,7 @@ STAGE shift(uint count, uint unit, uint first, uint to, uint capacity, uint slot
     const primitive_hit hit =
         primitive_hit_of(triangles, spheres, unit, triangle_count, primitive, AT_V3(ray, origin, row), base_direction);
     const real base_side = v3_dot(hit.normal, v3_sub(base, hit.position));
-    real offset = R(0);
-#if TRAIT_TRIANGLES && TRAIT_SPHERES
-    if (primitive < triangle_count)
-#endif
-#if TRAIT_TRIANGLES
-        offset = FIELD_OF(triangle, triangles, primitive, offset);
-#endif
-#if TRAIT_TRIANGLES && TRAIT_SPHERES
-    if (primitive >= triangle_count)
-#endif
-#if TRAIT_SPHERES
-        offset = FIELD_OF(sphere, spheres, primitive - triangle_count, offset);
-#endif
+    const real offset = primitive_offset(triangles, spheres, unit, triangle_count, primitive);
     const vec3 end = v3_mad(hit.position, offset * r_copysign1(base_side), hit.normal);
 #endif
     const film_pixel pixel = PIXEL_OF(slot);
@@ -73,9 +60,8 @@ STAGE shift(uint count, uint unit, uint first, uint to, uint capacity, uint slot
         AT(shifted, ratio, at) = neighbour == slot ? shift_absent : works ? f.pdf * factor : shift_failed;
         SET_V3(shifted, wi, at, v3_neg(direction));
 
-        const vec3 geometric = AT_V3(primary, geometric, neighbour);
-        const real off = AT(primary, offset, neighbour) * r_copysign1(v3_dot(geometric, direction));
-        const vec3 origin = v3_mad(from, off, geometric);
+        const vec3 origin =
+            ray_origin(from, AT_V3(primary, geometric, neighbour), AT(primary, offset, neighbour), direction);
         const size_t segment = link_first + (size_t)j * link_stride + i;
         SET_V3(link, origin, segment, origin);
 #if ESCAPED

@@ -57,20 +57,7 @@ STAGE surface(uint count, uint unit, uint first, uint capacity, __global const u
     SET_V3(tangent, along, i, along);
 #endif
 
-    real offset = R(0);
-#if TRAIT_TRIANGLES && TRAIT_SPHERES
-    if (primitive < triangle_count)
-#endif
-#if TRAIT_TRIANGLES
-        offset = FIELD_OF(triangle, triangles, primitive, offset);
-#endif
-#if TRAIT_TRIANGLES && TRAIT_SPHERES
-    if (primitive >= triangle_count)
-#endif
-#if TRAIT_SPHERES
-        offset = FIELD_OF(sphere, spheres, primitive - triangle_count, offset);
-#endif
-
+    const real offset = primitive_offset(triangles, spheres, unit, triangle_count, primitive);
     AT_UINT(vertex, slot, i) = AT_UINT_IN(vertex_old, vertex, slot, row);
     AT_UINT(vertex, key_0, i) = AT_UINT_IN(vertex_old, vertex, key_0, row);
     AT_UINT(vertex, key_1, i) = AT_UINT_IN(vertex_old, vertex, key_1, row);

@@ -80,7 +80,7 @@ Image reconstruct(PoissonSolver &solver, const Image &whole, const GradientLayer
     images.dx_variance = dx_variance.data();
     images.dy_variance = dy_variance.data();
     PoissonOptions poisson;
-    poisson.norm = options.reconstruction_l2 ? PoissonNorm::l2 : PoissonNorm::l1;
+    poisson.norm = options.norm;
     poisson.alpha_from_variances = !options.alpha && layers.frames > 1;
     poisson.alpha = options.alpha.value_or(poisson.alpha);
     std::vector<float> result(primal.size());

@@ -14,14 +14,6 @@ using namespace lib_float;
 
 namespace {
 
-#define GRADUS_KIND_NAME(name, is_dirac) #name,
-constexpr const char *kind_names[] = {GRADUS_BSDF_KINDS(GRADUS_KIND_NAME)};
-#undef GRADUS_KIND_NAME
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 /// A request for kernel `entry` of a stage file, for one side of an #if.
 KernelRequest variant(KernelRequest request, const std::string &name, const std::string &entry,
                       const std::map<std::string, std::string> &definitions) {
@@ -36,10 +28,9 @@ KernelRequest variant(KernelRequest request, const std::string &name, const std:
 GradientPathTracer::GradientPathTracer(Device &device, const Scene &scene, const RenderOptions &options)
     : PathTracer(device, scene, options, {{"TRAIT_SHARED_JITTER", 1}}) {
     gradient_kinds_.resize(scene_tables_.kinds.size());
+    const std::vector<std::string> all = all_bsdf_kinds();
     for (const std::string &kind : scene_tables_.kinds)
-        for (std::uint32_t number = 0; number < std::size(kind_names); ++number)
-            if (kind == kind_names[number])
-                kind_numbers_.push_back(number);
+        kind_numbers_.push_back(static_cast<std::uint32_t>(std::find(all.begin(), all.end(), kind) - all.begin()));
     Additions additions;
     additions.phases = phases;
     additions.whole_frames = true;
@@ -55,8 +46,8 @@ std::vector<PathTracer::Wanted> GradientPathTracer::wanted_kernels() {
     const std::vector<std::string> &kinds = scene_tables_.kinds;
     // Offset paths meet whichever kinds the scene has.
     std::map<std::string, std::string> any = {{"ONE_KIND", kinds.size() == 1 ? "1" : "0"}};
-    for (const char *name : kind_names)
-        any[std::string("HAS_") + name] = std::find(kinds.begin(), kinds.end(), name) != kinds.end() ? "1" : "0";
+    for (const std::string &name : all_bsdf_kinds())
+        any["HAS_" + name] = std::find(kinds.begin(), kinds.end(), name) != kinds.end() ? "1" : "0";
     const auto with = [&any](const char *name, const char *value) {
         std::map<std::string, std::string> definitions = any;
         definitions[name] = value;
@@ -87,9 +78,7 @@ std::vector<PathTracer::Wanted> GradientPathTracer::wanted_kernels() {
     wanted.push_back({&connect_second_, variant(connect, "gradient connect 2", "gradient_connect", {{"FIRST", "0"}})});
     for (std::size_t k = 0; k < kinds.size(); ++k) {
         GradientKernels &kind = gradient_kinds_[k];
-        KindKernels lights;
-        lights.is_dirac = bsdf_kind_is_dirac(kinds[k]);
-        if (samples_lights(lights)) {
+        if (samples_lights(bsdf_kind_is_dirac(kinds[k]))) {
             const KernelRequest light = request_of("gradient_light", kinds[k]);
             wanted.push_back({&kind.light_first,
                               variant(light, "gradient_light 1 " + kinds[k], "gradient_light", with("FIRST", "1"))});
@@ -134,25 +123,26 @@ void GradientPathTracer::bind_kernels() {
     }
 }
 
-void GradientPathTracer::run(Kernel &kernel, std::uint32_t first, std::uint32_t items) {
-    if (items == 0 || !kernel.valid())
-        return;
-    kernel.set("first", first);
-    kernel.set("count", items);
-    kernel.launch(items);
-}
-
-GradientPathTracer::Vertices GradientPathTracer::ranges_of(const std::vector<std::uint32_t> &range) const {
+GradientPathTracer::Vertices GradientPathTracer::partition(std::uint32_t rays, const Buffer &vertex) {
+    classify_.bind("vertex_old", vertex);
+    run(classify_, 0, rays);
+    const std::vector<std::uint32_t> &range = partition_->run(rays);
     Vertices vertices;
-    const std::uint32_t escaped = range[phases];
+    vertices.escaped_count = range[phases];
+    vertices.count = range.back() - vertices.escaped_count;
+    const auto rows = [&](std::size_t first_bin, std::size_t end_bin) {
+        return Range{range[first_bin] - vertices.escaped_count, range[end_bin] - range[first_bin]};
+    };
     const std::size_t kinds = kinds_.size();
-    vertices.count = range.back() - escaped;
-    for (std::uint32_t phase = 0; phase < phases; ++phase)
+    for (std::uint32_t phase = 0; phase < phases; ++phase) {
+        const std::size_t bin = phases + 2 * phase * kinds;
+        vertices.escaped[phase] = {range[phase], range[phase + 1] - range[phase]};
+        vertices.rows[phase] = rows(bin, bin + 2 * kinds);
         for (std::size_t k = 0; k < kinds; ++k) {
-            const std::size_t bin = phases + 2 * (phase * kinds + k);
-            vertices.ranges[phase].push_back({range[bin] - escaped, range[bin + 2] - range[bin]});
+            vertices.kinds[phase].push_back(rows(bin + 2 * k, bin + 2 * k + 2));
+            vertices.emitting[phase].push_back(rows(bin + 2 * k + 1, bin + 2 * k + 2));
         }
-    vertices.first_count = range[phases + 2 * kinds] - escaped;
+    }
     return vertices;
 }
 
@@ -164,18 +154,15 @@ void GradientPathTracer::trace_primaries(std::uint32_t paths) {
         primary_begin_.bind("vertex", tables_->vertex[0]);
         run(primary_begin_, 0, rows);
         trace(rows, 0);
-        classify_.bind("vertex_old", tables_->vertex[0]);
-        run(classify_, 0, rows);
-        const std::vector<std::uint32_t> &range = partition_->run(rows);
-        const Vertices vertices = ranges_of(range);
+        const Vertices vertices = partition(rows, tables_->vertex[0]);
         surface_.bind("vertex_old", tables_->vertex[0]);
         surface_.bind("vertex", tables_->vertex[1]);
-        run(surface_, range[phases], vertices.count);
+        run(surface_, vertices.escaped_count, vertices.count);
         primary_surface_.bind("vertex", tables_->vertex[1]);
-        primary_surface_.set("escaped", range[phases]);
+        primary_surface_.set("escaped", vertices.escaped_count);
         for (std::size_t k = 0; k < kinds_.size(); ++k) {
             primary_surface_.set("kind", kind_numbers_[k]);
-            run(primary_surface_, vertices.ranges[0][k].first, vertices.ranges[0][k].count);
+            run(primary_surface_, vertices.kinds[0][k].first, vertices.kinds[0][k].count);
         }
     }
 }
@@ -186,45 +173,39 @@ void GradientPathTracer::connect(const Vertices &vertices, const Buffer &vertex)
         return;
     for (Kernel *kernel : {&connect_first_, &connect_second_, &connect_})
         kernel->bind("vertex", vertex);
-    connect_first_.set("link_stride", vertices.first_count);
+    connect_first_.set("link_stride", vertices.rows[0].count);
     for (std::size_t k = 0; k < kinds_.size(); ++k)
         if (gradient_kinds_[k].light_first.valid()) {
-            run(connect_first_, vertices.ranges[0][k].first, vertices.ranges[0][k].count);
-            run(connect_second_, vertices.ranges[1][k].first, vertices.ranges[1][k].count);
+            run(connect_first_, vertices.kinds[0][k].first, vertices.kinds[0][k].count);
+            run(connect_second_, vertices.kinds[1][k].first, vertices.kinds[1][k].count);
         }
-    const std::uint32_t later = vertices.ranges[2].front().first;
-    run(connect_, later, vertices.count - later);
+    run(connect_, vertices.rows[2].first, vertices.rows[2].count);
 }
 
 /// Adds the light that paths have met. The links of second vertices start at `link_first`: those of surfaces, then
 /// those of escaped paths.
-void GradientPathTracer::emit(const std::vector<std::uint32_t> &range, std::uint32_t link_first) {
-    const std::size_t kinds = kinds_.size();
-    const auto bin = [&](std::uint32_t phase, std::size_t kind) { return phases + 2 * (phase * kinds + kind); };
-    const std::uint32_t escaped = range[phases], hits = range.back() - escaped;
-    const std::uint32_t seconds = range[bin(2, 0)] - range[bin(1, 0)], second_escaped = range[2] - range[1];
-
+void GradientPathTracer::emit(const Vertices &next, std::uint32_t link_first) {
     for (const std::uint32_t phase : {0u, 2u}) {
         for (Kernel *kernel : {&escape_, &emission_})
             if (kernel->valid())
                 kernel->bind("radiance", phase == 0 ? direct_ : tables_->radiance);
-        run(escape_, range[phase], range[phase + 1] - range[phase]);
-        for (std::size_t k = 0; k < kinds; ++k)
-            run(emission_, range[bin(phase, k) + 1], range[bin(phase, k) + 2] - range[bin(phase, k) + 1]);
+        run(escape_, next.escaped[phase].first, next.escaped[phase].count);
+        for (const Range &emitting : next.emitting[phase])
+            run(emission_, next.escaped_count + emitting.first, emitting.count);
     }
+    const Range &second = next.rows[1], &second_escaped = next.escaped[1];
     if (escape_second_.valid()) {
-        escape_second_.set("to", hits);
-        escape_second_.set("link_first", link_first + 4 * seconds);
-        escape_second_.set("link_stride", second_escaped);
-        run(escape_second_, range[1], second_escaped);
+        escape_second_.set("to", next.count);
+        escape_second_.set("link_first", link_first + 4 * second.count);
+        escape_second_.set("link_stride", second_escaped.count);
+        run(escape_second_, second_escaped.first, second_escaped.count);
     }
     if (emission_second_.valid())
-        for (std::size_t k = 0; k < kinds; ++k) {
-            const std::uint32_t first = range[bin(1, k) + 1];
-            emission_second_.set("to", first - escaped);
-            emission_second_.set("link_first", link_first + (first - range[bin(1, 0)]));
-            emission_second_.set("link_stride", seconds);
-            run(emission_second_, first, range[bin(1, k) + 2] - first);
+        for (const Range &emitting : next.emitting[1]) {
+            emission_second_.set("to", emitting.first);
+            emission_second_.set("link_first", link_first + (emitting.first - second.first));
+            emission_second_.set("link_stride", second.count);
+            run(emission_second_, next.escaped_count + emitting.first, emitting.count);
         }
 }
 
@@ -232,11 +213,7 @@ bool GradientPathTracer::render_batch() {
     if (done_ >= total_)
         return false;
     const auto start = std::chrono::steady_clock::now();
-    const std::uint32_t paths = static_cast<std::uint32_t>(std::min<std::uint64_t>(tables_->slots, total_ - done_));
-    const std::uint64_t first_sample = done_ / film_->pixels();
-    camera_.set("first_pixel", 0);
-    camera_.set("first_sample_low", static_cast<std::uint32_t>(first_sample));
-    camera_.set("first_sample_high", static_cast<std::uint32_t>(first_sample >> 32));
+    const std::uint32_t paths = begin_pass();
     const std::size_t kinds = kinds_.size();
     if (settings_.max_depth == 0) {
         for (Buffer *buffer : {&tables_->radiance, &tables_->feature, &direct_, &prefix_, &difference_})
@@ -264,10 +241,7 @@ bool GradientPathTracer::render_batch() {
         trace(rays, vertices.count);
 
         const Buffer &old_vertex = tables_->vertex[newest], &new_vertex = tables_->vertex[1 - newest];
-        classify_.bind("vertex_old", old_vertex);
-        run(classify_, 0, rays);
-        const std::vector<std::uint32_t> &range = partition_->run(rays);
-        const Vertices next = ranges_of(range);
+        const Vertices next = partition(rays, old_vertex);
         for (Kernel *kernel :
              {&surface_, &escape_, &emission_, &shift_, &shift_escaped_, &emission_second_, &escape_second_}) {
             if (!kernel->valid())
@@ -276,32 +250,30 @@ bool GradientPathTracer::render_batch() {
             kernel->bind("vertex", new_vertex);
         }
         // Links: of the light samples of first vertices, then those that second vertices ask for.
-        const std::uint32_t second_first = phases + 2 * static_cast<std::uint32_t>(kinds);
-        const std::uint32_t link_first = 4 * vertices.first_count;
-        const std::uint32_t seconds = range[second_first + 2 * kinds] - range[second_first];
-        const std::uint32_t second_escaped = range[2] - range[1];
-        shift_.set("to", next.first_count);
+        const std::uint32_t link_first = 4 * vertices.rows[0].count;
+        const Range &second = next.rows[1], &second_escaped = next.escaped[1];
+        shift_.set("to", second.first);
         shift_.set("link_first", link_first);
-        shift_.set("link_stride", seconds);
-        run(shift_, range[second_first], seconds);
+        shift_.set("link_stride", second.count);
+        run(shift_, next.escaped_count + second.first, second.count);
         if (shift_escaped_.valid()) {
             shift_escaped_.set("to", next.count);
-            shift_escaped_.set("link_first", link_first + 4 * seconds);
-            shift_escaped_.set("link_stride", second_escaped);
-            run(shift_escaped_, range[1], second_escaped);
+            shift_escaped_.set("link_first", link_first + 4 * second.count);
+            shift_escaped_.set("link_stride", second_escaped.count);
+            run(shift_escaped_, second_escaped.first, second_escaped.count);
         }
-        statistics_.rays["offset"] += run_link_stage(tracer_, link_, tables_->capacity,
-                                                     link_first + 4 * (seconds + second_escaped), trace_seconds_);
+        statistics_.rays["offset"] += run_link_stage(
+            tracer_, link_, tables_->capacity, link_first + 4 * (second.count + second_escaped.count), trace_seconds_);
         connect(vertices, old_vertex);
-        emit(range, link_first);
-        settle_.set("link_stride", seconds);
+        emit(next, link_first);
+        settle_.set("link_stride", second.count);
         for (std::size_t k = 0; k < kinds; ++k) {
-            const Range &second = next.ranges[1][k];
+            const Range &of_kind = next.kinds[1][k];
             settle_.set("is_dirac", kinds_[k].is_dirac);
-            settle_.set("link_first", link_first + (second.first - next.first_count));
-            run(settle_, second.first, second.count);
+            settle_.set("link_first", link_first + (of_kind.first - second.first));
+            run(settle_, of_kind.first, of_kind.count);
         }
-        run(surface_, range[phases], next.count);
+        run(surface_, next.escaped_count, next.count);
         newest = 1 - newest;
         vertices = next;
 
@@ -312,20 +284,21 @@ bool GradientPathTracer::render_batch() {
                                    &gradient.light_second, &gradient.scatter_first, &gradient.scatter_second})
                 if (kernel->valid())
                     kernel->bind("vertex", tables_->vertex[newest]);
-            const Range &first = vertices.ranges[0][k], &second = vertices.ranges[1][k], &later = vertices.ranges[2][k];
-            run(kind.feature, first.first, first.count);
+            const Range &first_rows = vertices.kinds[0][k], &second_rows = vertices.kinds[1][k],
+                        &later_rows = vertices.kinds[2][k];
+            run(kind.feature, first_rows.first, first_rows.count);
             if (gradient.light_first.valid()) {
-                gradient.light_first.set("link_stride", vertices.first_count);
-                run(gradient.light_first, first.first, first.count);
+                gradient.light_first.set("link_stride", vertices.rows[0].count);
+                run(gradient.light_first, first_rows.first, first_rows.count);
             } else {
-                close_links_.set("link_stride", vertices.first_count);
-                run(close_links_, first.first, first.count);
+                close_links_.set("link_stride", vertices.rows[0].count);
+                run(close_links_, first_rows.first, first_rows.count);
             }
-            run(gradient.scatter_first, first.first, first.count);
-            run(gradient.light_second, second.first, second.count);
-            run(gradient.scatter_second, second.first, second.count);
-            run(kind.light_sample, later.first, later.count);
-            run(kind.scatter, later.first, later.count);
+            run(gradient.scatter_first, first_rows.first, first_rows.count);
+            run(gradient.light_second, second_rows.first, second_rows.count);
+            run(gradient.scatter_second, second_rows.first, second_rows.count);
+            run(kind.light_sample, later_rows.first, later_rows.count);
+            run(kind.scatter, later_rows.first, later_rows.count);
         }
     }
     run(combine_, 0, paths);
@@ -334,11 +307,7 @@ bool GradientPathTracer::render_batch() {
         gradient_accumulate_.set("first_slot", slot);
         run(gradient_accumulate_, 0, film_->pixels());
     }
-    finish(device_);
-    done_ += paths;
-    statistics_.samples += paths;
-    statistics_.render_seconds += seconds_since(start);
-    return done_ < total_;
+    return end_pass(paths, start);
 }
 
 Image GradientPathTracer::image() {

@@ -29,24 +29,27 @@ class GradientPathTracer final : public PathTracer {
     struct GradientKernels {
         Kernel light_first, light_second, scatter_first, scatter_second;
     };
-    /// Rows of one kind and phase.
     struct Range {
         std::uint32_t first = 0, count = 0;
     };
-    /// The newest vertices: their rows by phase and kind, and the links that their light samples ask for.
+    /// Where the partition put paths. Rows are those of the vertices that `surface` makes; a row's place in the index
+    /// is `escaped_count` further on.
     struct Vertices {
-        std::uint32_t count = 0, first_count = 0;
-        std::vector<Range> ranges[phases];
+        std::uint32_t count = 0, escaped_count = 0;
+        Range escaped[phases]; ///< places in the index
+        Range rows[phases];
+        std::vector<Range> kinds[phases];    ///< rows by kind
+        std::vector<Range> emitting[phases]; ///< those of them on surfaces that emit
     };
 
     std::vector<Wanted> wanted_kernels();
     void allocate();
     void bind_kernels();
-    void run(Kernel &kernel, std::uint32_t first, std::uint32_t items);
     void trace_primaries(std::uint32_t paths);
     void connect(const Vertices &vertices, const Buffer &vertex);
-    void emit(const std::vector<std::uint32_t> &range, std::uint32_t link_first);
-    Vertices ranges_of(const std::vector<std::uint32_t> &range) const;
+    void emit(const Vertices &next, std::uint32_t link_first);
+    /// Classifies and sorts the rays.
+    Vertices partition(std::uint32_t rays, const Buffer &vertex);
 
     Kernel primary_begin_, primary_surface_, begin_, shift_, shift_escaped_, settle_, close_links_;
     Kernel emission_second_, escape_second_, connect_first_, connect_second_, combine_, gradient_accumulate_;

@@ -4,6 +4,7 @@
 
 #include "runtime/film/image.h"
 #include "runtime/scene/scene.h"
+#include "solver/poisson_solver.h"
 
 #include <cstdint>
 #include <functional>
@@ -24,10 +25,10 @@ struct RenderOptions {
     bool aov = false;             ///< also albedo, normal, depth, variance
     bool all_traits = false;      ///< for measuring: compile the kernels for everything, as if the scene had it
     enum class Strategy { mis, light, bsdf };
-    Strategy strategy = Strategy::mis; ///< for tests: light sampling alone or BSDF sampling alone
-    bool reconstruction_l2 = false;    ///< gradient-domain methods: L2 instead of L1
-    std::optional<double> alpha;       ///< their weight of the primal; none: from the variances
-    std::string dump_kernels;          ///< folder for the source of each kernel as it was compiled; empty: none
+    Strategy strategy = Strategy::mis;  ///< for tests: light sampling alone or BSDF sampling alone
+    PoissonNorm norm = PoissonNorm::l1; ///< of the reconstruction, gradient-domain methods
+    std::optional<double> alpha;        ///< their weight of the primal; none: from the variances
+    std::string dump_kernels;           ///< folder for the source of each kernel as it was compiled; empty: none
     /// Called when a kernel has been compiled: its name, how many are ready, of how many, and its seconds.
     std::function<void(const std::string &, std::size_t, std::size_t, double)> on_compiled;
 };

@@ -1,6 +1,7 @@
 #include "runtime/methods/path_tracer.h"
 
 #include "runtime/error.h"
+#include "runtime/seconds_since.h"
 #include "runtime/stages/invariant_division.h"
 #include "runtime/stages/trace_stage.h"
 
@@ -18,16 +19,13 @@ namespace {
 constexpr Precision precision = Precision::single;
 constexpr std::uint32_t deepest = 1u << 16; // where a file asks for paths without end
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 TraitMap traits_for(const Scene &scene, const RenderOptions &options, const TraitMap &more) {
     TraitMap traits = scene_traits(scene);
     traits["TRAIT_AOV"] = options.aov;
-    traits["TRAIT_SHARED_JITTER"] = 0;
     if (options.all_traits)
         traits = with_all_traits(traits);
+    // Settings of a method, which no scene has.
+    traits["TRAIT_SHARED_JITTER"] = 0;
     traits["STRATEGY"] = static_cast<int>(options.strategy);
     for (const auto &[name, value] : more)
         traits[name] = value;
@@ -120,7 +118,7 @@ void PathTracer::build_kernels(const std::vector<std::string> &kinds, const Addi
         };
         if (options_.aov)
             want_variant(kind.feature, "feature");
-        if (samples_lights(kind))
+        if (samples_lights(kind.is_dirac))
             want_variant(kind.light_sample, "light_sample");
         want_variant(kind.scatter, "scatter");
     }
@@ -183,8 +181,8 @@ void PathTracer::bind_film_place(Kernel &kernel) const {
     kernel.set("crop_height", film_settings_.crop_height);
 }
 
-bool PathTracer::samples_lights(const KindKernels &kind) const {
-    return !kind.is_dirac && scene_tables_.light_count > 0 && options_.strategy != RenderOptions::Strategy::bsdf;
+bool PathTracer::samples_lights(bool is_dirac) const {
+    return !is_dirac && scene_tables_.light_count > 0 && options_.strategy != RenderOptions::Strategy::bsdf;
 }
 
 std::vector<Kernel *> PathTracer::all_kernels() {
@@ -233,23 +231,36 @@ void PathTracer::trace(std::uint32_t rays, std::uint32_t shadows) {
     statistics_.rays["shadow"] += counts.shadow;
 }
 
+void PathTracer::run(Kernel &kernel, std::uint32_t first, std::uint32_t items) {
+    if (items == 0 || !kernel.valid())
+        return;
+    kernel.set("first", first);
+    kernel.set("count", items);
+    kernel.launch(items);
+}
+
+std::uint32_t PathTracer::begin_pass() {
+    const std::uint64_t first_sample = done_ / film_->pixels();
+    camera_.set("first_pixel", static_cast<std::uint32_t>(done_ % film_->pixels()));
+    camera_.set("first_sample_low", static_cast<std::uint32_t>(first_sample));
+    camera_.set("first_sample_high", static_cast<std::uint32_t>(first_sample >> 32));
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(tables_->slots, total_ - done_));
+}
+
+bool PathTracer::end_pass(std::uint32_t paths, std::chrono::steady_clock::time_point start) {
+    finish(device_);
+    done_ += paths;
+    statistics_.samples += paths;
+    statistics_.render_seconds += seconds_since(start);
+    return done_ < total_;
+}
+
 bool PathTracer::render_batch() {
     if (done_ >= total_)
         return false;
     const auto start = std::chrono::steady_clock::now();
-    const std::uint32_t paths = static_cast<std::uint32_t>(std::min<std::uint64_t>(tables_->slots, total_ - done_));
     const std::uint32_t first_pixel = static_cast<std::uint32_t>(done_ % film_->pixels());
-    const std::uint64_t first_sample = done_ / film_->pixels();
-    camera_.set("first_pixel", first_pixel);
-    camera_.set("first_sample_low", static_cast<std::uint32_t>(first_sample));
-    camera_.set("first_sample_high", static_cast<std::uint32_t>(first_sample >> 32));
-    const auto run = [](Kernel &kernel, std::uint32_t first, std::uint32_t items) {
-        if (items == 0)
-            return;
-        kernel.set("first", first);
-        kernel.set("count", items);
-        kernel.launch(items);
-    };
+    const std::uint32_t paths = begin_pass();
 
     if (settings_.max_depth == 0) { // no path begins, so none sets its row to zero
         tables_->radiance.clear();
@@ -300,11 +311,7 @@ bool PathTracer::render_batch() {
         }
     }
     film_->accumulate(paths, first_pixel);
-    finish(device_);
-    done_ += paths;
-    statistics_.samples += paths;
-    statistics_.render_seconds += seconds_since(start);
-    return done_ < total_;
+    return end_pass(paths, start);
 }
 
 Image PathTracer::image() {

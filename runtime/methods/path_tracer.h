@@ -9,6 +9,7 @@
 #include "runtime/stages/scene_buffers.h"
 #include "runtime/trace/tracer.h"
 
+#include <chrono>
 #include <functional>
 #include <optional>
 
@@ -62,9 +63,15 @@ class PathTracer : public Method {
     bool escape_wanted() const { return traits_.at("TRAIT_ENVIRONMENT") != 0; }
     bool emission_wanted() const { return traits_.at("TRAIT_LIGHT_TRIANGLE") || traits_.at("TRAIT_LIGHT_SPHERE"); }
     std::uint32_t max_depth() const;
-    bool samples_lights(const KindKernels &kind) const;
+    bool samples_lights(bool is_dirac) const;
     void begin_paths(std::uint32_t row, std::uint32_t slot, std::uint32_t count, const Buffer &vertex);
     void trace(std::uint32_t rays, std::uint32_t shadows);
+    /// Launches a kernel, where there is one, on rows [first, first + items).
+    static void run(Kernel &kernel, std::uint32_t first, std::uint32_t items);
+    /// How many paths the next pass has; tells `camera` where they begin.
+    std::uint32_t begin_pass();
+    /// Waits for a pass of so many paths and counts it. False once all samples are done.
+    bool end_pass(std::uint32_t paths, std::chrono::steady_clock::time_point start);
 
     Device &device_;
     RenderOptions options_;

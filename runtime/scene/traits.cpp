@@ -80,6 +80,13 @@ std::string bsdf_kind_name(const Bsdf &bsdf) {
     return "";
 }
 
+std::vector<std::string> all_bsdf_kinds() {
+    std::vector<std::string> names;
+    for (const KindEntry &kind : kinds)
+        names.push_back(kind.name);
+    return names;
+}
+
 std::vector<std::string> bsdf_kinds(const Scene &scene) {
     std::set<std::string> found;
     for_each_bsdf(scene, [&](const Bsdf &bsdf) { found.insert(bsdf_kind_name(bsdf)); });
@@ -161,8 +168,7 @@ std::string trait_description(const std::string &name) {
 TraitMap with_all_traits(TraitMap traits) {
     for (auto &[name, value] : traits) {
         // The filter and hidden emitters change the picture; the rest only makes room for what is not there.
-        const bool setting =
-            name.starts_with("TRAIT_FILTER") || name == "TRAIT_HIDE_EMITTERS" || name == "TRAIT_SHARED_JITTER";
+        const bool setting = name.starts_with("TRAIT_FILTER") || name == "TRAIT_HIDE_EMITTERS";
         if (!setting)
             value = 1;
     }

@@ -27,6 +27,9 @@ TraitMap with_all_traits(TraitMap traits);
 /// The BSDF of the kernels that a Bsdf of the scene uses: a name of GRADUS_BSDF_KINDS.
 std::string bsdf_kind_name(const Bsdf &bsdf);
 
+/// All of GRADUS_BSDF_KINDS by name; a kind's place is its number in kernels.
+std::vector<std::string> all_bsdf_kinds();
+
 /// The kinds that occur on the scene's shapes, in the order of GRADUS_BSDF_KINDS.
 std::vector<std::string> bsdf_kinds(const Scene &scene);
 

@@ -37,6 +37,14 @@ class GradientLayers : public GradientImagesTest {
                 expected.push_back(start + float(i));
         EXPECT_EQ(images.planes.at(layer), expected) << layer_name(layer);
     }
+    /// Each layer's red begins at a hundred more than that of the layer before.
+    void expect_all_layers(const GradientImages &images) const {
+        float first = 100;
+        for (const GradientLayer layer : gradient_layers) {
+            expect_colours(images, layer, first);
+            first += 100;
+        }
+    }
     void expect_error(const GradientSources &sources, ExitCode code, const ::testing::Matcher<std::string> &text) {
         try {
             read_gradient_images(sources);
@@ -84,11 +92,7 @@ TEST_F(GradientLayers, OneFileWithLayers) {
     EXPECT_EQ(read_gradient_images(sources).planes.size(), 4u) << "variances are read only where they are asked for";
     sources.variances = true;
     const GradientImages images = read_gradient_images(sources);
-    float first = 100;
-    for (const GradientLayer layer : gradient_layers) {
-        expect_colours(images, layer, first);
-        first += 100;
-    }
+    expect_all_layers(images);
 }
 
 TEST_F(GradientLayers, NamesOfOtherRenderersInAnyCase) {
@@ -103,11 +107,7 @@ TEST_F(GradientLayers, NamesOfOtherRenderersInAnyCase) {
     GradientSources sources = layered(path);
     sources.variances = true;
     const GradientImages images = read_gradient_images(sources);
-    float first = 100;
-    for (const GradientLayer layer : gradient_layers) {
-        expect_colours(images, layer, first);
-        first += 100;
-    }
+    expect_all_layers(images);
 }
 
 TEST_F(GradientLayers, OurNamesGoBeforeOthers) {

@@ -75,7 +75,7 @@ TEST(GradientOptions, L2AndAlphaAreTaken) {
     const Image by_default = render(scene, options, "gpt").image;
     options.alpha = 0.01;
     const Image small = render(scene, options, "gpt").image;
-    options.reconstruction_l2 = true;
+    options.norm = PoissonNorm::l2;
     const Image l2 = render(scene, options, "gpt").image;
     EXPECT_FALSE(equal_bits(by_default, small));
     EXPECT_FALSE(equal_bits(l2, small));

@@ -1,0 +1,17 @@
+/* The difference of an offset path and its base path. */
+#ifndef GRADUS_LIB_WEIGHTED_DIFFERENCE_H
+#define GRADUS_LIB_WEIGHTED_DIFFERENCE_H
+#include "kernels/lib/vector.h"
+#include "kernels/shared/tables.h"
+
+/* What an offset path has more than its base path, weighted by all that find them (Kettunen et al. 2015). Densities are
+ * over that of the base path's sampler: `base_other` of its other sampler, `offset_density` of the offset path's, times
+ * the Jacobian. Where `marker` is shift_failed the base path counts for itself; where it is shift_absent nothing does.
+ */
+GRADUS_FN rgb weighted_difference(rgb base, rgb offset, real base_other, real offset_density, real marker) {
+    const int failed = marker < R(0), absent = marker < R(-1.5);
+    const real weight = R(1) / (R(1) + base_other + (failed ? R(0) : offset_density));
+    return rgb_sub(rgb_scale(offset, failed ? R(0) : weight), rgb_scale(base, absent ? R(0) : weight));
+}
+
+#endif
