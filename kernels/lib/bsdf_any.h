@@ -1,30 +1,29 @@
-/* Value and density of whichever BSDF kind of the scene a material is of: for offset paths, whose vertices are of
- * other kinds than those of their base paths. HAS_kind is 1 for each kind that the scene has. */
+/* Whichever BSDF kind of the scene a material is of: for offset paths, whose vertices are of other kinds than those of
+ * their base paths. HAS_kind is 1 for each kind that the scene has. */
 #ifndef GRADUS_LIB_BSDF_ANY_H
 #define GRADUS_LIB_BSDF_ANY_H
 #include "kernels/lib/bsdf.h"
 #include "kernels/shared/tables.h"
 
 typedef struct {
-    rgb value; /* f |cos wo| */
-    real pdf;  /* by solid angle */
+    rgb value; /* f |cos wo|; of a Dirac event the factor on what arrives */
+    real pdf;  /* by solid angle; of a Dirac event its probability */
     GRADUS_NOT_IN_REGISTERS
 } bsdf_value;
 
 /* Independent ifs, not a switch: PoCL vectorises those. */
 #if ONE_KIND
-#define BSDF_ANY_CASE(name)                                                                                            \
-    v.value = name##_eval(m, wi, wo);                                                                                  \
-    v.pdf = name##_pdf(m, wi, wo);
+#define BSDF_ANY_IF(name)
 #else
+#define BSDF_ANY_IF(name) if (kind_number(kind) == bsdf_kind_##name)
+#endif
 #define BSDF_ANY_CASE(name)                                                                                            \
-    if (kind == bsdf_kind_##name) {                                                                                    \
+    BSDF_ANY_IF(name) {                                                                                                \
         v.value = name##_eval(m, wi, wo);                                                                              \
         v.pdf = name##_pdf(m, wi, wo);                                                                                 \
     }
-#endif
 
-/* Zero for Dirac kinds, and for primary_none. */
+/* Zero for Dirac kinds. */
 GRADUS_FN bsdf_value bsdf_any(uint kind, material m, vec3 wi, vec3 wo) {
     bsdf_value v;
     v.value = rgb_gray(R(0));
@@ -48,12 +47,36 @@ GRADUS_FN bsdf_value bsdf_any(uint kind, material m, vec3 wi, vec3 wo) {
     return v;
 }
 
-/* 1 for the kinds that a path can reconnect at. By a mask: comparisons one by one become a switch, which PoCL does not
- * vectorise. */
-#define GRADUS_ROUGH_BIT(name, is_dirac) | ((is_dirac) ? 0u : 1u << bsdf_kind_##name)
-GRADUS_FN int bsdf_is_rough(uint kind) {
-    const uint mask = 0u GRADUS_BSDF_KINDS(GRADUS_ROUGH_BIT);
-    return (int)((kind < 32u ? 1u : 0u) & (mask >> (kind & 31u)));
+/* Reflection, or transmission, at a Dirac kind: zero where it does neither, and for other kinds. */
+GRADUS_FN bsdf_value bsdf_any_dirac(uint kind, material m, vec3 wi, int is_reflected) {
+    rgb weight = rgb_gray(R(0));
+    real pdf = R(0);
+    (void)kind, (void)m, (void)wi, (void)is_reflected;
+#if HAS_conductor
+    BSDF_ANY_IF(conductor) {
+        const bsdf_sample s = conductor_sample(m, wi, R(0), R(0), R(0));
+        weight = s.weight;
+        pdf = is_reflected ? s.pdf : R(0);
+    }
+#endif
+#if HAS_dielectric
+    BSDF_ANY_IF(dielectric) {
+        /* Below and above all reflectances: the event is given. */
+        const bsdf_sample s = dielectric_sample(m, wi, is_reflected ? R(-1) : R(2), R(0), R(0));
+        weight = s.weight;
+        pdf = s.pdf;
+    }
+#endif
+#if HAS_null
+    BSDF_ANY_IF(null) {
+        weight = rgb_gray(R(1));
+        pdf = is_reflected ? R(0) : R(1);
+    }
+#endif
+    bsdf_value v;
+    v.value = rgb_scale(weight, pdf);
+    v.pdf = pdf;
+    return v;
 }
 
 #endif

@@ -1,7 +1,8 @@
-/* Offset paths of gradient-domain path tracing: which neighbour they go through, and where they begin. */
+/* Offset paths of gradient-domain path tracing: which neighbour they go through, and where they are until they
+ * reconnect. */
 #ifndef GRADUS_LIB_GRADIENT_H
 #define GRADUS_LIB_GRADIENT_H
-//! traits: TRAIT_ANISOTROPIC TRAIT_SHADING_NORMALS
+//! traits: TRAIT_ANISOTROPIC TRAIT_SHADING_NORMALS TRAIT_APART
 #include "kernels/lib/division.h"
 #include "kernels/lib/vertex_frame.h"
 #include "kernels/shared/stage.h"
@@ -35,16 +36,24 @@ GRADUS_FN uint gradient_neighbour(uint slot, uint j, film_pixel pixel, uint widt
                      : (pixel.y > 0u ? slot - width : slot);
 }
 
-#if TRAIT_SHADING_NORMALS
-#define PRIMARY_NORMAL(slot) AT_V3(primary, shading, slot)
+/* The vertices of offset paths that have not reconnected: a table, and its row for offset j of a base path. Where all
+ * reconnect at the first chance these are what the neighbours' own paths see. */
+#if TRAIT_APART
+#define LONE offset_vertex
+#define LONE_ROW(j, row, neighbour) ((size_t)(j)*capacity + (row))
 #else
-#define PRIMARY_NORMAL(slot) AT_V3(primary, geometric, slot)
+#define LONE primary
+#define LONE_ROW(j, row, neighbour) (neighbour)
+#endif
+#if TRAIT_SHADING_NORMALS
+#define LONE_NORMAL(at) AT_V3(LONE, shading, at)
+#else
+#define LONE_NORMAL(at) AT_V3(LONE, geometric, at)
 #endif
 #if TRAIT_ANISOTROPIC
-#define PRIMARY_FRAME(slot, m)                                                                                         \
-    frame_from_tangent(PRIMARY_NORMAL(slot), AT_V3(primary, along, slot), (m).alpha_u != (m).alpha_v)
+#define LONE_FRAME(at, m) frame_from_tangent(LONE_NORMAL(at), AT_V3(LONE, along, at), (m).alpha_u != (m).alpha_v)
 #else
-#define PRIMARY_FRAME(slot, m) frame_from_normal(PRIMARY_NORMAL(slot))
+#define LONE_FRAME(at, m) frame_from_normal(LONE_NORMAL(at))
 #endif
 
 #endif

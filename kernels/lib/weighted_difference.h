@@ -11,7 +11,10 @@
 GRADUS_FN rgb weighted_difference(rgb base, rgb offset, real base_other, real offset_density, real marker) {
     const int failed = marker < R(0), absent = marker < R(-1.5);
     const real weight = R(1) / (R(1) + base_other + (failed ? R(0) : offset_density));
-    return rgb_sub(rgb_scale(offset, failed ? R(0) : weight), rgb_scale(base, absent ? R(0) : weight));
+    /* Selected, not scaled: an offset path that failed may have no value. */
+    const rgb shifted = rgb_scale(offset, weight);
+    return rgb_sub(rgb3(failed ? R(0) : shifted.r, failed ? R(0) : shifted.g, failed ? R(0) : shifted.b),
+                   rgb_scale(base, absent ? R(0) : weight));
 }
 
 #endif

@@ -112,29 +112,46 @@
 /* Gradient-domain path tracing only, from here on. A base path has four offset paths, j = 0 to 3: through the pixel to
  * the right, left, below and above (gradient_neighbour in kernels/lib/gradient.h). */
 
+/* A vertex from which an offset path goes on by itself. */
+#define GRADUS_LONE_VERTEX_COLUMNS(table, REAL, UINT)                                                                  \
+    UINT(table, kind, "its BSDF kind with kind_is_rough, kind_is_dirac; kind_none where nothing was hit")              \
+    UINT(table, material, "record of the material on this side")                                                       \
+    REAL(table, position_x, "")                                                                                        \
+    REAL(table, position_y, "")                                                                                        \
+    REAL(table, position_z, "")                                                                                        \
+    REAL(table, offset, "how far a new ray starts off the surface, along the geometric normal")                        \
+    REAL(table, wi_x, "unit vector to the vertex before, world frame; of `primary` also where nothing was hit")        \
+    REAL(table, wi_y, "")                                                                                              \
+    REAL(table, wi_z, "")                                                                                              \
+    REAL(table, geometric_x, "as in `vertex`")                                                                         \
+    REAL(table, geometric_y, "")                                                                                       \
+    REAL(table, geometric_z, "")                                                                                       \
+    REAL(table, shading_x, "only with TRAIT_SHADING_NORMALS, or the next")                                             \
+    REAL(table, shading_y, "")                                                                                         \
+    REAL(table, shading_z, "")                                                                                         \
+    REAL(table, along_x, "as in `tangent`, only with TRAIT_ANISOTROPIC")                                               \
+    REAL(table, along_y, "")                                                                                           \
+    REAL(table, along_z, "")
+
 /* What the camera sees through each pixel, by slot: where the offset paths of the neighbours begin. */
 #define GRADUS_PRIMARY_COLUMNS(REAL, UINT)                                                                             \
     UINT(primary, key_0, "random numbers of the pixel's path")                                                         \
     UINT(primary, key_1, "")                                                                                           \
     UINT(primary, primitive, "the primitive, or ray_escaped")                                                          \
-    UINT(primary, kind, "its BSDF kind, one of bsdf_kind; primary_none where nothing was hit")                         \
-    UINT(primary, material, "record of the material on this side")                                                     \
-    REAL(primary, position_x, "")                                                                                      \
-    REAL(primary, position_y, "")                                                                                      \
-    REAL(primary, position_z, "")                                                                                      \
-    REAL(primary, offset, "how far a new ray starts off the surface, along the geometric normal")                      \
-    REAL(primary, wi_x, "unit vector to the camera, world frame; also where nothing was hit")                          \
-    REAL(primary, wi_y, "")                                                                                            \
-    REAL(primary, wi_z, "")                                                                                            \
-    REAL(primary, geometric_x, "as in `vertex`")                                                                       \
-    REAL(primary, geometric_y, "")                                                                                     \
-    REAL(primary, geometric_z, "")                                                                                     \
-    REAL(primary, shading_x, "")                                                                                       \
-    REAL(primary, shading_y, "")                                                                                       \
-    REAL(primary, shading_z, "")                                                                                       \
-    REAL(primary, along_x, "as in `tangent`")                                                                          \
-    REAL(primary, along_y, "")                                                                                         \
-    REAL(primary, along_z, "")
+    GRADUS_LONE_VERTEX_COLUMNS(primary, REAL, UINT)
+
+/* With TRAIT_APART, the newest vertices of offset paths that have not reconnected: rows as in `shifted`. */
+#define GRADUS_OFFSET_VERTEX_COLUMNS(REAL, UINT) GRADUS_LONE_VERTEX_COLUMNS(offset_vertex, REAL, UINT)
+
+/* With TRAIT_APART, the rays by which they go on: as in `ray`, offset by offset. */
+#define GRADUS_OFFSET_RAY_COLUMNS(REAL, UINT)                                                                          \
+    REAL(offset_ray, origin_x, "")                                                                                     \
+    REAL(offset_ray, origin_y, "")                                                                                     \
+    REAL(offset_ray, origin_z, "")                                                                                     \
+    REAL(offset_ray, direction_x, "")                                                                                  \
+    REAL(offset_ray, direction_y, "")                                                                                  \
+    REAL(offset_ray, direction_z, "")                                                                                  \
+    UINT(offset_ray, primitive, "")
 
 /* The offset paths of a path's newest vertex: offset j of row r is row j * capacity + r. All values are over the
  * density of the base path. */
@@ -145,7 +162,9 @@
     REAL(shifted, ratio, "its density times the Jacobian over the base's; shift_failed or shift_absent")               \
     REAL(shifted, wi_x, "unit vector from the base's vertex to the offset's vertex before, world frame")               \
     REAL(shifted, wi_y, "")                                                                                            \
-    REAL(shifted, wi_z, "")
+    REAL(shifted, wi_z, "")                                                                                            \
+    UINT(shifted, state, "from here only with TRAIT_APART: one of shift_state")                                        \
+    REAL(shifted, pdf, "where it is apart: density of the direction it took last, by solid angle; 0 for a Dirac one")
 
 /* Light samples of base and offset paths before it is known which of them see the light: rows as in `shifted`.
  * Densities are over that with which light sampling finds the light from the base path. */
@@ -153,9 +172,9 @@
     REAL(gain, value_r, "what the offset path gains, times the Jacobian")                                              \
     REAL(gain, value_g, "")                                                                                            \
     REAL(gain, value_b, "")                                                                                            \
-    REAL(gain, base_bsdf, "density of BSDF sampling, base path")                                                       \
+    REAL(gain, base_bsdf, "density of BSDF sampling, base path")               \
     REAL(gain, offset_light, "density of light sampling, offset path; or shift_failed, shift_absent")                  \
-    REAL(gain, offset_bsdf, "density of BSDF sampling, offset path")
+    REAL(gain, offset_bsdf, "density of BSDF sampling, offset path; or gain_split")
 
 /* Segments that offset paths ask about, from origin along direction to distance 1. */
 #define GRADUS_LINK_COLUMNS(REAL, UINT)                                                                                \
@@ -228,6 +247,10 @@ enum feature_column { GRADUS_FEATURE_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_
 enum film_column { GRADUS_FILM_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) film_columns };
 enum feature_film_column { GRADUS_FEATURE_FILM_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) feature_film_columns };
 enum primary_column { GRADUS_PRIMARY_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) primary_columns };
+enum offset_vertex_column {
+    GRADUS_OFFSET_VERTEX_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) offset_vertex_columns
+};
+enum offset_ray_column { GRADUS_OFFSET_RAY_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) offset_ray_columns };
 enum shifted_column { GRADUS_SHIFTED_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) shifted_columns };
 enum gain_column { GRADUS_GAIN_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) gain_columns };
 enum link_column { GRADUS_LINK_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) link_columns };
@@ -247,8 +270,26 @@ enum gradient_film_column {
 /* The bin of a path that has ended: it is dropped. */
 #define bin_none 0xFFFFFFFFu
 
-/* primary_kind where nothing was hit. */
-#define primary_none 0xFFFFFFFFu
+/* What `kind` holds beside the number of the BSDF kind. */
+#define kind_number(kind) ((kind)&0xFFu)
+#define kind_is_rough 0x100u /* offset paths reconnect here */
+#define kind_is_dirac 0x200u
+#define kind_none 0u /* nothing was hit; diffuse is the kind of number 0, and it is rough */
+
+/* shifted_state: how an offset path came to its newest vertex. */
+#define shift_apart 0u /* by itself: by the half vector */
+#define shift_apart_rough                                                                                              \
+    1u /* the same, from a rough vertex as the base path: it may not end where it could reconnect */
+#define shift_reconnected 2u /* by reconnection with the base path */
+#define shift_merged 3u      /* with the base path */
+
+/* offset_state, of a base path's vertex, by row: what will become of those of its offset paths that are apart. */
+#define offset_none 0u  /* none is */
+#define offset_rough 1u /* all reconnect, if the next vertex lets them */
+#define offset_mixed 2u /* not all do */
+
+/* gain_offset_bsdf where each sampler is an integrand of its own. */
+#define gain_split R(-1)
 
 /* Ratios below zero: the offset path failed, so that the base path counts for itself; or there is no neighbour. */
 #define shift_failed R(-1)
@@ -266,6 +307,8 @@ GRADUS_LIB_END
 #define CAPACITY_OF_film pixels
 #define CAPACITY_OF_feature_film pixels
 #define CAPACITY_OF_primary slots
+#define CAPACITY_OF_offset_vertex (4u * capacity)
+#define CAPACITY_OF_offset_ray (4u * capacity)
 #define CAPACITY_OF_shifted (4u * capacity)
 #define CAPACITY_OF_gain (4u * capacity)
 #define CAPACITY_OF_link (8u * capacity)

@@ -3,24 +3,35 @@
  * densities that weigh it (Kettunen et al. 2015, with four densities where both samplers shift alike): gradient_connect
  * adds it up once it is known who sees the light.
  *
- * FIRST: the offset paths are at their own first vertices, those of the neighbours' base paths. Else they have just
- * come to the base's second vertex, from another side. */
+ * APART: offset paths may be at vertices of their own. JOINED: or have reconnected, and come to the base's vertex from
+ * another side, or from the same. Where a vertex of their own is not rough, or the base's is not, the two samplers
+ * shift differently: each is then an integrand of its own (gain_split), weighted by its share within each path. */
 #include "kernels/lib/bsdf_any.h"
 #include "kernels/lib/gradient.h"
 #include "kernels/lib/light_sampling.h"
 #include "kernels/lib/mis.h"
+#include "kernels/lib/reconnectable.h"
 
 STAGE gradient_light(uint count, uint unit, uint first, uint capacity, uint slots, uint max_depth,
                      __global const real *vertex, __global const real *tangent, __global real *shadow,
                      __global real *gain, __global const real *materials, __global const real *lights,
                      __global const uint *light_kinds, __global const uint *light_alias, uint light_count,
                      real scene_diameter
-#if FIRST
+#if APART
                      ,
-                     __global real *link, uint link_first, uint link_stride, __global const real *primary, FILM_PLACE
-#else
+                     __global real *link, uint link_first, uint link_stride, __global const real *LONE
+#if !TRAIT_APART
+                     ,
+                     FILM_PLACE
+#endif
+#endif
+#if JOINED
                      ,
                      __global const real *shifted
+#endif
+#if APART && JOINED
+                     ,
+                     __global const uint *material_kind
 #endif
 ) {
     const size_t i = get_global_id(0);
@@ -51,29 +62,58 @@ STAGE gradient_light(uint count, uint unit, uint first, uint capacity, uint slot
     const rgb base = rgb_mul(rgb_mul(AT_RGB(vertex, throughput, row), arriving), PASTE(BSDF, _eval)(m, wi, wo));
     real any_offset = R(0);
 
-#if FIRST
+#if APART
     const vec3 light_point = v3_add(position, s.connection);
     const int is_surface =
         IS_LIGHT(chosen, triangle, TRAIT_LIGHT_TRIANGLE) | IS_LIGHT(chosen, sphere, TRAIT_LIGHT_SPHERE);
     const int is_point = IS_LIGHT(chosen, point, TRAIT_LIGHT_POINT);
+    const int is_finite_light = is_surface | is_point;
     const real base_distance_squared = v3_dot(s.connection, s.connection);
     const real base_cosine = -v3_dot(s.normal, s.direction);
     const real end_offset = FIELD_OF(light, lights, chosen.light, offset);
+#if !TRAIT_APART
     const uint slot = AT_UINT(vertex, slot, row);
     const film_pixel pixel = PIXEL_OF(slot);
+#endif
+#endif
+#if APART && JOINED
+    const uint base_kind = material_kind[AT_UINT(vertex, material, row)];
+#endif
 #pragma unroll
     for (uint j = 0; j < 4; ++j) {
+        const size_t at = (size_t)j * capacity + row;
+#if JOINED
+        const real ratio = AT(shifted, ratio, at);
+        const rgb so_far = AT_RGB(shifted, value, at);
+        const vec3 joined_wi = frame_to_local(axes, AT_V3(shifted, wi, at));
+        const rgb joined_f = PASTE(BSDF, _eval)(m, joined_wi, wo);
+        const real joined_pdf = PASTE(BSDF, _pdf)(m, joined_wi, wo);
+        /* Selected, not scaled: where there is no offset path, its direction is anything. */
+        const int is_there = ratio >= R(0);
+        const rgb joined_value = rgb_mul(rgb_mul(so_far, arriving), joined_f);
+        rgb value =
+            rgb3(is_there ? joined_value.r : R(0), is_there ? joined_value.g : R(0), is_there ? joined_value.b : R(0));
+        real offset_light = ratio, offset_bsdf = is_there ? ratio * joined_pdf * inverse_light_pdf : R(0);
+        real asks_base = rgb_max(value);
+#endif
+#if APART
+#if JOINED
+        const size_t from_row = LONE_ROW(j, row, 0u);
+        const real ratio_before = ratio;
+        const int is_apart = is_there & (AT_UINT(shifted, state, at) < shift_reconnected);
+#else
         const uint neighbour = gradient_neighbour(slot, j, pixel, crop_width, crop_height);
-        const uint kind = AT_UINT(primary, kind, neighbour);
-        const int is_there = kind != primary_none;
-        const uint material_index = is_there ? AT_UINT(primary, material, neighbour) : 0u;
-        const vec3 from = AT_V3(primary, position, neighbour);
+        const uint from_row = LONE_ROW(j, row, neighbour);
+        const int is_apart = neighbour != slot;
+#endif
+        const uint kind = AT_UINT(LONE, kind, from_row);
+        const vec3 from = AT_V3(LONE, position, from_row);
         const vec3 to_point = v3_sub(light_point, from);
         const real point_distance_squared = r_max(v3_dot(to_point, to_point), R(1e-36));
         const vec3 to_point_unit = v3_scale(to_point, R(1) / r_sqrt(point_distance_squared));
-        const int finite = is_surface || is_point;
-        const vec3 direction = v3(finite ? to_point_unit.x : s.direction.x, finite ? to_point_unit.y : s.direction.y,
-                                  finite ? to_point_unit.z : s.direction.z);
+        const vec3 direction =
+            v3(is_finite_light ? to_point_unit.x : s.direction.x, is_finite_light ? to_point_unit.y : s.direction.y,
+               is_finite_light ? to_point_unit.z : s.direction.z);
         const real cosine = -v3_dot(s.normal, direction);
         const real nearer = base_distance_squared / point_distance_squared;
         /* The Jacobian by solid angle; for a point light, which has none, the ratio of what arrives. */
@@ -82,57 +122,55 @@ STAGE gradient_light(uint count, uint unit, uint first, uint capacity, uint slot
         jacobian = is_surface ? (cosine > R(0) && base_cosine > R(0) ? nearer * cosine / base_cosine : R(0)) : jacobian;
         /* The same point of the same light: chosen with the same density by area. Spheres are sampled by their cones.
          */
-        real offset_light = jacobian > R(0) ? R(1) : R(0);
+        real own_light = jacobian > R(0) ? R(1) : R(0);
 #if TRAIT_LIGHT_SPHERE
         const vec3 to_center = v3_sub(FIELD_V3(light, lights, chosen.light, p), from);
         const real sphere_pdf =
             light_sphere_pdf(FIELD_OF(light, lights, chosen.light, e1_x), FIELD_OF(light, lights, chosen.light, e1_y),
                              FIELD_OF(light, lights, chosen.light, inverse_area), v3_dot(to_center, to_center),
                              point_distance_squared, cosine);
-        offset_light =
-            IS_LIGHT(chosen, sphere, 1) ? (s.pdf > R(0) ? jacobian * sphere_pdf / s.pdf : R(0)) : offset_light;
+        own_light = IS_LIGHT(chosen, sphere, 1) ? (s.pdf > R(0) ? jacobian * sphere_pdf / s.pdf : R(0)) : own_light;
 #endif
-        const material offset_material = material_load(materials, material_index, unit);
-        const frame offset_axes = PRIMARY_FRAME(neighbour, offset_material);
-        const bsdf_value f = bsdf_any(kind, offset_material, frame_to_local(offset_axes, AT_V3(primary, wi, neighbour)),
-                                      frame_to_local(offset_axes, direction));
-        const int is_rough = bsdf_is_rough(kind);
+        const material own_material = material_load(materials, AT_UINT(LONE, material, from_row), unit);
+        const frame own_axes = LONE_FRAME(from_row, own_material);
+        const bsdf_value f = bsdf_any(kind, own_material, frame_to_local(own_axes, AT_V3(LONE, wi, from_row)),
+                                      frame_to_local(own_axes, direction));
+        const real own_bsdf = f.pdf * jacobian * inverse_light_pdf;
+#if JOINED
+        const int both_rough = (base_kind & kind & kind_is_rough) != 0u;
+        const int scatters = (kind != kind_none) & ((kind & kind_is_dirac) == 0u);
+        const real own_share = both_rough ? R(1) : R(1) / (R(1) + (own_light > R(0) ? own_bsdf / own_light : R(0)));
+        const rgb own_value =
+            rgb_scale(rgb_mul(rgb_mul(so_far, arriving), f.value), scatters ? jacobian * own_share : R(0));
+        value =
+            rgb3(is_apart ? own_value.r : value.r, is_apart ? own_value.g : value.g, is_apart ? own_value.b : value.b);
+        offset_light = is_apart ? (scatters ? own_light * ratio_before : shift_failed) : offset_light;
+        offset_bsdf = is_apart ? (both_rough ? own_bsdf * ratio_before : gain_split) : offset_bsdf;
+        const int asks = is_apart & (rgb_max(value) > R(0));
+        asks_base = is_apart ? (asks ? base_bsdf : R(0)) : asks_base;
+#else
+        const int is_rough = (kind & kind_is_rough) != 0u;
         const rgb value = rgb_scale(rgb_mul(arriving, f.value), is_rough ? jacobian : R(0));
-        const size_t at = (size_t)j * capacity + row;
-        SET_RGB(gain, value, at, value);
-        AT(gain, base_bsdf, at) = base_bsdf;
-        AT(gain, offset_light, at) = neighbour == slot ? shift_absent : is_rough ? offset_light : shift_failed;
-        AT(gain, offset_bsdf, at) = f.pdf * jacobian * inverse_light_pdf;
-
-        const vec3 origin =
-            ray_origin(from, AT_V3(primary, geometric, neighbour), AT(primary, offset, neighbour), direction);
+        const real offset_light = is_apart ? (is_rough ? own_light : shift_failed) : shift_absent;
+        const real offset_bsdf = own_bsdf;
+        const int asks = is_apart & (rgb_max(value) > R(0));
+        const real asks_base = asks ? base_bsdf : R(0);
+#endif
+        const vec3 origin = ray_origin(from, AT_V3(LONE, geometric, from_row), AT(LONE, offset, from_row), direction);
         const vec3 infinite = v3_add(from, s.connection);
-        const vec3 end = v3(finite ? light_point.x : infinite.x, finite ? light_point.y : infinite.y,
-                            finite ? light_point.z : infinite.z);
+        const vec3 end = v3(is_finite_light ? light_point.x : infinite.x, is_finite_light ? light_point.y : infinite.y,
+                            is_finite_light ? light_point.z : infinite.z);
         const size_t segment = link_first + (size_t)j * link_stride + row;
         SET_V3(link, origin, segment, origin);
         SET_V3(link, direction, segment, v3_sub(v3_mad(end, end_offset, s.normal), origin));
-        const int asks = neighbour != slot && rgb_max(value) > R(0);
         AT_UINT(link, open, segment) = asks ? 1u : 0u;
-        any_offset = r_max(any_offset, asks ? base_bsdf : R(0));
-    }
-#else
-#pragma unroll
-    for (uint j = 0; j < 4; ++j) {
-        const size_t at = (size_t)j * capacity + row;
-        const real ratio = AT(shifted, ratio, at);
-        const vec3 offset_wi = frame_to_local(axes, AT_V3(shifted, wi, at));
-        const int is_there = ratio >= R(0);
-        const rgb value =
-            rgb_scale(rgb_mul(rgb_mul(AT_RGB(shifted, value, at), arriving), PASTE(BSDF, _eval)(m, offset_wi, wo)),
-                      is_there ? R(1) : R(0));
+#endif
         SET_RGB(gain, value, at, value);
         AT(gain, base_bsdf, at) = base_bsdf;
-        AT(gain, offset_light, at) = ratio;
-        AT(gain, offset_bsdf, at) = r_max(ratio, R(0)) * PASTE(BSDF, _pdf)(m, offset_wi, wo) * inverse_light_pdf;
-        any_offset = r_max(any_offset, rgb_max(value));
+        AT(gain, offset_light, at) = offset_light;
+        AT(gain, offset_bsdf, at) = offset_bsdf;
+        any_offset = r_max(any_offset, asks_base);
     }
-#endif
 
     CONNECT_TO_LIGHT(row, position, chosen)
     SET_RGB(shadow, value, row, base);

@@ -13,23 +13,23 @@ STAGE primary_begin(uint count, uint capacity, uint slots, __global const real *
     AT_UINT(primary, key_0, slot) = AT_UINT(vertex, key_0, row);
     AT_UINT(primary, key_1, slot) = AT_UINT(vertex, key_1, row);
     AT_UINT(primary, primitive, slot) = ray_escaped;
-    AT_UINT(primary, kind, slot) = primary_none;
+    AT_UINT(primary, kind, slot) = kind_none;
     const vec3 direction = AT_V3(ray, direction, row);
     SET_V3(primary, wi, slot, v3_neg(direction));
 }
 
-/* Vertices `first` on, which are of one kind. */
-STAGE primary_surface(uint count, uint first, uint escaped, uint kind, uint capacity, uint slots,
-                      __global const uint *index, __global const real *ray, __global const real *vertex,
-                      __global const real *tangent, __global real *primary) {
-    const size_t i = get_global_id(0);
-    if (i >= count)
+/* Their vertices. */
+STAGE primary_surface(uint count, uint escaped, uint capacity, uint slots, __global const uint *index,
+                      __global const real *ray, __global const real *vertex, __global const real *tangent,
+                      __global const uint *material_kind, __global real *primary) {
+    const size_t row = get_global_id(0);
+    if (row >= count)
         return;
-    const size_t row = first + i;
     const uint slot = AT_UINT(vertex, slot, row);
+    const uint material_index = AT_UINT(vertex, material, row);
     AT_UINT(primary, primitive, slot) = AT_UINT(ray, primitive, index[escaped + row]);
-    AT_UINT(primary, kind, slot) = kind;
-    AT_UINT(primary, material, slot) = AT_UINT(vertex, material, row);
+    AT_UINT(primary, kind, slot) = material_kind[material_index];
+    AT_UINT(primary, material, slot) = material_index;
     AT(primary, offset, slot) = AT(vertex, offset, row);
     const vec3 position = AT_V3(vertex, position, row), geometric = AT_V3(vertex, geometric, row);
     SET_V3(primary, position, slot, position);

@@ -1,22 +1,34 @@
-/* settle: after the light found at second vertices was added, offset paths that do not see theirs have failed; and all
- * have where the vertex is of a Dirac kind. Vertices `first` on, offset by offset. */
+/* settle: after the light found at new vertices was added, offset paths that reconnected but do not see theirs have
+ * failed; so have all where the vertex is not rough and the path only ended there. Vertices `first` on. */
+//! traits: TRAIT_APART
 #include "kernels/shared/stage.h"
 
-STAGE settle(uint count, uint first, uint capacity, uint is_dirac, __global real *shifted, __global const real *link,
-             uint link_first, uint link_stride) {
+STAGE settle(uint count, uint first, uint capacity, __global real *shifted, __global const real *link, uint link_first,
+             uint link_stride
+#if TRAIT_APART
+             ,
+             __global const real *vertex, __global const uint *material_kind
+#endif
+) {
     const size_t i = get_global_id(0);
     if (i >= count)
         return;
+#if TRAIT_APART
+    const uint is_rough = material_kind[AT_UINT(vertex, material, first + i)] & kind_is_rough;
+#endif
 #pragma unroll
     for (uint j = 0; j < 4; ++j) {
         const size_t at = (size_t)j * capacity + first + i;
         const real ratio = AT(shifted, ratio, at);
-        const int open = is_dirac == 0u && AT_UINT(link, open, link_first + (size_t)j * link_stride + i) != 0u;
-        AT(shifted, ratio, at) = ratio < R(0) || open ? ratio : shift_failed;
+        int holds = AT_UINT(link, open, link_first + (size_t)j * link_stride + i) != 0u;
+#if TRAIT_APART
+        holds = (holds & (is_rough != 0u)) | (AT_UINT(shifted, state, at) != shift_reconnected);
+#endif
+        AT(shifted, ratio, at) = ratio < R(0) || holds ? ratio : shift_failed;
     }
 }
 
-/* No offset path of these first vertices asks for anything. */
+/* No offset path of these vertices asks whether it sees a light. */
 STAGE close_links(uint count, uint first, uint capacity, __global real *link, uint link_stride) {
     const size_t i = get_global_id(0);
     if (i >= count)

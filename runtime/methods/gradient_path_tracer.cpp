@@ -23,16 +23,41 @@ KernelRequest variant(KernelRequest request, const std::string &name, const std:
     return request;
 }
 
+/// By material record, the kind with what `kind` in kernels/shared/tables.h says of it.
+std::vector<std::uint32_t> shift_kinds(const SceneTables &tables, double threshold) {
+    const std::vector<std::string> names = all_bsdf_kinds();
+    std::vector<std::uint32_t> kinds;
+    for (std::size_t record = 0; record < tables.material_kind.size(); ++record) {
+        const std::uint32_t kind = tables.material_kind[record];
+        const float *fields = &tables.materials[record * material_stride];
+        const bool is_dirac = bsdf_kind_is_dirac(names[kind]);
+        const bool is_rough = !is_dirac && (kind == bsdf_kind_diffuse ||
+                                            std::min(fields[material_alpha_u], fields[material_alpha_v]) >= threshold);
+        kinds.push_back(kind | (is_rough ? kind_is_rough : 0) | (is_dirac ? kind_is_dirac : 0));
+    }
+    return kinds;
+}
+
+TraitMap gradient_traits(const Scene &scene, const RenderOptions &options) {
+    const auto is_rough = [&](const Bsdf &bsdf) {
+        return bsdf.kind == BsdfKind::diffuse || (!bsdf_kind_is_dirac(bsdf_kind_name(bsdf)) &&
+                                                  std::min(bsdf.alpha_u, bsdf.alpha_v) >= options.shift_threshold);
+    };
+    bool apart = options.all_traits;
+    for (const Shape &shape : scene.shapes) {
+        const Material &material = scene.materials[shape.material];
+        apart = apart || !is_rough(material.front) || (material.two_sided && !is_rough(material.back));
+    }
+    return {{"TRAIT_SHARED_JITTER", 1}, {"TRAIT_APART", apart}};
+}
+
 } // namespace
 
 GradientPathTracer::GradientPathTracer(Device &device, const Scene &scene, const RenderOptions &options)
-    : PathTracer(device, scene, options, {{"TRAIT_SHARED_JITTER", 1}}) {
+    : PathTracer(device, scene, options, gradient_traits(scene, options)) {
     gradient_kinds_.resize(scene_tables_.kinds.size());
-    const std::vector<std::string> all = all_bsdf_kinds();
-    for (const std::string &kind : scene_tables_.kinds)
-        kind_numbers_.push_back(static_cast<std::uint32_t>(std::find(all.begin(), all.end(), kind) - all.begin()));
     Additions additions;
-    additions.phases = phases;
+    additions.phases = keeps_apart() ? phases : phases - 1;
     additions.whole_frames = true;
     additions.kernels = wanted_kernels();
     additions.bind = [this] {
@@ -48,9 +73,8 @@ std::vector<PathTracer::Wanted> GradientPathTracer::wanted_kernels() {
     std::map<std::string, std::string> any = {{"ONE_KIND", kinds.size() == 1 ? "1" : "0"}};
     for (const std::string &name : all_bsdf_kinds())
         any["HAS_" + name] = std::find(kinds.begin(), kinds.end(), name) != kinds.end() ? "1" : "0";
-    const auto with = [&any](const char *name, const char *value) {
-        std::map<std::string, std::string> definitions = any;
-        definitions[name] = value;
+    const auto with = [&any](std::map<std::string, std::string> definitions) {
+        definitions.insert(any.begin(), any.end());
         return definitions;
     };
     const KernelRequest primary = request_of("primary"), settle = request_of("settle");
@@ -58,36 +82,57 @@ std::vector<PathTracer::Wanted> GradientPathTracer::wanted_kernels() {
         {&primary_begin_, variant(primary, "primary begin", "primary_begin", {})},
         {&primary_surface_, variant(primary, "primary surface", "primary_surface", {})},
         {&begin_, request_of("gradient_begin")},
-        {&shift_, variant(request_of("shift"), "shift", "shift", with("ESCAPED", "0"))},
         {&settle_, settle},
         {&close_links_, variant(settle, "close links", "close_links", {})},
         {&combine_, request_of("gradient_combine")},
         {&gradient_accumulate_, request_of("gradient_accumulate")},
     };
-    if (escape_wanted()) {
-        wanted.push_back(
-            {&shift_escaped_, variant(request_of("shift"), "shift escaped", "shift", with("ESCAPED", "1"))});
-        wanted.push_back({&escape_second_, variant(request_of("gradient_emission"), "gradient escape",
-                                                   "gradient_emission", {{"ESCAPED", "1"}})});
+    if (keeps_apart()) {
+        const KernelRequest surface = request_of("offset_surface");
+        wanted.push_back({&offset_begin_, variant(surface, "offset begin", "offset_begin", {})});
+        wanted.push_back({&offset_surface_, variant(surface, "offset surface", "offset_surface", {})});
     }
-    if (emission_wanted())
-        wanted.push_back({&emission_second_, variant(request_of("gradient_emission"), "gradient emission",
-                                                     "gradient_emission", {{"ESCAPED", "0"}})});
-    const KernelRequest connect = request_of("gradient_connect");
-    wanted.push_back({&connect_first_, variant(connect, "gradient connect 1", "gradient_connect", {{"FIRST", "1"}})});
-    wanted.push_back({&connect_second_, variant(connect, "gradient connect 2", "gradient_connect", {{"FIRST", "0"}})});
-    for (std::size_t k = 0; k < kinds.size(); ++k) {
-        GradientKernels &kind = gradient_kinds_[k];
-        if (samples_lights(bsdf_kind_is_dirac(kinds[k]))) {
-            const KernelRequest light = request_of("gradient_light", kinds[k]);
-            wanted.push_back({&kind.light_first,
-                              variant(light, "gradient_light 1 " + kinds[k], "gradient_light", with("FIRST", "1"))});
-            wanted.push_back({&kind.light_second,
-                              variant(light, "gradient_light 2 " + kinds[k], "gradient_light", with("FIRST", "0"))});
+    for (int apart = 0; apart <= int(keeps_apart()); ++apart) {
+        const std::string suffix = apart ? " apart" : "", value = std::to_string(apart);
+        const KernelRequest shift = request_of("shift"), emission = request_of("gradient_emission");
+        wanted.push_back(
+            {&shift_[apart], variant(shift, "shift" + suffix, "shift", with({{"ESCAPED", "0"}, {"APART", value}}))});
+        if (escape_wanted()) {
+            wanted.push_back({&shift_escaped_[apart], variant(shift, "shift escaped" + suffix, "shift",
+                                                              with({{"ESCAPED", "1"}, {"APART", value}}))});
+            wanted.push_back({&offset_escape_[apart], variant(emission, "gradient escape" + suffix, "gradient_emission",
+                                                              {{"ESCAPED", "1"}, {"APART", value}})});
         }
-        wanted.push_back({&kind.scatter_first, variant(request_of("scatter", kinds[k]), "scatter 1 " + kinds[k],
-                                                       "scatter", {{"KEEP_DARK", "1"}})});
-        wanted.push_back({&kind.scatter_second, request_of("gradient_scatter", kinds[k])});
+        if (emission_wanted())
+            wanted.push_back(
+                {&offset_emission_[apart], variant(emission, "gradient emission" + suffix, "gradient_emission",
+                                                   {{"ESCAPED", "0"}, {"APART", value}})});
+    }
+    // At the vertices where offset paths are apart, some may have reconnected.
+    const std::string both = keeps_apart() ? "1" : "0";
+    const std::map<std::string, std::string> at_apart = {{"APART", "1"}, {"JOINED", both}},
+                                             at_joined = {{"APART", "0"}, {"JOINED", "1"}};
+    const KernelRequest connect = request_of("gradient_connect");
+    wanted.push_back({&connect_apart_, variant(connect, "gradient connect apart", "gradient_connect", at_apart)});
+    wanted.push_back({&connect_joined_, variant(connect, "gradient connect", "gradient_connect", at_joined)});
+    for (std::size_t k = 0; k < kinds.size(); ++k) {
+        GradientKernels &kernels = gradient_kinds_[k];
+        const std::string &kind = kinds[k];
+        if (samples_lights(bsdf_kind_is_dirac(kind))) {
+            const KernelRequest light = request_of("gradient_light", kind);
+            wanted.push_back({&kernels.light_apart,
+                              variant(light, "gradient_light apart " + kind, "gradient_light", with(at_apart))});
+            wanted.push_back(
+                {&kernels.light_joined, variant(light, "gradient_light " + kind, "gradient_light", with(at_joined))});
+        }
+        const KernelRequest scatter = request_of("gradient_scatter", kind);
+        wanted.push_back({&kernels.scatter_joined,
+                          variant(scatter, "gradient_scatter " + kind, "gradient_scatter", {{"APART", "0"}})});
+        wanted.push_back(
+            {&kernels.scatter_apart,
+             keeps_apart()
+                 ? variant(scatter, "gradient_scatter apart " + kind, "gradient_scatter", {{"APART", "1"}})
+                 : variant(request_of("scatter", kind), "scatter apart " + kind, "scatter", {{"KEEP_DARK", "1"}})});
     }
     return wanted;
 }
@@ -97,11 +142,9 @@ void GradientPathTracer::allocate() {
         return Buffer(device_, name, columns * rows * sizeof(float));
     };
     const std::size_t capacity = tables_->capacity, slots = tables_->slots;
-    const std::size_t primary_needs = traits_.at("TRAIT_ANISOTROPIC")       ? primary_columns
-                                      : traits_.at("TRAIT_SHADING_NORMALS") ? primary_along_x
-                                                                            : primary_shading_x;
-    primary_ = table("primary", primary_needs, slots);
-    shifted_ = table("shifted", shifted_columns, 4 * capacity);
+    // Columns that the scene does not need are the last.
+    const std::size_t not_needed = traits_.at("TRAIT_ANISOTROPIC") ? 0 : traits_.at("TRAIT_SHADING_NORMALS") ? 3 : 6;
+    primary_ = table("primary", primary_columns - not_needed, slots);
     gain_ = table("gain", gain_columns, 4 * capacity);
     link_ = table("link", link_columns, 8 * capacity);
     prefix_ = table("prefix", prefix_columns, slots);
@@ -110,38 +153,63 @@ void GradientPathTracer::allocate() {
     gradient_film_ = table("gradient_film", gradient_film_columns, film_->pixels());
     gradient_film_.clear();
     primary_.clear(); // rows of escaped paths have no material, and are read all the same
+    const std::vector<std::uint32_t> kinds = shift_kinds(scene_tables_, options_.shift_threshold);
+    material_kind_ = Buffer(device_, "material_kind", kinds.data(), kinds.size() * sizeof(kinds[0]));
+    if (keeps_apart()) {
+        for (Buffer &shifted : shifted_)
+            shifted = table("shifted", shifted_columns, 4 * capacity);
+        offset_vertex_ = table("offset_vertex", offset_vertex_columns - not_needed, 4 * capacity);
+        offset_vertex_.clear(); // as `primary`
+        offset_ray_ = table("offset_ray", offset_ray_columns, 4 * capacity);
+        offset_state_ = Buffer(device_, "offset_state", capacity * sizeof(std::uint32_t));
+    } else {
+        shifted_[0] = shifted_[1] = table("shifted", shifted_state, 4 * capacity);
+    }
 }
 
 void GradientPathTracer::bind_kernels() {
-    for (Kernel *kernel : more_kernels_) {
-        for (const Buffer *buffer :
-             {&primary_, &shifted_, &gain_, &link_, &prefix_, &difference_, &direct_, &gradient_film_})
+    std::vector<const Buffer *> buffers = {&material_kind_, &primary_,    &gain_,   &link_,
+                                           &prefix_,        &difference_, &direct_, &gradient_film_};
+    if (keeps_apart())
+        buffers.insert(buffers.end(), {&offset_vertex_, &offset_ray_, &offset_state_});
+    std::vector<Kernel *> kernels = more_kernels_;
+    kernels.push_back(&classify_);
+    for (Kernel *kernel : kernels) {
+        for (const Buffer *buffer : buffers)
             kernel->bind(*buffer);
+        kernel->bind("shifted", shifted_[0]);
+        kernel->bind("shifted_old", shifted_[1]);
         bind_film_place(*kernel);
-        for (const char *number : {"link_first", "link_stride", "to", "escaped", "kind", "is_dirac"})
+        for (const char *number :
+             {"link_first", "link_stride", "offset_first", "offset_stride", "to", "escaped", "shifting", "fresh"})
             kernel->set(number, 0);
     }
 }
 
-GradientPathTracer::Vertices GradientPathTracer::partition(std::uint32_t rays, const Buffer &vertex) {
-    classify_.bind("vertex_old", vertex);
+GradientPathTracer::Vertices GradientPathTracer::partition(const Vertices &old, std::uint32_t fresh) {
+    const std::uint32_t rays = old.count + fresh;
+    classify_.set("shifting", old.shifting());
+    classify_.set("fresh", old.count);
     run(classify_, 0, rays);
     const std::vector<std::uint32_t> &range = partition_->run(rays);
+    const std::size_t kinds = kinds_.size(), present = keeps_apart() ? phases : phases - 1;
     Vertices vertices;
-    vertices.escaped_count = range[phases];
+    vertices.escaped_count = range[present];
     vertices.count = range.back() - vertices.escaped_count;
     const auto rows = [&](std::size_t first_bin, std::size_t end_bin) {
         return Range{range[first_bin] - vertices.escaped_count, range[end_bin] - range[first_bin]};
     };
-    const std::size_t kinds = kinds_.size();
-    for (std::uint32_t phase = 0; phase < phases; ++phase) {
-        const std::size_t bin = phases + 2 * phase * kinds;
-        vertices.escaped[phase] = {range[phase], range[phase + 1] - range[phase]};
-        vertices.rows[phase] = rows(bin, bin + 2 * kinds);
+    for (std::size_t phase = 0, number = 0; phase < phases; ++phase) {
+        const bool is_present = phase != apart || keeps_apart();
+        const std::size_t bin = present + 2 * number * kinds, end = is_present ? 2 : 0;
+        vertices.escaped[phase] = {range[number], is_present ? range[number + 1] - range[number] : 0};
+        vertices.rows[phase] = rows(bin, bin + end * kinds);
         for (std::size_t k = 0; k < kinds; ++k) {
-            vertices.kinds[phase].push_back(rows(bin + 2 * k, bin + 2 * k + 2));
-            vertices.emitting[phase].push_back(rows(bin + 2 * k + 1, bin + 2 * k + 2));
+            const std::size_t first_bin = bin + end * k;
+            vertices.kinds[phase].push_back(rows(first_bin, first_bin + end));
+            vertices.emitting[phase].push_back(rows(first_bin + end / 2, first_bin + end));
         }
+        number += is_present;
     }
     return vertices;
 }
@@ -154,59 +222,117 @@ void GradientPathTracer::trace_primaries(std::uint32_t paths) {
         primary_begin_.bind("vertex", tables_->vertex[0]);
         run(primary_begin_, 0, rows);
         trace(rows, 0);
-        const Vertices vertices = partition(rows, tables_->vertex[0]);
+        const Vertices vertices = partition(Vertices(), rows);
         surface_.bind("vertex_old", tables_->vertex[0]);
         surface_.bind("vertex", tables_->vertex[1]);
         run(surface_, vertices.escaped_count, vertices.count);
         primary_surface_.bind("vertex", tables_->vertex[1]);
         primary_surface_.set("escaped", vertices.escaped_count);
-        for (std::size_t k = 0; k < kinds_.size(); ++k) {
-            primary_surface_.set("kind", kind_numbers_[k]);
-            run(primary_surface_, vertices.kinds[0][k].first, vertices.kinds[0][k].count);
-        }
+        run(primary_surface_, 0, vertices.count);
     }
+}
+
+/// Takes offset paths to the next vertices of their base paths, and traces what they ask, with the light samples of
+/// those that are apart. Where they ask: first the light samples, then surfaces, then those that escaped.
+GradientPathTracer::Shiftings GradientPathTracer::shift(const Vertices &vertices, const Vertices &next) {
+    Shiftings shiftings;
+    shiftings.links = 4 * vertices.shifting();
+    const auto send = [&](Kernel &kernel, bool is_apart, Range index, std::uint32_t to) {
+        const Shifting shifting = {index, to, shiftings.links, shiftings.offset_rays};
+        shiftings.links += 4 * index.count;
+        shiftings.offset_rays += is_apart ? 4 * index.count : 0;
+        kernel.set("to", to);
+        kernel.set("link_first", shifting.link_first);
+        kernel.set("link_stride", index.count);
+        kernel.set("offset_first", shifting.offset_first);
+        kernel.set("offset_stride", index.count);
+        run(kernel, index.first, index.count);
+        return shifting;
+    };
+    for (const Phase phase : {apart, joined}) {
+        const Range &rows = next.rows[phase], &escaped = next.escaped[phase];
+        const bool is_apart = phase == apart;
+        if (rows.count > 0)
+            shiftings.surface[phase] =
+                send(shift_[is_apart], is_apart, {next.escaped_count + rows.first, rows.count}, rows.first);
+        if (escaped.count > 0 && shift_escaped_[is_apart].valid())
+            shiftings.escaped[phase] = send(shift_escaped_[is_apart], is_apart, escaped, next.count + escaped.first);
+    }
+    statistics_.rays["offset"] +=
+        run_offset_stage(tracer_, link_, shiftings.links, keeps_apart() ? &offset_ray_ : nullptr, shiftings.offset_rays,
+                         tables_->capacity, trace_seconds_);
+    return shiftings;
 }
 
 /// Adds the light samples of the newest vertices.
 void GradientPathTracer::connect(const Vertices &vertices, const Buffer &vertex) {
     if (vertices.count == 0)
         return;
-    for (Kernel *kernel : {&connect_first_, &connect_second_, &connect_})
+    for (Kernel *kernel : {&connect_apart_, &connect_joined_, &connect_})
         kernel->bind("vertex", vertex);
-    connect_first_.set("link_stride", vertices.rows[0].count);
+    connect_apart_.set("link_stride", vertices.shifting());
     for (std::size_t k = 0; k < kinds_.size(); ++k)
-        if (gradient_kinds_[k].light_first.valid()) {
-            run(connect_first_, vertices.kinds[0][k].first, vertices.kinds[0][k].count);
-            run(connect_second_, vertices.kinds[1][k].first, vertices.kinds[1][k].count);
+        if (gradient_kinds_[k].light_apart.valid()) {
+            for (const Phase phase : {first, apart})
+                run(connect_apart_, vertices.kinds[phase][k].first, vertices.kinds[phase][k].count);
+            run(connect_joined_, vertices.kinds[joined][k].first, vertices.kinds[joined][k].count);
         }
-    run(connect_, vertices.rows[2].first, vertices.rows[2].count);
+    run(connect_, vertices.rows[later].first, vertices.rows[later].count);
 }
 
-/// Adds the light that paths have met. The links of second vertices start at `link_first`: those of surfaces, then
-/// those of escaped paths.
-void GradientPathTracer::emit(const Vertices &next, std::uint32_t link_first) {
-    for (const std::uint32_t phase : {0u, 2u}) {
+/// Adds the light that paths have met.
+void GradientPathTracer::emit(const Vertices &next, const Shiftings &shiftings) {
+    for (const Phase phase : {first, later}) {
         for (Kernel *kernel : {&escape_, &emission_})
             if (kernel->valid())
-                kernel->bind("radiance", phase == 0 ? direct_ : tables_->radiance);
+                kernel->bind("radiance", phase == first ? direct_ : tables_->radiance);
         run(escape_, next.escaped[phase].first, next.escaped[phase].count);
         for (const Range &emitting : next.emitting[phase])
             run(emission_, next.escaped_count + emitting.first, emitting.count);
     }
-    const Range &second = next.rows[1], &second_escaped = next.escaped[1];
-    if (escape_second_.valid()) {
-        escape_second_.set("to", next.count);
-        escape_second_.set("link_first", link_first + 4 * second.count);
-        escape_second_.set("link_stride", second_escaped.count);
-        run(escape_second_, second_escaped.first, second_escaped.count);
-    }
-    if (emission_second_.valid())
-        for (const Range &emitting : next.emitting[1]) {
-            emission_second_.set("to", emitting.first);
-            emission_second_.set("link_first", link_first + (emitting.first - second.first));
-            emission_second_.set("link_stride", second.count);
-            run(emission_second_, next.escaped_count + emitting.first, emitting.count);
+    /// Rows [skip, skip + count) of those that were sent.
+    const auto add = [this](Kernel &kernel, const Shifting &sent, std::uint32_t skip, std::uint32_t count) {
+        if (count == 0 || !kernel.valid())
+            return;
+        kernel.set("to", sent.to + skip);
+        kernel.set("link_first", sent.link_first + skip);
+        kernel.set("link_stride", sent.index.count);
+        kernel.set("offset_first", sent.offset_first + skip);
+        kernel.set("offset_stride", sent.index.count);
+        run(kernel, sent.index.first + skip, count);
+    };
+    for (const Phase phase : {apart, joined})
+        add(offset_escape_[phase == apart], shiftings.escaped[phase], 0, shiftings.escaped[phase].index.count);
+    // An offset path that is apart may find a light where its base path finds none.
+    add(offset_emission_[1], shiftings.surface[apart], 0, shiftings.surface[apart].index.count);
+    for (const Range &emitting : next.emitting[joined])
+        add(offset_emission_[0], shiftings.surface[joined], emitting.first - next.rows[joined].first, emitting.count);
+}
+
+/// Samples lights and the BSDF at the newest vertices.
+void GradientPathTracer::scatter(const Vertices &vertices, const Buffer &vertex) {
+    for (std::size_t k = 0; k < kinds_.size(); ++k) {
+        KindKernels &kind = kinds_[k];
+        GradientKernels &gradient = gradient_kinds_[k];
+        for (Kernel *kernel : {&kind.feature, &kind.light_sample, &kind.scatter, &gradient.light_apart,
+                               &gradient.light_joined, &gradient.scatter_apart, &gradient.scatter_joined})
+            if (kernel->valid())
+                kernel->bind("vertex", vertex);
+        const auto run_on = [&](Kernel &kernel, Phase phase) {
+            run(kernel, vertices.kinds[phase][k].first, vertices.kinds[phase][k].count);
+        };
+        run_on(kind.feature, first);
+        Kernel &light_apart = gradient.light_apart.valid() ? gradient.light_apart : close_links_;
+        light_apart.set("link_stride", vertices.shifting());
+        for (const Phase phase : {first, apart}) {
+            run_on(light_apart, phase);
+            run_on(gradient.scatter_apart, phase);
         }
+        run_on(gradient.light_joined, joined);
+        run_on(gradient.scatter_joined, joined);
+        run_on(kind.light_sample, later);
+        run_on(kind.scatter, later);
+    }
 }
 
 bool GradientPathTracer::render_batch() {
@@ -214,7 +340,6 @@ bool GradientPathTracer::render_batch() {
         return false;
     const auto start = std::chrono::steady_clock::now();
     const std::uint32_t paths = begin_pass();
-    const std::size_t kinds = kinds_.size();
     if (settings_.max_depth == 0) {
         for (Buffer *buffer : {&tables_->radiance, &tables_->feature, &direct_, &prefix_, &difference_})
             buffer->clear();
@@ -235,71 +360,46 @@ bool GradientPathTracer::render_batch() {
             run(begin_, 0, fresh);
             begun += fresh;
         }
-        const std::uint32_t rays = vertices.count + fresh;
-        if (rays == 0)
+        if (vertices.count + fresh == 0)
             break;
-        trace(rays, vertices.count);
+        trace(vertices.count + fresh, vertices.count);
 
+        const Vertices next = partition(vertices, fresh);
         const Buffer &old_vertex = tables_->vertex[newest], &new_vertex = tables_->vertex[1 - newest];
-        const Vertices next = partition(rays, old_vertex);
-        for (Kernel *kernel :
-             {&surface_, &escape_, &emission_, &shift_, &shift_escaped_, &emission_second_, &escape_second_}) {
-            if (!kernel->valid())
-                continue;
+        for (Kernel *kernel : more_kernels_) {
             kernel->bind("vertex_old", old_vertex);
             kernel->bind("vertex", new_vertex);
+            kernel->bind("shifted_old", shifted_[newest]);
+            kernel->bind("shifted", shifted_[1 - newest]);
         }
-        // Links: of the light samples of first vertices, then those that second vertices ask for.
-        const std::uint32_t link_first = 4 * vertices.rows[0].count;
-        const Range &second = next.rows[1], &second_escaped = next.escaped[1];
-        shift_.set("to", second.first);
-        shift_.set("link_first", link_first);
-        shift_.set("link_stride", second.count);
-        run(shift_, next.escaped_count + second.first, second.count);
-        if (shift_escaped_.valid()) {
-            shift_escaped_.set("to", next.count);
-            shift_escaped_.set("link_first", link_first + 4 * second.count);
-            shift_escaped_.set("link_stride", second_escaped.count);
-            run(shift_escaped_, second_escaped.first, second_escaped.count);
-        }
-        statistics_.rays["offset"] += run_link_stage(
-            tracer_, link_, tables_->capacity, link_first + 4 * (second.count + second_escaped.count), trace_seconds_);
+        for (Kernel *kernel : {&shift_[0], &shift_[1], &shift_escaped_[0], &shift_escaped_[1]})
+            if (kernel->valid())
+                kernel->bind("vertex", old_vertex);
+        for (Kernel *kernel : {&surface_, &escape_, &emission_})
+            if (kernel->valid()) {
+                kernel->bind("vertex_old", old_vertex);
+                kernel->bind("vertex", new_vertex);
+            }
+        const Shiftings shiftings = shift(vertices, next);
         connect(vertices, old_vertex);
-        emit(next, link_first);
-        settle_.set("link_stride", second.count);
-        for (std::size_t k = 0; k < kinds; ++k) {
-            const Range &of_kind = next.kinds[1][k];
-            settle_.set("is_dirac", kinds_[k].is_dirac);
-            settle_.set("link_first", link_first + (of_kind.first - second.first));
-            run(settle_, of_kind.first, of_kind.count);
+        const Shifting &apart_sent = shiftings.surface[apart];
+        if (apart_sent.index.count > 0) {
+            offset_surface_.set("escaped", next.escaped_count);
+            offset_surface_.set("offset_first", apart_sent.offset_first);
+            offset_surface_.set("offset_stride", apart_sent.index.count);
+            run(offset_surface_, next.rows[apart].first, next.rows[apart].count);
         }
+        emit(next, shiftings);
         run(surface_, next.escaped_count, next.count);
+        for (const Phase phase : {apart, joined}) {
+            settle_.set("link_first", shiftings.surface[phase].link_first);
+            settle_.set("link_stride", next.rows[phase].count);
+            run(settle_, next.rows[phase].first, next.rows[phase].count);
+        }
+        run(offset_begin_, next.rows[first].first, next.rows[first].count);
         newest = 1 - newest;
         vertices = next;
-
-        for (std::size_t k = 0; k < kinds; ++k) {
-            KindKernels &kind = kinds_[k];
-            GradientKernels &gradient = gradient_kinds_[k];
-            for (Kernel *kernel : {&kind.feature, &kind.light_sample, &kind.scatter, &gradient.light_first,
-                                   &gradient.light_second, &gradient.scatter_first, &gradient.scatter_second})
-                if (kernel->valid())
-                    kernel->bind("vertex", tables_->vertex[newest]);
-            const Range &first_rows = vertices.kinds[0][k], &second_rows = vertices.kinds[1][k],
-                        &later_rows = vertices.kinds[2][k];
-            run(kind.feature, first_rows.first, first_rows.count);
-            if (gradient.light_first.valid()) {
-                gradient.light_first.set("link_stride", vertices.rows[0].count);
-                run(gradient.light_first, first_rows.first, first_rows.count);
-            } else {
-                close_links_.set("link_stride", vertices.rows[0].count);
-                run(close_links_, first_rows.first, first_rows.count);
-            }
-            run(gradient.scatter_first, first_rows.first, first_rows.count);
-            run(gradient.light_second, second_rows.first, second_rows.count);
-            run(gradient.scatter_second, second_rows.first, second_rows.count);
-            run(kind.light_sample, later_rows.first, later_rows.count);
-            run(kind.scatter, later_rows.first, later_rows.count);
-        }
+        scatter(vertices, tables_->vertex[newest]);
     }
     run(combine_, 0, paths);
     film_->accumulate(paths, 0);

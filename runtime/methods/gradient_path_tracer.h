@@ -2,9 +2,10 @@
 // neighbours, and an image reconstructed from colours and differences.
 //
 // All pixels of a sample share their place within the pixel, so an offset path begins where the neighbour's own path
-// does. It reconnects to the base path at its second vertex and merges with it there: from the third vertex on both are
-// the same, and what they differ by is kept by slot. So the base path's later stages are the path tracer's. Phases tell
-// vertices apart: 0 is the first vertex of a path, 1 the second, 2 any later one.
+// does. Where it and the base path are at rough vertices it reconnects to the base path's next one, and merges with it
+// there: from the vertex after that on both are the same, and what they differ by is kept by slot. So the base path's
+// later stages are the path tracer's. Until then an offset path copies the base path's half vectors and has vertices of
+// its own; scenes in which all surfaces are rough do without.
 #pragma once
 
 #include "runtime/methods/path_tracer.h"
@@ -24,13 +25,16 @@ class GradientPathTracer final : public PathTracer {
     Image image() override;
 
   private:
-    static constexpr std::uint32_t phases = 3;
+    /// What becomes of offset paths at a vertex: at the first, all are apart; then some are; then the last reconnect;
+    /// later all are merged.
+    enum Phase { first, apart, joined, later, phases };
 
     struct GradientKernels {
-        Kernel light_first, light_second, scatter_first, scatter_second;
+        Kernel light_apart, light_joined, scatter_apart, scatter_joined;
     };
     struct Range {
         std::uint32_t first = 0, count = 0;
+        std::uint32_t end() const { return first + count; }
     };
     /// Where the partition put paths. Rows are those of the vertices that `surface` makes; a row's place in the index
     /// is `escaped_count` further on.
@@ -40,23 +44,43 @@ class GradientPathTracer final : public PathTracer {
         Range rows[phases];
         std::vector<Range> kinds[phases];    ///< rows by kind
         std::vector<Range> emitting[phases]; ///< those of them on surfaces that emit
+        /// Rows with offset paths that are apart: they come first.
+        std::uint32_t shifting() const { return rows[apart].end(); }
+    };
+    /// Offset paths on their way from one vertex to the next: what they ask the tracer, and where `shift` put them.
+    struct Shifting {
+        Range index;
+        std::uint32_t to = 0;           ///< first row of `shifted`
+        std::uint32_t link_first = 0;   ///< first row of `link`, offset by offset
+        std::uint32_t offset_first = 0; ///< the same of `offset_ray`
+    };
+    struct Shiftings {
+        Shifting surface[phases], escaped[phases];
+        std::uint32_t links = 0, offset_rays = 0;
     };
 
     std::vector<Wanted> wanted_kernels();
     void allocate();
     void bind_kernels();
     void trace_primaries(std::uint32_t paths);
+    /// Classifies and sorts the rays of `vertices` and `fresh` new ones.
+    Vertices partition(const Vertices &vertices, std::uint32_t fresh);
+    Shiftings shift(const Vertices &vertices, const Vertices &next);
     void connect(const Vertices &vertices, const Buffer &vertex);
-    void emit(const Vertices &next, std::uint32_t link_first);
-    /// Classifies and sorts the rays.
-    Vertices partition(std::uint32_t rays, const Buffer &vertex);
+    void emit(const Vertices &next, const Shiftings &shiftings);
+    void scatter(const Vertices &vertices, const Buffer &vertex);
 
-    Kernel primary_begin_, primary_surface_, begin_, shift_, shift_escaped_, settle_, close_links_;
-    Kernel emission_second_, escape_second_, connect_first_, connect_second_, combine_, gradient_accumulate_;
+    bool keeps_apart() const { return traits_.at("TRAIT_APART") != 0; }
+
+    Kernel primary_begin_, primary_surface_, begin_, settle_, close_links_, offset_begin_, offset_surface_;
+    Kernel connect_apart_, connect_joined_, combine_, gradient_accumulate_;
+    Kernel shift_[2], shift_escaped_[2], offset_emission_[2],
+        offset_escape_[2]; ///< [1]: where offset paths may be apart
     std::vector<GradientKernels> gradient_kinds_;
-    std::vector<std::uint32_t> kind_numbers_; ///< of GRADUS_BSDF_KINDS
     std::unique_ptr<PoissonSolver> solver_;
-    Buffer primary_, shifted_, gain_, link_, prefix_, difference_, direct_, gradient_film_;
+    Buffer material_kind_, primary_, gain_, link_, prefix_, difference_, direct_, gradient_film_;
+    Buffer shifted_[2]; ///< as BatchTables::vertex; the same where none stay apart
+    Buffer offset_vertex_, offset_ray_, offset_state_;
 };
 
 } // namespace gradus

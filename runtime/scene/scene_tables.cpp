@@ -223,6 +223,9 @@ void add_material_record(const Bsdf &bsdf, SceneTables &tables) {
     record[material_alpha_u] = bsdf.alpha_u;
     record[material_alpha_v] = bsdf.alpha_v;
     tables.material_back.push_back(static_cast<std::uint32_t>(tables.material_back.size()));
+    const std::vector<std::string> all = all_bsdf_kinds();
+    tables.material_kind.push_back(
+        static_cast<std::uint32_t>(std::find(all.begin(), all.end(), bsdf_kind_name(bsdf)) - all.begin()));
 }
 
 void add_materials(const Scene &scene, SceneTables &tables) {

@@ -15,6 +15,7 @@ struct SceneTables {
     /// By primitive. The material bears the bit material_two_sided; the bins are those of `classify`, by the side.
     std::vector<std::uint32_t> primitive_material, primitive_light, primitive_bin, primitive_back_bin;
     std::vector<std::uint32_t> material_back;            ///< by material record: the record of its back
+    std::vector<std::uint32_t> material_kind;            ///< by material record: its number of GRADUS_BSDF_KINDS
     std::vector<std::uint32_t> light_kinds, light_alias; ///< by light
     std::vector<std::string> kinds; ///< the BSDF kinds of the scene: kind k has the bins 1 + 2 k and 2 + 2 k
     std::uint32_t triangle_count = 0, light_count = 0, environment_light = 0;

@@ -12,8 +12,10 @@ namespace gradus {
 TraceCounts run_trace_stage(Tracer &tracer, const BatchTables &tables, std::uint32_t rays, std::uint32_t shadows,
                             double &trace_seconds);
 
-/// Traces the first `count` rows of a table of links (GRADUS_LINK_COLUMNS) and adds the seconds to `trace_seconds`.
-std::uint64_t run_link_stage(Tracer &tracer, const Buffer &link, std::uint32_t capacity, std::uint32_t count,
-                             double &trace_seconds);
+/// What offset paths ask: the first `links` rows of a table of links (GRADUS_LINK_COLUMNS, 8 * capacity rows) and the
+/// first `rays` of one of rays (GRADUS_OFFSET_RAY_COLUMNS, 4 * capacity rows), where there is one. Returns how many
+/// were traced.
+std::uint64_t run_offset_stage(Tracer &tracer, const Buffer &link, std::uint32_t links, const Buffer *offset_ray,
+                               std::uint32_t rays, std::uint32_t capacity, double &trace_seconds);
 
 } // namespace gradus

@@ -1,0 +1,47 @@
+/* The light that a ray finds where it meets a surface. */
+#ifndef GRADUS_LIB_LIGHT_FOUND_H
+#define GRADUS_LIB_LIGHT_FOUND_H
+//! traits: TRAIT_LIGHT_TRIANGLE TRAIT_LIGHT_SPHERE
+#include "kernels/lib/light.h"
+#include "kernels/lib/scene_hit.h"
+
+GRADUS_LIB_BEGIN
+
+typedef struct {
+    rgb radiance; /* 0 from behind, and where nothing is emitted */
+    real pdf;     /* with which light sampling finds the point, by solid angle at the ray's origin */
+    GRADUS_NOT_IN_REGISTERS
+} light_found;
+
+/* For any primitive: the record after the last light's is that of a black one. */
+GRADUS_FN light_found light_found_at(GRADUS_GLOBAL const uint *primitive_light, GRADUS_GLOBAL const real *lights,
+                                     uint light_count, uint unit, uint triangle_count, uint primitive,
+                                     primitive_hit hit, vec3 origin, vec3 direction) {
+    (void)triangle_count;
+    const real side = -v3_dot(hit.normal, direction);
+    const vec3 connection = v3_sub(hit.position, origin);
+    const real distance_squared = v3_dot(connection, connection);
+    const uint light = min(primitive_light[primitive], light_count);
+    const real inverse_area = FIELD_OF(light, lights, light, inverse_area);
+    real pdf = light_area_pdf(inverse_area, distance_squared, side);
+#if TRAIT_LIGHT_SPHERE && TRAIT_LIGHT_TRIANGLE
+    if (primitive >= triangle_count)
+#endif
+#if TRAIT_LIGHT_SPHERE
+    {
+        const vec3 to_center = v3_sub(FIELD_V3(light, lights, light, p), origin);
+        pdf = light_sphere_pdf(FIELD_OF(light, lights, light, e1_x), FIELD_OF(light, lights, light, e1_y), inverse_area,
+                               v3_dot(to_center, to_center), distance_squared, side);
+    }
+#endif
+    const real seen = side > R(0) ? R(1) : R(0);
+    light_found found;
+    found.radiance = rgb_scale(rgb3(FIELD_OF(light, lights, light, value_r), FIELD_OF(light, lights, light, value_g),
+                                    FIELD_OF(light, lights, light, value_b)),
+                               seen);
+    found.pdf = pdf * FIELD_OF(light, lights, light, probability);
+    return found;
+}
+
+GRADUS_LIB_END
+#endif

@@ -1,0 +1,69 @@
+/* What a ray finds of a surface: where, and how it faces. */
+#ifndef GRADUS_LIB_SURFACE_POINT_H
+#define GRADUS_LIB_SURFACE_POINT_H
+//! traits: TRAIT_SHADING_NORMALS TRAIT_ANISOTROPIC TRAIT_TWO_SIDED TRAIT_TWO_FACED
+#include "kernels/lib/scene_hit.h"
+
+GRADUS_LIB_BEGIN
+
+/* Normals are unit vectors on the side that the material calls front. */
+typedef struct {
+    vec3 position, geometric, shading;
+    vec3 along; /* dp/du, any length; only with TRAIT_ANISOTROPIC */
+    real offset;
+    uint material; /* record of the material on this side */
+    GRADUS_NOT_IN_REGISTERS
+} surface_point;
+
+GRADUS_FN surface_point surface_point_of(GRADUS_GLOBAL const real *triangles,
+                                         GRADUS_GLOBAL const real *triangle_normals,
+                                         GRADUS_GLOBAL const real *triangle_tangents, GRADUS_GLOBAL const real *spheres,
+                                         uint unit, uint triangle_count, GRADUS_GLOBAL const uint *primitive_material,
+                                         GRADUS_GLOBAL const uint *material_back, uint primitive, vec3 origin,
+                                         vec3 direction) {
+    (void)triangle_normals, (void)triangle_tangents, (void)material_back;
+    surface_point point;
+    const primitive_hit hit = primitive_hit_of(triangles, spheres, unit, triangle_count, primitive, origin, direction);
+    vec3 shading = hit.normal;
+#if TRAIT_SHADING_NORMALS
+#if TRAIT_SPHERES
+    if (primitive < triangle_count)
+#endif
+        shading = v3_normalize(
+            v3_mad(v3_mad(v3_scale(FIELD_V3(normals, triangle_normals, primitive, n0), R(1) - hit.u - hit.v), hit.u,
+                          FIELD_V3(normals, triangle_normals, primitive, n1)),
+                   hit.v, FIELD_V3(normals, triangle_normals, primitive, n2)));
+#endif
+    const uint sided_material = primitive_material[primitive];
+    uint material_index = material_record(sided_material);
+    vec3 geometric = hit.normal;
+#if TRAIT_TWO_SIDED
+    const int two_sided = (sided_material & material_two_sided) != 0u;
+#if TRAIT_TWO_FACED
+    const int turned = two_sided && v3_dot(hit.normal, direction) > R(0);
+    const uint back = material_back[material_index];
+    material_index = turned ? back : material_index;
+#else
+    const int turned = two_sided && v3_dot(shading, direction) > R(0);
+#endif
+    const real turn = turned ? R(-1) : R(1);
+    geometric = v3_scale(geometric, turn);
+    shading = v3_scale(shading, turn);
+#endif
+    point.along = v3(-hit.normal.y, hit.normal.x, R(0)); /* spheres: around the z axis */
+#if TRAIT_ANISOTROPIC
+#if TRAIT_SPHERES
+    if (primitive < triangle_count)
+#endif
+        point.along = FIELD_V3(triangle_tangent, triangle_tangents, primitive, along);
+#endif
+    point.position = hit.position;
+    point.geometric = geometric;
+    point.shading = shading;
+    point.offset = primitive_offset(triangles, spheres, unit, triangle_count, primitive);
+    point.material = material_index;
+    return point;
+}
+
+GRADUS_LIB_END
+#endif
