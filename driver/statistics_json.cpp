@@ -59,6 +59,7 @@ nlohmann::json statistics_to_json(const RenderRecord &record, const Statistics &
             {"stages", stages},
             {"rays", rays},
             {"rays_per_second", rate(double(ray_count))},
+            {"shifts", statistics.shifts},
             {"non_finite", statistics.non_finite},
             {"compile_seconds", {{"total", compile_total}, {"kernels", statistics.compile_seconds}}},
             {"memory",

@@ -21,7 +21,8 @@ GRADUS_FN light_found light_found_at(GRADUS_GLOBAL const uint *primitive_light, 
     const real side = -v3_dot(hit.normal, direction);
     const vec3 connection = v3_sub(hit.position, origin);
     const real distance_squared = v3_dot(connection, connection);
-    const uint light = min(primitive_light[primitive], light_count);
+    const uint named = primitive_light[primitive];
+    const uint light = named < light_count ? named : light_count;
     const real inverse_area = FIELD_OF(light, lights, light, inverse_area);
     real pdf = light_area_pdf(inverse_area, distance_squared, side);
 #if TRAIT_LIGHT_SPHERE && TRAIT_LIGHT_TRIANGLE

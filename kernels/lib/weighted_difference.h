@@ -9,7 +9,7 @@
  * the Jacobian. Where `marker` is shift_failed the base path counts for itself; where it is shift_absent nothing does.
  */
 GRADUS_FN rgb weighted_difference(rgb base, rgb offset, real base_other, real offset_density, real marker) {
-    const int failed = marker < R(0), absent = marker < R(-1.5);
+    const int failed = marker < shift_first_failed, absent = marker < shift_first_absent;
     const real weight = R(1) / (R(1) + base_other + (failed ? R(0) : offset_density));
     /* Selected, not scaled: an offset path that failed may have no value. */
     const rgb shifted = rgb_scale(offset, weight);

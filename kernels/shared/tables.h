@@ -172,7 +172,7 @@
     REAL(gain, value_r, "what the offset path gains, times the Jacobian")                                              \
     REAL(gain, value_g, "")                                                                                            \
     REAL(gain, value_b, "")                                                                                            \
-    REAL(gain, base_bsdf, "density of BSDF sampling, base path")               \
+    REAL(gain, base_bsdf, "density of BSDF sampling, base path")                                                       \
     REAL(gain, offset_light, "density of light sampling, offset path; or shift_failed, shift_absent")                  \
     REAL(gain, offset_bsdf, "density of BSDF sampling, offset path; or gain_split")
 
@@ -292,8 +292,28 @@ enum gradient_film_column {
 #define gain_split R(-1)
 
 /* Ratios below zero: the offset path failed, so that the base path counts for itself; or there is no neighbour. */
-#define shift_failed R(-1)
+#define shift_failed(reason) (R(-1) - R(0.0625) * (real)(reason))
 #define shift_absent R(-2)
+/* From which on it is shift_failed, from which on shift_absent. */
+#define shift_first_failed R(0)
+#define shift_first_absent R(-1.75)
+
+/* What became of an attempt to take an offset path further. OUTCOME(name, what is said of it); the failures come after
+ * outcome_half_vector, and are the reasons of shift_failed. */
+#define GRADUS_SHIFT_OUTCOMES(OUTCOME)                                                                                 \
+    OUTCOME(reconnected, "with the base path's next vertex")                                                           \
+    OUTCOME(half_vector, "copied, with a vertex of its own")                                                           \
+    OUTCOME(failed_at_once, "the neighbour sees nothing")                                                              \
+    OUTCOME(failed_kinds, "one vertex is Dirac, the other is not")                                                     \
+    OUTCOME(failed_side, "the next vertex would be seen from its other side, or grazing")                              \
+    OUTCOME(failed_copy, "no direction has this half vector")                                                          \
+    OUTCOME(failed_hidden, "the reconnection is blocked")                                                              \
+    OUTCOME(failed_nothing, "the offset ray meets nothing, or something where the base path does not")                 \
+    OUTCOME(failed_back, "the shift back would reconnect")
+
+#define GRADUS_OUTCOME_INDEX(name, text) outcome_##name,
+enum shift_outcome { GRADUS_SHIFT_OUTCOMES(GRADUS_OUTCOME_INDEX) shift_outcomes };
+#undef GRADUS_OUTCOME_INDEX
 
 GRADUS_LIB_END
 

@@ -4,10 +4,9 @@
  * + pixel of the crop; slot 0 is pixel `first_pixel` of sample `first_sample`. Random numbers go by the pixel of the
  * full film, so that a crop equals the same part of the full image. */
 //! traits: TRAIT_FILTER_TENT TRAIT_FILTER_GAUSSIAN TRAIT_AOV TRAIT_SHARED_JITTER
+#include "kernels/lib/additive_sequence.h"
 #include "kernels/lib/begin_path.h"
 #include "kernels/lib/division.h"
-#include "kernels/lib/random.h"
-#include "kernels/lib/warp.h"
 
 /* Filter importance sampling (Ernst et al. 2006): the offset from the pixel's center is drawn from the filter. */
 GRADUS_FN real filter_offset(__global const real *camera, uint unit, real u) {
@@ -41,12 +40,13 @@ STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ra
 
     const random_bits key = random_key(seed_low, seed_high, y * film_width + x, sample_low, sample_high);
 #if TRAIT_SHARED_JITTER
-    /* All pixels of a sample share their place within the pixel. Places follow each other in an additive sequence
-     * (Roberts 2018) from a random start: what all pixels share does not average out over the image. */
+    /* All pixels of a sample share their place within the pixel. Places follow each other in a sequence that fills the
+     * pixel evenly: what all pixels share does not average out over the image. */
     const random_bits start = random_key(seed_low, seed_high, 0xFFFFFFFFu, 0u, sample_high);
+    const point2 place = additive_sequence(start.x, start.y, sample_low);
     random4 u;
-    u.a = random_unit(start.x + sample_low * 3242174889u);
-    u.b = random_unit(start.y + sample_low * 2447445414u);
+    u.a = place.x;
+    u.b = place.y;
 #else
     const random4 u = random_draw(key.x, key.y, random_dimension_camera);
 #endif

@@ -104,7 +104,8 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint to, uint capacit
         const uint offset_primitive = AT_UINT(offset_ray, primitive, sent);
 #if ESCAPED
         const light_found own = found;
-        marker = is_apart && offset_primitive != ray_escaped ? r_min(ratio, shift_failed) : ratio;
+        marker =
+            is_apart && offset_primitive != ray_escaped ? r_min(ratio, shift_failed(outcome_failed_nothing)) : ratio;
 #else
         const uint present = offset_primitive < ray_first_special ? offset_primitive : 0u;
         const vec3 own_origin = AT_V3(offset_ray, origin, sent), own_direction = AT_V3(offset_ray, direction, sent);

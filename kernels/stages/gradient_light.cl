@@ -144,14 +144,15 @@ STAGE gradient_light(uint count, uint unit, uint first, uint capacity, uint slot
             rgb_scale(rgb_mul(rgb_mul(so_far, arriving), f.value), scatters ? jacobian * own_share : R(0));
         value =
             rgb3(is_apart ? own_value.r : value.r, is_apart ? own_value.g : value.g, is_apart ? own_value.b : value.b);
-        offset_light = is_apart ? (scatters ? own_light * ratio_before : shift_failed) : offset_light;
+        offset_light =
+            is_apart ? (scatters ? own_light * ratio_before : shift_failed(outcome_failed_kinds)) : offset_light;
         offset_bsdf = is_apart ? (both_rough ? own_bsdf * ratio_before : gain_split) : offset_bsdf;
         const int asks = is_apart & (rgb_max(value) > R(0));
         asks_base = is_apart ? (asks ? base_bsdf : R(0)) : asks_base;
 #else
         const int is_rough = (kind & kind_is_rough) != 0u;
         const rgb value = rgb_scale(rgb_mul(arriving, f.value), is_rough ? jacobian : R(0));
-        const real offset_light = is_apart ? (is_rough ? own_light : shift_failed) : shift_absent;
+        const real offset_light = is_apart ? (is_rough ? own_light : shift_failed(outcome_failed_kinds)) : shift_absent;
         const real offset_bsdf = own_bsdf;
         const int asks = is_apart & (rgb_max(value) > R(0));
         const real asks_base = asks ? base_bsdf : R(0);

@@ -40,7 +40,7 @@ STAGE offset_begin(uint count, uint first, uint capacity, uint slots, __global c
 #endif
         const int is_there = neighbour != slot, is_apart = is_there & (kind != kind_none);
         SET_RGB(shifted, value, at, rgb_gray(R(1)));
-        AT(shifted, ratio, at) = is_there ? (is_apart ? R(1) : shift_failed) : shift_absent;
+        AT(shifted, ratio, at) = is_there ? (is_apart ? R(1) : shift_failed(outcome_failed_at_once)) : shift_absent;
         AT_UINT(shifted, state, at) = shift_apart;
         any |= is_apart;
         all_rough &= (kind & kind_is_rough) != 0u || !is_apart;
@@ -89,7 +89,8 @@ STAGE offset_surface(uint count, uint unit, uint first, uint escaped, uint capac
         const uint kind = material_kind[point.material];
         const int comes_back = (state != shift_apart_rough) | !is_reconnectable(kind, primitive_light[present]);
         const int is_apart = was_apart & is_hit & comes_back;
-        AT(shifted, ratio, at) = was_apart & !is_apart ? shift_failed : ratio;
+        AT(shifted, ratio, at) =
+            (was_apart & !is_apart) ? shift_failed(is_hit ? outcome_failed_back : outcome_failed_nothing) : ratio;
         AT_UINT(offset_vertex, kind, at) = is_apart ? kind : kind_none;
         AT_UINT(offset_vertex, material, at) = point.material;
         AT(offset_vertex, offset, at) = point.offset;

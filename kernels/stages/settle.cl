@@ -20,11 +20,13 @@ STAGE settle(uint count, uint first, uint capacity, __global real *shifted, __gl
     for (uint j = 0; j < 4; ++j) {
         const size_t at = (size_t)j * capacity + first + i;
         const real ratio = AT(shifted, ratio, at);
-        int holds = AT_UINT(link, open, link_first + (size_t)j * link_stride + i) != 0u;
+        const int open = AT_UINT(link, open, link_first + (size_t)j * link_stride + i) != 0u;
+        int holds = open;
 #if TRAIT_APART
-        holds = (holds & (is_rough != 0u)) | (AT_UINT(shifted, state, at) != shift_reconnected);
+        holds = (open & (is_rough != 0u)) | (AT_UINT(shifted, state, at) != shift_reconnected);
 #endif
-        AT(shifted, ratio, at) = ratio < R(0) || holds ? ratio : shift_failed;
+        AT(shifted, ratio, at) =
+            ratio < R(0) || holds ? ratio : shift_failed(open ? outcome_failed_kinds : outcome_failed_hidden);
     }
 }
 

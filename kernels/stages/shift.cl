@@ -142,9 +142,14 @@ STAGE shift(uint count, uint unit, uint first, uint to, uint capacity, uint slot
         const real offset_pdf = f_rough.pdf;
         const int works = (base_pdf > R(0)) & is_rough & same_side & (reconnection > R(0));
 #endif
+#if APART
+        const uint reason = reconnects ? outcome_failed_side : alike ? outcome_failed_copy : outcome_failed_kinds;
+#else
+        const uint reason = kind == kind_none ? outcome_failed_at_once : outcome_failed_side;
+#endif
         const real factor = works ? jacobian * inverse_pdf : R(0);
         const rgb value = rgb_mul(value_before, rgb_scale(f, factor));
-        const real ratio = works ? ratio_before * offset_pdf * factor : shift_failed;
+        const real ratio = works ? ratio_before * offset_pdf * factor : shift_failed(reason);
         /* Others stay what they are. A direction that could not be copied may have no value: selected, not scaled. */
         SET_RGB(shifted, value, at,
                 rgb3(is_apart ? (works ? value.r : R(0)) : value_before.r,
@@ -163,16 +168,16 @@ STAGE shift(uint count, uint unit, uint first, uint to, uint capacity, uint slot
 #else
         SET_V3(link, direction, segment, v3_sub(end, origin));
 #endif
-        AT_UINT(link, open, segment) = is_apart & reconnects & works & (offset_pdf > R(0)) ? 1u : 0u;
+        AT_UINT(link, open, segment) = (is_apart & reconnects & works & (offset_pdf > R(0))) ? 1u : 0u;
 #if TRAIT_APART
         uint state = is_apart ? shift_reconnected : shift_merged;
 #if APART
-        state = is_apart & !reconnects ? (both_rough ? shift_apart_rough : shift_apart) : state;
+        state = (is_apart & !reconnects) ? (both_rough ? shift_apart_rough : shift_apart) : state;
         AT(shifted, pdf, at) = is_dirac ? R(0) : offset_pdf;
         const size_t sent = offset_first + (size_t)j * offset_stride + i;
         SET_V3(offset_ray, origin, sent, origin);
         SET_V3(offset_ray, direction, sent, direction);
-        AT_UINT(offset_ray, primitive, sent) = is_apart & !reconnects & works ? ray_pending : ray_none;
+        AT_UINT(offset_ray, primitive, sent) = (is_apart & !reconnects & works) ? ray_pending : ray_none;
 #endif
         AT_UINT(shifted, state, at) = state;
 #endif

@@ -59,7 +59,7 @@ GradientLayers read_gradient_film(const Buffer &film, std::size_t pixels, std::u
 }
 
 Image reconstruct(PoissonSolver &solver, const Image &whole, const GradientLayers &layers,
-                  const RenderOptions &options) {
+                  const std::vector<DirectPixel> &edges, const RenderOptions &options) {
     const std::vector<float> primal = planes(layers.means, 0), dx = planes(layers.means, 1),
                              dy = planes(layers.means, 2);
     const std::vector<float> primal_variance = planes(layers.variances, 0), dx_variance = planes(layers.variances, 1),
@@ -71,6 +71,9 @@ Image reconstruct(PoissonSolver &solver, const Image &whole, const GradientLayer
         // Where no light is seen, the difference is rounding.
         direct[i] = std::abs(seen) > 1e-6f * std::abs(primal[i]) ? seen : 0.0f;
     }
+    for (const DirectPixel &edge : edges)
+        for (std::size_t c = 0; c < 3; ++c)
+            direct[c * pixels + edge.pixel] = edge.light[c];
     HostImages images;
     images.primal = primal.data();
     images.dx = dx.data();

@@ -3,6 +3,7 @@
 
 #include "runtime/device/buffer.h"
 #include "runtime/film/image.h"
+#include "runtime/methods/direct_light.h"
 #include "runtime/methods/method.h"
 #include "solver/poisson_solver.h"
 
@@ -21,9 +22,9 @@ struct GradientLayers {
 GradientLayers read_gradient_film(const Buffer &film, std::size_t pixels, std::uint64_t frames);
 
 /// R, G and B reconstructed, the layers, and what else `whole` holds, the mean of all samples. What it has and the
-/// primal has not is what the camera sees of lights; it is added at last, as it is. alpha comes from the variances
-/// unless the options say otherwise.
+/// primal has not is what the camera sees of lights, and `edges` know it better where they are; it is added at last, as
+/// it is. alpha comes from the variances unless the options say otherwise.
 Image reconstruct(PoissonSolver &solver, const Image &whole, const GradientLayers &layers,
-                  const RenderOptions &options);
+                  const std::vector<DirectPixel> &edges, const RenderOptions &options);
 
 } // namespace gradus

@@ -23,6 +23,8 @@ KernelRequest variant(KernelRequest request, const std::string &name, const std:
     return request;
 }
 
+std::uint32_t chunks_of(std::uint32_t rows) { return (rows + partition_chunk - 1) / partition_chunk; }
+
 /// By material record, the kind with what `kind` in kernels/shared/tables.h says of it.
 std::vector<std::uint32_t> shift_kinds(const SceneTables &tables, double threshold) {
     const std::vector<std::string> names = all_bsdf_kinds();
@@ -86,6 +88,8 @@ std::vector<PathTracer::Wanted> GradientPathTracer::wanted_kernels() {
         {&close_links_, variant(settle, "close links", "close_links", {})},
         {&combine_, request_of("gradient_combine")},
         {&gradient_accumulate_, request_of("gradient_accumulate")},
+        {&count_, variant(request_of("shift_count"), "shift_count", "shift_count",
+                          {{"PARTITION_CHUNK", std::to_string(partition_chunk)}})},
     };
     if (keeps_apart()) {
         const KernelRequest surface = request_of("offset_surface");
@@ -153,6 +157,8 @@ void GradientPathTracer::allocate() {
     gradient_film_ = table("gradient_film", gradient_film_columns, film_->pixels());
     gradient_film_.clear();
     primary_.clear(); // rows of escaped paths have no material, and are read all the same
+    outcome_ = Buffer(device_, "outcome", shift_outcomes * chunks_of(tables_->capacity) * sizeof(std::uint32_t));
+    outcome_.clear();
     const std::vector<std::uint32_t> kinds = shift_kinds(scene_tables_, options_.shift_threshold);
     material_kind_ = Buffer(device_, "material_kind", kinds.data(), kinds.size() * sizeof(kinds[0]));
     if (keeps_apart()) {
@@ -170,6 +176,7 @@ void GradientPathTracer::allocate() {
 void GradientPathTracer::bind_kernels() {
     std::vector<const Buffer *> buffers = {&material_kind_, &primary_,    &gain_,   &link_,
                                            &prefix_,        &difference_, &direct_, &gradient_film_};
+    buffers.push_back(&outcome_);
     if (keeps_apart())
         buffers.insert(buffers.end(), {&offset_vertex_, &offset_ray_, &offset_state_});
     std::vector<Kernel *> kernels = more_kernels_;
@@ -180,6 +187,7 @@ void GradientPathTracer::bind_kernels() {
         kernel->bind("shifted", shifted_[0]);
         kernel->bind("shifted_old", shifted_[1]);
         bind_film_place(*kernel);
+        kernel->set("chunks_at_most", chunks_of(tables_->capacity));
         for (const char *number :
              {"link_first", "link_stride", "offset_first", "offset_stride", "to", "escaped", "shifting", "fresh"})
             kernel->set(number, 0);
@@ -339,6 +347,10 @@ bool GradientPathTracer::render_batch() {
     if (done_ >= total_)
         return false;
     const auto start = std::chrono::steady_clock::now();
+    if (done_ == 0 && settings_.max_depth != 0 && !settings_.hide_emitters)
+        direct_edges_ =
+            sample_direct_edges(scene_tables_, film_settings_, tracer_, options_.seed,
+                                static_cast<std::uint32_t>(settings_.samples_per_pixel), statistics_.rays["edge"]);
     const std::uint32_t paths = begin_pass();
     if (settings_.max_depth == 0) {
         for (Buffer *buffer : {&tables_->radiance, &tables_->feature, &direct_, &prefix_, &difference_})
@@ -395,6 +407,7 @@ bool GradientPathTracer::render_batch() {
             settle_.set("link_first", shiftings.surface[phase].link_first);
             settle_.set("link_stride", next.rows[phase].count);
             run(settle_, next.rows[phase].first, next.rows[phase].count);
+            count_outcomes(next.rows[phase]);
         }
         run(offset_begin_, next.rows[first].first, next.rows[first].count);
         newest = 1 - newest;
@@ -416,7 +429,30 @@ Image GradientPathTracer::image() {
     if (!solver_)
         solver_ = std::make_unique<PoissonSolver>(device_, film_settings_.crop_width, film_settings_.crop_height, 3);
     return reconstruct(*solver_, whole, read_gradient_film(gradient_film_, film_->pixels(), done_ / film_->pixels()),
-                       options_);
+                       direct_edges_, options_);
+}
+
+void GradientPathTracer::count_outcomes(Range rows) {
+    if (rows.count == 0)
+        return;
+    const std::uint32_t chunks = chunks_of(rows.count);
+    count_.set("first", rows.first);
+    count_.set("count", rows.count);
+    count_.set("chunks", chunks);
+    count_.launch(chunks);
+}
+
+Statistics GradientPathTracer::statistics() const {
+    Statistics s = PathTracer::statistics();
+    std::vector<std::uint32_t> found(outcome_.bytes() / sizeof(std::uint32_t));
+    outcome_.read(found.data(), outcome_.bytes());
+#define GRADUS_OUTCOME_NAME(name, text) #name,
+    const char *const names[] = {GRADUS_SHIFT_OUTCOMES(GRADUS_OUTCOME_NAME)};
+#undef GRADUS_OUTCOME_NAME
+    const std::size_t chunks = found.size() / shift_outcomes;
+    for (std::size_t i = 0; i < found.size(); ++i)
+        s.shifts[names[i / chunks]] += found[i];
+    return s;
 }
 
 } // namespace gradus

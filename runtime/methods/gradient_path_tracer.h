@@ -8,6 +8,7 @@
 // its own; scenes in which all surfaces are rough do without.
 #pragma once
 
+#include "runtime/methods/direct_light.h"
 #include "runtime/methods/path_tracer.h"
 #include "solver/poisson_solver.h"
 
@@ -23,6 +24,7 @@ class GradientPathTracer final : public PathTracer {
     /// R, G, B reconstructed, then layers primal, dx, dy, direct; with aov also their variances and the path tracer's
     /// layers.
     Image image() override;
+    Statistics statistics() const override;
 
   private:
     /// What becomes of offset paths at a vertex: at the first, all are apart; then some are; then the last reconnect;
@@ -70,17 +72,20 @@ class GradientPathTracer final : public PathTracer {
     void emit(const Vertices &next, const Shiftings &shiftings);
     void scatter(const Vertices &vertices, const Buffer &vertex);
 
+    void count_outcomes(Range rows);
     bool keeps_apart() const { return traits_.at("TRAIT_APART") != 0; }
 
     Kernel primary_begin_, primary_surface_, begin_, settle_, close_links_, offset_begin_, offset_surface_;
-    Kernel connect_apart_, connect_joined_, combine_, gradient_accumulate_;
+    Kernel connect_apart_, connect_joined_, combine_, gradient_accumulate_, count_;
     Kernel shift_[2], shift_escaped_[2], offset_emission_[2],
         offset_escape_[2]; ///< [1]: where offset paths may be apart
     std::vector<GradientKernels> gradient_kinds_;
+    std::vector<DirectPixel> direct_edges_;
     std::unique_ptr<PoissonSolver> solver_;
     Buffer material_kind_, primary_, gain_, link_, prefix_, difference_, direct_, gradient_film_;
     Buffer shifted_[2]; ///< as BatchTables::vertex; the same where none stay apart
     Buffer offset_vertex_, offset_ray_, offset_state_;
+    Buffer outcome_;
 };
 
 } // namespace gradus

@@ -329,7 +329,10 @@ Statistics PathTracer::statistics() const {
         s.stages.push_back({kernel.name(), usage.seconds, usage.items, usage.launches});
     };
     stage(camera_);
-    s.stages.push_back({"trace", trace_seconds_, s.rays["extension"] + s.rays["shadow"], 0});
+    std::uint64_t traced = 0;
+    for (const auto &[kind, count] : s.rays)
+        traced += count;
+    s.stages.push_back({"trace", trace_seconds_, traced, 0});
     stage(connect_);
     stage(classify_);
     for (const Kernel &kernel : partition_kernels_)

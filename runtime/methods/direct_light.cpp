@@ -1,0 +1,186 @@
+#include "runtime/methods/direct_light.h"
+
+#define TRAIT_TRIANGLES 1
+#define TRAIT_SPHERES 1
+#define TRAIT_LIGHT_TRIANGLE 1
+#define TRAIT_LIGHT_SPHERE 1
+#include "kernels/lib/additive_sequence.h"
+#include "kernels/lib/light_found.h"
+#include "kernels/shared/tables.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gradus {
+
+using namespace lib_float;
+
+namespace {
+
+constexpr std::uint32_t pilot_side = 2;
+constexpr double rays_a_sample = 0.5; // of the image; a sample of a path takes a dozen
+constexpr std::uint32_t most_samples = 4096;
+constexpr std::size_t batch = 1 << 16;
+
+/// What camera rays see of lights, a batch at a time.
+class DirectRays {
+  public:
+    DirectRays(const SceneTables &tables, Tracer &tracer, std::uint64_t &rays)
+        : tables_(tables), tracer_(tracer), rays_(rays) {}
+
+    /// A ray through a point of the full film, in pixels.
+    void add(float film_x, float film_y) {
+        const float *camera = tables_.camera.data();
+        const vec3 direction =
+            v3_normalize(v3_mad(v3_mad(FIELD_V3(camera, camera, 0, corner), film_x, FIELD_V3(camera, camera, 0, right)),
+                                film_y, FIELD_V3(camera, camera, 0, down)));
+        const float values[] = {camera[camera_origin_x],
+                                camera[camera_origin_y],
+                                camera[camera_origin_z],
+                                direction.x,
+                                direction.y,
+                                direction.z};
+        for (int i = 0; i < 6; ++i)
+            columns_[i].push_back(values[i]);
+    }
+    std::size_t size() const { return columns_[0].size(); }
+
+    /// The light along each ray, in the order in which they were added; then there are none.
+    std::vector<rgb> trace() {
+        const std::size_t count = size();
+        std::vector<std::uint32_t> primitive(count, ray_pending);
+        RayColumns columns{};
+        for (int axis = 0; axis < 3; ++axis) {
+            columns.origin[axis] = columns_[axis].data();
+            columns.direction[axis] = columns_[3 + axis].data();
+        }
+        columns.primitive = primitive.data();
+        rays_ += tracer_.trace(columns, count, ShadowColumns{}, 0).extension;
+        std::vector<rgb> light(count);
+        for (std::size_t i = 0; i < count; ++i)
+            light[i] = light_along(i, primitive[i]);
+        for (std::vector<float> &column : columns_)
+            column.clear();
+        return light;
+    }
+
+  private:
+    static constexpr std::uint32_t unit = 1; // of FIELD_OF
+
+    rgb light_along(std::size_t i, std::uint32_t primitive) const {
+        const float *lights = tables_.lights.data();
+        if (primitive == ray_escaped)
+            return rgb3(FIELD_OF(light, lights, tables_.environment_light, value_r),
+                        FIELD_OF(light, lights, tables_.environment_light, value_g),
+                        FIELD_OF(light, lights, tables_.environment_light, value_b));
+        if (tables_.primitive_light[primitive] == no_light)
+            return rgb_gray(0);
+        const vec3 origin = v3(columns_[0][i], columns_[1][i], columns_[2][i]);
+        const vec3 direction = v3(columns_[3][i], columns_[4][i], columns_[5][i]);
+        const primitive_hit hit = primitive_hit_of(tables_.triangles.data(), tables_.spheres.data(), unit,
+                                                   tables_.triangle_count, primitive, origin, direction);
+        return light_found_at(tables_.primitive_light.data(), lights, tables_.light_count, unit, tables_.triangle_count,
+                              primitive, hit, origin, direction)
+            .radiance;
+    }
+
+    const SceneTables &tables_;
+    Tracer &tracer_;
+    std::uint64_t &rays_;
+    std::vector<float> columns_[6];
+};
+
+bool differ(rgb a, rgb b) { return a.r != b.r || a.g != b.g || a.b != b.b; }
+
+/// Pixels of the crop near which the pilot rays see different light.
+std::vector<std::size_t> edge_pixels(const FilmSettings &film, DirectRays &rays, int reach) {
+    const std::uint32_t width = film.crop_width, height = film.crop_height;
+    // Of each pixel its first light, and whether its rays saw another.
+    constexpr std::size_t pilots = pilot_side * pilot_side;
+    std::vector<rgb> seen(std::size_t(width) * height);
+    std::vector<char> mixed(seen.size(), 0);
+    for (std::size_t begin = 0; begin < seen.size();) {
+        const std::size_t end = std::min(seen.size(), begin + batch / pilots);
+        for (std::size_t pixel = begin; pixel < end; ++pixel)
+            for (std::uint32_t i = 0; i < pilots; ++i)
+                rays.add(float(film.crop_x + pixel % width) + (float(i % pilot_side) + 0.5f) / pilot_side,
+                         float(film.crop_y + pixel / width) + (float(i / pilot_side) + 0.5f) / pilot_side);
+        const std::vector<rgb> light = rays.trace();
+        for (std::size_t pixel = begin; pixel < end; ++pixel) {
+            const rgb *first = &light[(pixel - begin) * pilots];
+            seen[pixel] = *first;
+            mixed[pixel] = std::any_of(first + 1, first + pilots, [&](rgb other) { return differ(other, *first); });
+        }
+        begin = end;
+    }
+    std::vector<std::size_t> found;
+    for (int y = 0; y < int(height); ++y)
+        for (int x = 0; x < int(width); ++x) {
+            const std::size_t pixel = std::size_t(y) * width + x;
+            bool is_edge = false;
+            for (int near_y = std::max(y - reach, 0); near_y <= std::min(y + reach, int(height) - 1); ++near_y)
+                for (int near_x = std::max(x - reach, 0); near_x <= std::min(x + reach, int(width) - 1); ++near_x) {
+                    const std::size_t near_pixel = std::size_t(near_y) * width + near_x;
+                    is_edge = is_edge || mixed[near_pixel] || differ(seen[near_pixel], seen[pixel]);
+                }
+            if (is_edge)
+                found.push_back(pixel);
+        }
+    return found;
+}
+
+} // namespace
+
+std::vector<DirectPixel> sample_direct_edges(const SceneTables &tables, const FilmSettings &film, Tracer &tracer,
+                                             std::uint64_t seed, std::uint32_t samples, std::uint64_t &rays) {
+    const float radius = tables.camera[camera_filter_radius], deviation = tables.camera[camera_filter_stddev];
+    const auto from_center = [&](float u) {
+        return film.filter == FilmSettings::Filter::tent       ? radius * warp_tent(u)
+               : film.filter == FilmSettings::Filter::gaussian ? warp_gaussian(u, radius, deviation)
+                                                               : u - 0.5f;
+    };
+    DirectRays direct(tables, tracer, rays);
+    const int reach = film.filter == FilmSettings::Filter::box ? 1 : std::max(1, int(std::ceil(radius)));
+    const std::vector<std::size_t> edges = edge_pixels(film, direct, reach);
+
+    if (edges.empty())
+        return {};
+    const double budget = rays_a_sample * samples * film.crop_width * film.crop_height / double(edges.size());
+    const auto count = static_cast<std::uint32_t>(std::min<double>(budget, most_samples));
+    if (count < 2 * samples)
+        return {};
+    std::vector<DirectPixel> found;
+    for (std::size_t begin = 0; begin < edges.size();) {
+        const std::size_t end = std::min(edges.size(), begin + std::max<std::size_t>(batch / count, 1));
+        for (std::size_t e = begin; e < end; ++e) {
+            const std::uint32_t x = film.crop_x + static_cast<std::uint32_t>(edges[e] % film.crop_width);
+            const std::uint32_t y = film.crop_y + static_cast<std::uint32_t>(edges[e] / film.crop_width);
+            // No path has so high a sample number.
+            const random_bits start =
+                random_key(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32), y * film.width + x,
+                           0, 0xFFFFFFFFu);
+            for (std::uint32_t i = 0; i < count; ++i) {
+                const point2 place = additive_sequence(start.x, start.y, i);
+                direct.add(float(x) + 0.5f + from_center(place.x), float(y) + 0.5f + from_center(place.y));
+            }
+        }
+        const std::vector<rgb> light = direct.trace();
+        for (std::size_t e = begin; e < end; ++e) {
+            double sum[3] = {};
+            for (std::size_t i = (e - begin) * count; i < (e - begin + 1) * count; ++i) {
+                sum[0] += light[i].r;
+                sum[1] += light[i].g;
+                sum[2] += light[i].b;
+            }
+            DirectPixel pixel;
+            pixel.pixel = edges[e];
+            for (int c = 0; c < 3; ++c)
+                pixel.light[c] = static_cast<float>(sum[c] / count);
+            found.push_back(pixel);
+        }
+        begin = end;
+    }
+    return found;
+}
+
+} // namespace gradus

@@ -1,0 +1,27 @@
+// What the camera sees of lights where their edges cross pixels. There a few samples leave far more error than all else
+// in the image: a lamp is a hundred times brighter than what it lights.
+#pragma once
+
+#include "runtime/scene/scene_tables.h"
+#include "runtime/trace/tracer.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace gradus {
+
+/// The light that the camera sees through a pixel, averaged over the pixel filter.
+struct DirectPixel {
+    std::size_t pixel = 0; ///< of the crop, line by line
+    std::array<float, 3> light{};
+};
+
+/// Finds the pixels in whose reach lights begin or end, by four rays through each that count for nothing else, and
+/// samples those anew, as often as half a ray for each of `samples` of all pixels of the image allows; does nothing
+/// where that would not be twice `samples`. The estimates are unbiased, and so are those of the path tracer for the
+/// other pixels. `film` has its crop set. Adds the rays that were traced to `rays`.
+std::vector<DirectPixel> sample_direct_edges(const SceneTables &tables, const FilmSettings &film, Tracer &tracer,
+                                             std::uint64_t seed, std::uint32_t samples, std::uint64_t &rays);
+
+} // namespace gradus
