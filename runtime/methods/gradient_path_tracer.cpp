@@ -23,6 +23,12 @@ KernelRequest variant(KernelRequest request, const std::string &name, const std:
     return request;
 }
 
+/// A request that relaxed arithmetic does not change.
+KernelRequest strict(KernelRequest request) {
+    request.strict = true;
+    return request;
+}
+
 } // namespace
 
 GradientPathTracer::GradientPathTracer(Device &device, const Scene &scene, const RenderOptions &options)
@@ -61,8 +67,8 @@ std::vector<PathTracer::Wanted> GradientPathTracer::wanted_kernels() {
         {&shift_, variant(request_of("shift"), "shift", "shift", with("ESCAPED", "0"))},
         {&settle_, settle},
         {&close_links_, variant(settle, "close links", "close_links", {})},
-        {&combine_, request_of("gradient_combine")},
-        {&gradient_accumulate_, request_of("gradient_accumulate")},
+        {&combine_, strict(request_of("gradient_combine"))},
+        {&gradient_accumulate_, strict(request_of("gradient_accumulate"))},
     };
     if (escape_wanted()) {
         wanted.push_back(
@@ -94,7 +100,7 @@ std::vector<PathTracer::Wanted> GradientPathTracer::wanted_kernels() {
 
 void GradientPathTracer::allocate() {
     const auto table = [&](const char *name, std::size_t columns, std::size_t rows) {
-        return Buffer(device_, name, columns * rows * sizeof(float));
+        return Buffer(device_, name, columns * rows * real_bytes(options_.precision));
     };
     const std::size_t capacity = tables_->capacity, slots = tables_->slots;
     const std::size_t primary_needs = traits_.at("TRAIT_ANISOTROPIC")       ? primary_columns
@@ -262,8 +268,9 @@ bool GradientPathTracer::render_batch() {
             shift_escaped_.set("link_stride", second_escaped.count);
             run(shift_escaped_, second_escaped.first, second_escaped.count);
         }
-        statistics_.rays["offset"] += run_link_stage(
-            tracer_, link_, tables_->capacity, link_first + 4 * (second.count + second_escaped.count), trace_seconds_);
+        statistics_.rays["offset"] +=
+            run_link_stage(tracer_, link_, tables_->capacity, link_first + 4 * (second.count + second_escaped.count),
+                           options_.precision, trace_seconds_);
         connect(vertices, old_vertex);
         emit(next, link_first);
         settle_.set("link_stride", second.count);
@@ -315,7 +322,9 @@ Image GradientPathTracer::image() {
     const Image whole = film_->image(done_, statistics_.non_finite);
     if (!solver_)
         solver_ = std::make_unique<PoissonSolver>(device_, film_settings_.crop_width, film_settings_.crop_height, 3);
-    return reconstruct(*solver_, whole, read_gradient_film(gradient_film_, film_->pixels(), done_ / film_->pixels()),
+    return reconstruct(*solver_, whole,
+                       read_gradient_film(HostTable(gradient_film_, film_->pixels(), options_.precision),
+                                          film_->pixels(), done_ / film_->pixels()),
                        options_);
 }
 

@@ -7,13 +7,14 @@
 namespace gradus {
 
 /// Traces the first `rays` rows of tables.ray and the first `shadows` rows of tables.shadow. Waits for the device
-/// first; the device does nothing while the host traces, so that the two never compete for cores.
-/// `trace_seconds` grows by the tracer's time alone.
+/// first; the device does nothing while the host traces, so that the two never compete for cores. Rays of a double
+/// table are rounded to float, in which Embree traces; kernels compute hits from the double ones. `trace_seconds` grows
+/// by the tracer's time alone.
 TraceCounts run_trace_stage(Tracer &tracer, const BatchTables &tables, std::uint32_t rays, std::uint32_t shadows,
                             double &trace_seconds);
 
 /// Traces the first `count` rows of a table of links (GRADUS_LINK_COLUMNS) and adds the seconds to `trace_seconds`.
 std::uint64_t run_link_stage(Tracer &tracer, const Buffer &link, std::uint32_t capacity, std::uint32_t count,
-                             double &trace_seconds);
+                             Precision precision, double &trace_seconds);
 
 } // namespace gradus
