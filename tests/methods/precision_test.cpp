@@ -49,7 +49,8 @@ double block_difference(const Image &a, const Image &b) {
 
 // The random numbers are the same, so a path stays the same until rounding decides otherwise: past an edge, or on with
 // Russian roulette. Where a share p of the paths parts, images differ with p times the variance of independent ones. A
-// path takes less than a hundred such decisions with errors of some 1e-6, which makes p about 1e-4; 1e-2 is allowed.
+// path takes less than a hundred such decisions with errors of some 1e-6, which makes p less than 1e-4; 1e-3 is
+// allowed.
 TEST_P(PrecisionOfKernels, DecidesFewPaths) {
     Scene scene = own_scene("cornell-box.xml", 128, 128);
     scene.settings.samples_per_pixel = 16;
@@ -59,14 +60,14 @@ TEST_P(PrecisionOfKernels, DecidesFewPaths) {
     const double share = std::pow(block_difference(single, other) / noise, 2);
     fmt::print("{}, {} against single: a share of {:.1e} of the paths parts\n", method(), precision_name(precision()),
                share);
-    EXPECT_LE(share, 1e-2);
+    EXPECT_LE(share, 1e-3);
 }
 
 TEST_P(PrecisionOfKernels, HasOneImageForAllBatchesAndThreads) {
-    Scene scene = own_scene("materials.xml", 81, 61);
+    Scene scene = own_scene("materials.xml", 48, 36);
     scene.settings.samples_per_pixel = 4;
     const Image image = image_of(scene, precision());
-    for (const std::uint32_t batch_size : {64u, 1000u, 5000u})
+    for (const std::uint32_t batch_size : {64u, 1000u})
         EXPECT_TRUE(equal_bits(image, image_of(scene, precision(), 1, batch_size))) << "batch size " << batch_size;
     for (const int threads : {1, 3})
         EXPECT_TRUE(equal_bits(image, image_of(scene, precision(), 1, 0, threads))) << threads << " threads that trace";

@@ -100,9 +100,9 @@ TEST(VeryFarAway, CornellBoxKeepsItsLight) {
     EXPECT_LT(error.largest, 0.1);
 }
 
-// Ten times further a float keeps eleven bits for the scene. Vertices have these alone in either precision, and rays
-// start off surfaces as far, since Embree takes origins in float; points on surfaces are exact in double alone. So
-// double is no nearer than that allows, and never further away than float by more than the noise of the difference.
+// Ten times further a float keeps eleven bits for the scene. In either precision vertices have these alone, and rays
+// start off surfaces by some hundredths of the scene, since Embree takes origins in float. Only points on surfaces and
+// what is computed from them are exact in double, so it gains little here; it must not lose.
 TEST(VeryFarAway, DoubleIsNoWorseThanFloat) {
     if (!shared_device().description().has_double)
         GTEST_SKIP() << shared_device().description().name << " has no double precision";
