@@ -29,6 +29,17 @@ void add_method_options(CLI::App &command, const Services &services, MethodReque
         ->check(CLI::Range(std::uint32_t(0), std::uint32_t(1) << 28))
         ->capture_default_str()
         ->group(group);
+    const std::map<std::string, Precision> precisions{
+        {"single", Precision::single}, {"double", Precision::double_}, {"relaxed", Precision::relaxed}};
+    command
+        .add_option_function<std::string>(
+            "--precision",
+            [&request, precisions](const std::string &name) { request.options.precision = precisions.at(name); },
+            "Arithmetic of the kernels: single, double, or relaxed: single, and the compiler may reorder and "
+            "approximate")
+        ->check(CLI::IsMember({"single", "double", "relaxed"}))
+        ->default_str("single")
+        ->group(group);
     command.add_flag("--aov", request.options.aov, "Also write albedo, normal, depth and variance layers")
         ->group(group);
     const char *reconstruction = "Reconstruction (gpt)";

@@ -48,6 +48,7 @@ nlohmann::json statistics_to_json(const RenderRecord &record, const Statistics &
     return {{"version", version()},
             {"scene", record.scene},
             {"method", record.method},
+            {"precision", record.precision},
             {"device", device_json(record.device)},
             {"seed", record.seed},
             {"width", record.width},

@@ -96,7 +96,11 @@ void Kernel::reset_usage() {
 }
 
 KernelLibrary::KernelLibrary(Device &device, TraitValues traits, Precision precision)
-    : device_(device), traits_(std::move(traits)), precision_(precision) {}
+    : device_(device), traits_(std::move(traits)), precision_(precision) {
+    const DeviceDescription &d = device.description();
+    if (precision == Precision::double_ && !d.has_double)
+        throw Error(ExitCode::device, fmt::format("{} has no double precision (cl_khr_fp64)", d.name));
+}
 
 std::uint32_t KernelLibrary::work_group_size() const { return 64; }
 
@@ -109,7 +113,7 @@ std::string options_for(const KernelRequest &request, const KernelSource &source
         options += " -D GRADUS_DOUBLE";
     else
         options += " -cl-single-precision-constant -cl-denorms-are-zero";
-    if (precision == Precision::relaxed)
+    if (precision == Precision::relaxed && !request.strict)
         options += " -cl-fast-relaxed-math";
     for (const std::string &name : source.traits) {
         const auto found = traits.find(name);

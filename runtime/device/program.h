@@ -23,6 +23,7 @@ struct KernelRequest {
     std::string file;                               ///< "kernels/stages/scatter.cl"
     std::string entry;                              ///< "scatter"
     std::map<std::string, std::string> definitions; ///< more macros, such as BSDF=diffuse
+    bool strict = false;                            ///< never relaxed: what counts on rounding or on NaN
 };
 
 /// A compiled kernel with its arguments.
@@ -60,6 +61,7 @@ class Kernel {
 /// Builds kernels and keeps them; equal requests share a program.
 class KernelLibrary {
   public:
+    /// Throws Error(ExitCode::device) for double on a device that has none.
     KernelLibrary(Device &device, TraitValues traits, Precision precision = Precision::single);
 
     /// Called after each program was built: its name, how many are built, of how many, and its seconds.

@@ -32,9 +32,7 @@ void add_layer(Image &image, const std::string &prefix, const std::vector<float>
 
 } // namespace
 
-GradientLayers read_gradient_film(const Buffer &film, std::size_t pixels, std::uint64_t frames) {
-    std::vector<float> sums(pixels * gradient_film_columns);
-    film.read(sums.data(), sums.size() * sizeof(float));
+GradientLayers read_gradient_film(const HostTable &film, std::size_t pixels, std::uint64_t frames) {
     const double n = double(std::max<std::uint64_t>(frames, 1));
     GradientLayers layers;
     layers.frames = frames;
@@ -42,9 +40,7 @@ GradientLayers read_gradient_film(const Buffer &film, std::size_t pixels, std::u
         const std::string layer = layer_names[number / 3], color = colors[number % 3];
         Channel mean{layer + "." + color, std::vector<float>(pixels)};
         Channel variance{layer + "_variance." + color, std::vector<float>(pixels)};
-        const auto column = [&](int first, std::size_t pixel) {
-            return double(sums[std::size_t(first + number) * pixels + pixel]);
-        };
+        const auto column = [&](int first, std::size_t pixel) { return film.real(first + number, pixel); };
         for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
             const double value =
                 (column(gradient_film_primal_r, pixel) + column(gradient_film_correction_first, pixel)) / n;

@@ -1,10 +1,10 @@
 // From the sums of a gradient-domain method to its image.
 #pragma once
 
-#include "runtime/device/buffer.h"
 #include "runtime/film/image.h"
 #include "runtime/methods/direct_light.h"
 #include "runtime/methods/method.h"
+#include "runtime/stages/host_table.h"
 #include "solver/poisson_solver.h"
 
 #include <cstdint>
@@ -19,7 +19,7 @@ struct GradientLayers {
 };
 
 /// The table of GRADUS_GRADIENT_FILM_COLUMNS after so many samples of each pixel.
-GradientLayers read_gradient_film(const Buffer &film, std::size_t pixels, std::uint64_t frames);
+GradientLayers read_gradient_film(const HostTable &film, std::size_t pixels, std::uint64_t frames);
 
 /// R, G and B reconstructed, the layers, and what else `whole` holds, the mean of all samples. What it has and the
 /// primal has not is what the camera sees of lights, and `edges` know it better where they are; it is added at last, as

@@ -53,6 +53,12 @@ TraitMap gradient_traits(const Scene &scene, const RenderOptions &options) {
     return {{"TRAIT_SHARED_JITTER", 1}, {"TRAIT_APART", apart}};
 }
 
+/// A request that relaxed arithmetic does not change.
+KernelRequest strict(KernelRequest request) {
+    request.strict = true;
+    return request;
+}
+
 } // namespace
 
 GradientPathTracer::GradientPathTracer(Device &device, const Scene &scene, const RenderOptions &options)
@@ -86,8 +92,8 @@ std::vector<PathTracer::Wanted> GradientPathTracer::wanted_kernels() {
         {&begin_, request_of("gradient_begin")},
         {&settle_, settle},
         {&close_links_, variant(settle, "close links", "close_links", {})},
-        {&combine_, request_of("gradient_combine")},
-        {&gradient_accumulate_, request_of("gradient_accumulate")},
+        {&combine_, strict(request_of("gradient_combine"))},
+        {&gradient_accumulate_, strict(request_of("gradient_accumulate"))},
         {&count_, variant(request_of("shift_count"), "shift_count", "shift_count",
                           {{"PARTITION_CHUNK", std::to_string(partition_chunk)}})},
     };
@@ -143,7 +149,7 @@ std::vector<PathTracer::Wanted> GradientPathTracer::wanted_kernels() {
 
 void GradientPathTracer::allocate() {
     const auto table = [&](const char *name, std::size_t columns, std::size_t rows) {
-        return Buffer(device_, name, columns * rows * sizeof(float));
+        return Buffer(device_, name, columns * rows * real_bytes(options_.precision));
     };
     const std::size_t capacity = tables_->capacity, slots = tables_->slots;
     // Columns that the scene does not need are the last.
@@ -268,7 +274,7 @@ GradientPathTracer::Shiftings GradientPathTracer::shift(const Vertices &vertices
     }
     statistics_.rays["offset"] +=
         run_offset_stage(tracer_, link_, shiftings.links, keeps_apart() ? &offset_ray_ : nullptr, shiftings.offset_rays,
-                         tables_->capacity, trace_seconds_);
+                         tables_->capacity, options_.precision, trace_seconds_);
     return shiftings;
 }
 
@@ -428,7 +434,9 @@ Image GradientPathTracer::image() {
     const Image whole = film_->image(done_, statistics_.non_finite);
     if (!solver_)
         solver_ = std::make_unique<PoissonSolver>(device_, film_settings_.crop_width, film_settings_.crop_height, 3);
-    return reconstruct(*solver_, whole, read_gradient_film(gradient_film_, film_->pixels(), done_ / film_->pixels()),
+    return reconstruct(*solver_, whole,
+                       read_gradient_film(HostTable(gradient_film_, film_->pixels(), options_.precision),
+                                          film_->pixels(), done_ / film_->pixels()),
                        direct_edges_, options_);
 }
 

@@ -2,6 +2,7 @@
 // Embree or OpenImageIO.
 #pragma once
 
+#include "runtime/device/precision.h"
 #include "runtime/film/image.h"
 #include "runtime/scene/scene.h"
 #include "solver/poisson_solver.h"
@@ -20,10 +21,11 @@ class Device; // runtime/device/device.h
 
 struct RenderOptions {
     std::uint64_t seed = 0;
-    int threads = 0;              ///< host threads that trace; 0: all
-    std::uint32_t batch_size = 0; ///< paths in flight; 0: the device's default
-    bool aov = false;             ///< also albedo, normal, depth, variance
-    bool all_traits = false;      ///< for measuring: compile the kernels for everything, as if the scene had it
+    int threads = 0;                         ///< host threads that trace; 0: all
+    std::uint32_t batch_size = 0;            ///< paths in flight; 0: the device's default
+    Precision precision = Precision::single; ///< of the kernels; rays are always traced in float
+    bool aov = false;                        ///< also albedo, normal, depth, variance
+    bool all_traits = false; ///< for measuring: compile the kernels for everything, as if the scene had it
     enum class Strategy { mis, light, bsdf };
     Strategy strategy = Strategy::mis;  ///< for tests: light sampling alone or BSDF sampling alone
     PoissonNorm norm = PoissonNorm::l1; ///< of the reconstruction, gradient-domain methods

@@ -16,7 +16,6 @@ namespace gradus {
 
 namespace {
 
-constexpr Precision precision = Precision::single;
 constexpr std::uint32_t deepest = 1u << 16; // where a file asks for paths without end
 
 TraitMap traits_for(const Scene &scene, const RenderOptions &options, const TraitMap &more) {
@@ -64,16 +63,16 @@ void PathTracer::prepare(const Additions &additions) {
     const std::uint32_t pixels = film_settings_.crop_width * film_settings_.crop_height;
     total_ = pixels * settings_.samples_per_pixel;
     const std::uint32_t bins = static_cast<std::uint32_t>(additions.phases * (1 + 2 * scene_tables_.kinds.size()));
-    const std::uint32_t capacity = choose_batch_size(device_, options_.batch_size, total_, traits_, precision);
+    const std::uint32_t capacity = choose_batch_size(device_, options_.batch_size, total_, traits_, options_.precision);
     std::uint64_t slots =
         std::min<std::uint64_t>(batches_a_pass * std::uint64_t(capacity), std::max<std::uint64_t>(total_, 1));
     if (additions.whole_frames)
         slots = std::max<std::uint64_t>(slots / pixels, 1) * pixels;
-    tables_.emplace(device_, capacity, static_cast<std::uint32_t>(slots), bins, traits_, precision);
-    scene_buffers_.emplace(device_, scene_tables_, precision);
+    tables_.emplace(device_, capacity, static_cast<std::uint32_t>(slots), bins, traits_, options_.precision);
+    scene_buffers_.emplace(device_, scene_tables_, options_.precision);
     build_kernels(scene_tables_.kinds, additions);
     film_.emplace(device_, accumulate_, *tables_, film_settings_.crop_width, film_settings_.crop_height, traits_,
-                  precision);
+                  options_.precision);
     partition_.emplace(partition_kernels_, *tables_, bins);
     if (additions.bind)
         additions.bind();
@@ -131,7 +130,7 @@ void PathTracer::build_kernels(const std::vector<std::string> &kinds, const Addi
     std::vector<KernelRequest> requests;
     for (const Wanted &w : wanted)
         requests.push_back(w.request);
-    KernelLibrary library(device_, traits_, precision);
+    KernelLibrary library(device_, traits_, options_.precision);
     const std::vector<Kernel> built = library.build(
         requests,
         [&](const std::string &name, std::size_t, std::size_t, double seconds) {

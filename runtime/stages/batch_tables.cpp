@@ -26,8 +26,8 @@ std::uint32_t vertex_column_count(const TraitMap &traits) {
 } // namespace
 
 BatchTables::BatchTables(Device &device, std::uint32_t rows, std::uint32_t slot_count, std::uint32_t bins,
-                         const TraitMap &traits, Precision precision)
-    : capacity(rows), slots(slot_count) {
+                         const TraitMap &traits, Precision real_precision)
+    : capacity(rows), slots(slot_count), precision(real_precision) {
     const std::size_t column = real_bytes(precision) * capacity, slot_column = real_bytes(precision) * slots;
     const std::size_t chunks = (capacity + partition_chunk - 1) / partition_chunk;
     ray = Buffer(device, "ray", column * ray_columns);

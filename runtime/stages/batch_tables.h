@@ -25,6 +25,7 @@ struct BatchTables {
 
     std::uint32_t capacity; ///< paths in flight
     std::uint32_t slots;    ///< paths of a pass
+    Precision precision;    ///< of the columns that are real
     Buffer ray, shadow, radiance, feature, tangent;
     Buffer vertex[2]; ///< surface reads one and writes the other
     Buffer bin, offset, index, range;

@@ -1,16 +1,16 @@
 #include "runtime/stages/film_stage.h"
 
 #include "kernels/shared/tables.h"
+#include "runtime/stages/host_table.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 namespace gradus {
 
 using namespace lib_float;
 
-KernelRequest FilmStage::request() { return {"accumulate", "kernels/stages/accumulate.cl", "accumulate", {}}; }
+KernelRequest FilmStage::request() { return {"accumulate", "kernels/stages/accumulate.cl", "accumulate", {}, true}; }
 
 FilmStage::FilmStage(Device &device, Kernel kernel, const BatchTables &tables, std::uint32_t width,
                      std::uint32_t height, const TraitMap &traits, Precision precision)
@@ -36,37 +36,6 @@ void FilmStage::accumulate(std::uint32_t count, std::uint32_t first_pixel) {
         kernel_.launch(part);
     }
 }
-
-namespace {
-
-/// A table read back from the device, in double.
-class HostTable {
-  public:
-    HostTable(const Buffer &buffer, std::size_t rows, Precision precision)
-        : rows_(rows), bytes_(buffer.bytes()), size_(real_bytes(precision)) {
-        buffer.read(bytes_.data(), bytes_.size());
-    }
-    double real(int column, std::size_t row) const {
-        const char *place = &bytes_[(std::size_t(column) * rows_ + row) * size_];
-        return size_ == 8 ? load<double>(place) : load<float>(place);
-    }
-    std::uint32_t uint(int column, std::size_t row) const {
-        return load<std::uint32_t>(&bytes_[(std::size_t(column) * rows_ + row) * size_]);
-    }
-
-  private:
-    template <class T>
-    static T load(const char *place) {
-        T value;
-        std::memcpy(&value, place, sizeof value);
-        return value;
-    }
-    std::size_t rows_;
-    std::vector<char> bytes_;
-    std::size_t size_;
-};
-
-} // namespace
 
 Image FilmStage::image(std::uint64_t samples, std::uint64_t &non_finite) const {
     const std::size_t count = pixels();

@@ -1,5 +1,6 @@
 // Building kernels and launching them.
 #include "runtime/device/kernel_source.h"
+#include "runtime/device/opencl.h"
 #include "runtime/device/program.h"
 #include "runtime/error.h"
 
@@ -93,6 +94,37 @@ TEST_F(Program, ThatDoesNotCompileIsNamedWithTheCompilersLog) {
         EXPECT_THAT(error.what(), HasSubstr("nonsense_sample"));
         EXPECT_THAT(error.what(), HasSubstr("kernels/stages/scatter.cl")) << "the real file, by #line";
     }
+}
+
+TEST_F(Program, InDoubleNeedsADeviceThatHasIt) {
+    device.implementation().description.has_double = false;
+    EXPECT_NO_THROW(KernelLibrary(device, {}, Precision::single));
+    try {
+        KernelLibrary(device, {}, Precision::double_);
+        FAIL();
+    } catch (const Error &error) {
+        EXPECT_EQ(error.code, ExitCode::device);
+        EXPECT_THAT(error.what(), HasSubstr("has no double precision"));
+    }
+}
+
+// What counts on rounding is compiled as ever: no option of the compiler relaxes it.
+TEST_F(Program, ThatIsStrictIsNeverRelaxed) {
+    const std::string folder = ::testing::TempDir() + "gradus-strict-" + std::to_string(getpid());
+    KernelRequest relaxed = scan, strict = scan;
+    strict.name = "strict";
+    strict.strict = true;
+    KernelLibrary(device, {}, Precision::relaxed).build({relaxed, strict}, {}, folder);
+    const auto first_line = [&](const char *file) {
+        std::ifstream in(std::filesystem::path(folder) / file);
+        std::string line;
+        std::getline(in, line);
+        return line;
+    };
+    EXPECT_THAT(first_line("partition-scan.cl"), HasSubstr("-cl-fast-relaxed-math"));
+    EXPECT_THAT(first_line("strict.cl"), HasSubstr("-cl-single-precision-constant"));
+    EXPECT_THAT(first_line("strict.cl"), Not(HasSubstr("relaxed")));
+    std::filesystem::remove_all(folder);
 }
 
 TEST_F(Program, ReportsEachKernelThatIsBuilt) {

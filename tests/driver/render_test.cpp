@@ -38,6 +38,7 @@ TEST_F(Render, WritesTheImageWithItsMetadata) {
     EXPECT_EQ(value(image, "B"), 0.5f);
     EXPECT_EQ(image.metadata.at("scene"), "scene.xml");
     EXPECT_EQ(image.metadata.at("method"), "pt");
+    EXPECT_EQ(image.metadata.at("precision"), "single");
     EXPECT_EQ(image.metadata.at("spp"), "4");
     EXPECT_EQ(image.metadata.at("seed"), "5");
     EXPECT_EQ(image.metadata.at("samples"), "192");

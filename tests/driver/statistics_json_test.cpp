@@ -18,6 +18,7 @@ TEST(StatisticsJson, HoldsEveryFigure) {
     RenderRecord record;
     record.scene = "scene.xml";
     record.seed = ~std::uint64_t(0);
+    record.precision = "double";
     record.wall_seconds = 5;
     record.device.name = "a device";
     // Through text, as a reader gets it.
@@ -37,6 +38,7 @@ TEST(StatisticsJson, HoldsEveryFigure) {
     EXPECT_EQ(json.at("compile_seconds").at("kernels").at("camera"), 0.25);
     EXPECT_EQ(json.at("memory").at("device_bytes"), 1234);
     EXPECT_EQ(json.at("device").at("name"), "a device");
+    EXPECT_EQ(json.at("precision"), "double");
     EXPECT_EQ(json.at("wall_seconds"), 5);
     EXPECT_GT(json.at("memory").at("peak_host_bytes").get<std::uint64_t>(), 100000u);
 }

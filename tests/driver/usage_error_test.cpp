@@ -51,6 +51,7 @@ TEST(UsageErrors, HaveTheirExitCodeAndAMessage) {
                                                          {"--nthreads", "-1"},
                                                          {"--method", "magic"},
                                                          {"--strategy", "luck"},
+                                                         {"--precision", "half"},
                                                          {"-D", "novalue"},
                                                          {"--write-partial", "0"},
                                                          {"--unknown"},

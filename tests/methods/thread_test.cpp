@@ -8,13 +8,15 @@
 namespace gradus {
 namespace {
 
-class Threads : public ProgramTest, public ::testing::WithParamInterface<const char *> {};
+/// A scene and a precision.
+class Threads : public ProgramTest, public ::testing::WithParamInterface<std::pair<const char *, const char *>> {};
 
 TEST_P(Threads, DoNotChangeTheImage) {
+    const auto [scene, precision] = GetParam();
     const auto render = [&](const std::string &output, const std::string &threads, const std::string &batch_size) {
-        const Outcome outcome = run({"render", std::string(GRADUS_ROOT) + "/scenes/" + GetParam() + ".xml", "-o",
-                                     output, "--size", "160x120", "--spp", "4", "--seed", "11", "--quiet", "--nthreads",
-                                     threads, "--batch-size", batch_size});
+        const Outcome outcome = run({"render", std::string(GRADUS_ROOT) + "/scenes/" + scene + ".xml", "-o", output,
+                                     "--size", "160x120", "--spp", "4", "--seed", "11", "--quiet", "--precision",
+                                     precision, "--nthreads", threads, "--batch-size", batch_size});
         EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
         return read_image(at(output));
     };
@@ -30,9 +32,11 @@ TEST_P(Threads, DoNotChangeTheImage) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Program, Threads, ::testing::Values("cornell-box", "plates", "materials"),
+INSTANTIATE_TEST_SUITE_P(Program, Threads,
+                         ::testing::Values(std::pair{"cornell-box", "single"}, std::pair{"plates", "single"},
+                                           std::pair{"materials", "single"}, std::pair{"materials", "double"}),
                          [](const auto &info) {
-                             std::string name = info.param;
+                             std::string name = std::string(info.param.first) + "_" + info.param.second;
                              for (char &c : name)
                                  c = c == '-' ? '_' : c;
                              return name;

@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+"""Kernels in double and in relaxed arithmetic against kernels in float: what they cost, and what error they save.
+
+    python3 bench/render/precision.py [SCENE ...] [--gradus build/gradus]
+
+SCENE is a name in tests/references, whose reference (of another renderer) is the truth; default: three of them. The
+arithmetics take turns with the same seeds, so that their random numbers are the same. Prints relMSE in float, the mean
+over seeds of what double (relaxed) has more, with its standard error, both in percent of float's; and samples per
+second over float's, the median over seeds. Target: no difference beyond three standard errors or a percent.
+"""
+
+import argparse
+import json
+import math
+import pathlib
+import statistics
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import against_reference  # noqa: E402
+
+METHODS, PRECISIONS = ("pt", "gpt"), ("single", "double", "relaxed")
+
+
+def measure(arguments, name, method, folder):
+    """By precision the (seconds of a sample, relMSE) of each seed."""
+    def render(precision, seed, samples):
+        return against_reference.render(arguments.gradus, name, samples, folder, "--method", method, "--seed", seed,
+                                        "--precision", precision)
+
+    turns = {precision: [] for precision in PRECISIONS}
+    for precision in PRECISIONS:  # kernels compiled
+        render(precision, 0, 1)
+    for seed in range(1, arguments.repeats + 1):
+        for precision, measured in turns.items():
+            measured.append(render(precision, seed, arguments.spp))
+    return turns
+
+
+def main():
+    parser = argparse.ArgumentParser(description="kernels in double and relaxed arithmetic against float")
+    parser.add_argument("scenes", nargs="*", metavar="SCENE", default=["cornell-box", "materials", "torus-rough-glass"],
+                        help="names in tests/references")
+    parser.add_argument("--gradus", type=pathlib.Path, default=against_reference.ROOT / "build" / "gradus")
+    parser.add_argument("--spp", type=int, default=64)
+    parser.add_argument("--repeats", type=int, default=5, help="seeds, at least 2")
+    parser.add_argument("--json", type=pathlib.Path, help="also write all figures to this file")
+    arguments = parser.parse_args()
+    if arguments.repeats < 2:
+        parser.error("--repeats: a standard error needs at least 2")
+    results = []
+    print(f"{'scene':<20} {'method':<6} {'relMSE single':>13} {'':<8} {'difference':>22} {'speed':>6}")
+    with tempfile.TemporaryDirectory() as folder:
+        for name in arguments.scenes:
+            for method in METHODS:
+                turns = measure(arguments, name, method, folder)
+                single = turns["single"]
+                error = statistics.mean(turn[1] for turn in single)
+                for precision in PRECISIONS[1:]:
+                    excess = [100 * (other[1] - one[1]) / error for other, one in zip(turns[precision], single)]
+                    mean = statistics.mean(excess)
+                    deviation = statistics.stdev(excess) / math.sqrt(len(excess))
+                    speed = statistics.median(one[0] / other[0] for other, one in zip(turns[precision], single))
+                    print(f"{name:<20} {method:<6} {error:13.3e} {precision:<8} {mean:+9.3f} +- {deviation:.3f} % "
+                          f"{speed:6.2f}", flush=True)
+                    results.append({"scene": name, "method": method, "precision": precision, "relmse_single": error,
+                                    "difference_percent": mean, "standard_error_percent": deviation,
+                                    "speed_ratio": speed, "turns": turns})
+    if arguments.json:
+        arguments.json.write_text(json.dumps(results, indent=2) + "\n")
+
+
+if __name__ == "__main__":
+    main()
