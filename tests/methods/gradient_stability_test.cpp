@@ -1,4 +1,6 @@
-// Gradient-domain path tracing where differences are hard to estimate: edges, tiny lights, caustics, shadows.
+// Gradient-domain path tracing where differences are hard to estimate: edges, tiny lights, caustics, shadows. Samples
+// and limits are such that planted defects show: one test of visibility for both paths in the shadows and at edges, a
+// Jacobian without cosines at the tiny lamp, Dirac vertices that merge in the caustic.
 #include "tests/methods/gradient_bias.h"
 #include "tests/support/small_scenes.h"
 

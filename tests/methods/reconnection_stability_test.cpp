@@ -1,5 +1,6 @@
 // Gradient-domain path tracing where reconnections are at their worst: for each case a small scene, rendered without
-// bias.
+// bias. Samples and limits are such that planted defects show: a Jacobian of 1 in the crease and the corner, one
+// without cosines at the lamp, Dirac vertices that merge beside mirrors.
 #include "tests/methods/gradient_bias.h"
 #include "tests/support/small_scenes.h"
 
@@ -102,9 +103,9 @@ TEST(ReconnectionStability, ToALightOnAnEdge) {
     scene.parallelogram({0, 0, -1}, {0, 0.2f, 0}, {0, 0, 2}, wall, light);
     add_floor(scene, 0.5f, 1, 1, wall, 0.4f);
     scene.look({0, 2, 0}, {0, 0, 0}, 6, {0, 0, 1});
-    expect_no_bias(gradient_bias(scene.scene, {8, 32, 256}),
+    expect_no_bias(gradient_bias(scene.scene, {8, 96, 256}),
                    {area, "a light on an edge: distances to it go to 0 and it turns from front to back",
-                    "a lamp that stands on the floor, seen along its plane", unbiased, 0.2});
+                    "a lamp that stands on the floor, seen along its plane", unbiased, 0.15});
 }
 
 // A floor of squares, a third of a pixel to two pixels wide as seen: mirrors and chalk in turn.

@@ -43,7 +43,8 @@ differences, R the path tracer's and D their differences, and A and B independen
 relative to the root mean square of D R: what bias the test cannot exclude. Besides, the estimate must be within four
 standard errors of 0.
 
-Not here, because there is no such method yet: manifold walks, photons, chains of Metropolis.
+Not here, because there is no such method yet: manifold walks, photons, chains of Metropolis. Textures are not read yet
+either; edges between materials stand for theirs.
 """
 
 
