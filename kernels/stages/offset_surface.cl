@@ -41,6 +41,7 @@ STAGE offset_begin(uint count, uint first, uint capacity, uint slots, __global c
         const int is_there = neighbour != slot, is_apart = is_there & (kind != kind_none);
         SET_RGB(shifted, value, at, rgb_gray(R(1)));
         AT(shifted, ratio, at) = is_there ? (is_apart ? R(1) : shift_failed(outcome_failed_at_once)) : shift_absent;
+        SET_V3(shifted, wi, at, wi);
         AT_UINT(shifted, state, at) = shift_apart;
         any |= is_apart;
         all_rough &= (kind & kind_is_rough) != 0u || !is_apart;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/kernels/function_table.h"
+#include "tests/support/stability.h"
 
 #include <algorithm>
 #include <cmath>
@@ -92,6 +93,7 @@ double distance(const std::array<double, 3> &a, const std::array<double, 3> &b) 
 // out: see is_edge.
 TEST(Precision, FloatEvaluationMatchesDouble) {
     const auto in_float = float_functions(), in_double = double_functions();
+    double worst = 0;
     for (std::size_t kind = 0; kind < in_float.size(); ++kind) {
         if (in_float[kind].is_delta)
             continue;
@@ -122,11 +124,16 @@ TEST(Precision, FloatEvaluationMatchesDouble) {
         EXPECT_LE(eval.quantile(1), 3e-4) << in_float[kind].name;
         EXPECT_LE(pdf.quantile(1), 3e-4) << in_float[kind].name;
         EXPECT_LE(weight.quantile(0.999), 1e-5) << in_float[kind].name;
+        worst = std::max({worst, eval.quantile(1), pdf.quantile(1)});
     }
+    record_stability({"Numbers", "float: what is left where terms cancel",
+                      "every BSDF, roughness 0.01 to 1, away from grazing angles and the critical one",
+                      "float all through", "largest relative error of a value or density", worst, 3e-4});
 }
 
 TEST(Precision, FloatSamplesMatchDouble) {
     const auto in_float = float_functions(), in_double = double_functions();
+    double worst = 0;
     for (std::size_t kind = 0; kind < in_float.size(); ++kind) {
         std::mt19937_64 random(18);
         ErrorStatistics direction;
@@ -147,9 +154,12 @@ TEST(Precision, FloatSamplesMatchDouble) {
         std::printf("  %-26s wo %.1e (99.9 %%) %.1e (max), other lobe %d of %d\n", in_float[kind].name,
                     direction.quantile(0.999), direction.quantile(1), differing, compared);
         EXPECT_LE(direction.quantile(0.999), 5e-6) << in_float[kind].name;
+        worst = std::max(worst, direction.quantile(0.999));
         // Near u1 = 1 Beckmann's slope is a double root: it is known to the root of the rounding error.
         const bool is_beckmann = std::string(in_float[kind].name).find("beckmann") != std::string::npos;
         EXPECT_LE(direction.quantile(1), is_beckmann ? 5e-3 : 1e-4) << in_float[kind].name;
         EXPECT_LE(differing, compared / 10'000) << in_float[kind].name;
     }
+    record_stability({"Numbers", "float: what is left where terms cancel", "samples of every BSDF, roughness 1e-4 to 1",
+                      "float all through", "99.9th percentile of the error of a direction", worst, 5e-6});
 }

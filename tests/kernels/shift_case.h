@@ -81,18 +81,18 @@ class ShiftCases {
             if (!wi_base || !wi_offset)
                 continue;
             c.wi_base = *wi_base, c.wi_offset = *wi_offset;
-            if (c.is_reflection)
-                c.wo_base = reflected(c.wi_base, m);
-            else if (const auto wo = refracted(c.wi_base, m, c.base_eta()))
-                c.wo_base = *wo;
-            else
-                continue;
-            const long double expected_side = c.is_reflection ? side : -side;
-            const auto is_on = [](LongVector v, long double its_side) { return v.z * its_side > 1e-4L; };
-            if (is_on(c.wi_base, side) && is_on(c.wi_offset, side) && is_on(c.wo_base, expected_side) &&
-                is_on(c.wo_offset(), expected_side) && c.microfacet_cosine() > smallest)
+            if (complete(c, m, side))
                 return c;
         }
+    }
+
+    /// One refraction by a microfacet whose normal has that cosine against the surface's; none where the draw fails.
+    std::optional<ShiftCase> draw_refraction_at_height(double height) { return draw_at(height, false); }
+
+    /// One reflection or refraction by a microfacet as isotropic GGX of that roughness has them.
+    std::optional<ShiftCase> draw_at_roughness(double alpha) {
+        const double share = uniform();
+        return draw_at(1 / std::hypot(1, alpha * std::sqrt(share / (1 - share))), uniform() < 0.4);
     }
 
     double uniform() { return std::uniform_real_distribution<double>()(random); }
@@ -103,6 +103,33 @@ class ShiftCases {
     }
 
   private:
+    /// Any directions, and a normal of the given height over the surface.
+    std::optional<ShiftCase> draw_at(double height, bool is_reflection) {
+        ShiftCase c{};
+        c.is_reflection = is_reflection;
+        c.ior_base = draw_ior();
+        c.ior_offset = uniform() < 0.5 ? c.ior_base : draw_ior();
+        c.wi_base = draw_direction(), c.wi_offset = draw_direction();
+        const long double side = c.wi_base.z < 0 ? -1 : 1, turn = 2 * M_PI * uniform();
+        const long double sine = std::sqrt((1 - (long double)(height)) * (1 + (long double)(height)));
+        const LongVector m{sine * std::cos(turn), sine * std::sin(turn), side * height};
+        if (dot(m, c.wi_base) > 0 && dot(m, c.wi_offset) > 0 && complete(c, m, side))
+            return c;
+        return {};
+    }
+    /// Adds wo_base; false where the base or the copy fails, or comes nearer to a bound than the cases may.
+    bool complete(ShiftCase &c, LongVector m, long double side) const {
+        if (c.is_reflection)
+            c.wo_base = reflected(c.wi_base, m);
+        else if (const auto wo = refracted(c.wi_base, m, c.base_eta()))
+            c.wo_base = *wo;
+        else
+            return false;
+        const long double expected_side = c.is_reflection ? side : -side;
+        const auto is_on = [](LongVector v, long double its_side) { return v.z * its_side > 1e-4L; };
+        return is_on(c.wi_base, side) && is_on(c.wi_offset, side) && is_on(c.wo_base, expected_side) &&
+               is_on(c.wo_offset(), expected_side) && c.microfacet_cosine() > smallest;
+    }
     double draw_ior() {
         for (;;) {
             const double ior = 0.4 * std::pow(2.5 / 0.4, uniform());

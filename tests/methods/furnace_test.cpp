@@ -3,6 +3,7 @@
 #include "tests/methods/furnace_walk.h"
 #include "tests/support/render.h"
 #include "tests/support/small_scenes.h"
+#include "tests/support/stability.h"
 
 #include <fmt/format.h>
 
@@ -72,6 +73,7 @@ TEST(Furnace, MaterialsThatLoseNothingVanish) {
                  {"glass", material_of(smooth(BsdfKind::dielectric))},
                  {"air in water", material_of(smooth(BsdfKind::dielectric, 0.75))},
                  {"null", material_of(smooth(BsdfKind::null))}};
+    double worst = 0;
     for (const auto &c : cases)
         for (const ConvexShape shape : both_shapes) {
             SCOPED_TRACE(fmt::format("{} {}", c.name, name_of(shape)));
@@ -81,8 +83,13 @@ TEST(Furnace, MaterialsThatLoseNothingVanish) {
                 const Spread spread = spread_of(image, channel);
                 EXPECT_NEAR(spread.least, 1, 2e-5) << channel;
                 EXPECT_NEAR(spread.most, 1, 2e-5) << channel;
+                worst = std::max({worst, 1 - spread.least, spread.most - 1});
             }
         }
+    record_stability(
+        {"Path tracing", "energy lost or made at surfaces, most of all at grazing incidence and inside glass",
+         "white furnaces: a sphere and a cube of each material that loses nothing, incidence up to 87 degrees",
+         "each path carries 1", "largest error of a pixel", worst, 2e-5});
 }
 
 TEST(Furnace, LightSamplingAddsNothingAndLosesNothing) {

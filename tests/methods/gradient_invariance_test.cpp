@@ -2,6 +2,7 @@
 #include "runtime/error.h"
 #include "tests/methods/reference_scene.h"
 #include "tests/support/render.h"
+#include "tests/support/stability.h"
 
 namespace gradus::testing {
 namespace {
@@ -46,6 +47,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, GradientInvariance, ::testing::Values("cornell
 
 /// Films without neighbours to one side or at all, no depth, black lights.
 TEST(GradientEdges, HaveFiniteImages) {
+    double not_finite = 0;
     for (const auto &[width, height] : {std::pair{1u, 1u}, {1u, 9u}, {9u, 1u}, {2u, 2u}})
         for (const int max_depth : {0, 1, 2, 3, -1}) {
             Scene scene = own_scene("cornell-box.xml", width, height);
@@ -53,7 +55,11 @@ TEST(GradientEdges, HaveFiniteImages) {
             scene.settings.max_depth = max_depth;
             const Image image = render(scene, {}, "gpt").image; // fails where a value is not finite
             EXPECT_EQ(image.width, width);
+            not_finite += double(count_non_finite(image));
         }
+    record_stability({"Gradients", "films without neighbours: differences that do not exist",
+                      "1 x 1, 1 x 9, 9 x 1 and 2 x 2 pixels, depths from 0", "those differences are left out",
+                      "values that are not finite", not_finite, 0});
 }
 
 /// What the camera sees of a light is no part of the primal.

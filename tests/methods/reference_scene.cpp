@@ -29,6 +29,8 @@ void use_box_filter(Scene &scene, std::uint32_t width, std::uint32_t height) {
     scene.film = film;
 }
 
+constexpr int reference_batches = 64; ///< of tests/references/make.py
+
 std::string score_text(const char *what, const BlockTest &test) {
     const std::size_t per_channel = std::size_t(test.blocks_x) * test.blocks_y;
     const std::size_t at = test.largest_index % per_channel;
@@ -105,9 +107,14 @@ ReferenceScene shared_reference(const SharedReference &from) {
 
 ::testing::AssertionResult agrees(const std::vector<Image> &seeds, double samples_per_pixel,
                                   const ReferenceScene &reference) {
-    constexpr int reference_batches = 64;
     return judge(reference.name, seeds, samples_per_pixel, reference.mean, reference.variance,
                  reference.samples_per_pixel, reference_batches);
+}
+
+double largest_score(const std::vector<Image> &seeds, double samples_per_pixel, const ReferenceScene &reference) {
+    const BlockTest blocks = block_z_test(seeds, reference.mean, reference.variance, samples_per_pixel,
+                                          reference.samples_per_pixel, 16, reference_batches);
+    return blocks.largest / blocks.largest_limit;
 }
 
 ::testing::AssertionResult agree(const std::string &name, const std::vector<Image> &a, const std::vector<Image> &b,

@@ -42,7 +42,10 @@ Scene own_scene(const std::string &file, std::uint32_t width, std::uint32_t heig
 ::testing::AssertionResult agrees(const std::vector<Image> &seeds, double samples_per_pixel,
                                   const ReferenceScene &reference);
 
-/// The same for two sets of images of one size, of `samples_per_pixel` each, neither of which is a reference.
+/// The largest score of the blocks of 16 x 16 pixels, over its limit in agrees().
+double largest_score(const std::vector<Image> &seeds, double samples_per_pixel, const ReferenceScene &reference);
+
+/// As agrees(), for two sets of images of one size, of `samples_per_pixel` each, neither of which is a reference.
 ::testing::AssertionResult agree(const std::string &name, const std::vector<Image> &a, const std::vector<Image> &b,
                                  double samples_per_pixel);
 

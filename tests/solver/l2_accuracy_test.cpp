@@ -1,6 +1,7 @@
 // The L2 solution against the direct one in double precision: every method, at several tolerances, for images of every
 // awkward size.
 #include "tests/solver/solver_fixture.h"
+#include "tests/support/stability.h"
 
 namespace gradus::testing {
 namespace {
@@ -39,8 +40,7 @@ class L2Accuracy : public ::testing::TestWithParam<LinearMethod> {
 
     void TearDown() override { std::printf("largest error: %.2f of what is allowed\n", worst_); }
 
-  private:
-    double worst_ = 0;
+    double worst_ = 0; ///< largest error over what is allowed
 };
 
 TEST_P(L2Accuracy, OfTinyImages) {
@@ -54,6 +54,9 @@ TEST_P(L2Accuracy, OfLines) {
     check(301, 1, 3, alphas());
     check(1024, 1, 3, alphas());
     check(2, 257, 3, alphas());
+    record_stability({"Reconstruction", "1 x N images: grids that cannot be halved, pixels without neighbours",
+                      "301, 1024 and 514 pixels in lines, alpha 0.02 to 2, L2, every method", "solved as any other",
+                      "largest error against double, over tolerance and rounding", worst_, 1});
 }
 
 TEST_P(L2Accuracy, OfOddSizes) {
@@ -65,6 +68,22 @@ TEST_P(L2Accuracy, OfSmallRenders) {
     check(640, 360, 3, {0.2});
     check(97, 60, 8, {0.2});
     check(640, 360, 1, {alphas()[0], 2.0});
+}
+
+/// solver_large_test has images of 8 Mpixel.
+TEST(L2AccuracyLarge, OfFourMillionPixels) {
+    constexpr double alpha = 0.2, level = 1e-4;
+    const PoissonProblem problem = make_poisson_problem(2048, 2048, 1, 1);
+    const std::vector<double> reference = solve_directly(problem, alpha);
+    // As in check() above.
+    const double at_start = residual_norm(problem, alpha, unit_weights(problem), to_double(problem.primal));
+    const double tolerance = level * alpha * alpha * norm(reference) / at_start;
+    const Solution solution = solve(problem, l2_options(LinearMethod::cg, alpha, tolerance));
+    EXPECT_TRUE(solution.report.converged);
+    record_stability({"Reconstruction", "very large images: sums of millions of floats stall conjugate gradients",
+                      "2048 x 2048 pixels, L2, conjugate gradients", "sums in parts, compensated, in a fixed order",
+                      "relative error against double, where the tolerance promises 1e-4",
+                      relative_error(solution.image, reference), level});
 }
 
 INSTANTIATE_TEST_SUITE_P(Solver, L2Accuracy, ::testing::ValuesIn(linear_methods), method_parameter_name);

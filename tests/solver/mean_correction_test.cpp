@@ -1,5 +1,6 @@
 // L1 takes the median where L2 takes the mean, so skewed noise costs it energy; the correction brings local means back.
 #include "tests/solver/solver_fixture.h"
+#include "tests/support/stability.h"
 
 #include <random>
 
@@ -68,7 +69,10 @@ TEST(MeanCorrection, BringsBackTheEnergyThatL1Loses) {
                 before, after, without[0] / expected[0] - 1, with[0] / expected[0] - 1,
                 relative_mse(plain.image, problem.clean), relative_mse(corrected.image, problem.clean));
     EXPECT_GT(before, 0.2) << "the noise is not as skewed as the test needs it";
-    EXPECT_LT(after, before / 4);
+    record_stability({"Reconstruction", "energy: L1 takes medians, which loses light where noise is skewed",
+                      "a primal too dark in eleven of twelve pixels", "adds what local means lack",
+                      "how far means of 32 x 32 pixels are off, over that without the correction", after / before,
+                      0.25});
     EXPECT_LT(relative_mse(corrected.image, problem.clean), relative_mse(plain.image, problem.clean));
     for (std::size_t c = 0; c < 3; ++c) {
         EXPECT_NEAR(with[c] / expected[c], 1, 0.02);
@@ -98,6 +102,7 @@ TEST(MeanCorrection, IsNothingForExactInputs) {
 /// The correction is clamped against outliers: with a firefly of 1e6 it may change a little around it, and next to
 /// nothing far away. There the root mean square counts: single pixels differ by how far reweighting has come.
 TEST(MeanCorrection, KeepsAFireflyLocal) {
+    double worst = 0;
     for (const std::uint64_t seed : {3u, 4u}) {
         PoissonProblem problem = seed == 3 ? skewed_problem(seed) : make_poisson_problem(width, height, 3, seed);
         PoissonSolver &solver = solver_for(problem);
@@ -123,8 +128,14 @@ TEST(MeanCorrection, KeepsAFireflyLocal) {
                     " pixels\n",
                     near, far);
         EXPECT_LE(near, 0.5);
-        EXPECT_LE(far, 0.01);
+        worst = std::max(worst, far);
     }
+    record_stability({"Reconstruction", "outliers: one value off by far decides many pixels",
+                      "a firefly of 1e6 in the primal, L1 with the correction of the mean",
+                      "the correction is clamped by blocks",
+                      "change beyond 64 pixels, root mean square relative to the "
+                      "image",
+                      worst, 0.01});
 }
 
 TEST(MeanCorrection, TakesNothingFromMissingPixels) {

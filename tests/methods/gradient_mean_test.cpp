@@ -1,0 +1,93 @@
+// The reconstruction of gradient-domain path tracing keeps the light: L2 is unbiased, L1 keeps local means.
+#include "tests/methods/gradient_bias.h"
+#include "tests/methods/reference_scene.h"
+#include "tests/support/gradient_layers.h"
+#include "tests/support/stability.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace gradus::testing {
+namespace {
+
+constexpr std::size_t seeds = 64;
+
+std::vector<double> values_of(const Image &image) {
+    std::vector<double> values;
+    for (const char *color : colors) {
+        const std::vector<float> &channel = image.find(color)->values;
+        values.insert(values.end(), channel.begin(), channel.end());
+    }
+    return values;
+}
+
+/// At a fixed alpha the reconstruction is linear in samples that are unbiased; at one from their variances it is not.
+TEST(GradientMean, OfL2IsUnbiased) {
+    Scene scene = own_scene("cornell-box.xml", 48, 48);
+    for (const bool fixed : {true, false}) {
+        RenderOptions options;
+        options.norm = PoissonNorm::l2;
+        if (fixed)
+            options.alpha = 0.2;
+        scene.settings.samples_per_pixel = 4;
+        const std::vector<Image> images = render_seeds(scene, seeds, options, 1, "gpt");
+        scene.settings.samples_per_pixel = 64;
+        const std::vector<Image> truths = render_seeds(scene, seeds, {}, 1 + seeds, "pt");
+        std::vector<std::vector<double>> residuals, means;
+        for (std::size_t i = 0; i < seeds; ++i) {
+            means.push_back(values_of(truths[i]));
+            residuals.push_back(values_of(images[i]));
+            std::transform(residuals.back().begin(), residuals.back().end(), means.back().begin(),
+                           residuals.back().begin(), std::minus<>());
+        }
+        const BiasEstimate bias = estimate_bias(residuals, means);
+        std::printf("L2, alpha %s: squared bias %.1f standard errors, relative bias at most %.2g\n",
+                    fixed ? "0.2" : "from variances", bias.squared / bias.standard_error, bias.at_most());
+        if (fixed) {
+            EXPECT_TRUE(bias.is_none());
+        }
+        record_stability(
+            {"Reconstruction", "a biased estimate of an unbiased one",
+             fixed ? "L2 at alpha 0.2, 64 seeds of 4 samples" : "L2 at alpha from the variances, 64 seeds of 4 samples",
+             fixed ? "unbiased" : "hardly biased", "bias at most", bias.at_most(), 0.02});
+    }
+}
+
+class GradientMeanOf : public ::testing::TestWithParam<const char *> {};
+
+/// Blocks of 32 x 32 pixels, means over seeds: L1 prefers medians, and noise is skewed. The mean correction makes up
+/// for it (solver/mean_correction.h).
+TEST_P(GradientMeanOf, L1BlocksIsThePrimals) {
+    Scene scene = own_scene(std::string(GetParam()) + ".xml", 96, 96);
+    scene.settings.samples_per_pixel = 16;
+    std::vector<double> primal(9 * 3, 0.0), ours(9 * 3, 0.0);
+    for (const Image &image : render_seeds(scene, 32, {}, 1, "gpt")) {
+        const Image plain = whole(image);
+        for (int c = 0; c < 3; ++c)
+            for (std::uint32_t y = 0; y < 96; ++y)
+                for (std::uint32_t x = 0; x < 96; ++x) {
+                    const std::size_t block = std::size_t(c) * 9 + y / 32 * 3 + x / 32;
+                    primal[block] += layer(plain, "", c, x, y);
+                    ours[block] += layer(image, "", c, x, y);
+                }
+    }
+    double worst = 0;
+    for (std::size_t block = 0; block < primal.size(); ++block)
+        worst = std::max(worst, std::fabs(ours[block] / primal[block] - 1));
+    std::printf("%s: largest deviation of a block's mean from the primal's: %.2f %%\n", GetParam(), 100 * worst);
+    record_stability({"Reconstruction", "L1 loses light where noise is skewed",
+                      std::string("scenes/") + GetParam() + ".xml, 32 seeds of 16 samples",
+                      "keeps local means by a correction", "deviation of the mean of a block of 32 x 32", worst, 0.01});
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, GradientMeanOf, ::testing::Values("cornell-box", "door-ajar", "plates"),
+                         [](const auto &info) {
+                             std::string name = info.param;
+                             std::replace(name.begin(), name.end(), '-', '_');
+                             return name;
+                         });
+
+} // namespace
+} // namespace gradus::testing

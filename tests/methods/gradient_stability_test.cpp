@@ -1,0 +1,116 @@
+// Gradient-domain path tracing where differences are hard to estimate: edges, tiny lights, caustics, shadows. Samples
+// and limits are such that planted defects show: one test of visibility for both paths in the shadows and at edges, a
+// Jacobian without cosines at the tiny lamp, Dirac vertices that merge in the caustic.
+#include "tests/methods/gradient_bias.h"
+#include "tests/support/small_scenes.h"
+
+#include <gtest/gtest.h>
+
+namespace gradus::testing {
+namespace {
+
+constexpr std::uint32_t size = 32;
+constexpr const char *area = "Gradients";
+
+SceneMaker maker() {
+    SceneMaker maker(size, 1);
+    maker.scene.settings.max_depth = 6;
+    return maker;
+}
+
+Material both_sides(double albedo) { return two_sided(diffuse(albedo), diffuse(albedo)); }
+
+/// z = 0, its front towards -z, where the camera is.
+void wall(SceneMaker &maker, std::uint32_t material) {
+    maker.parallelogram({-2, -2, 0}, {0, 4, 0}, {4, 0, 0}, material);
+}
+
+// Tilted cards of two greys float before a wall: depth, normal and albedo jump from pixel to pixel.
+TEST(GradientStability, AtEdgesOfDepthNormalAndAlbedo) {
+    SceneMaker scene = maker();
+    const std::uint32_t light_grey = scene.material(both_sides(0.8)), dark_grey = scene.material(both_sides(0.3));
+    wall(scene, light_grey);
+    for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < 4; ++j) {
+            const float x = 0.25f * float(i) - 0.45f, y = 0.25f * float(j) - 0.45f,
+                        z = -0.1f - 0.1f * float((i + j) % 3);
+            scene.parallelogram({x, y, z}, {0.02f, 0.13f, 0.1f * float(i - 1)}, {0.13f, 0, 0.1f * float(j - 1)},
+                                (i + j) % 2 ? light_grey : dark_grey);
+        }
+    const std::int32_t light = scene.emitter(Emitter::Kind::area, {20, 20, 20});
+    scene.parallelogram({1, 1, -3}, {0, -0.5f, 0}, {0.5f, 0, 0}, light_grey, light);
+    scene.look({0, 0, -3}, {0, 0, 0}, 18);
+    expect_no_bias(gradient_bias(scene.scene, {8, 16, 256}),
+                   {area, "dipoles at edges of depth, normal and texture: base and offset path have little in common",
+                    "tilted cards of two greys before a wall, each three pixels wide",
+                    "shifts fail or weigh little there; primal and differences are unbiased", 0.1});
+}
+
+// A lamp of 2 mm that shines on a wall 5 cm away, as bright as it takes.
+TEST(GradientStability, FromATinyBrightLight) {
+    SceneMaker scene = maker();
+    const std::uint32_t grey = scene.material(both_sides(0.8));
+    wall(scene, grey);
+    const std::int32_t light = scene.emitter(Emitter::Kind::area, {1e6f, 1e6f, 1e6f});
+    // Its front is towards the wall.
+    scene.parallelogram({0.6f, 0, -0.05f}, {0.002f, 0, 0}, {0, 0.002f, 0}, grey, light);
+    scene.parallelogram({-0.6f, -1, -1}, {0, 0, 1}, {0, 2, 0}, grey); // what is found there lights the wall
+    scene.look({0.1, 0, -3}, {0.1, 0, 0}, 15);
+    expect_no_bias(gradient_bias(scene.scene, {8, 32, 256}),
+                   {area, "tiny bright lights: BSDF sampling finds them once in a million paths, with a firefly",
+                    "a lamp of 2 mm and radiance 1e6, 5 cm from a wall",
+                    "light sampling, weighted against BSDF sampling of base and offset path; unbiased", 0.15});
+}
+
+// A ball of glass between a lamp and the floor: light sampling cannot find the caustic.
+TEST(GradientStability, InACaustic) {
+    SceneMaker scene = maker();
+    const std::uint32_t grey = scene.material(both_sides(0.6));
+    Bsdf glass;
+    glass.kind = BsdfKind::dielectric;
+    glass.ior = 1.5f;
+    scene.parallelogram({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, grey);
+    scene.sphere({0, 0.6f, 0}, 0.4f, scene.material(glass));
+    const std::int32_t light = scene.emitter(Emitter::Kind::area, {6, 6, 6});
+    scene.parallelogram({-0.7f, 2.5f, -0.7f}, {1.4f, 0, 0}, {0, 0, 1.4f}, grey, light);
+    scene.look({0, 1.3, -2.6}, {0, 0.15, 0}, 30);
+    expect_no_bias(gradient_bias(scene.scene, {8, 64, 256}),
+                   {area,
+                    "caustics: reconnecting to a Dirac vertex carries nothing, so the shift fails and noise stays",
+                    "a glass ball over a floor, and what lies behind it",
+                    "the base path counts for itself where the shift fails; unbiased, without gain", 0.4});
+}
+
+// A card before a wall: at both edges of its shadow a pixel whose path sees the light has a neighbour whose path does
+// not.
+SceneMaker shadow() {
+    SceneMaker scene = maker();
+    const std::uint32_t grey = scene.material(both_sides(0.7));
+    wall(scene, grey);
+    scene.parallelogram({-0.1f, -1, -1}, {0, 2, 0}, {0.2f, 0, 0}, grey); // half as wide as its shadow
+    scene.look({0, 0, -0.9}, {0, 0, 0}, 40);                             // from behind the card
+    return scene;
+}
+
+constexpr const char *one_sees = "the light hidden from the base path only and from the offset path only: one test of "
+                                 "visibility for both would lose light, or make it";
+constexpr const char *tests_both = "tests both paths; who does not see the light has contribution 0 there; unbiased";
+
+TEST(GradientStability, AtTheHardShadowOfAPointLight) {
+    SceneMaker scene = shadow();
+    scene.point_light({30, 30, 30}, {0, 0, -2});
+    expect_no_bias(gradient_bias(scene.scene, {8, 16, 256}),
+                   {area, one_sees, "a card's shadow on a wall, by a point light", tests_both, 0.1});
+}
+
+TEST(GradientStability, AtTheShadowOfALamp) {
+    SceneMaker scene = shadow();
+    const std::int32_t light = scene.emitter(Emitter::Kind::area, {8000, 8000, 8000});
+    // Its front is towards the wall.
+    scene.parallelogram({-0.03f, -0.03f, -2}, {0.06f, 0, 0}, {0, 0.06f, 0}, 0, light);
+    expect_no_bias(gradient_bias(scene.scene, {8, 16, 256}),
+                   {area, one_sees, "a card's shadow on a wall, by a lamp", tests_both, 0.15});
+}
+
+} // namespace
+} // namespace gradus::testing

@@ -1,0 +1,47 @@
+// The layers of a gradient-domain render, as tests read them.
+#pragma once
+
+#include "tests/support/render.h"
+
+namespace gradus::testing {
+
+inline const char *const colors[] = {"R", "G", "B"};
+
+/// An image of R, G and B from a function of channel and pixel.
+template <class Value>
+Image image_of(std::uint32_t width, std::uint32_t height, Value value) {
+    Image image;
+    image.width = width;
+    image.height = height;
+    for (int c = 0; c < 3; ++c) {
+        Channel channel{colors[c], std::vector<float>(std::size_t(width) * height)};
+        for (std::uint32_t y = 0; y < height; ++y)
+            for (std::uint32_t x = 0; x < width; ++x)
+                channel.values[std::size_t(y) * width + x] = static_cast<float>(value(c, x, y));
+        image.channels.push_back(std::move(channel));
+    }
+    return image;
+}
+
+inline double layer(const Image &image, const std::string &name, int c, std::uint32_t x, std::uint32_t y) {
+    return pixel(image, x, y, name.empty() ? colors[c] : name + "." + colors[c]);
+}
+
+/// The primal image and what the camera sees of lights: what the path tracer estimates.
+inline Image whole(const Image &image) {
+    return image_of(image.width, image.height, [&](int c, std::uint32_t x, std::uint32_t y) {
+        return layer(image, "primal", c, x, y) + layer(image, "direct", c, x, y);
+    });
+}
+
+/// Differences to the right or downwards of one layer; 0 at the border.
+inline Image differences(const Image &image, const std::string &name, bool right) {
+    return image_of(image.width, image.height, [&](int c, std::uint32_t x, std::uint32_t y) {
+        const std::uint32_t to_x = right ? x + 1 : x, to_y = right ? y : y + 1;
+        return to_x < image.width && to_y < image.height
+                   ? layer(image, name, c, to_x, to_y) - layer(image, name, c, x, y)
+                   : 0.0;
+    });
+}
+
+} // namespace gradus::testing
