@@ -1,0 +1,76 @@
+#include "runtime/methods/pilot.h"
+
+#include "runtime/film/metrics.h"
+#include "runtime/seconds_since.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace gradus {
+
+namespace {
+
+/// Of the film's 64-bit sample numbers; halves differ in the upper word too, which decides where the sequence of
+/// places within the pixel starts.
+constexpr std::uint64_t first_samples[] = {std::uint64_t(1) << 62, (std::uint64_t(1) << 62) + (std::uint64_t(1) << 32)};
+constexpr std::uint64_t most_samples =
+    4; ///< of a half: more pixels' errors than a render of a few frames has are not needed
+constexpr std::uint64_t largest_part = 10;
+
+} // namespace
+
+PilotErrors estimate_errors(const Image &first, const Image &second) {
+    double pt = 0, gpt_variance = 0, gpt_bias = 0;
+    std::size_t count = 0;
+    for (const std::string color : {"R", "G", "B"}) {
+        const auto channel = [&](const Image &image, const std::string &layer) {
+            return image.find(layer + color)->values.data();
+        };
+        const float *r_1 = channel(first, ""), *r_2 = channel(second, "");
+        const float *primal_1 = channel(first, "primal."), *primal_2 = channel(second, "primal.");
+        const float *direct_1 = channel(first, "direct."), *direct_2 = channel(second, "direct.");
+        const std::size_t pixels = first.find(color)->values.size();
+        for (std::size_t i = 0; i < pixels; ++i) {
+            const double w_1 = double(primal_1[i]) + direct_1[i], w_2 = double(primal_2[i]) + direct_2[i];
+            const double mean = 0.5 * (double(r_1[i]) + r_2[i]);
+            const double weight = 1 / (mean * mean + relative_mse_epsilon);
+            const double spread = double(r_1[i]) - r_2[i];
+            pt += 0.5 * weight * (w_1 - w_2) * (w_1 - w_2);
+            gpt_variance += 0.5 * weight * spread * spread;
+            gpt_bias += weight * (r_1[i] - w_1) * (r_2[i] - w_2);
+        }
+        count += pixels;
+    }
+    // A square is not negative, and its estimate may be.
+    return {pt / double(count), (gpt_variance + std::max(gpt_bias, 0.0)) / double(count)};
+}
+
+std::uint64_t pilot_samples(std::uint64_t samples_per_pixel) {
+    return std::min(samples_per_pixel / (2 * largest_part), most_samples);
+}
+
+Pilot run_pilot(GradientPathTracer &method, std::uint64_t samples_of_half) {
+    const auto start = std::chrono::steady_clock::now();
+    Pilot pilot;
+    pilot.samples_per_pixel = 2 * samples_of_half;
+    Image halves[2];
+    std::map<std::string, double> rays;
+    double samples = 0;
+    for (int half = 0; half < 2; ++half) {
+        method.restart(first_samples[half], samples_of_half);
+        while (method.render_batch()) {
+        }
+        halves[half] = method.image();
+        const Statistics statistics = method.statistics();
+        for (const auto &[kind, count] : statistics.rays)
+            rays[kind] += double(count);
+        samples += double(statistics.samples);
+    }
+    pilot.errors = estimate_errors(halves[0], halves[1]);
+    pilot.costs.pt = (rays["extension"] + rays["shadow"]) / samples;
+    pilot.costs.gpt = pilot.costs.pt + rays["offset"] / samples;
+    pilot.seconds = seconds_since(start);
+    return pilot;
+}
+
+} // namespace gradus
