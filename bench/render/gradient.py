@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
-"""Gradient-domain path tracing against path tracing: what a sample costs, and what it gains.
+"""Gradient-domain path tracing against path tracing: what a sample costs, what it gains, and what `auto` picks.
 
     python3 bench/render/gradient.py [SCENE ...] [--gradus build/gradus]
 
-SCENE is a name in tests/references, whose reference (of another renderer) is the truth; default: all. Both methods
+SCENE is a name in tests/references, whose reference (of another renderer) is the truth; default: all. The methods
 take turns with seeds of their own. Prints, as medians: seconds of a sample of gpt over one of pt (the reconstruction
 left out); relMSE at equal samples, pt over gpt; and at equal time, pt being given as many more samples as its are
-cheaper (its relMSE falls by as much). Target: a cost of at most 2.2 on the Cornell box, 5 times less error at equal
+cheaper (its relMSE falls by as much). Then what --method auto picked,
+in how many of the runs, the gain at equal time that it expected, and its regret: the relMSE at equal time, the pilot
+counted in, over that of the better of both (1: as good). Target: a cost of at most 2.2 on the Cornell box, 5 times less error at equal
 time on scenes of diffuse light, at most 1.1 times the error at equal samples on any.
 """
 
@@ -30,7 +32,7 @@ def run(*command):
 
 
 def render(arguments, name, about, method, seed, samples, folder):
-    """Seconds of rendering by sample of a pixel, and relMSE."""
+    """Seconds of rendering by sample of a pixel, the pilot counted in, relMSE, and what auto chose."""
     image, record = pathlib.Path(folder) / "image.exr", pathlib.Path(folder) / "image.json"
     definitions = [part for key, value in about["parameters"].items() for part in ("-D", f"{key}={value}")]
     run(arguments.gradus, "render", ROOT / about["scene"], *definitions, "--method", method, "--seed", seed,
@@ -38,8 +40,10 @@ def render(arguments, name, about, method, seed, samples, folder):
         "-o", image, "--stats", record, "--quiet")
     compared = pathlib.Path(folder) / "compared.json"
     run(arguments.gradus, "compare", image, REFERENCES / f"{name}-mean.exr", "--json", compared)
-    seconds = json.loads(record.read_text())["render_seconds"]
-    return seconds / samples, json.loads(compared.read_text())["images"][0]["relative_mse"]
+    report = json.loads(record.read_text())
+    choice = report.get("choice")
+    seconds = report["render_seconds"] + (choice["pilot"]["seconds"] if choice else 0)
+    return seconds / samples, json.loads(compared.read_text())["images"][0]["relative_mse"], choice
 
 
 def main():
@@ -53,23 +57,31 @@ def main():
     arguments = parser.parse_args()
     names = arguments.scenes or sorted(path.stem for path in REFERENCES.glob("*.json"))
     results = []
-    print(f"{'scene':<20} {'cost':>6} {'relMSE pt':>11} {'gpt':>11} {'equal samples':>14} {'equal time':>11}")
+    print(f"{'scene':<20} {'cost':>6} {'relMSE pt':>11} {'gpt':>11} {'equal samples':>14} {'equal time':>11}"
+          f" {'auto':>9} {'expected':>9} {'regret':>7}")
     with tempfile.TemporaryDirectory() as folder:
         for name in names:
             about = json.loads((REFERENCES / f"{name}.json").read_text())
-            turns = {"pt": [], "gpt": []}
+            turns = {"pt": [], "gpt": [], "auto": []}
             for method in turns:  # kernels compiled
                 render(arguments, name, about, method, 0, 1, folder)
             for seed in range(1, arguments.repeats + 1):
                 for method, measured in turns.items():
                     measured.append(render(arguments, name, about, method, seed, arguments.spp, folder))
-            cost = statistics.median(g[0] / p[0] for g, p in zip(turns["gpt"], turns["pt"]))
+            cost, cost_auto = (statistics.median(m[0] / p[0] for m, p in zip(turns[method], turns["pt"]))
+                               for method in ("gpt", "auto"))
             error = {method: statistics.median(turn[1] for turn in measured) for method, measured in turns.items()}
             gain = error["pt"] / error["gpt"]
-            print(f"{name:<20} {cost:6.2f} {error['pt']:11.3e} {error['gpt']:11.3e} {gain:14.2f} {gain / cost:11.2f}",
-                  flush=True)
+            choices = [turn[2] for turn in turns["auto"]]
+            pick = statistics.mode(choice["method"] for choice in choices)
+            agreed = sum(choice["method"] == pick for choice in choices)
+            expected = statistics.median(choice["gain"] or 0 for choice in choices)
+            regret = error["auto"] * cost_auto / min(error["pt"], error["gpt"] * cost)
+            print(f"{name:<20} {cost:6.2f} {error['pt']:11.3e} {error['gpt']:11.3e} {gain:14.2f} {gain / cost:11.2f}"
+                  f" {pick:>5} {agreed}/{len(choices)} {expected:9.2f} {regret:7.2f}", flush=True)
             results.append({"scene": name, "cost": cost, "relmse": error, "equal_samples": gain,
-                            "equal_time": gain / cost, "turns": turns})
+                            "equal_time": gain / cost, "turns": turns,
+                            "auto": {"pick": pick, "agreed": agreed, "expected": expected, "regret": regret}})
     if arguments.json:
         arguments.json.write_text(json.dumps(results, indent=2) + "\n")
 

@@ -23,8 +23,8 @@ struct PilotErrors {
 /// (L1 where noise is skewed, blurred detail) counts by that. All are means over pixels and channels R, G, B.
 PilotErrors estimate_errors(const Image &first, const Image &second);
 
-/// Counted, never timed, so that a choice by it is the same on each run: rays of a sample. Kernels work by vertex, and
-/// vertices are what rays meet, so time follows the rays.
+/// What a sample costs, in rays of a path tracer. Counted, never timed, so that a choice by it is the same on each run
+/// and on each machine. Kernels work by vertex, and vertices are what rays meet, so time follows the rays.
 struct PilotCosts {
     double pt = 0, gpt = 0;
 };
@@ -33,7 +33,7 @@ struct Pilot {
     std::uint64_t samples_per_pixel = 0; ///< of both halves
     PilotErrors errors;
     PilotCosts costs;
-    double seconds = 0;
+    double seconds = 0; ///< rendering, kernels compiled; without the reconstructions
 };
 
 /// Samples a pixel of each half before a render of so many; 0 where a pilot would take more than a tenth of it.
