@@ -47,8 +47,8 @@ MethodChoice choose_by_rule(const RenderSettings &settings) {
 
 MethodChoice choose_by_pilot(const Pilot &pilot) {
     MethodChoice choice;
-    const double samples = 0.5 * double(pilot.samples_per_pixel);
-    choice.pilot_samples = pilot.samples_per_pixel;
+    const double samples = 0.5 * pilot_samples;
+    choice.pilot_samples = pilot_samples;
     choice.pilot_seconds = pilot.seconds;
     choice.estimates["pt"] = {pilot.errors.pt * samples, pilot.costs.pt};
     choice.estimates["gpt"] = {pilot.errors.gpt * samples, pilot.costs.gpt};
@@ -74,15 +74,15 @@ std::unique_ptr<Method> make_automatic_method(Device &device, const Scene &scene
     const auto chosen = [&](const MethodChoice &choice, std::unique_ptr<Method> method) {
         return std::make_unique<ChosenMethod>(std::move(method), choice);
     };
-    const std::uint64_t samples = scene.settings.samples_per_pixel, samples_of_half = pilot_samples(samples);
-    if (samples_of_half == 0) {
+    const std::uint64_t samples = scene.settings.samples_per_pixel;
+    if (!has_room_for_pilot(samples)) {
         const MethodChoice choice = choose_by_rule(scene.settings);
         return chosen(choice, make_method(choice.method, device, scene, options));
     }
     auto method = std::make_unique<GradientPathTracer>(device, scene, options);
     if (options.on_pilot)
-        options.on_pilot(2 * samples_of_half);
-    const MethodChoice choice = choose_by_pilot(run_pilot(*method, samples_of_half));
+        options.on_pilot(pilot_samples);
+    const MethodChoice choice = choose_by_pilot(run_pilot(*method));
     if (choice.method == "gpt") {
         method->restart(0, samples);
         return chosen(choice, std::move(method));

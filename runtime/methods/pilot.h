@@ -9,7 +9,10 @@
 
 namespace gradus {
 
-/// Errors of images of as many samples as the pilot's halves have.
+/// Samples a pixel of both halves of a pilot.
+constexpr std::uint64_t pilot_samples = 8;
+
+/// Errors of images of as many samples as one half of the pilot has.
 struct PilotErrors {
     double pt = 0, gpt = 0; ///< relMSE
 };
@@ -30,17 +33,16 @@ struct PilotCosts {
 };
 
 struct Pilot {
-    std::uint64_t samples_per_pixel = 0; ///< of both halves
     PilotErrors errors;
     PilotCosts costs;
     double seconds = 0; ///< rendering, kernels compiled; without the reconstructions
 };
 
-/// Samples a pixel of each half before a render of so many; 0 where a pilot would take more than a tenth of it.
-std::uint64_t pilot_samples(std::uint64_t samples_per_pixel);
+/// False before a render of so few samples a pixel that a pilot would be more than a tenth of it.
+bool has_room_for_pilot(std::uint64_t samples_per_pixel);
 
-/// Renders two halves of so many samples a pixel with `method`, which is to be restarted afterwards. Its samples have
-/// numbers that no render reaches.
-Pilot run_pilot(GradientPathTracer &method, std::uint64_t samples_of_half);
+/// Renders both halves with `method`, which is to be restarted afterwards. Their samples have numbers that no render
+/// reaches.
+Pilot run_pilot(GradientPathTracer &method);
 
 } // namespace gradus

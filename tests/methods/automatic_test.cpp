@@ -4,6 +4,8 @@
 #include "tests/support/render.h"
 #include "tests/support/small_scenes.h"
 
+#include <gmock/gmock.h>
+
 #include <cmath>
 #include <limits>
 #include <random>
@@ -49,18 +51,15 @@ TEST(PilotErrors, TellsVarianceAndBiasWithoutAReference) {
     EXPECT_GT(no_bias_left_out.gpt, 0.02) << "both halves are wrong alike";
 }
 
-TEST(PilotSamples, AreATenthAtMost) {
-    for (const std::uint64_t samples : {0u, 1u, 19u})
-        EXPECT_EQ(pilot_samples(samples), 0u);
-    EXPECT_EQ(pilot_samples(20), 1u);
-    for (std::uint64_t samples = 20; samples < 1000; ++samples)
-        EXPECT_LE(20 * pilot_samples(samples), samples);
-    EXPECT_LE(pilot_samples(std::uint64_t(1) << 40), 8u);
+TEST(Pilot, IsATenthOfTheRenderAtMost) {
+    for (const std::uint64_t samples : {std::uint64_t(0), std::uint64_t(1), 10 * pilot_samples - 1})
+        EXPECT_FALSE(has_room_for_pilot(samples)) << samples;
+    EXPECT_TRUE(has_room_for_pilot(10 * pilot_samples));
+    EXPECT_TRUE(has_room_for_pilot(std::uint64_t(1) << 40));
 }
 
 Pilot pilot_of(double pt_error, double gpt_error, double pt_cost, double gpt_cost) {
     Pilot pilot;
-    pilot.samples_per_pixel = 8;
     pilot.errors = {pt_error, gpt_error};
     pilot.costs = {pt_cost, gpt_cost};
     return pilot;
@@ -96,7 +95,7 @@ void expect_choice(const Scene &scene, const std::string &method) {
     const MethodChoice &choice = *automatic.statistics.choice;
     EXPECT_EQ(choice.method, method) << choice.reason << ", gain " << choice.gain;
     EXPECT_GT(choice.gain, 0);
-    EXPECT_GT(choice.pilot_samples, 0u);
+    EXPECT_EQ(choice.pilot_samples, pilot_samples);
     EXPECT_EQ(automatic.statistics.samples, scene.settings.samples_per_pixel * scene.film.width * scene.film.height)
         << "the pilot's samples are not the render's";
     EXPECT_TRUE(equal_bits(automatic.image, render(scene, options, method.c_str()).image));
@@ -114,14 +113,14 @@ void expect_choice(const Scene &scene, const std::string &method) {
 
 TEST(Automatic, TakesGptInTheCornellBox) {
     Scene scene = own_scene("cornell-box.xml", 48, 40);
-    scene.settings.samples_per_pixel = 40;
+    scene.settings.samples_per_pixel = 80;
     expect_choice(scene, "gpt");
 }
 
 /// Spheres no larger than a pixel, of all colours: neighbouring pixels have nothing in common, and shifts seldom
 /// connect.
 TEST(Automatic, TakesPtWhereNeighboursHaveNothingInCommon) {
-    SceneMaker maker(32, 40);
+    SceneMaker maker(32, 80);
     maker.look({0, 0, 4}, {0, 0, 0}, 30);
     maker.environment(1);
     maker.scene.settings.max_depth = 4;
@@ -139,7 +138,7 @@ TEST(Automatic, TakesPtWhereNeighboursHaveNothingInCommon) {
 }
 
 TEST(Automatic, TakesPtForABlackImage) {
-    SceneMaker maker(16, 40);
+    SceneMaker maker(16, 80);
     maker.look({0, 0, 4}, {0, 0, 0}, 30);
     maker.environment(0);
     maker.sphere({0, 0, 0}, 1, maker.material(diffuse(0.5)));
