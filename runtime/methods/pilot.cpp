@@ -5,8 +5,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace gradus {
 
@@ -25,6 +28,20 @@ constexpr std::uint64_t largest_part = 10; ///< one in so many samples of the re
 /// times of bench/render/gradient.py: 1.2 to 1.7 by scene.
 constexpr double offset_ray_cost = 1.5;
 
+/// The value of (x, y), but no more than the second largest and no less than the second smallest of those around it.
+double without_outlier(const std::vector<double> &values, std::ptrdiff_t width, std::ptrdiff_t height, std::ptrdiff_t x,
+                       std::ptrdiff_t y) {
+    std::array<double, 8> around;
+    std::size_t count = 0;
+    for (std::ptrdiff_t dy = -1; dy <= 1; ++dy)
+        for (std::ptrdiff_t dx = -1; dx <= 1; ++dx)
+            if (dx != 0 || dy != 0)
+                around[count++] = values[std::size_t(std::clamp<std::ptrdiff_t>(y + dy, 0, height - 1) * width +
+                                                     std::clamp<std::ptrdiff_t>(x + dx, 0, width - 1))];
+    std::sort(around.begin(), around.end());
+    return std::clamp(values[std::size_t(y * width + x)], around[1], around[6]);
+}
+
 } // namespace
 
 PilotErrors estimate_errors(const Image &first, const Image &second) {
@@ -38,10 +55,14 @@ PilotErrors estimate_errors(const Image &first, const Image &second) {
         const float *primal_1 = channel(first, "primal."), *primal_2 = channel(second, "primal.");
         const float *direct_1 = channel(first, "direct."), *direct_2 = channel(second, "direct.");
         const std::size_t pixels = first.find(color)->values.size();
+        std::vector<double> means(pixels);
+        for (std::size_t i = 0; i < pixels; ++i)
+            means[i] = 0.5 * (double(r_1[i]) + r_2[i]);
         for (std::size_t i = 0; i < pixels; ++i) {
             const double w_1 = double(primal_1[i]) + direct_1[i], w_2 = double(primal_2[i]) + direct_2[i];
-            const double mean = 0.5 * (double(r_1[i]) + r_2[i]);
-            const double weight = 1 / (mean * mean + relative_mse_epsilon);
+            const double reference = without_outlier(means, first.width, first.height, std::ptrdiff_t(i % first.width),
+                                                     std::ptrdiff_t(i / first.width));
+            const double weight = 1 / (reference * reference + relative_mse_epsilon);
             const double spread = double(r_1[i]) - r_2[i];
             pt += 0.5 * weight * (w_1 - w_2) * (w_1 - w_2);
             gpt_variance += 0.5 * weight * spread * spread;

@@ -21,7 +21,8 @@ struct PilotErrors {
 /// reconstructed. Without a reference,
 ///   relMSE of W: half of (W_1 - W_2)^2,
 ///   relMSE of R: half of (R_1 - R_2)^2, its variance, plus (R_1 - W_1) (R_2 - W_2), the square of its bias,
-/// relative to the mean of R_1 and R_2 in place of the reference. W has no bias, so R - W has that of R, and two
+/// relative to the mean of R_1 and R_2 in place of the reference, freed of single outliers: a firefly that were part of
+/// its own reference would weigh little. W has no bias, so R - W has that of R, and two
 /// independent halves make its square without bias. What the reconstruction of both halves gets wrong in the same way
 /// (L1 where noise is skewed, blurred detail) counts by that. All are means over pixels and channels R, G, B.
 PilotErrors estimate_errors(const Image &first, const Image &second);

@@ -51,6 +51,20 @@ TEST(PilotErrors, TellsVarianceAndBiasWithoutAReference) {
     EXPECT_GT(no_bias_left_out.gpt, 0.02) << "both halves are wrong alike";
 }
 
+/// What relMSE weighs by is not the firefly itself: 100 where all else is 0.1.
+TEST(PilotErrors, AFireflyIsNotItsOwnReference) {
+    const Image second = synthetic(0.1, 0, 0, 0, 1);
+    Image first = second;
+    const std::size_t pixel = 200 * 57 + 31;
+    for (Channel &channel : first.channels)
+        if (channel.name == "R" || channel.name == "primal.R")
+            channel.values[pixel] += 100;
+    const PilotErrors errors = estimate_errors(first, second);
+    const double expected = 0.5 * 100 * 100 / (0.01 + 0.001) / 120000; // of one value of 120,000
+    EXPECT_NEAR(errors.pt / expected, 1, 1e-3) << "100.1 or 50.1 as reference give thousandths";
+    EXPECT_NEAR(errors.gpt / expected, 1, 1e-3);
+}
+
 TEST(Pilot, IsATenthOfTheRenderAtMost) {
     for (const std::uint64_t samples : {std::uint64_t(0), std::uint64_t(1), 10 * pilot_samples - 1})
         EXPECT_FALSE(has_room_for_pilot(samples)) << samples;
