@@ -13,7 +13,9 @@ namespace gradus {
 void add_method_options(CLI::App &command, const Services &services, MethodRequest &request) {
     const char *group = "Method and machine";
     command
-        .add_option("--method", request.method, "Rendering method: pt, path tracing; gpt, gradient-domain path tracing")
+        .add_option("--method", request.method,
+                    "Rendering method: pt, path tracing; gpt, gradient-domain path tracing; auto, whichever of them a "
+                    "short pilot render finds better")
         ->check(CLI::IsMember(services.method_names()))
         ->capture_default_str()
         ->group(group);
@@ -42,7 +44,7 @@ void add_method_options(CLI::App &command, const Services &services, MethodReque
         ->group(group);
     command.add_flag("--aov", request.options.aov, "Also write albedo, normal, depth and variance layers")
         ->group(group);
-    const char *reconstruction = "Reconstruction (gpt)";
+    const char *reconstruction = "Reconstruction (gpt, auto)";
     add_norm_option(command, reconstruction, [&request](PoissonNorm norm) { request.options.norm = norm; });
     add_alpha_option(command, reconstruction, "auto",
                      "Weight of the primal image against its differences; auto: from their variances",

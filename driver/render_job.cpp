@@ -60,10 +60,18 @@ class RenderJob {
         options.on_compiled = [this](const std::string &kernel, std::size_t ready, std::size_t total, double seconds) {
             progress_.compiled(kernel, ready, total, seconds);
         };
+        options.on_pilot = [this](std::uint64_t samples) {
+            progress_.message(fmt::format("pilot of {} samples a pixel, to choose the method", samples));
+        };
         const auto start = Clock::now();
         prepared_ = services_.prepare(request_.method.method, request_.method.device, scene, options);
         record_.prepare_seconds = seconds_since(start);
         record_.device = prepared_.description;
+        if (const std::optional<MethodChoice> choice = prepared_.method->statistics().choice) {
+            record_.method = choice->method;
+            pilot_seconds_ = choice->pilot_seconds;
+            progress_.message(fmt::format("method {}: {}", choice->method, choice->reason));
+        }
         const std::string aim = request_.time_limit > 0 && !request_.scene.samples_per_pixel
                                     ? fmt::format("{} s", request_.time_limit)
                                     : fmt::format("{} samples a pixel", scene.settings.samples_per_pixel);
@@ -82,8 +90,10 @@ class RenderJob {
     }
 
     void render(const InterruptWatch &watch) {
-        render_start_ = Clock::now();
-        auto last_partial = render_start_;
+        // The pilot counts as rendering: a time limit includes it.
+        render_start_ =
+            Clock::now() - std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(pilot_seconds_));
+        auto last_partial = Clock::now();
         progress_.update(state());
         bool more = true;
         while (more) {
@@ -155,6 +165,7 @@ class RenderJob {
     PreparedMethod prepared_;
     RenderRecord record_;
     std::string crop_;
+    double pilot_seconds_ = 0; ///< of the method auto
 };
 
 } // namespace

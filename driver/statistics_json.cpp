@@ -23,6 +23,18 @@ nlohmann::json device_json(const DeviceDescription &device) {
             {"type", device.type}};
 }
 
+nlohmann::json choice_json(const MethodChoice &choice) {
+    using nlohmann::json;
+    json estimates = json::object();
+    for (const auto &[method, estimate] : choice.estimates)
+        estimates[method] = {{"relative_mse", estimate.relative_mse}, {"cost", estimate.cost}};
+    return {{"method", choice.method},
+            {"reason", choice.reason},
+            {"pilot", {{"spp", choice.pilot_samples}, {"seconds", choice.pilot_seconds}}},
+            {"estimates", estimates},
+            {"gain", choice.gain > 0 ? json(choice.gain) : json()}};
+}
+
 nlohmann::json statistics_to_json(const RenderRecord &record, const Statistics &statistics) {
     using nlohmann::json;
     const double seconds = statistics.render_seconds;
@@ -45,30 +57,33 @@ nlohmann::json statistics_to_json(const RenderRecord &record, const Statistics &
     for (const auto &[kernel, kernel_seconds] : statistics.compile_seconds)
         compile_total += kernel_seconds;
 
-    return {{"version", version()},
-            {"scene", record.scene},
-            {"method", record.method},
-            {"precision", record.precision},
-            {"device", device_json(record.device)},
-            {"seed", record.seed},
-            {"width", record.width},
-            {"height", record.height},
-            {"spp", record.samples_per_pixel},
-            {"interrupted", record.interrupted},
-            {"samples", statistics.samples},
-            {"samples_per_second", rate(double(statistics.samples))},
-            {"stages", stages},
-            {"rays", rays},
-            {"rays_per_second", rate(double(ray_count))},
-            {"shifts", statistics.shifts},
-            {"non_finite", statistics.non_finite},
-            {"compile_seconds", {{"total", compile_total}, {"kernels", statistics.compile_seconds}}},
-            {"memory",
-             {{"peak_host_bytes", std::max(statistics.peak_host_bytes, peak_memory_bytes())},
-              {"device_bytes", statistics.device_bytes}}},
-            {"prepare_seconds", record.prepare_seconds},
-            {"render_seconds", seconds},
-            {"wall_seconds", record.wall_seconds}};
+    json result = {{"version", version()},
+                   {"scene", record.scene},
+                   {"method", record.method},
+                   {"precision", record.precision},
+                   {"device", device_json(record.device)},
+                   {"seed", record.seed},
+                   {"width", record.width},
+                   {"height", record.height},
+                   {"spp", record.samples_per_pixel},
+                   {"interrupted", record.interrupted},
+                   {"samples", statistics.samples},
+                   {"samples_per_second", rate(double(statistics.samples))},
+                   {"stages", stages},
+                   {"rays", rays},
+                   {"rays_per_second", rate(double(ray_count))},
+                   {"shifts", statistics.shifts},
+                   {"non_finite", statistics.non_finite},
+                   {"compile_seconds", {{"total", compile_total}, {"kernels", statistics.compile_seconds}}},
+                   {"memory",
+                    {{"peak_host_bytes", std::max(statistics.peak_host_bytes, peak_memory_bytes())},
+                     {"device_bytes", statistics.device_bytes}}},
+                   {"prepare_seconds", record.prepare_seconds},
+                   {"render_seconds", seconds},
+                   {"wall_seconds", record.wall_seconds}};
+    if (statistics.choice)
+        result["choice"] = choice_json(*statistics.choice);
+    return result;
 }
 
 } // namespace gradus

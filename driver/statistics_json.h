@@ -26,6 +26,9 @@ struct RenderRecord {
 /// spent rendering. Described in docs/command-line.md.
 nlohmann::json statistics_to_json(const RenderRecord &record, const Statistics &statistics);
 
+/// What the method `auto` picked, and why.
+nlohmann::json choice_json(const MethodChoice &choice);
+
 /// Which device did the work: name, platform, version, driver and type.
 nlohmann::json device_json(const DeviceDescription &device);
 

@@ -1,57 +1,87 @@
 #!/usr/bin/env python3
-"""Gradient-domain path tracing against path tracing: what a sample costs, and what it gains.
+"""Gradient-domain path tracing against path tracing: what a sample costs, what it gains, and what `auto` picks.
 
     python3 bench/render/gradient.py [SCENE ...] [--gradus build/gradus]
 
-SCENE is a name in tests/references, whose reference (of another renderer) is the truth; default: all. Both methods
+SCENE is a name in tests/references, whose reference (of another renderer) is the truth; default: all. The methods
 take turns with seeds of their own. Prints, as medians: seconds of a sample of gpt over one of pt (the reconstruction
 left out); relMSE at equal samples, pt over gpt; and at equal time, pt being given as many more samples as its are
-cheaper (its relMSE falls by as much). Target: a cost of at most 2.2 on the Cornell box, 5 times less error at equal
-time on scenes of diffuse light, at most 1.1 times the error at equal samples on any.
+cheaper (its relMSE falls by as much). Then what --method auto picked, in how many of the runs, the gain at equal time
+that it expected, and its regret: the relMSE at equal time, the pilot counted in, over that of the better of both (1: as
+good). It renders a pilot with --spp 80 or more; below it goes by a rule. Target: a cost of at most 2.2 on the Cornell
+box, 5 times less error at equal time on scenes of diffuse light, at most 1.1 times the error at equal samples on any.
 """
 
 import argparse
 import json
 import pathlib
 import statistics
+import subprocess
 import sys
 import tempfile
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-import against_reference  # noqa: E402
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+REFERENCES = ROOT / "tests" / "references"
 
 
-def render(arguments, name, method, seed, samples, folder):
-    return against_reference.render(arguments.gradus, name, samples, folder, "--method", method, "--seed", seed)
+def run(*command):
+    result = subprocess.run([str(part) for part in command], capture_output=True, text=True)
+    if result.returncode != 0:
+        sys.exit(f"failed with exit code {result.returncode}: {' '.join(map(str, command))}\n{result.stderr}")
+    return result.stdout
+
+
+def render(arguments, name, about, method, seed, samples, folder):
+    """Seconds of rendering by sample of a pixel, the pilot counted in, relMSE, and what auto chose."""
+    image, record = pathlib.Path(folder) / "image.exr", pathlib.Path(folder) / "image.json"
+    definitions = [part for key, value in about["parameters"].items() for part in ("-D", f"{key}={value}")]
+    run(arguments.gradus, "render", ROOT / about["scene"], *definitions, "--method", method, "--seed", seed,
+        "--size", f"{about['width']}x{about['height']}", "--max-depth", about["max_depth"], "-D", "rfilter=box", "--spp", samples,
+        "-o", image, "--stats", record, "--quiet")
+    compared = pathlib.Path(folder) / "compared.json"
+    run(arguments.gradus, "compare", image, REFERENCES / f"{name}-mean.exr", "--json", compared)
+    report = json.loads(record.read_text())
+    choice = report.get("choice")
+    seconds = report["render_seconds"] + (choice["pilot"]["seconds"] if choice else 0)
+    return seconds / samples, json.loads(compared.read_text())["images"][0]["relative_mse"], choice
 
 
 def main():
     parser = argparse.ArgumentParser(description="gradient-domain path tracing against path tracing")
     parser.add_argument("scenes", nargs="*", metavar="SCENE",
                         help="names in tests/references (default: all)")
-    parser.add_argument("--gradus", type=pathlib.Path, default=against_reference.ROOT / "build" / "gradus")
+    parser.add_argument("--gradus", type=pathlib.Path, default=ROOT / "build" / "gradus")
     parser.add_argument("--spp", type=int, default=64)
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--json", type=pathlib.Path, help="also write all figures to this file")
     arguments = parser.parse_args()
-    names = arguments.scenes or against_reference.names()
+    names = arguments.scenes or sorted(path.stem for path in REFERENCES.glob("*.json"))
     results = []
-    print(f"{'scene':<20} {'cost':>6} {'relMSE pt':>11} {'gpt':>11} {'equal samples':>14} {'equal time':>11}")
+    print(f"{'scene':<20} {'cost':>6} {'relMSE pt':>11} {'gpt':>11} {'equal samples':>14} {'equal time':>11}"
+          f" {'auto':>9} {'expected':>9} {'regret':>7}")
     with tempfile.TemporaryDirectory() as folder:
         for name in names:
-            turns = {"pt": [], "gpt": []}
+            about = json.loads((REFERENCES / f"{name}.json").read_text())
+            turns = {"pt": [], "gpt": [], "auto": []}
             for method in turns:  # kernels compiled
-                render(arguments, name, method, 0, 1, folder)
+                render(arguments, name, about, method, 0, 1, folder)
             for seed in range(1, arguments.repeats + 1):
                 for method, measured in turns.items():
-                    measured.append(render(arguments, name, method, seed, arguments.spp, folder))
-            cost = statistics.median(g[0] / p[0] for g, p in zip(turns["gpt"], turns["pt"]))
+                    measured.append(render(arguments, name, about, method, seed, arguments.spp, folder))
+            cost, cost_auto = (statistics.median(m[0] / p[0] for m, p in zip(turns[method], turns["pt"]))
+                               for method in ("gpt", "auto"))
             error = {method: statistics.median(turn[1] for turn in measured) for method, measured in turns.items()}
             gain = error["pt"] / error["gpt"]
-            print(f"{name:<20} {cost:6.2f} {error['pt']:11.3e} {error['gpt']:11.3e} {gain:14.2f} {gain / cost:11.2f}",
-                  flush=True)
+            choices = [turn[2] for turn in turns["auto"]]
+            pick = statistics.mode(choice["method"] for choice in choices)
+            agreed = sum(choice["method"] == pick for choice in choices)
+            expected = statistics.median(choice["gain"] or 0 for choice in choices)
+            regret = error["auto"] * cost_auto / min(error["pt"], error["gpt"] * cost)
+            print(f"{name:<20} {cost:6.2f} {error['pt']:11.3e} {error['gpt']:11.3e} {gain:14.2f} {gain / cost:11.2f}"
+                  f" {pick:>5} {agreed}/{len(choices)} {expected:9.2f} {regret:7.2f}", flush=True)
             results.append({"scene": name, "cost": cost, "relmse": error, "equal_samples": gain,
-                            "equal_time": gain / cost, "turns": turns})
+                            "equal_time": gain / cost, "turns": turns,
+                            "auto": {"pick": pick, "agreed": agreed, "expected": expected, "regret": regret}})
     if arguments.json:
         arguments.json.write_text(json.dumps(results, indent=2) + "\n")
 

@@ -12,7 +12,6 @@
 namespace gradus {
 namespace {
 
-constexpr double relative_epsilon = 0.001; // squared radiance; keeps black pixels from deciding the figure
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 [[noreturn]] void fail(const std::string &message) { throw Error(ExitCode::image, message); }
@@ -49,7 +48,7 @@ struct Pair {
         double sum = 0;
         for (std::size_t c = 0; c < channels(); ++c) {
             const double r = reference[c]->values[pixel], d = difference(c, pixel);
-            sum += d * d / (r * r + relative_epsilon);
+            sum += d * d / (r * r + relative_mse_epsilon);
         }
         return sum / double(channels());
     }
@@ -174,7 +173,7 @@ Image relative_error_image(const Image &image, const Image &reference) {
         Channel channel{pair.reference[c]->name, std::vector<float>(pair.pixels)};
         for (std::size_t i = 0; i < pair.pixels; ++i) {
             const double r = pair.reference[c]->values[i];
-            channel.values[i] = static_cast<float>(pair.difference(c, i) / std::sqrt(r * r + relative_epsilon));
+            channel.values[i] = static_cast<float>(pair.difference(c, i) / std::sqrt(r * r + relative_mse_epsilon));
         }
         error.channels.push_back(std::move(channel));
     }

@@ -429,6 +429,12 @@ bool GradientPathTracer::render_batch() {
     return end_pass(paths, start);
 }
 
+void GradientPathTracer::restart(std::uint64_t first_sample, std::uint64_t samples_per_pixel) {
+    PathTracer::restart(first_sample, samples_per_pixel);
+    gradient_film_.clear();
+    outcome_.clear();
+}
+
 Image GradientPathTracer::image() {
     statistics_.non_finite = 0;
     const Image whole = film_->image(done_, statistics_.non_finite);

@@ -24,6 +24,7 @@ class GradientPathTracer final : public PathTracer {
     /// R, G, B reconstructed, then layers primal, dx, dy, direct; with aov also their variances and the path tracer's
     /// layers.
     Image image() override;
+    void restart(std::uint64_t first_sample, std::uint64_t samples_per_pixel) override;
     Statistics statistics() const override;
 
   private:

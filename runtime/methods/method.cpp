@@ -1,6 +1,7 @@
 #include "runtime/methods/method.h"
 
 #include "runtime/error.h"
+#include "runtime/methods/automatic_method.h"
 #include "runtime/methods/gradient_path_tracer.h"
 #include "runtime/methods/path_tracer.h"
 
@@ -9,7 +10,7 @@
 
 namespace gradus {
 
-std::vector<std::string> method_names() { return {"pt", "gpt"}; }
+std::vector<std::string> method_names() { return {"pt", "gpt", "auto"}; }
 
 std::unique_ptr<Method> make_method(const std::string &name, Device &device, const Scene &scene,
                                     const RenderOptions &options) {
@@ -17,6 +18,8 @@ std::unique_ptr<Method> make_method(const std::string &name, Device &device, con
         return std::make_unique<PathTracer>(device, scene, options);
     if (name == "gpt")
         return std::make_unique<GradientPathTracer>(device, scene, options);
+    if (name == "auto")
+        return make_automatic_method(device, scene, options);
     throw Error(ExitCode::usage,
                 fmt::format("there is no method \"{}\"; there is: {}", name, fmt::join(method_names(), ", ")));
 }

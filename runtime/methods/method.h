@@ -34,6 +34,22 @@ struct RenderOptions {
     std::string dump_kernels;           ///< folder for the source of each kernel as it was compiled; empty: none
     /// Called when a kernel has been compiled: its name, how many are ready, of how many, and its seconds.
     std::function<void(const std::string &, std::size_t, std::size_t, double)> on_compiled;
+    /// Called before the method `auto` renders a pilot, with its samples a pixel.
+    std::function<void(std::uint64_t)> on_pilot;
+};
+
+/// Which method `auto` picked, and why.
+struct MethodChoice {
+    std::string method;
+    std::string reason;              ///< a sentence
+    std::uint64_t pilot_samples = 0; ///< a pixel, of the pilot render; 0: there was none
+    double pilot_seconds = 0;        ///< kernels compiled
+    struct Estimate {
+        double relative_mse = 0; ///< of an image of one sample a pixel; falls with the number of samples
+        double cost = 0;         ///< of a sample, in rays; counted, so that it is the same on each run
+    };
+    std::map<std::string, Estimate> estimates; ///< by method; empty without a pilot
+    double gain = 0;                           ///< relMSE of pt over gpt's at equal cost; 0 where it is not known
 };
 
 /// What a render did. Written as JSON beside the image.
@@ -53,6 +69,7 @@ struct Statistics {
     double render_seconds = 0;                     ///< spent in render_batch()
     std::uint64_t device_bytes = 0;                ///< allocated on the device
     std::uint64_t peak_host_bytes = 0;             ///< the process at its peak
+    std::optional<MethodChoice> choice;            ///< of the method `auto`
 };
 
 class Method {
@@ -71,7 +88,7 @@ class Method {
     virtual Statistics statistics() const = 0;
 };
 
-/// Methods by their names on the command line.
+/// Methods by their names on the command line; `auto` picks one of the others.
 std::vector<std::string> method_names();
 /// Prepares a render: builds the kernels, lays out the scene, allocates the batch. Throws Error.
 std::unique_ptr<Method> make_method(const std::string &name, Device &device, const Scene &scene,

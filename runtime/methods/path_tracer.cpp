@@ -239,7 +239,7 @@ void PathTracer::run(Kernel &kernel, std::uint32_t first, std::uint32_t items) {
 }
 
 std::uint32_t PathTracer::begin_pass() {
-    const std::uint64_t first_sample = done_ / film_->pixels();
+    const std::uint64_t first_sample = first_sample_ + done_ / film_->pixels();
     camera_.set("first_pixel", static_cast<std::uint32_t>(done_ % film_->pixels()));
     camera_.set("first_sample_low", static_cast<std::uint32_t>(first_sample));
     camera_.set("first_sample_high", static_cast<std::uint32_t>(first_sample >> 32));
@@ -252,6 +252,19 @@ bool PathTracer::end_pass(std::uint32_t paths, std::chrono::steady_clock::time_p
     statistics_.samples += paths;
     statistics_.render_seconds += seconds_since(start);
     return done_ < total_;
+}
+
+void PathTracer::restart(std::uint64_t first_sample, std::uint64_t samples_per_pixel) {
+    first_sample_ = first_sample;
+    done_ = 0;
+    total_ = film_->pixels() * samples_per_pixel;
+    film_->clear();
+    Statistics fresh;
+    fresh.compile_seconds = statistics_.compile_seconds;
+    statistics_ = fresh;
+    trace_seconds_ = 0;
+    for (Kernel *kernel : all_kernels())
+        kernel->reset_usage();
 }
 
 bool PathTracer::render_batch() {

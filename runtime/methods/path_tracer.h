@@ -25,6 +25,10 @@ class PathTracer : public Method {
     Image image() override;
     Statistics statistics() const override;
 
+    /// Forgets all samples; the next ones are of numbers [first_sample, first_sample + samples_per_pixel) of each
+    /// pixel. Other numbers are other random paths of the same seed. A new method is at number 0.
+    virtual void restart(std::uint64_t first_sample, std::uint64_t samples_per_pixel);
+
     /// For measuring: the tracer records and replays the rays of a render.
     Tracer &tracer() { return tracer_; }
 
@@ -80,7 +84,7 @@ class PathTracer : public Method {
     TraitMap traits_;
     SceneTables scene_tables_;
     Tracer tracer_;
-    std::uint64_t total_ = 0, done_ = 0;
+    std::uint64_t total_ = 0, done_ = 0, first_sample_ = 0;
     std::optional<BatchTables> tables_;
     std::optional<SceneBuffers> scene_buffers_;
     std::optional<FilmStage> film_;

@@ -18,12 +18,16 @@ FilmStage::FilmStage(Device &device, Kernel kernel, const BatchTables &tables, s
     const std::size_t column = real_bytes(precision) * width * height;
     film_ = Buffer(device, "film", column * film_columns);
     feature_film_ = Buffer(device, "feature_film", aov_ ? column * feature_film_columns : 0);
-    film_.clear();
-    feature_film_.clear();
+    clear();
     for (const Buffer &buffer : {tables.radiance, tables.feature, film_, feature_film_})
         kernel_.bind(buffer);
     kernel_.set("slots", tables.slots);
     kernel_.set("pixels", width * height);
+}
+
+void FilmStage::clear() {
+    film_.clear();
+    feature_film_.clear();
 }
 
 void FilmStage::accumulate(std::uint32_t count, std::uint32_t first_pixel) {

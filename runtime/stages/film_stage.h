@@ -23,6 +23,9 @@ class FilmStage {
     /// samples that were left out to `non_finite`.
     Image image(std::uint64_t samples, std::uint64_t &non_finite) const;
 
+    /// All zero again.
+    void clear();
+
     std::uint32_t pixels() const { return width_ * height_; }
 
   private:

@@ -3,6 +3,7 @@
 //   fail=memory  the render runs out of memory; fail=strange: throws what is no exception
 //   nan=1        one value of the image is NaN
 //   warn=TEXT    the loader warns
+//   pilot_ms=N   what the pilot of method auto takes (0)
 // The image is R = seed, G = samples a pixel so far, B = 0.5; the film is 8x6 with 4 samples a pixel.
 // A solve gives the primal; the device named "too small" has no room for it.
 #include "driver/program.h"
@@ -42,12 +43,17 @@ LoadedScene load_fake_scene(const std::string &path, const LoadOptions &options)
 
 class FakeMethod : public Method {
   public:
-    FakeMethod(const Scene &scene, const RenderOptions &options)
-        : seed_(options.seed), aov_(options.aov), samples_per_pixel_(scene.settings.samples_per_pixel) {
+    FakeMethod(const std::string &method, const Scene &scene, const RenderOptions &options)
+        : automatic_(method == "auto"), seed_(options.seed), aov_(options.aov),
+          samples_per_pixel_(scene.settings.samples_per_pixel) {
         width_ = scene.film.crop_width > 0 ? scene.film.crop_width : scene.film.width;
         height_ = scene.film.crop_height > 0 ? scene.film.crop_height : scene.film.height;
         if (options.on_compiled)
             options.on_compiled("fake_kernel", 1, 1, 0.25);
+        if (automatic_ && options.on_pilot)
+            options.on_pilot(6);
+        if (automatic_ && !parameter("pilot_ms").empty())
+            std::this_thread::sleep_for(std::chrono::milliseconds(std::stoi(parameter("pilot_ms"))));
     }
     std::uint64_t total_samples() const override { return pixels() * samples_per_pixel_; }
     std::uint64_t done_samples() const override { return pixels() * done_; }
@@ -83,12 +89,15 @@ class FakeMethod : public Method {
         statistics.rays = {{"extension", 1000}};
         statistics.samples = done_samples();
         statistics.render_seconds = 1;
+        if (automatic_)
+            statistics.choice = MethodChoice{"gpt", "it was told to", 6, 0.5, {{"pt", {2, 3}}, {"gpt", {0.25, 6}}}, 4};
         return statistics;
     }
 
   private:
     std::uint64_t pixels() const { return std::uint64_t(width_) * height_; }
 
+    bool automatic_;
     std::uint64_t seed_;
     bool aov_;
     std::uint64_t samples_per_pixel_, done_ = 0;
@@ -121,15 +130,15 @@ int main(int argc, char **argv) {
     gradus::Services services;
     services.load_scene = gradus::load_fake_scene;
     services.list_devices = [] { return std::vector<gradus::DeviceDescription>(); };
-    services.method_names = [] { return std::vector<std::string>{"pt"}; };
+    services.method_names = [] { return std::vector<std::string>{"pt", "auto"}; };
     services.traits = [](const gradus::Scene &) {
         return std::vector<std::pair<std::string, int>>{{"HAS_DIFFUSE", 1}, {"HAS_CONSTANT", 0}};
     };
-    services.prepare = [](const std::string &, const std::string &, const gradus::Scene &scene,
+    services.prepare = [](const std::string &method, const std::string &, const gradus::Scene &scene,
                           const gradus::RenderOptions &options) {
         gradus::PreparedMethod prepared;
         prepared.description.name = "fake device";
-        prepared.method = std::make_unique<gradus::FakeMethod>(scene, options);
+        prepared.method = std::make_unique<gradus::FakeMethod>(method, scene, options);
         return prepared;
     };
     services.prepare_solver = gradus::prepare_fake_solver;

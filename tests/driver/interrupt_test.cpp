@@ -46,6 +46,18 @@ TEST_F(Interrupt, ASignalLeavesAValidImageOfWhatThereIs) {
     }
 }
 
+/// There is nothing to save yet, as while kernels compile.
+TEST_F(Interrupt, ASignalDuringThePilotEndsAtOnceAndLeavesNothing) {
+    ChildProcess process({"render", "scene.xml", "-o", "out.exr", "--method", "auto", "-D", "pilot_ms=50000"}, folder);
+    sleep_ms(500);
+    const auto start = std::chrono::steady_clock::now();
+    process.send(SIGINT);
+    const Outcome outcome = process.wait();
+    EXPECT_EQ(outcome.signal, SIGINT);
+    EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 10);
+    EXPECT_THAT(files(), ElementsAre("scene.xml"));
+}
+
 TEST_F(Interrupt, ASecondSignalEndsAtOnce) {
     // The file is there once the first batch is done; the second takes another 1.5 s.
     ChildProcess process(

@@ -82,6 +82,37 @@ TEST_F(Render, StatisticsToStandardOutput) {
     EXPECT_EQ(nlohmann::json::parse(outcome.out).at("method"), "pt");
 }
 
+TEST_F(Render, SaysWhichMethodWasChosenAndWhy) {
+    const Outcome outcome = render({"-o", "out.exr", "--method", "auto", "--stats", "-"});
+    ASSERT_EQ(outcome.exit_code, 0);
+    EXPECT_THAT(outcome.err, HasSubstr("pilot of 6 samples a pixel, to choose the method\n"));
+    EXPECT_THAT(outcome.err, HasSubstr("method gpt: it was told to\n"));
+    EXPECT_EQ(read_image(at("out.exr")).metadata.at("method"), "gpt");
+    const nlohmann::json statistics = nlohmann::json::parse(outcome.out), choice = statistics.at("choice");
+    EXPECT_EQ(statistics.at("method"), "gpt");
+    EXPECT_EQ(choice.at("method"), "gpt");
+    EXPECT_EQ(choice.at("reason"), "it was told to");
+    EXPECT_EQ(choice.at("pilot").at("spp"), 6);
+    EXPECT_EQ(choice.at("pilot").at("seconds"), 0.5);
+    EXPECT_EQ(choice.at("estimates").at("gpt").at("relative_mse"), 0.25);
+    EXPECT_EQ(choice.at("estimates").at("pt").at("cost"), 3);
+    EXPECT_EQ(choice.at("gain"), 4);
+    EXPECT_EQ(render({"-o", "out.exr", "--method", "auto", "--quiet"}).err, "");
+}
+
+TEST_F(Render, AMethodThatWasAskedForIsNoChoice) {
+    const Outcome outcome = render({"-o", "out.exr", "--stats", "-"});
+    EXPECT_FALSE(nlohmann::json::parse(outcome.out).contains("choice"));
+}
+
+TEST_F(Render, ThePilotCountsAsTime) {
+    // The fake pilot says that it took half a second.
+    ASSERT_EQ(render({"-o", "out.exr", "--method", "auto", "--time", "0.4", "-D", "batch_ms=10"}).exit_code, 0);
+    const Image image = read_image(at("out.exr"));
+    EXPECT_EQ(value(image, "G"), 1);
+    EXPECT_GE(std::stod(image.metadata.at("seconds")), 0.5);
+}
+
 TEST_F(Render, TimeEndsTheRender) {
     const auto start = std::chrono::steady_clock::now();
     const Outcome outcome = render({"-o", "out.exr", "--time", "0.4", "-D", "batch_ms=10"});

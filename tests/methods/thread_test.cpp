@@ -9,27 +9,45 @@ namespace gradus {
 namespace {
 
 /// A scene and a precision.
-class Threads : public ProgramTest, public ::testing::WithParamInterface<std::pair<const char *, const char *>> {};
+class Threads : public ProgramTest, public ::testing::WithParamInterface<std::pair<const char *, const char *>> {
+  protected:
+    Image render(const std::string &scene, const std::vector<std::string> &settings, const std::string &output,
+                 const std::string &threads, const std::string &batch_size) const {
+        std::vector<std::string> arguments = {"render",  std::string(GRADUS_ROOT) + "/scenes/" + scene + ".xml",
+                                              "-o",      output,
+                                              "--seed",  "11",
+                                              "--quiet", "--nthreads",
+                                              threads,   "--batch-size",
+                                              batch_size};
+        arguments.insert(arguments.end(), settings.begin(), settings.end());
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        return read_image(at(output));
+    }
+    void expect_one_image(const std::string &scene, const std::vector<std::string> &settings) const {
+        const Image one = render(scene, settings, "one.exr", "1", "0");
+        for (const char *batch_size : {"0", "1000"}) {
+            const Image two = render(scene, settings, "two.exr", "2", batch_size);
+            EXPECT_EQ(one.metadata.at("method"), two.metadata.at("method"));
+            ASSERT_EQ(one.channels.size(), two.channels.size());
+            for (const Channel &channel : one.channels)
+                EXPECT_EQ(std::memcmp(channel.values.data(), two.find(channel.name)->values.data(),
+                                      sizeof(float) * channel.values.size()),
+                          0)
+                    << channel.name << ", batch size " << batch_size;
+        }
+    }
+};
 
 TEST_P(Threads, DoNotChangeTheImage) {
     const auto [scene, precision] = GetParam();
-    const auto render = [&](const std::string &output, const std::string &threads, const std::string &batch_size) {
-        const Outcome outcome = run({"render", std::string(GRADUS_ROOT) + "/scenes/" + scene + ".xml", "-o", output,
-                                     "--size", "160x120", "--spp", "4", "--seed", "11", "--quiet", "--precision",
-                                     precision, "--nthreads", threads, "--batch-size", batch_size});
-        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-        return read_image(at(output));
-    };
-    const Image one = render("one.exr", "1", "0");
-    for (const char *batch_size : {"0", "1000"}) {
-        const Image two = render("two.exr", "2", batch_size);
-        ASSERT_EQ(one.channels.size(), two.channels.size());
-        for (const Channel &channel : one.channels)
-            EXPECT_EQ(std::memcmp(channel.values.data(), two.find(channel.name)->values.data(),
-                                  sizeof(float) * channel.values.size()),
-                      0)
-                << channel.name << ", batch size " << batch_size;
-    }
+    expect_one_image(scene, {"--size", "160x120", "--spp", "4", "--precision", precision});
+}
+
+/// Enough samples for a pilot.
+TEST_P(Threads, DoNotChangeWhichMethodIsChosen) {
+    const auto [scene, precision] = GetParam();
+    expect_one_image(scene, {"--size", "48x36", "--spp", "80", "--method", "auto", "--precision", precision});
 }
 
 INSTANTIATE_TEST_SUITE_P(Program, Threads,

@@ -1,0 +1,49 @@
+// A short render before a render: what path tracing and gradient-domain path tracing would cost and how far off they
+// would be. Its samples are not in the image: an image that decided on its own method would be biased.
+#pragma once
+
+#include "runtime/film/image.h"
+#include "runtime/methods/gradient_path_tracer.h"
+
+#include <cstdint>
+
+namespace gradus {
+
+/// Samples a pixel of both halves of a pilot.
+constexpr std::uint64_t pilot_samples = 8;
+
+/// Errors of images of as many samples as one half of the pilot has.
+struct PilotErrors {
+    double pt = 0, gpt = 0; ///< relMSE
+};
+
+/// From two images of gpt of independent samples: W its means without reconstruction, which are images of pt, and R
+/// reconstructed. Without a reference,
+///   relMSE of W: half of (W_1 - W_2)^2,
+///   relMSE of R: half of (R_1 - R_2)^2, its variance, plus (R_1 - W_1) (R_2 - W_2), the square of its bias,
+/// relative to the mean of R_1 and R_2 in place of the reference, freed of single outliers: a firefly that were part of
+/// its own reference would weigh little. W has no bias, so R - W has that of R, and two
+/// independent halves make its square without bias. What the reconstruction of both halves gets wrong in the same way
+/// (L1 where noise is skewed, blurred detail) counts by that. All are means over pixels and channels R, G, B.
+PilotErrors estimate_errors(const Image &first, const Image &second);
+
+/// What a sample costs, in rays of a path tracer. Counted, never timed, so that a choice by it is the same on each run
+/// and on each machine. Kernels work by vertex, and vertices are what rays meet, so time follows the rays.
+struct PilotCosts {
+    double pt = 0, gpt = 0;
+};
+
+struct Pilot {
+    PilotErrors errors;
+    PilotCosts costs;
+    double seconds = 0; ///< rendering, kernels compiled; without the reconstructions
+};
+
+/// False before a render of so few samples a pixel that a pilot would be more than a tenth of it.
+bool has_room_for_pilot(std::uint64_t samples_per_pixel);
+
+/// Renders both halves with `method`, which is to be restarted afterwards. Their samples have numbers that no render
+/// reaches.
+Pilot run_pilot(GradientPathTracer &method);
+
+} // namespace gradus

@@ -1,0 +1,180 @@
+// The method `auto`: what it estimates, what it picks, and that its image is that of the method that it picked.
+#include "runtime/methods/automatic_method.h"
+#include "tests/methods/reference_scene.h"
+#include "tests/support/render.h"
+#include "tests/support/small_scenes.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace gradus::testing {
+namespace {
+
+/// An image of gpt of one value: what it holds is `value` plus `noise` (standard deviation) where it is not
+/// reconstructed, and plus `bias` and `left` (standard deviation) where it is.
+Image synthetic(double value, double noise, double bias, double left, unsigned seed) {
+    constexpr std::uint32_t side = 200;
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal;
+    Image image;
+    image.width = image.height = side;
+    for (const char *color : {"R", "G", "B"}) {
+        Channel reconstructed{color, {}}, primal{std::string("primal.").append(color), {}},
+            direct{std::string("direct.").append(color), std::vector<float>(side * side, 0.25f)};
+        for (std::uint32_t i = 0; i < side * side; ++i) {
+            primal.values.push_back(float(value - 0.25 + noise * normal(random)));
+            reconstructed.values.push_back(float(value + bias + left * normal(random)));
+        }
+        for (Channel *channel : {&reconstructed, &primal, &direct})
+            image.channels.push_back(*channel);
+    }
+    return image;
+}
+
+/// 120,000 values: sums of squares are known to 1 / sqrt(60,000) = 0.4 %, the product that tells the bias to
+/// noise^2 / sqrt(120,000). Four standard deviations are allowed.
+TEST(PilotErrors, TellsVarianceAndBiasWithoutAReference) {
+    const auto estimate = [](double bias, double left) {
+        return estimate_errors(synthetic(1, 0.5, bias, left, 1), synthetic(1, 0.5, bias, left, 2));
+    };
+    const double product_deviation = 4 * 0.25 / std::sqrt(120000.0);
+    // Relative to 1 + 0.001; where there is a bias, to the square of what it makes of 1.
+    const PilotErrors unbiased = estimate(0, 0.05);
+    EXPECT_NEAR(unbiased.pt, 0.25 / 1.001, 0.25 * 0.03);
+    EXPECT_NEAR(unbiased.gpt, 0.0025 / 1.001, product_deviation);
+    const PilotErrors biased = estimate(0.2, 0.05);
+    EXPECT_NEAR(biased.gpt, (0.0025 + 0.04) / 1.441, product_deviation);
+    const PilotErrors no_bias_left_out = estimate(0.2, 0);
+    EXPECT_GT(no_bias_left_out.gpt, 0.02) << "both halves are wrong alike";
+}
+
+/// What relMSE weighs by is not the firefly itself: 100 where all else is 0.1.
+TEST(PilotErrors, AFireflyIsNotItsOwnReference) {
+    const Image second = synthetic(0.1, 0, 0, 0, 1);
+    Image first = second;
+    const std::size_t pixel = 200 * 57 + 31;
+    for (Channel &channel : first.channels)
+        if (channel.name == "R" || channel.name == "primal.R")
+            channel.values[pixel] += 100;
+    const PilotErrors errors = estimate_errors(first, second);
+    const double expected = 0.5 * 100 * 100 / (0.01 + 0.001) / 120000; // of one value of 120,000
+    EXPECT_NEAR(errors.pt / expected, 1, 1e-3) << "100.1 or 50.1 as reference give thousandths";
+    EXPECT_NEAR(errors.gpt / expected, 1, 1e-3);
+}
+
+TEST(Pilot, IsATenthOfTheRenderAtMost) {
+    for (const std::uint64_t samples : {std::uint64_t(0), std::uint64_t(1), 10 * pilot_samples - 1})
+        EXPECT_FALSE(has_room_for_pilot(samples)) << samples;
+    EXPECT_TRUE(has_room_for_pilot(10 * pilot_samples));
+    EXPECT_TRUE(has_room_for_pilot(std::uint64_t(1) << 40));
+}
+
+Pilot pilot_of(double pt_error, double gpt_error, double pt_cost, double gpt_cost) {
+    Pilot pilot;
+    pilot.errors = {pt_error, gpt_error};
+    pilot.costs = {pt_cost, gpt_cost};
+    return pilot;
+}
+
+TEST(ChoiceByPilot, IsOfLessErrorAtEqualCost) {
+    const MethodChoice gpt = choose_by_pilot(pilot_of(1, 0.25, 5, 10));
+    EXPECT_EQ(gpt.method, "gpt");
+    EXPECT_DOUBLE_EQ(gpt.gain, 2);
+    EXPECT_DOUBLE_EQ(gpt.estimates.at("pt").relative_mse, 4) << "of one sample; the pilot's halves have four";
+    const MethodChoice pt = choose_by_pilot(pilot_of(1, 0.625, 5, 10));
+    EXPECT_EQ(pt.method, "pt");
+    EXPECT_DOUBLE_EQ(pt.gain, 0.8);
+}
+
+TEST(ChoiceByPilot, IsPtWhereThePilotTellsNothing) {
+    const double infinity = std::numeric_limits<double>::infinity();
+    for (const Pilot &pilot : {pilot_of(0, 0, 5, 10), pilot_of(std::nan(""), 1, 5, 10), pilot_of(1, infinity, 5, 10),
+                               pilot_of(0, 0, 0, 0)}) {
+        const MethodChoice choice = choose_by_pilot(pilot);
+        EXPECT_EQ(choice.method, "pt");
+        EXPECT_FALSE(choice.reason.empty());
+        EXPECT_EQ(choice.gain, 0);
+    }
+}
+
+/// The image is that of the method, for every batch size and number of threads, and so are the estimates.
+void expect_choice(const Scene &scene, const std::string &method) {
+    RenderOptions options;
+    options.seed = 5;
+    const Rendered automatic = render(scene, options, "auto");
+    ASSERT_TRUE(automatic.statistics.choice);
+    const MethodChoice &choice = *automatic.statistics.choice;
+    EXPECT_EQ(choice.method, method) << choice.reason << ", gain " << choice.gain;
+    EXPECT_GT(choice.gain, 0);
+    EXPECT_EQ(choice.pilot_samples, pilot_samples);
+    EXPECT_EQ(automatic.statistics.samples, scene.settings.samples_per_pixel * scene.film.width * scene.film.height)
+        << "the pilot's samples are not the render's";
+    EXPECT_TRUE(equal_bits(automatic.image, render(scene, options, method.c_str()).image));
+    options.batch_size = 1000;
+    options.threads = 1;
+    const Rendered again = render(scene, options, "auto");
+    EXPECT_TRUE(equal_bits(automatic.image, again.image));
+    EXPECT_EQ(choice.gain, again.statistics.choice->gain);
+    EXPECT_EQ(choice.reason, again.statistics.choice->reason);
+    for (const char *name : {"pt", "gpt"}) {
+        EXPECT_EQ(choice.estimates.at(name).relative_mse, again.statistics.choice->estimates.at(name).relative_mse);
+        EXPECT_EQ(choice.estimates.at(name).cost, again.statistics.choice->estimates.at(name).cost);
+    }
+}
+
+TEST(Automatic, TakesGptInTheCornellBox) {
+    Scene scene = own_scene("cornell-box.xml", 48, 40);
+    scene.settings.samples_per_pixel = 80;
+    expect_choice(scene, "gpt");
+}
+
+/// Spheres no larger than a pixel, of all colours: neighbouring pixels have nothing in common, and shifts seldom
+/// connect.
+TEST(Automatic, TakesPtWhereNeighboursHaveNothingInCommon) {
+    SceneMaker maker(32, 80);
+    maker.look({0, 0, 4}, {0, 0, 0}, 30);
+    maker.environment(1);
+    maker.scene.settings.max_depth = 4;
+    std::mt19937 random(1);
+    const auto unit = [&random] { return float(random() >> 8) / float(1 << 24); };
+    std::vector<std::uint32_t> materials;
+    for (int i = 0; i < 16; ++i) {
+        Bsdf bsdf = diffuse(0);
+        bsdf.reflectance = {unit(), unit(), unit()};
+        materials.push_back(maker.material(bsdf));
+    }
+    for (int i = 0; i < 4000; ++i)
+        maker.sphere({2 * unit() - 1, 2 * unit() - 1, 2 * unit() - 1}, 0.03f, materials[random() % materials.size()]);
+    expect_choice(maker.scene, "pt");
+}
+
+TEST(Automatic, TakesPtForABlackImage) {
+    SceneMaker maker(16, 80);
+    maker.look({0, 0, 4}, {0, 0, 0}, 30);
+    maker.environment(0);
+    maker.sphere({0, 0, 0}, 1, maker.material(diffuse(0.5)));
+    const Rendered rendered = render(maker.scene, {}, "auto");
+    EXPECT_EQ(rendered.statistics.choice->method, "pt");
+    EXPECT_THAT(rendered.statistics.choice->reason, ::testing::HasSubstr("no noise"));
+    EXPECT_EQ(spread_of(rendered.image).most, 0);
+}
+
+TEST(Automatic, GoesByARuleWhereThereIsNoRoomForAPilot) {
+    Scene scene = own_scene("cornell-box.xml", 48, 40);
+    for (const auto &[max_depth, method] : {std::pair{-1, "gpt"}, {1, "pt"}}) {
+        scene.settings.samples_per_pixel = 1;
+        scene.settings.max_depth = max_depth;
+        const Rendered rendered = render(scene, {}, "auto");
+        ASSERT_TRUE(rendered.statistics.choice);
+        EXPECT_EQ(rendered.statistics.choice->method, method);
+        EXPECT_EQ(rendered.statistics.choice->pilot_samples, 0u);
+        EXPECT_TRUE(rendered.statistics.choice->estimates.empty());
+        EXPECT_TRUE(equal_bits(rendered.image, render(scene, {}, method).image));
+    }
+}
+
+} // namespace
+} // namespace gradus::testing
