@@ -1,0 +1,119 @@
+#!/usr/bin/env python3
+"""Pictures of path tracing and gradient-domain path tracing at equal time, beside a reference, with maps of the error.
+
+    python3 bench/render/pictures.py [--scene door-ajar] [--spp 16] [--output build/bench/pictures.png]
+
+gpt renders with --spp samples; pt renders as many as take the same time, the reconstruction counted. The reference is
+path tracing with --reference-spp samples at the size of the picture, made once and kept in build/bench/cache. Error maps are those
+of `gradus compare --error-image`: red too bright, blue too dark, white equal. Needs matplotlib (Debian:
+python3-matplotlib); without it, says so and draws nothing.
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parent / "charts")]
+import plotting  # noqa: E402
+import references  # noqa: E402
+import renders  # noqa: E402
+
+SCENES = {"cornell-box": (256, 256), "door-ajar": (320, 240)}  # and their size in pixels
+
+
+def equal_time(arguments, scene, folder):
+    """Renders both: {method: {"image", "samples", "seconds", "relmse"}}, with PNGs of image and error beside."""
+    def rendered(method, seed, samples):
+        image = folder / f"{scene.name}-{method}.exr"
+        record = renders.render(arguments.gradus, scene, method, seed, image, samples=samples, png=True)
+        return image, record["render_seconds"] + renders.reconstruction_seconds(arguments.gradus, image)
+
+    for method in ("pt", "gpt"):
+        rendered(method, 0, 2)  # fills the kernel cache
+    gpt, gpt_seconds = rendered("gpt", 1, arguments.spp)
+    _, pilot_seconds = rendered("pt", 2, 4 * arguments.spp)
+    pt_samples = max(1, round(4 * arguments.spp * gpt_seconds / pilot_seconds))
+    pt, pt_seconds = rendered("pt", 1, pt_samples)
+    found = {}
+    for method, image, samples, seconds in (("pt", pt, pt_samples, pt_seconds),
+                                            ("gpt", gpt, arguments.spp, gpt_seconds)):
+        figures = renders.compare(arguments.gradus, image, scene.reference, "--error-image",
+                                  image.with_suffix(".error.png"))
+        found[method] = {"image": image, "samples": samples, "seconds": seconds, "relmse": figures["relative_mse"]}
+    return found
+
+
+def gain(found):
+    ratio = found["pt"]["relmse"] / found["gpt"]["relmse"]
+    return f"gpt: {ratio:.1f} times less error" if ratio >= 1 else f"gpt: {1 / ratio:.1f} times more error"
+
+
+def draw(pyplot, measured):
+    """A row of images and one of error maps for each scene."""
+    rows = 2 * len(measured)
+    heights = [height / width for scene, _ in measured for width, height in [(scene.width, scene.height)] * 2]
+    figure, grid = pyplot.subplots(rows, 3, figsize=(9, 3 * sum(heights) + 0.45 * rows),
+                                   gridspec_kw={"height_ratios": heights}, squeeze=False)
+    for number, (scene, found) in enumerate(measured):
+        top, bottom = grid[2 * number], grid[2 * number + 1]
+        for axes, below, method in zip(top, bottom, ("pt", "gpt")):
+            own = found[method]
+            axes.imshow(pyplot.imread(own["image"].with_suffix(".png")), interpolation="nearest")
+            axes.set_title(f"{method}, {own['samples']} samples a pixel", fontsize=10)
+            below.imshow(pyplot.imread(own["image"].with_suffix(".error.png")), interpolation="nearest")
+            below.set_title(f"error of {method}: relMSE {own['relmse']:.2g}", fontsize=10)
+        top[2].imshow(pyplot.imread(scene.reference.image.with_suffix(".png")), interpolation="nearest")
+        top[2].set_title(f"reference, {scene.reference.spp} samples", fontsize=10)
+        bottom[2].text(0.5, 0.5, f"{scene.name}\nthe same time for both\n\n"
+                       f"{gain(found)}\n\n"
+                       "red: too bright\nblue: too dark", ha="center", va="center", fontsize=10,
+                       transform=bottom[2].transAxes)
+    for axes in (axes for row in grid for axes in row):
+        axes.set_axis_off()
+    figure.tight_layout(pad=0.4)
+    return figure
+
+
+def main():
+    parser = argparse.ArgumentParser(description="pictures at equal time")
+    parser.add_argument("--scene", nargs="+", choices=SCENES, default=list(SCENES), help="own scenes")
+    parser.add_argument("--gradus", type=pathlib.Path, default=renders.ROOT / "build" / "gradus")
+    parser.add_argument("--spp", type=int, default=16, help="samples a pixel of gpt (16)")
+    parser.add_argument("--reference-spp", type=int, default=8192)
+    parser.add_argument("--cache", type=pathlib.Path, default=renders.ROOT / "build" / "bench" / "cache")
+    parser.add_argument("--output", type=pathlib.Path, default=renders.ROOT / "build" / "bench" / "pictures.png",
+                        help="the picture; a JSON of the figures is written beside it")
+    arguments = parser.parse_args()
+    pyplot = plotting.pyplot()
+    if not pyplot:
+        return
+    machine = renders.machine()
+    measured = []
+    with tempfile.TemporaryDirectory() as folder:
+        for name in arguments.scene:
+            width, height = SCENES[name]
+            scene = renders.Scene(name, renders.ROOT / "scenes" / f"{name}.xml", width, height)
+            scene = references.with_reference(arguments.gradus, scene, arguments.reference_spp, arguments.cache)
+            measured.append((scene, equal_time(arguments, scene, pathlib.Path(folder))))
+            print(f"{name}: " + "; ".join(f"{method} {own['samples']} samples, {own['seconds']:.2f} s, relMSE "
+                                          f"{own['relmse']:.2e}" for method, own in measured[-1][1].items()), flush=True)
+        figure = draw(pyplot, measured)
+        arguments.output.parent.mkdir(parents=True, exist_ok=True)
+        figure.savefig(arguments.output, dpi=110)
+    machine["load_after"] = os.getloadavg()[0]
+    figures = {scene.name: {method: {key: value for key, value in own.items() if key != "image"}
+                            for method, own in found.items()} for scene, found in measured}
+    caption = ("Path tracing and gradient-domain path tracing, the same time for both, reconstruction counted: "
+               + "; ".join(f"{scene.name}, {gain(found)}" for scene, found in measured) + ".")
+    arguments.output.with_suffix(".json").write_text(json.dumps(
+        {"machine": machine, "command": ["bench/render/pictures.py", *sys.argv[1:]], "caption": caption,
+         "scenes": figures}, indent=1) + "\n")
+    print(f"wrote {arguments.output}")
+
+
+if __name__ == "__main__":
+    main()
