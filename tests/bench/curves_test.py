@@ -94,6 +94,10 @@ class Crossing(unittest.TestCase):
         found = curves.crossing(power_law(1, -1, [0.7, 3, 11]), power_law(0.5, -0.5, [0.2, 5, 9]))
         self.assertAlmostEqual(found["seconds"], 4)
 
+    def test_the_last_one_counts(self):
+        found = curves.crossing([(1, 2), (2, 0.5), (4, 2), (8, 0.5)], [(1, 1), (8, 1)])
+        self.assertAlmostEqual(found["seconds"], math.sqrt(4 * 8))
+
     def test_in_words(self):
         steep, flat = power_law(1, -1), power_law(0.5, -0.5)
         self.assertEqual(curves.relation(steep, flat), "less from 4 s on")
