@@ -134,10 +134,13 @@ def add_kernels(report):
     results = report.read("kernels.json")
     if not results:
         return
-    if not kernels.entries_of(results):
-        report.missing.append("kernels.json holds no entries of gradus-bench-kernels")
-        return
-    report.add("Kernels: throughput against error", report.figure("kernels", kernels.draw, results))
+    if kernels.functions_of(results):
+        report.add("Functions of kernels: throughput against error",
+                   report.figure("functions", kernels.draw_functions, results))
+    if kernels.kernels_of(results):
+        report.add("Kernels: throughput", report.figure("kernels", kernels.draw_throughput, results))
+    if not kernels.functions_of(results) and not kernels.kernels_of(results):
+        report.missing.append("kernels.json holds nothing of gradus-bench-kernels")
 
 
 def add_solver(report):

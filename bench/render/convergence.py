@@ -196,8 +196,9 @@ def main():
                                   "reference_error": measurement.points[0]["reference_error"]})
         results["machine"]["load_after"] = os.getloadavg()[0]
         arguments.json.write_text(json.dumps(results, indent=1) + "\n")  # what there is, should the next one fail
+        own_error = measurement.points[0]["reference_error"]
         print(f"{scene.name}: {len(measurement.points)} images, reference by {scene.reference.renderer}, "
-              f"{scene.reference.spp} samples, its own relMSE {measurement.points[0]['reference_error']:.2g}", flush=True)
+              f"{scene.reference.spp} samples, its own relMSE {own_error:.2g}", flush=True)
     print_summary(curves.summaries(results["points"]))
     print(f"\nJSON in {arguments.json}")
 

@@ -4,8 +4,8 @@
     python3 bench/render/pictures.py [--scene door-ajar] [--spp 16] [--output build/bench/pictures.png]
 
 gpt renders with --spp samples; pt renders as many as take the same time, the reconstruction counted. The reference is
-path tracing with --reference-spp samples at the size of the picture, made once and kept in build/bench/cache. Error maps are those
-of `gradus compare --error-image`: red too bright, blue too dark, white equal. Needs matplotlib (Debian:
+path tracing with --reference-spp samples at the size of the picture, made once and kept in build/bench/cache. Error
+maps are those of `gradus compare --error-image`: red too bright, blue too dark, white equal. Needs matplotlib (Debian:
 python3-matplotlib); without it, says so and draws nothing.
 """
 
@@ -43,7 +43,8 @@ def equal_time(arguments, scene, folder):
                                             ("gpt", gpt, arguments.spp, gpt_seconds)):
         figures = renders.compare(arguments.gradus, image, scene.reference, "--error-image",
                                   image.with_suffix(".error.png"))
-        found[method] = {"image": image, "samples": samples, "seconds": seconds, "relmse": figures["relative_mse"]}
+        found[method] = {"image": image, "samples": samples, "seconds": seconds, "relmse": figures["relative_mse"],
+                         "reference_error": figures["reference_relative_mse"]}
     return found
 
 
@@ -68,10 +69,9 @@ def draw(pyplot, measured):
             below.set_title(f"error of {method}: relMSE {own['relmse']:.2g}", fontsize=10)
         top[2].imshow(pyplot.imread(scene.reference.image.with_suffix(".png")), interpolation="nearest")
         top[2].set_title(f"reference, {scene.reference.spp} samples", fontsize=10)
-        bottom[2].text(0.5, 0.5, f"{scene.name}\nthe same time for both\n\n"
-                       f"{gain(found)}\n\n"
-                       "red: too bright\nblue: too dark", ha="center", va="center", fontsize=10,
-                       transform=bottom[2].transAxes)
+        words = [scene.name, "the same time for both", gain(found), "", "red: too bright", "blue: too dark", "",
+                 f"the reference's own relMSE: {found['pt']['reference_error']:.1g}"]
+        bottom[2].text(0.5, 0.5, "\n".join(words), ha="center", va="center", fontsize=10, transform=bottom[2].transAxes)
     for axes in (axes for row in grid for axes in row):
         axes.set_axis_off()
     figure.tight_layout(pad=0.4)
@@ -99,8 +99,9 @@ def main():
             scene = renders.Scene(name, renders.ROOT / "scenes" / f"{name}.xml", width, height)
             scene = references.with_reference(arguments.gradus, scene, arguments.reference_spp, arguments.cache)
             measured.append((scene, equal_time(arguments, scene, pathlib.Path(folder))))
-            print(f"{name}: " + "; ".join(f"{method} {own['samples']} samples, {own['seconds']:.2f} s, relMSE "
-                                          f"{own['relmse']:.2e}" for method, own in measured[-1][1].items()), flush=True)
+            for method, own in measured[-1][1].items():
+                print(f"{name}, {method}: {own['samples']} samples, {own['seconds']:.2f} s, relMSE {own['relmse']:.2e}",
+                      flush=True)
         figure = draw(pyplot, measured)
         arguments.output.parent.mkdir(parents=True, exist_ok=True)
         figure.savefig(arguments.output, dpi=110)

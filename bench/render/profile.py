@@ -4,8 +4,8 @@
     python3 bench/render/profile.py [SCENE ...] [--method pt gpt] [--spp 64]
 
 The floor is the number of rays of the render times the seconds of a ray when Embree alone traces the rays of a path
-tracing of that scene again (gradus-bench-render --parts floor); rays of other kinds, such as gradients take, count as if
-they were those. Draw it with bench/report --draw-only.
+tracing of that scene again (gradus-bench-render --parts floor); rays of other kinds, such as gradients take, count as
+if they were those. Draw it with bench/report --draw-only.
 """
 
 import argparse

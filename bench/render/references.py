@@ -26,7 +26,7 @@ def key(scene, samples):
 
 def with_reference(gradus, scene, samples, cache):
     """The scene with its reference, which is made where it is neither given nor kept in the folder `cache`, with a
-    picture of it as PNG."""
+    picture of it as PNG and its statistics."""
     if scene.reference:
         return scene
     cache.mkdir(parents=True, exist_ok=True)
@@ -37,5 +37,6 @@ def with_reference(gradus, scene, samples, cache):
         unfinished = kept.with_suffix(".unfinished.exr")
         renders.render(gradus, scene, "pt", SEED, unfinished, samples=samples, aov=True, png=True)
         unfinished.with_suffix(".png").rename(kept.with_suffix(".png"))
+        unfinished.with_suffix(".json").rename(kept.with_suffix(".json"))
         unfinished.rename(kept)
     return dataclasses.replace(scene, reference=renders.Reference(kept, kept, samples, "gradus pt"))

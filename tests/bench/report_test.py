@@ -38,9 +38,19 @@ def profile():
         {**own, "method": "gpt", "render_seconds": 8.0, "reconstruction_seconds": 2.0, "stages": stages(2, 3, 2)}]}
 
 
-def kernel(name, precision, queue, rate, error):
-    return {"kernel": name, "precision": precision, "queue_size": queue, "items_per_second": rate,
-            "max_relative_error": 10 * error, "p999_relative_error": error}
+def kernels():
+    def error(build, edge, value):
+        return {"function": "diffuse", "build": build, "is_edge": edge, "relative_99.9": value}
+
+    def launch(queue, **rates):
+        return {"kernel": "shade", "queue": queue, "items_per_second": rates, "bandwidth_over_triad": 0.4}
+
+    return {"device": "a device", "platform": "a platform", "repeats": 3,
+            "throughput": [launch(64, float=9e9, relaxed=1e9), launch(1024, float=4e6, relaxed=6e6, double=1e6)],
+            "accuracy": {"rates": [{"function": "diffuse",
+                                    "items_per_second": {"float": 4e6, "relaxed": 5e6, "double": 1e6}}],
+                         "errors": [error("float", False, 1e-7), error("float", True, 1e-5),
+                                    error("relaxed", False, 3e-7), error("relaxed", True, 0.0)]}}
 
 
 class DrawOnly(unittest.TestCase):
@@ -64,13 +74,11 @@ class DrawOnly(unittest.TestCase):
     def test_everything(self):
         self.write("convergence.json", convergence())
         self.write("profile.json", profile())
-        self.write("kernels.json", {"kernels": [
-            kernel("shade", "double", 1024, 1e6, 0), kernel("shade", "float", 1024, 4e6, 1e-7),
-            kernel("shade", "float", 64, 9e9, 1e-7), kernel("shade", "relaxed", 1024, 6e6, 3e-7)]})
+        self.write("kernels.json", kernels())
         _, page = self.draw()
-        for name in ("convergence", "convergence-trimmed", "stages", "kernels"):
+        for name in ("convergence", "convergence-trimmed", "stages", "functions", "kernels"):
             self.assertTrue((self.folder / "report" / f"{name}.png").exists(), name)
-        self.assertEqual(page.count("<svg"), 4)
+        self.assertEqual(page.count("<svg"), 5)
         self.assertEqual(page.count("<svg"), page.count("</svg>"))
         for svg in re.findall(r"<svg.*?</svg>", page, re.DOTALL):
             xml.etree.ElementTree.fromstring(svg)
@@ -91,7 +99,7 @@ class DrawOnly(unittest.TestCase):
         printed, page = self.draw()
         self.assertIn("left out: convergence.json is not there", printed)
         self.assertIn("Left out: solver.json is no JSON", page)
-        self.assertIn("kernels.json holds no entries", page)
+        self.assertIn("kernels.json holds nothing", page)
         self.assertEqual(page.count("<svg"), 1)
 
     def test_a_folder_that_is_not_there_is_an_error(self):
