@@ -50,31 +50,29 @@ def equal_time(arguments, scene, folder):
 
 def gain(found):
     ratio = found["pt"]["relmse"] / found["gpt"]["relmse"]
-    return f"gpt: {ratio:.1f} times less error" if ratio >= 1 else f"gpt: {1 / ratio:.1f} times more error"
+    return f"{ratio:.1f} times less error" if ratio >= 1 else f"{1 / ratio:.1f} times more error"
 
 
 def draw(pyplot, measured):
-    """A row of images and one of error maps for each scene."""
-    rows = 2 * len(measured)
-    heights = [height / width for scene, _ in measured for width, height in [(scene.width, scene.height)] * 2]
-    figure, grid = pyplot.subplots(rows, 3, figsize=(9, 3 * sum(heights) + 0.45 * rows),
-                                   gridspec_kw={"height_ratios": heights}, squeeze=False)
-    for number, (scene, found) in enumerate(measured):
-        top, bottom = grid[2 * number], grid[2 * number + 1]
-        for axes, below, method in zip(top, bottom, ("pt", "gpt")):
-            own = found[method]
-            axes.imshow(pyplot.imread(own["image"].with_suffix(".png")), interpolation="nearest")
-            axes.set_title(f"{method}, {own['samples']} samples a pixel", fontsize=10)
-            below.imshow(pyplot.imread(own["image"].with_suffix(".error.png")), interpolation="nearest")
-            below.set_title(f"error of {method}: relMSE {own['relmse']:.2g}", fontsize=10)
-        top[2].imshow(pyplot.imread(scene.reference.image.with_suffix(".png")), interpolation="nearest")
-        top[2].set_title(f"reference, {scene.reference.spp} samples", fontsize=10)
-        words = [scene.name, "the same time for both", gain(found), "", "red: too bright", "blue: too dark", "",
-                 f"the reference's own relMSE: {found['pt']['reference_error']:.1g}"]
-        bottom[2].text(0.5, 0.5, "\n".join(words), ha="center", va="center", fontsize=10, transform=bottom[2].transAxes)
-    for axes in (axes for row in grid for axes in row):
-        axes.set_axis_off()
-    figure.tight_layout(pad=0.4)
+    """A row for each scene: both images, the reference, both maps of the error."""
+    heights = [scene.height / scene.width for scene, _ in measured]
+    inches = 2.4 * sum(heights) + 0.5 * len(measured) + 0.35
+    figure, grid = pyplot.subplots(len(measured), 5, figsize=(12.4, inches), squeeze=False,
+                                   gridspec_kw={"height_ratios": heights})
+    for (scene, found), row in zip(measured, grid):
+        pt, gpt = found["pt"], found["gpt"]
+        shown = [(pt["image"].with_suffix(".png"), f"{scene.name}: pt, {pt['samples']} samples"),
+                 (gpt["image"].with_suffix(".png"), f"gpt, {gpt['samples']} samples"),
+                 (scene.reference.image.with_suffix(".png"), f"reference (relMSE {pt['reference_error']:.1g})"),
+                 (pt["image"].with_suffix(".error.png"), f"error of pt: relMSE {pt['relmse']:.2g}"),
+                 (gpt["image"].with_suffix(".error.png"), f"of gpt: {gpt['relmse']:.2g}, {gain(found)}")]
+        for axes, (file, title) in zip(row, shown):
+            axes.imshow(pyplot.imread(file), interpolation="nearest")
+            axes.set_title(title, fontsize=9)
+            axes.set_axis_off()
+    figure.text(0.5, 0.08 / inches, "pt and gpt take the same time, reconstruction counted; errors: red too bright, blue "
+                "too dark, full colour at 100 %", ha="center", fontsize=8)
+    figure.tight_layout(pad=0.4, rect=(0, 0.25 / inches, 1, 1))
     return figure
 
 
@@ -109,7 +107,7 @@ def main():
     figures = {scene.name: {method: {key: value for key, value in own.items() if key != "image"}
                             for method, own in found.items()} for scene, found in measured}
     caption = ("Path tracing and gradient-domain path tracing, the same time for both, reconstruction counted: "
-               + "; ".join(f"{scene.name}, {gain(found)}" for scene, found in measured) + ".")
+               + "; ".join(f"{scene.name}, gpt {gain(found)}" for scene, found in measured) + ".")
     arguments.output.with_suffix(".json").write_text(json.dumps(
         {"machine": machine, "command": ["bench/render/pictures.py", *sys.argv[1:]], "caption": caption,
          "scenes": figures}, indent=1) + "\n")
