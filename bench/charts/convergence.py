@@ -26,17 +26,22 @@ def range_of(ratios):
 
 def headline(summaries, method="gpt"):
     """What the chart says, in a sentence."""
-    ratios = {entry["scene"]: entry["time"]["ratio"] for entry in summaries
-              if entry["method"] == method and entry.get("time")}
-    if not ratios:
+    times_of_pt = {entry["scene"]: entry["time"] for entry in summaries
+                   if entry["method"] == method and entry.get("time")}
+    if not times_of_pt:
         return "Error against time"
-    faster = [ratio for ratio in ratios.values() if ratio > 1]
+    faster = [time for time in times_of_pt.values() if time["ratio"] > 1]
+    slower = [1 / time["ratio"] for time in times_of_pt.values() if time["ratio"] <= 1]
+    count = len(times_of_pt)
+    scenes = next(iter(times_of_pt)) if count == 1 else f"{len(faster) or count} of {count} scenes"
     if not faster:
-        return f"{method} takes longer than pt to the same error on all of {len(ratios)} scenes"
-    text = f"{method} needs {range_of(faster)} times less time than pt to the same error on "
-    text += f"{len(faster)} of {len(ratios)} scenes"
-    slower = [1 / ratio for ratio in ratios.values() if ratio <= 1]
-    return text + (f", {range_of(slower)} times more on the other" + ("s" if len(slower) > 1 else "") if slower else "")
+        return f"{method} needs {range_of(slower)} times more time than pt to the same error on {scenes}"
+    bound = "at least " if any(time["at_least"] for time in faster) else ""
+    text = f"{method} needs {bound}{range_of([time['ratio'] for time in faster])} times less time than pt to the same "
+    text += f"error on {scenes}"
+    if slower:
+        text += f", {range_of(slower)} times more on the other" + ("s" if len(slower) > 1 else "")
+    return text
 
 
 def scene_title(scene, summaries):
@@ -76,7 +81,7 @@ def draw(pyplot, results, metric="relmse"):
     columns = min(COLUMNS, len(by_scene))
     rows = math.ceil(len(by_scene) / columns)
     width = max(4.1 * columns, 7)
-    figure, grid = pyplot.subplots(rows, columns, figsize=(width, 3.1 * rows + 1), squeeze=False)
+    figure, grid = pyplot.subplots(rows, columns, figsize=(width, (3.1 if columns > 1 else 4) * rows + 1), squeeze=False)
     panels = [axes for row in grid for axes in row]
     for axes, (scene, methods) in zip(panels, by_scene.items()):
         lowest = min(entry["error"]["least"] for curve in methods.values() for entry in curve)

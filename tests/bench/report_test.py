@@ -11,6 +11,9 @@ import unittest
 import xml.etree.ElementTree
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(ROOT / "bench" / "charts"))
+import convergence as chart  # noqa: E402
+
 MACHINE = {"processor": "a processor", "processors": 2, "load_before": 0.1, "date": "2026-01-01", "commit": "abc",
            "device": {"name": "a device"}}
 
@@ -51,6 +54,22 @@ def kernels():
                                     "items_per_second": {"float": 4e6, "relaxed": 5e6, "double": 1e6}}],
                          "errors": [error("float", False, 1e-7), error("float", True, 1e-5),
                                     error("relaxed", False, 3e-7), error("relaxed", True, 0.0)]}}
+
+
+class Headline(unittest.TestCase):
+    def of(self, *ratios, at_least=False):
+        return chart.headline([{"scene": f"scene {number}", "method": "gpt",
+                                "time": {"ratio": ratio, "at_least": at_least}}
+                               for number, ratio in enumerate(ratios)] + [{"scene": "scene 0", "method": "pt"}])
+
+    def test_says_what_the_ratios_say(self):
+        self.assertEqual(self.of(4), "gpt needs 4 times less time than pt to the same error on scene 0")
+        self.assertEqual(self.of(4, 2, at_least=True),
+                         "gpt needs at least 2 to 4 times less time than pt to the same error on 2 of 2 scenes")
+        self.assertEqual(self.of(4, 0.5, 0.25), "gpt needs 4 times less time than pt to the same error on 1 of 3 "
+                         "scenes, 2 to 4 times more on the others")
+        self.assertEqual(self.of(0.5), "gpt needs 2 times more time than pt to the same error on scene 0")
+        self.assertEqual(self.of(), "Error against time")
 
 
 class DrawOnly(unittest.TestCase):
