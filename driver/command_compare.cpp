@@ -79,7 +79,9 @@ void add_compare_command(CLI::App &app, std::function<int()> &chosen) {
     command.add_option("--json", arguments->json, "Write all figures as JSON; - is stdout, in place of the text")
         ->type_name("FILE");
     const char *group = "z test";
-    command.add_option("--variance", request.variance, "Variance of the reference's mean, by pixel")
+    command
+        .add_option("--variance", request.variance,
+                    "Variance of the reference's mean, by pixel: an image, or one of ours with the layer")
         ->type_name("IMAGE")
         ->group(group);
     command.add_option("--spp", request.samples_per_pixel, "Samples a pixel of each image; else as its metadata says")

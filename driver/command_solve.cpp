@@ -199,6 +199,12 @@ void add_solver_options(CLI::App &command, SolveRequest &request) {
         ->check(CLI::Range(0, 4096))
         ->capture_default_str()
         ->group(group);
+    command
+        .add_option("--repeats", request.repeats,
+                    "Solve so often, for measuring: the figures are the last one's, without compiling")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str()
+        ->group(group);
 }
 
 } // namespace

@@ -24,6 +24,12 @@ Image read_selected(const std::string &path, const std::string &layer) {
     }
 }
 
+/// A file that holds a variance, or our own image with its variance as a layer.
+Image read_variance(const std::string &path, const std::string &layer) {
+    const Image image = read_selected(path, layer);
+    return layer.empty() && image.find("variance.R") ? select_layer(image, "variance") : image;
+}
+
 /// Samples a pixel as our own files state them; 0 where the file does not say.
 double stated_samples(const Image &image) {
     const auto at = image.metadata.find("spp");
@@ -176,7 +182,9 @@ Comparison compare_images(const CompareRequest &request) {
     result.block = request.block;
     result.variance_given = !request.variance.empty();
     const Image reference = read_selected(request.reference, request.layer);
-    const Image variance = result.variance_given ? read_selected(request.variance, request.layer) : Image();
+    const Image variance = result.variance_given ? read_variance(request.variance, request.layer) : Image();
+    if (result.variance_given)
+        result.reference_relative_mse = relative_variance(variance, reference);
     std::vector<Image> images;
     for (const std::string &path : request.images) {
         images.push_back(read_selected(path, request.layer));
@@ -210,7 +218,10 @@ std::string comparison_text(const Comparison &comparison) {
         text += figures_line(figures);
     if (comparison.mean)
         text += figures_line(*comparison.mean);
-    text += fmt::format("reference {}, PSNR peak {:.6g}\n", comparison.reference, comparison.reference_peak);
+    text += fmt::format("reference {}, PSNR peak {:.6g}{}\n", comparison.reference, comparison.reference_peak,
+                        comparison.reference_relative_mse
+                            ? fmt::format(", its own relMSE {:.4e}", *comparison.reference_relative_mse)
+                            : "");
     for (const std::string &note : comparison.notes)
         text += "note: " + note + "\n";
     if (comparison.blocks) {
@@ -248,6 +259,8 @@ nlohmann::json comparison_json(const Comparison &comparison) {
                         {"notes", comparison.notes},
                         {"failures", comparison.failures},
                         {"holds", comparison.failures.empty()}};
+    if (comparison.reference_relative_mse)
+        json["reference_relative_mse"] = *comparison.reference_relative_mse;
     if (comparison.mean)
         json["mean"] = figures_json(*comparison.mean);
     if (comparison.blocks) {

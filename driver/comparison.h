@@ -37,6 +37,7 @@ struct Comparison {
     std::optional<Figures> mean; ///< of the mean image, where there are several
     std::string reference;
     double reference_peak = 0;
+    std::optional<double> reference_relative_mse; ///< of the reference itself, where its variance is given
     std::uint64_t reference_non_finite = 0;
 
     int block = 16;

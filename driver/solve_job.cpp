@@ -94,7 +94,8 @@ class SolveJob {
         planes.dx_variance = images_.find(GradientLayer::dx_variance);
         planes.dy_variance = images_.find(GradientLayer::dy_variance);
         result_.resize(std::size_t(images_.width) * images_.height * channels);
-        report_ = solver.solve(planes, request_.options, result_.data());
+        for (int i = 0; i < request_.repeats; ++i)
+            report_ = solver.solve(planes, request_.options, result_.data());
         images_.planes.clear();
     }
 

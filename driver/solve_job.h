@@ -18,6 +18,7 @@ struct SolveRequest {
     std::optional<double> damping;
     std::string device; ///< Device's selector
     int threads = 0;    ///< 0: all
+    int repeats = 1;    ///< solves so often; the figures are the last one's
     bool quiet = false;
 };
 

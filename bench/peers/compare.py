@@ -11,7 +11,6 @@ get it, prints "skipped" and exits with 0; a renderer that fails makes it exit w
 
 import argparse
 import json
-import os
 import pathlib
 import statistics
 import subprocess
@@ -22,6 +21,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 sys.path.insert(0, str(HERE))
 import mitsuba_setup  # noqa: E402
+from pythons import find_python  # noqa: E402
 
 RR_DEPTH_OFF = 1_000_000
 
@@ -42,16 +42,6 @@ def parse_job(text):
         return pathlib.Path(text), (512, 512)
     width, height = (int(part) for part in size.lower().split("x"))
     return pathlib.Path(path), (width, height)
-
-
-def find_python(named):
-    """The Python that has Mitsuba: the named one, GRADUS_MITSUBA_PYTHON, or this one. None where it has not."""
-    python = named or os.environ.get("GRADUS_MITSUBA_PYTHON") or sys.executable
-    try:
-        probe = subprocess.run([python, "-c", "import mitsuba"], capture_output=True, timeout=120)
-    except (OSError, subprocess.TimeoutExpired):
-        return None
-    return python if probe.returncode == 0 else None
 
 
 def run(command):
@@ -122,7 +112,7 @@ def main():
     if arguments.pairs < 1:
         parser.error("--pairs must be at least 1")
 
-    python = find_python(arguments.python)
+    python = find_python(["mitsuba"], mitsuba_setup.PYTHON_VARIABLE, arguments.python)
     if python is None:
         print(mitsuba_setup.HOW_TO_GET, file=sys.stderr)
         print(json.dumps({"skipped": "Mitsuba 3 is missing"}) if arguments.json else "skipped: Mitsuba 3 is missing")

@@ -31,15 +31,7 @@ def measure(mitsuba, arguments):
     if arguments.nthreads:
         drjit.set_thread_count(arguments.nthreads)
     width, height = arguments.size
-    scene = mitsuba_setup.load_scene(mitsuba, arguments.scene, resx=width, resy=height, spp=arguments.spp)
-    sensor = scene.sensors()[0]
-    if tuple(sensor.film().size()) != (width, height):
-        # The file has no $resx and $resy: set the film itself. update() resizes its buffers and the projection.
-        parameters = mitsuba.traverse(sensor)
-        parameters["film.size"] = [width, height]
-        parameters.update()
-    if tuple(sensor.film().crop_size()) != (width, height):
-        raise ValueError(f"{arguments.scene}: cannot be rendered at {width}x{height}")
+    scene = mitsuba_setup.load_scene_at_size(mitsuba, arguments.scene, width, height, spp=arguments.spp)
     integrator = mitsuba.load_dict({"type": "path", "max_depth": arguments.max_depth, "rr_depth": RR_DEPTH_OFF})
 
     def render(seed):

@@ -1,9 +1,11 @@
-"""Starts Mitsuba 3 for the scripts that use it: bench/peers/mitsuba_rate.py and tests/references/make.py."""
+"""Starts Mitsuba 3 for the scripts that use it: those of this folder and tests/references/make.py."""
 
 import glob
 import os
 import pathlib
 import re
+
+PYTHON_VARIABLE = "GRADUS_MITSUBA_PYTHON"
 
 HOW_TO_GET = """Mitsuba 3 is not at hand for this Python. To get it, in a virtual environment:
     python3 -m venv mitsuba-venv && mitsuba-venv/bin/pip install mitsuba
@@ -48,3 +50,17 @@ def load_scene(mitsuba, path, **parameters):
             raise ValueError(f"{path}: uses lookAt and names other files; Mitsuba 3 cannot be given both")
         return mitsuba.load_string(text.replace("<lookAt", "<lookat"), **given)
     return mitsuba.load_file(str(path), **given)
+
+
+def load_scene_at_size(mitsuba, path, width, height, **parameters):
+    """load_scene() with a film of that size, whether or not the file has the parameters resx and resy."""
+    scene = load_scene(mitsuba, path, resx=width, resy=height, **parameters)
+    sensor = scene.sensors()[0]
+    if tuple(sensor.film().size()) != (width, height):
+        # update() resizes the film's buffers and the projection.
+        film = mitsuba.traverse(sensor)
+        film["film.size"] = [width, height]
+        film.update()
+    if tuple(sensor.film().crop_size()) != (width, height):
+        raise ValueError(f"{path}: cannot be rendered at {width}x{height}")
+    return scene

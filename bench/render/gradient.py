@@ -16,58 +16,44 @@ import argparse
 import json
 import pathlib
 import statistics
-import subprocess
 import sys
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-REFERENCES = ROOT / "tests" / "references"
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import renders  # noqa: E402
 
 
-def run(*command):
-    result = subprocess.run([str(part) for part in command], capture_output=True, text=True)
-    if result.returncode != 0:
-        sys.exit(f"failed with exit code {result.returncode}: {' '.join(map(str, command))}\n{result.stderr}")
-    return result.stdout
-
-
-def render(arguments, name, about, method, seed, samples, folder):
+def render(arguments, scene, method, seed, samples, folder):
     """Seconds of rendering by sample of a pixel, the pilot counted in, relMSE, and what auto chose."""
-    image, record = pathlib.Path(folder) / "image.exr", pathlib.Path(folder) / "image.json"
-    definitions = [part for key, value in about["parameters"].items() for part in ("-D", f"{key}={value}")]
-    run(arguments.gradus, "render", ROOT / about["scene"], *definitions, "--method", method, "--seed", seed,
-        "--size", f"{about['width']}x{about['height']}", "--max-depth", about["max_depth"], "-D", "rfilter=box", "--spp", samples,
-        "-o", image, "--stats", record, "--quiet")
-    compared = pathlib.Path(folder) / "compared.json"
-    run(arguments.gradus, "compare", image, REFERENCES / f"{name}-mean.exr", "--json", compared)
-    report = json.loads(record.read_text())
-    choice = report.get("choice")
-    seconds = report["render_seconds"] + (choice["pilot"]["seconds"] if choice else 0)
-    return seconds / samples, json.loads(compared.read_text())["images"][0]["relative_mse"], choice
+    image = pathlib.Path(folder) / "image.exr"
+    record = renders.render(arguments.gradus, scene, method, seed, image, samples=samples)
+    choice = record.get("choice")
+    seconds = record["render_seconds"] + (choice["pilot"]["seconds"] if choice else 0)
+    return seconds / samples, renders.compare(arguments.gradus, image, scene.reference)["relative_mse"], choice
 
 
 def main():
     parser = argparse.ArgumentParser(description="gradient-domain path tracing against path tracing")
     parser.add_argument("scenes", nargs="*", metavar="SCENE",
                         help="names in tests/references (default: all)")
-    parser.add_argument("--gradus", type=pathlib.Path, default=ROOT / "build" / "gradus")
+    parser.add_argument("--gradus", type=pathlib.Path, default=renders.ROOT / "build" / "gradus")
     parser.add_argument("--spp", type=int, default=64)
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--json", type=pathlib.Path, help="also write all figures to this file")
     arguments = parser.parse_args()
-    names = arguments.scenes or sorted(path.stem for path in REFERENCES.glob("*.json"))
+    names = arguments.scenes or sorted(path.stem for path in renders.REFERENCES.glob("*.json"))
     results = []
     print(f"{'scene':<20} {'cost':>6} {'relMSE pt':>11} {'gpt':>11} {'equal samples':>14} {'equal time':>11}"
           f" {'auto':>9} {'expected':>9} {'regret':>7}")
     with tempfile.TemporaryDirectory() as folder:
         for name in names:
-            about = json.loads((REFERENCES / f"{name}.json").read_text())
+            scene = renders.find_scene(name)
             turns = {"pt": [], "gpt": [], "auto": []}
             for method in turns:  # kernels compiled
-                render(arguments, name, about, method, 0, 1, folder)
+                render(arguments, scene, method, 0, 1, folder)
             for seed in range(1, arguments.repeats + 1):
                 for method, measured in turns.items():
-                    measured.append(render(arguments, name, about, method, seed, arguments.spp, folder))
+                    measured.append(render(arguments, scene, method, seed, arguments.spp, folder))
             cost, cost_auto = (statistics.median(m[0] / p[0] for m, p in zip(turns[method], turns["pt"]))
                                for method in ("gpt", "auto"))
             error = {method: statistics.median(turn[1] for turn in measured) for method, measured in turns.items()}

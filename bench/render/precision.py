@@ -18,16 +18,20 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-import against_reference  # noqa: E402
+import renders  # noqa: E402
 
 METHODS, PRECISIONS = ("pt", "gpt"), ("single", "double", "relaxed")
 
 
 def measure(arguments, name, method, folder):
     """By precision the (seconds of a sample, relMSE) of each seed."""
+    scene, image = renders.find_scene(name), pathlib.Path(folder) / "image.exr"
+
     def render(precision, seed, samples):
-        return against_reference.render(arguments.gradus, name, samples, folder, "--method", method, "--seed", seed,
-                                        "--precision", precision)
+        record = renders.render(arguments.gradus, scene, method, seed, image, samples=samples,
+                                options=("--precision", precision))
+        return (record["render_seconds"] / samples,
+                renders.compare(arguments.gradus, image, scene.reference)["relative_mse"])
 
     turns = {precision: [] for precision in PRECISIONS}
     for precision in PRECISIONS:  # kernels compiled
@@ -42,7 +46,7 @@ def main():
     parser = argparse.ArgumentParser(description="kernels in double and relaxed arithmetic against float")
     parser.add_argument("scenes", nargs="*", metavar="SCENE", default=["cornell-box", "materials", "torus-rough-glass"],
                         help="names in tests/references")
-    parser.add_argument("--gradus", type=pathlib.Path, default=against_reference.ROOT / "build" / "gradus")
+    parser.add_argument("--gradus", type=pathlib.Path, default=renders.ROOT / "build" / "gradus")
     parser.add_argument("--spp", type=int, default=64)
     parser.add_argument("--repeats", type=int, default=5, help="seeds, at least 2")
     parser.add_argument("--json", type=pathlib.Path, help="also write all figures to this file")

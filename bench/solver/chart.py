@@ -10,20 +10,21 @@ matplotlib (Debian: python3-matplotlib); without it, says so and draws nothing.
 
 import argparse
 import json
-import os
 import pathlib
 import sys
 
-# The palette of Okabe and Ito, which colour-blind readers can tell apart; markers differ, too.
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "charts"))
+import plotting  # noqa: E402
+
 STYLES = {
-    "jacobi": ("#999999", "o"),
-    "cg": ("#56B4E9", "s"),
-    "pcg": ("#009E73", "^"),
-    "multigrid": ("#D55E00", "D"),
-    "FFTW DCT, float": ("#000000", "*"),
-    "default": ("#D55E00", "D"),
-    "reweightings of 50 cg": ("#0072B2", "s"),
-    "default, as it stops": ("#000000", "*"),
+    "jacobi": (plotting.GREY, "o"),
+    "cg": (plotting.SKY, "s"),
+    "pcg": (plotting.GREEN, "^"),
+    "multigrid": (plotting.VERMILLION, "D"),
+    "FFTW DCT, float": (plotting.INK, "*"),
+    "default": (plotting.VERMILLION, "D"),
+    "reweightings of 50 cg": (plotting.BLUE, "s"),
+    "default, as it stops": (plotting.INK, "*"),
 }
 
 
@@ -53,7 +54,7 @@ def draw_l1(axes, curves):
     axes.set_ylabel("objective over the least found, minus 1")
 
 
-def draw(pyplot, results, output):
+def draw(pyplot, results):
     charts = results["curves"]
     figure, grid = pyplot.subplots(2, len(charts), figsize=(4.4 * len(charts), 7.4), squeeze=False)
     for column, chart in enumerate(charts):
@@ -62,16 +63,13 @@ def draw(pyplot, results, output):
             draw_norm(axes, chart[norm])
             axes.set_title(f"{norm.upper()}, {chart['size']} RGB ({chart['pixels'] / 1e6:.2f} Mpixel)", fontsize=10)
             axes.set_xlabel("wall time (s)")
-            axes.grid(True, which="major", color="#dddddd", linewidth=0.6)
-            axes.set_axisbelow(True)
+            plotting.grid(axes)
             axes.legend(fontsize=7)
     figure.text(0.5, 0.005, f"{results['device']} ({results['platform']}), {results['threads']} threads; alpha "
                 f"{results['alpha']}; medians of {results['repeats']} turns; one synthetic image, seed 1; "
                 "gradus-bench-solver --parts curves", ha="center", fontsize=7)
     figure.tight_layout(rect=(0, 0.02, 1, 1))
-    for suffix in (".svg", ".png"):
-        figure.savefig(output.with_suffix(suffix), dpi=130)
-        print(f"wrote {output.with_suffix(suffix)}")
+    return figure
 
 
 def main():
@@ -82,20 +80,9 @@ def main():
     results = json.loads(arguments.json.read_text())
     if not results.get("curves"):
         sys.exit(f"{arguments.json}: holds no curves; run gradus-bench-solver with the part curves")
-    try:
-        import matplotlib
-    except ImportError:
-        # Debian's package is for Debian's Python, which may not be the one that runs this.
-        system = "/usr/bin/python3"
-        if os.path.exists(system) and "GRADUS_CHART_AGAIN" not in os.environ:
-            os.environ["GRADUS_CHART_AGAIN"] = "1"
-            os.execv(system, [system, *sys.argv])
-        print("skipped: no matplotlib (Debian: python3-matplotlib)")
-        return
-    matplotlib.use("Agg")
-    matplotlib.rcParams["svg.hashsalt"] = "gradus"  # equal figures give equal files
-    from matplotlib import pyplot
-    draw(pyplot, results, arguments.output or arguments.json.with_suffix(""))
+    pyplot = plotting.pyplot()
+    if pyplot:
+        plotting.save(draw(pyplot, results), arguments.output or arguments.json.with_suffix(""))
 
 
 if __name__ == "__main__":

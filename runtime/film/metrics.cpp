@@ -52,6 +52,15 @@ struct Pair {
         }
         return sum / double(channels());
     }
+    /// Mean over the channels of the value of the image, a variance, over the reference squared.
+    double relative_variance(std::size_t pixel) const {
+        double sum = 0;
+        for (std::size_t c = 0; c < channels(); ++c) {
+            const double r = reference[c]->values[pixel];
+            sum += image[c]->values[pixel] / (r * r + relative_epsilon);
+        }
+        return sum / double(channels());
+    }
 };
 
 std::vector<double> squared_relative_errors(const Image &image, const Image &reference) {
@@ -97,6 +106,18 @@ std::vector<const Channel *> compared_channels(const Image &image, const Image &
 double relative_mse(const Image &image, const Image &reference) {
     const std::vector<double> errors = squared_relative_errors(image, reference);
     return mean_of_first(errors, errors.size());
+}
+
+double relative_variance(const Image &variance, const Image &reference) {
+    const Pair pair(variance, reference);
+    double sum = 0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < pair.pixels; ++i)
+        if (pair.finite(i)) {
+            sum += pair.relative_variance(i);
+            ++count;
+        }
+    return count == 0 ? not_a_number : sum / double(count);
 }
 
 double trimmed_relative_mse(const Image &image, const Image &reference, double fraction) {

@@ -26,6 +26,10 @@ double relative_mse(const Image &image, const Image &reference);
 /// down. A figure that fireflies do not decide; it is biased and only stands beside relative_mse().
 double trimmed_relative_mse(const Image &image, const Image &reference, double fraction = 0.001);
 
+/// What relative_mse() of the exact image against a reference would be on average, from the variance of that reference
+/// by pixel and channel: mean of variance / (R^2 + 0.001). No image of a method can be told to be nearer than this.
+double relative_variance(const Image &variance, const Image &reference);
+
 /// 10 log10(peak^2 / MSE) in dB on linear values, the peak being reference_peak(). Infinite for equal images.
 double psnr(const Image &image, const Image &reference);
 

@@ -75,6 +75,7 @@ TEST_F(Compare, UnbiasedSeedsHold) {
     EXPECT_EQ(json.at("samples_per_pixel"), 64);
     EXPECT_EQ(json.at("z").at("blocks").at("tested"), 48);
     EXPECT_NEAR(json.at("z").at("pixels").at("expected_over_three").get<double>(), 0.0027 * 3 * 64 * 64, 0.1);
+    EXPECT_NEAR(json.at("reference_relative_mse").get<double>(), 1.0 / 6400, 0.01 / 6400);
     // Without a variance the seeds alone tell the noise.
     EXPECT_EQ(run(all({"--check"})).exit_code, 0);
     // One image is enough where the reference's variance and the counts are known.
@@ -82,6 +83,17 @@ TEST_F(Compare, UnbiasedSeedsHold) {
                    "--check"})
                   .exit_code,
               0);
+}
+
+TEST_F(Compare, AVarianceMayBeALayerOfTheReference) {
+    write_image(make_gray(1, 1, {3}), at("image.exr"));
+    Image reference = make_gray(1, 1, {2});
+    for (const char *channel : {"variance.R", "variance.G", "variance.B"})
+        reference.channels.push_back({channel, {0.5f}});
+    write_image(reference, at("reference.exr"));
+    const Outcome outcome = run({"compare", "image.exr", "reference.exr", "--variance", "reference.exr"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("its own relMSE 1.2497e-01"));
 }
 
 TEST_F(Compare, AnErrorInOneBlockFails) {

@@ -122,6 +122,14 @@ TEST_F(SolveOptions, ImagesReachTheSolverAsPlanes) {
     EXPECT_EQ(read_image(at("out.exr")).find("B")->values.at(5), 125.5f);
 }
 
+TEST_F(SolveOptions, RepeatsForMeasuring) {
+    const std::string layers = write_layers("layers.exr");
+    ASSERT_EQ(run({layers, "-o", at("out.exr")}).exit_code, 0);
+    EXPECT_EQ(solves, 1);
+    ASSERT_EQ(run({layers, "-o", at("out.exr"), "--repeats", "3"}).exit_code, 0);
+    EXPECT_EQ(solves, 4);
+}
+
 TEST_F(SolveOptions, DefaultsAreTheSolvers) {
     const PoissonOptions options = options_of({}), standard;
     EXPECT_EQ(options.norm, standard.norm);
@@ -250,6 +258,7 @@ TEST_F(SolveOptions, MistakesOfTheCall) {
         {{"--layer", "dx"}, "'dx' names no layer: write IMAGE=NAME"},
         {{"--layer", "depth=Z"}, "'depth' is none of primal, dx"},
         {{"--nthreads", "-1"}, "--nthreads"},
+        {{"--repeats", "0"}, "--repeats"},
         {{"--unknown"}, "--unknown"},
         {{"second.exr"}, "second.exr"}};
     for (const auto &[options, message] : cases) {

@@ -52,6 +52,13 @@ TEST(Metrics, TrimmedLeavesOutTheWorstThousandth) {
               relative_mse(make_gray(2, 1, {1, 5}), make_gray(2, 1, {1, 1})));
 }
 
+TEST(Metrics, RelativeVarianceOfHandComputedValues) {
+    const Image reference = make_image(2, 1, {{"R", {1, 2}}, {"G", {0, 4}}, {"B", {3, 0.5f}}});
+    const Image variance = make_image(2, 1, {{"R", {0.5f, 0}}, {"G", {0.25f, 1}}, {"B", {0, 0.125f}}});
+    const double expected = (0.5 / 1.001 + 0.25 / 0.001 + 1 / 16.001 + 0.125 / 0.251) / 6;
+    EXPECT_NEAR(relative_variance(variance, reference), expected, 1e-12);
+}
+
 TEST(Metrics, PeakIsThePercentileOfTheReference) {
     std::vector<float> values(1000);
     for (std::size_t i = 0; i < values.size(); ++i)

@@ -1,0 +1,190 @@
+#!/usr/bin/env python3
+"""Draws the report from the JSON of the benches alone: charts as SVG and PNG, and the page that holds them.
+
+    python3 bench/charts/draw.py build/bench [--output build/bench/report]
+
+What is not there is left out, with a note. Needs matplotlib (Debian: python3-matplotlib); without it the page has its
+tables only.
+"""
+
+import argparse
+import json
+import pathlib
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parent / "render"), str(HERE.parent / "solver")]
+import chart as solver_chart  # noqa: E402
+import convergence  # noqa: E402
+import curves  # noqa: E402
+import kernels  # noqa: E402
+import page  # noqa: E402
+import plotting  # noqa: E402
+import stages  # noqa: E402
+
+
+class Report:
+    """Reads what there is in a folder and gathers the sections of the page."""
+
+    def __init__(self, folder, output, pyplot):
+        self.folder, self.output, self.pyplot = folder, output, pyplot
+        self.sections, self.missing = [], []
+
+    def read(self, name):
+        path = self.folder / name
+        if not path.exists():
+            self.missing.append(f"{name} is not there")
+            return None
+        try:
+            return json.loads(path.read_text())
+        except json.JSONDecodeError as error:
+            self.missing.append(f"{name} is no JSON: {error}")
+            return None
+
+    def figure(self, name, draw, *arguments, **options):
+        """The chart as HTML; empty without matplotlib."""
+        if not self.pyplot:
+            return ""
+        figure = draw(self.pyplot, *arguments, **options)
+        plotting.save(figure, self.output / name)
+        self.pyplot.close(figure)
+        return page.chart(plotting.for_page((self.output / name).with_suffix(".svg").read_text()))
+
+    def add(self, heading, content):
+        self.sections.append((heading, content))
+
+
+def ratio(entry, key):
+    found = entry.get(key)
+    if not found:
+        return "", ""
+    return f"{'over ' if found.get('at_least') else ''}{found['ratio']:.2f}", f"{found[list(found)[0]]:.2g}"
+
+
+def summary_rows(results, metric):
+    rows = []
+    for entry in curves.summaries(results["points"], metric):
+        slope = "" if entry["slope"] is None else f"{entry['slope']:.2f}"
+        time, at_error = ratio(entry, "time")
+        equal, at_seconds = (f"{entry['equal_time']['ratio']:.2f}", f"{entry['equal_time']['seconds']:.2g}") \
+            if entry.get("equal_time") else ("", "")
+        rows.append([entry["scene"], entry["method"], slope, time, at_error, equal, at_seconds,
+                     entry.get("against_denoised", "")])
+    return rows
+
+
+SUMMARY_HEADS = ["scene", "method", "slope", "time of pt / its own", "to relMSE", "relMSE of pt / its own", "at s",
+                 "error against pt denoised"]
+
+
+def point_rows(results):
+    rows = []
+    for scene, methods in curves.curves(results["points"]).items():
+        trimmed = curves.curves(results["points"], "trimmed")[scene]
+        for method, curve in methods.items():
+            for entry, other in zip(curve, trimmed[method]):
+                error = entry["error"]
+                rows.append([scene, method, f"{entry['spp']:g}", f"{entry['seconds']['median']:.3g}",
+                             f"{error['median']:.3g}", f"{error['least']:.3g} to {error['largest']:.3g}",
+                             f"{other['error']['median']:.3g}"])
+    return rows
+
+
+def add_convergence(report):
+    results = report.read("convergence.json")
+    if not results:
+        return
+    content = report.figure("convergence", convergence.draw, results)
+    content += page.text("Slope: exponent of time in the error, by least squares; points within four times the "
+                         "reference's own error are left out. Time: to the least error that both methods reach. "
+                         "Between measured points a curve is a power law; nothing is extrapolated.")
+    content += page.table(SUMMARY_HEADS, summary_rows(results, "relmse"))
+    content += page.folded("The same with the worst 0.1 % of the pixels left out",
+                           report.figure("convergence-trimmed", convergence.draw, results, metric="trimmed")
+                           + page.table(SUMMARY_HEADS, summary_rows(results, "trimmed")))
+    content += page.folded("All points", page.table(
+        ["scene", "method", "samples a pixel", "seconds", "relMSE", "least to largest", "trimmed"],
+        point_rows(results)))
+    content += page.folded("References", page.table(
+        ["scene", "size", "reference by", "samples a pixel", "its own relMSE"],
+        [[scene["name"], f"{scene['width']}x{scene['height']}", scene["reference"], scene["reference_spp"],
+          f"{scene['reference_error']:.2g}"] for scene in results["scenes"]]))
+    for note in results["notes"]:
+        content += page.text(note)
+    report.add("Error against time", content)
+
+
+def add_pictures(report):
+    path = report.folder / "pictures.png"
+    about = report.read("pictures.json")
+    if about and path.exists():
+        report.add("The same time", page.picture(path, about["caption"]))
+
+
+def add_stages(report):
+    results = report.read("profile.json")
+    if results and results["profiles"]:
+        rows = [[scene, method] + [f"{parts[part]:.3f}" for part in stages.COLOURS]
+                for scene, method, parts in stages.bars(results["profiles"])]
+        report.add("Where the time of a sample goes", report.figure("stages", stages.draw, results)
+                   + page.folded("As a table", page.table(["scene", "method", *stages.COLOURS], rows)))
+
+
+def add_kernels(report):
+    results = report.read("kernels.json")
+    if not results:
+        return
+    if kernels.functions_of(results):
+        report.add("Functions of kernels: throughput against error",
+                   report.figure("functions", kernels.draw_functions, results))
+    if kernels.kernels_of(results):
+        report.add("Kernels: throughput", report.figure("kernels", kernels.draw_throughput, results))
+    if not kernels.functions_of(results) and not kernels.kernels_of(results):
+        report.missing.append("kernels.json holds nothing of gradus-bench-kernels")
+
+
+def add_solver(report):
+    results = report.read("solver.json")
+    if results and results.get("curves"):
+        report.add("The solver: error against time", report.figure("solver", solver_chart.draw, results))
+
+
+def add_log(report):
+    path = report.folder / "run.log"
+    if path.exists():
+        report.add("All other measurements", page.folded("What bench/run printed", page.preformatted(path.read_text())))
+
+
+def add_conditions(report):
+    """Machine and commands of each file that tells them, and what is missing."""
+    rows = []
+    for name in ("convergence.json", "profile.json", "pictures.json"):
+        path = report.folder / name
+        if path.exists() and "machine" in (results := json.loads(path.read_text())):
+            rows.append([" ".join(results["command"]), plotting.machine_line(results)])
+    content = page.table(["command", "machine"], rows) if rows else ""
+    content += "".join(page.text(f"Left out: {missing}.") for missing in report.missing)
+    content += page.text("Measured by bench/report; drawn again from the JSON files by bench/report --draw-only.")
+    report.add("How it was measured", content)
+
+
+def main():
+    parser = argparse.ArgumentParser(description="draws the report from the JSON of the benches")
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("--output", type=pathlib.Path, help="folder of the page (default: FOLDER/report)")
+    arguments = parser.parse_args()
+    if not arguments.folder.is_dir():
+        sys.exit(f"{arguments.folder}: no such folder")
+    output = arguments.output or arguments.folder / "report"
+    output.mkdir(parents=True, exist_ok=True)
+    report = Report(arguments.folder, output, plotting.pyplot())
+    for add in (add_convergence, add_pictures, add_stages, add_kernels, add_solver, add_log, add_conditions):
+        add(report)
+    for missing in report.missing:
+        print(f"left out: {missing}")
+    (output / "index.html").write_text(page.page("Gradus: speed against accuracy", report.sections))
+    print(f"wrote {output / 'index.html'}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,72 @@
+#!/usr/bin/env python3
+"""Images by Mitsuba 3's path tracer and the seconds of each, as JSON on stdout: [{"spp", "seed", "seconds", "image"}].
+
+    PYTHON-WITH-MITSUBA bench/peers/mitsuba_images.py SCENE.xml FOLDER --size 128x128 --spp 4 16 --seeds 1 2
+
+Depth and Russian roulette are the file's unless given. Loading and compiling are left out of the seconds: a render of
+another seed comes first. A time ends when the image has been computed, not when it has been asked for.
+"""
+
+import argparse
+import json
+import pathlib
+import sys
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import mitsuba_setup  # noqa: E402
+
+LARGEST_RENDER = 1 << 23  # samples in one call, which bounds its memory
+
+
+def render(mitsuba, scene, spp, seed, pixels):
+    """The image and its seconds. Many samples are taken in calls of seeds of their own."""
+    import drjit
+
+    started = time.perf_counter()
+    largest = max(1, LARGEST_RENDER // pixels)
+    parts = [min(largest, spp - done) for done in range(0, spp, largest)]
+    total = 0
+    for number, part in enumerate(parts):
+        image = mitsuba.render(scene, spp=part, seed=seed * 100_000 + number)
+        total = total + image * (part / spp)
+        drjit.eval(total)
+    drjit.sync_thread()
+    return total, time.perf_counter() - started
+
+
+def main():
+    parser = argparse.ArgumentParser(description="images by Mitsuba 3's path tracer and their seconds")
+    parser.add_argument("scene", type=pathlib.Path)
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("--size", required=True, metavar="WxH")
+    parser.add_argument("--spp", type=int, nargs="+", required=True)
+    parser.add_argument("--seeds", type=int, nargs="+", required=True)
+    parser.add_argument("--max-depth", type=int)
+    parser.add_argument("-D", dest="parameters", action="append", default=[], metavar="NAME=VALUE")
+    parser.add_argument("--variant", default="llvm_ad_rgb")
+    parser.add_argument("--llvm", help="path of libLLVM (default: DRJIT_LIBLLVM_PATH, then the newest found)")
+    arguments = parser.parse_args()
+    try:
+        mitsuba = mitsuba_setup.start_mitsuba(arguments.variant, arguments.llvm)
+    except ImportError:
+        sys.exit(mitsuba_setup.HOW_TO_GET)
+    width, height = (int(part) for part in arguments.size.split("x"))
+    parameters = dict(text.split("=", 1) for text in arguments.parameters)
+    if arguments.max_depth is not None:
+        parameters["max_depth"] = arguments.max_depth
+    scene = mitsuba_setup.load_scene_at_size(mitsuba, arguments.scene, width, height, **parameters)
+    render(mitsuba, scene, 1, 0, width * height)
+    records = []
+    for seed in arguments.seeds:
+        for spp in arguments.spp:
+            image, seconds = render(mitsuba, scene, spp, seed, width * height)
+            path = arguments.folder / f"mitsuba-{spp}-{seed}.exr"
+            bitmap = mitsuba.Bitmap(image).convert(mitsuba.Bitmap.PixelFormat.RGB, mitsuba.Struct.Type.Float32, False)
+            bitmap.write(str(path))
+            records.append({"spp": spp, "seed": seed, "seconds": seconds, "image": str(path)})
+    print(json.dumps({"version": mitsuba.__version__, "images": records}))
+
+
+if __name__ == "__main__":
+    main()

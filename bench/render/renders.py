@@ -1,0 +1,139 @@
+"""Renders by the program and their errors, for the benches that weigh one method against another.
+
+A scene is a name in tests/references, whose reference another renderer made; the Cornell box of `../shared`, where that
+folder is present; or SCENE.xml:WxH, which has no reference (references.py makes one).
+"""
+
+import dataclasses
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+REFERENCES = ROOT / "tests" / "references"
+SHARED = ROOT.parent / "shared"
+SHARED_CORNELL_BOX = "cornell-box-256"
+
+
+@dataclasses.dataclass(frozen=True)
+class Reference:
+    """An image that errors are measured against; `variance`: of its mean by pixel, an image or one with that layer."""
+
+    image: pathlib.Path
+    variance: pathlib.Path
+    spp: int
+    renderer: str
+
+
+@dataclasses.dataclass(frozen=True)
+class Scene:
+    name: str
+    file: pathlib.Path
+    width: int
+    height: int
+    max_depth: int | None = None  # None: as the file says
+    parameters: dict = dataclasses.field(default_factory=dict)
+    reference: Reference | None = None
+
+
+def run(*command):
+    """The command's standard output. Ends the program where the command fails, with what it said."""
+    result = subprocess.run([str(part) for part in command], capture_output=True, text=True)
+    if result.returncode != 0:
+        sys.exit(f"failed with exit code {result.returncode}: {' '.join(map(str, command))}\n{result.stderr}")
+    return result.stdout
+
+
+def scene_names():
+    """The scenes with a reference of another renderer."""
+    names = sorted(path.stem for path in REFERENCES.glob("*.json"))
+    if (SHARED / "scenes" / "cornell-box" / "scene.xml").exists():
+        names.append(SHARED_CORNELL_BOX)
+    return names
+
+
+def shared_cornell_box():
+    mean = SHARED / "references" / "cornell-box-mean.exr"
+    reference = None
+    if mean.exists():
+        reference = Reference(mean, mean.with_name("cornell-box-variance.exr"), 32768, "mitsuba 3.9")
+    return Scene(SHARED_CORNELL_BOX, SHARED / "scenes" / "cornell-box" / "scene.xml", 256, 256, 30, {}, reference)
+
+
+def find_scene(text):
+    """The scene of that name, or SCENE.xml:WxH. Ends the program where there is none."""
+    record = REFERENCES / f"{text}.json"
+    if record.exists():
+        about = json.loads(record.read_text())
+        reference = Reference(REFERENCES / f"{text}-mean.exr", REFERENCES / f"{text}-variance.exr", about["spp"],
+                              about["renderer"])
+        return Scene(text, ROOT / about["scene"], about["width"], about["height"], about["max_depth"],
+                     about["parameters"], reference)
+    if text in scene_names():
+        return shared_cornell_box()
+    path, _, size = text.rpartition(":")
+    width, _, height = size.partition("x")
+    if not path or not width.isdigit() or not height.isdigit():
+        sys.exit(f"'{text}' is neither SCENE.xml:WxH nor one of {', '.join(scene_names())}")
+    if not pathlib.Path(path).exists():
+        sys.exit(f"{path}: no such scene")
+    return Scene(f"{pathlib.Path(path).stem} {size}", pathlib.Path(path).resolve(), int(width), int(height))
+
+
+def render(gradus, scene, method, seed, output, samples=None, seconds=None, aov=False, png=False, options=()):
+    """Renders so many samples a pixel, or so long, to `output` (.exr) and returns the statistics. aov: with the layers
+    albedo, normal, depth and variance; png: a picture beside it, tone-mapped; options: more of `gradus render`."""
+    record = pathlib.Path(output).with_suffix(".json")
+    command = [gradus, "render", scene.file, "-o", output, "--stats", record, "--quiet", "--method", method]
+    command += ["--seed", seed, "--size", f"{scene.width}x{scene.height}", "-D", "rfilter=box"]
+    for name, value in scene.parameters.items():
+        command += ["-D", f"{name}={value}"]
+    if scene.max_depth is not None:
+        command += ["--max-depth", scene.max_depth]
+    command += ["--spp", samples] if samples is not None else ["--time", seconds]
+    run(*command, *(["--aov"] if aov else []), *(["--png"] if png else []), *options)
+    return json.loads(record.read_text())
+
+
+def compare(gradus, image, reference, *options):
+    """The figures of `gradus compare`: those of the image, and `reference_relative_mse`."""
+    record = pathlib.Path(image).with_suffix(".compared.json")
+    run(gradus, "compare", image, reference.image, "--variance", reference.variance, "--reference-spp", reference.spp,
+        "--json", record, *options)
+    compared = json.loads(record.read_text())
+    return {**compared["images"][0], "reference_relative_mse": compared["reference_relative_mse"]}
+
+
+NO_GRADIENTS = 6  # gradus: an input image that does not fit
+
+
+def reconstruction_seconds(gradus, image):
+    """Seconds in which the image is reconstructed from its gradients, all kernels compiled; 0 where it has none.
+
+    A render reconstructs once, after the time that its statistics call render_seconds, and loads kernels meanwhile;
+    here the third of three is timed."""
+    record, output = pathlib.Path(image).with_suffix(".solved.json"), pathlib.Path(image).with_suffix(".solved.exr")
+    command = [gradus, "solve", image, "-o", output, "--stats", record, "--repeats", 3, "--quiet"]
+    result = subprocess.run([str(part) for part in command], capture_output=True, text=True)
+    if result.returncode == NO_GRADIENTS:
+        return 0.0
+    if result.returncode != 0:
+        sys.exit(f"failed with exit code {result.returncode}: {' '.join(map(str, command))}\n{result.stderr}")
+    return json.loads(record.read_text())["seconds"]
+
+
+def machine():
+    """What a figure was measured on."""
+    model = "unknown processor"
+    try:
+        lines = pathlib.Path("/proc/cpuinfo").read_text().splitlines()
+        model = next((line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")), model)
+    except OSError:
+        pass
+    commit = subprocess.run(["git", "-C", str(ROOT), "describe", "--always", "--dirty"], capture_output=True,
+                            text=True)
+    return {"processor": model, "processors": os.cpu_count(), "load_before": os.getloadavg()[0],
+            "date": time.strftime("%Y-%m-%d"), "commit": commit.stdout.strip() or "unknown"}

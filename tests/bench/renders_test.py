@@ -1,0 +1,57 @@
+#!/usr/bin/env python3
+"""Scenes are found by name, and references that are made are known by what they were made from."""
+
+import dataclasses
+import pathlib
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(ROOT / "bench" / "render"))
+import references  # noqa: E402
+import renders  # noqa: E402
+
+
+class FindScene(unittest.TestCase):
+    def test_every_name_has_its_files(self):
+        names = renders.scene_names()
+        self.assertIn("holes-28", names)
+        for name in names:
+            scene = renders.find_scene(name)
+            self.assertTrue(scene.file.exists(), name)
+            if scene.reference:
+                self.assertTrue(scene.reference.image.exists(), name)
+                self.assertTrue(scene.reference.variance.exists(), name)
+
+    def test_a_file_and_a_size(self):
+        scene = renders.find_scene(f"{ROOT / 'scenes' / 'holes.xml'}:64x48")
+        self.assertEqual((scene.width, scene.height), (64, 48))
+        self.assertIsNone(scene.reference)
+
+    def test_anything_else_is_an_error(self):
+        for text in ("nonsense", "none.xml:64x48", f"{ROOT / 'scenes' / 'holes.xml'}:64", "", ":64x48"):
+            with self.assertRaises(SystemExit, msg=text):
+                renders.find_scene(text)
+
+
+class ReferenceKey(unittest.TestCase):
+    def test_changes_with_what_changes_the_image(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "scene.xml"
+            file.write_text("<scene/>")
+            scene = renders.Scene("a scene", file, 64, 48)
+            keys = {references.key(scene, 16), references.key(scene, 32),
+                    references.key(dataclasses.replace(scene, width=65), 16),
+                    references.key(dataclasses.replace(scene, max_depth=3), 16),
+                    references.key(dataclasses.replace(scene, parameters={"density": 7}), 16)}
+            (pathlib.Path(folder) / "mesh.ply").write_text("ply")
+            keys.add(references.key(scene, 16))
+            file.write_text("<scene></scene>")
+            keys.add(references.key(scene, 16))
+            self.assertEqual(len(keys), 7)
+            self.assertEqual(references.key(scene, 16), references.key(scene, 16))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,132 @@
+#!/usr/bin/env python3
+"""bench/report --draw-only on small JSON files: the page is there, whole, and says what they hold."""
+
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(ROOT / "bench" / "charts"))
+import convergence as chart  # noqa: E402
+
+MACHINE = {"processor": "a processor", "processors": 2, "load_before": 0.1, "date": "2026-01-01", "commit": "abc",
+           "device": {"name": "a device"}}
+
+
+def convergence():
+    factors = {"pt": (1, -1), "gpt": (0.2, -1), "denoised": (0.1, -0.5), "a_new_method": (2, -1)}
+    points = [{"scene": scene, "method": method, "budget": f"{spp} samples", "spp": spp, "seed": seed,
+               "seconds": spp / 10, "relmse": factor * (spp / 10) ** exponent * (1 + 0.1 * seed),
+               "trimmed": factor / spp, "reference_error": 1e-4}
+              for scene in ("box <1>", "torus") for method, (factor, exponent) in factors.items()
+              for spp in (4, 16, 64) for seed in (1, 2)]
+    return {"machine": MACHINE, "command": ["convergence.py", "--quick"], "seeds": 2, "notes": ["mitsuba: skipped"],
+            "scenes": [{"name": name, "width": 8, "height": 8, "reference": "another renderer", "reference_spp": 4096,
+                        "reference_error": 1e-4} for name in ("box <1>", "torus")],
+            "points": points}
+
+
+def profile():
+    def stages(*seconds):
+        return [{"name": name, "seconds": value} for name, value in zip(("camera", "trace", "what is new"), seconds)]
+
+    own = {"scene": "torus", "spp": 16, "embree_seconds": 1.0}
+    return {"machine": MACHINE, "command": ["profile.py"], "profiles": [
+        {**own, "method": "pt", "render_seconds": 4.0, "reconstruction_seconds": 0.0, "stages": stages(1, 2, 1)},
+        {**own, "method": "gpt", "render_seconds": 8.0, "reconstruction_seconds": 2.0, "stages": stages(2, 3, 2)}]}
+
+
+def kernels():
+    def error(build, edge, value):
+        return {"function": "diffuse", "build": build, "is_edge": edge, "relative_99.9": value}
+
+    def launch(queue, **rates):
+        return {"kernel": "shade", "queue": queue, "items_per_second": rates, "bandwidth_over_triad": 0.4}
+
+    return {"device": "a device", "platform": "a platform", "repeats": 3,
+            "throughput": [launch(64, float=9e9, relaxed=1e9), launch(1024, float=4e6, relaxed=6e6, double=1e6)],
+            "accuracy": {"rates": [{"function": "diffuse",
+                                    "items_per_second": {"float": 4e6, "relaxed": 5e6, "double": 1e6}}],
+                         "errors": [error("float", False, 1e-7), error("float", True, 1e-5),
+                                    error("relaxed", False, 3e-7), error("relaxed", True, 0.0)]}}
+
+
+class Headline(unittest.TestCase):
+    def of(self, *ratios, at_least=False):
+        return chart.headline([{"scene": f"scene {number}", "method": "gpt",
+                                "time": {"ratio": ratio, "at_least": at_least}}
+                               for number, ratio in enumerate(ratios)] + [{"scene": "scene 0", "method": "pt"}])
+
+    def test_says_what_the_ratios_say(self):
+        self.assertEqual(self.of(4), "gpt needs 4 times less time than pt to the same error on scene 0")
+        self.assertEqual(self.of(4, 2, at_least=True),
+                         "gpt needs at least 2 to 4 times less time than pt to the same error on 2 of 2 scenes")
+        self.assertEqual(self.of(4, 0.5, 0.25), "gpt needs 4 times less time than pt to the same error on 1 of 3 "
+                         "scenes, 2 to 4 times more on the others")
+        self.assertEqual(self.of(0.5), "gpt needs 2 times more time than pt to the same error on scene 0")
+        self.assertEqual(self.of(), "Error against time")
+
+
+class DrawOnly(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def write(self, name, content):
+        (self.folder / name).write_text(json.dumps(content))
+
+    def draw(self):
+        command = [sys.executable, ROOT / "bench" / "report", "--draw-only", "--folder", self.folder]
+        result = subprocess.run([str(part) for part in command], capture_output=True, text=True)
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        if "skipped: no matplotlib" in result.stdout:
+            print("skipped: no matplotlib (Debian: python3-matplotlib)")
+            self.skipTest("no matplotlib")
+        return result.stdout, (self.folder / "report" / "index.html").read_text()
+
+    def test_everything(self):
+        self.write("convergence.json", convergence())
+        self.write("profile.json", profile())
+        self.write("kernels.json", kernels())
+        _, page = self.draw()
+        for name in ("convergence", "convergence-trimmed", "stages", "functions", "kernels"):
+            self.assertTrue((self.folder / "report" / f"{name}.png").exists(), name)
+        self.assertEqual(page.count("<svg"), 5)
+        self.assertEqual(page.count("<svg"), page.count("</svg>"))
+        for svg in re.findall(r"<svg.*?</svg>", page, re.DOTALL):
+            xml.etree.ElementTree.fromstring(svg)
+            self.assertIn("var(--ink)", svg)
+            self.assertNotRegex(svg, "#000000|#ffffff")
+        self.assertIn("prefers-color-scheme: dark", page)
+        self.assertIn("box &lt;1&gt;", page)
+        self.assertIn("mitsuba: skipped", page)
+        self.assertIn("a processor, 2 processors; a device", page)
+        self.assertIn("<td>gpt</td><td>-1.00</td><td>5.00</td>", page)
+        self.assertNotIn("box <1>", page)
+        self.assertEqual(re.findall(r'(?:src|href)="(?!data:|#)', page), [], "the page names another file")
+
+    def test_what_is_missing_is_named(self):
+        self.write("profile.json", profile())
+        (self.folder / "solver.json").write_text("{")
+        self.write("kernels.json", {"specialisation": [{"job": "of an older version"}]})
+        printed, page = self.draw()
+        self.assertIn("left out: convergence.json is not there", printed)
+        self.assertIn("Left out: solver.json is no JSON", page)
+        self.assertIn("kernels.json holds nothing", page)
+        self.assertEqual(page.count("<svg"), 1)
+
+    def test_a_folder_that_is_not_there_is_an_error(self):
+        command = [sys.executable, ROOT / "bench" / "report", "--draw-only", "--folder", self.folder / "none"]
+        result = subprocess.run([str(part) for part in command], capture_output=True, text=True)
+        self.assertNotEqual(result.returncode, 0)
+        self.assertIn("no such folder", result.stdout + result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
