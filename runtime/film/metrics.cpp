@@ -57,7 +57,7 @@ struct Pair {
         double sum = 0;
         for (std::size_t c = 0; c < channels(); ++c) {
             const double r = reference[c]->values[pixel];
-            sum += image[c]->values[pixel] / (r * r + relative_epsilon);
+            sum += image[c]->values[pixel] / (r * r + relative_mse_epsilon);
         }
         return sum / double(channels());
     }

@@ -5,6 +5,8 @@
 #include "runtime/methods/gradient_image.h"
 #include "runtime/stages/trace_stage.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 
@@ -80,7 +82,8 @@ std::vector<PathTracer::Wanted> GradientPathTracer::wanted_kernels() {
     // Offset paths meet whichever kinds the scene has.
     std::map<std::string, std::string> any = {{"ONE_KIND", kinds.size() == 1 ? "1" : "0"}};
     for (const std::string &name : all_bsdf_kinds())
-        any["HAS_" + name] = std::find(kinds.begin(), kinds.end(), name) != kinds.end() ? "1" : "0";
+        any.emplace(fmt::format("HAS_{}", name),
+                    std::find(kinds.begin(), kinds.end(), name) != kinds.end() ? "1" : "0");
     const auto with = [&any](std::map<std::string, std::string> definitions) {
         definitions.insert(any.begin(), any.end());
         return definitions;
@@ -103,20 +106,21 @@ std::vector<PathTracer::Wanted> GradientPathTracer::wanted_kernels() {
         wanted.push_back({&offset_surface_, variant(surface, "offset surface", "offset_surface", {})});
     }
     for (int apart = 0; apart <= int(keeps_apart()); ++apart) {
-        const std::string suffix = apart ? " apart" : "", value = std::to_string(apart);
+        const std::string suffix = apart ? " apart" : "", value = apart ? "1" : "0";
         const KernelRequest shift = request_of("shift"), emission = request_of("gradient_emission");
-        wanted.push_back(
-            {&shift_[apart], variant(shift, "shift" + suffix, "shift", with({{"ESCAPED", "0"}, {"APART", value}}))});
+        wanted.push_back({&shift_[apart], variant(shift, fmt::format("shift{}", suffix), "shift",
+                                                  with({{"ESCAPED", "0"}, {"APART", value}}))});
         if (escape_wanted()) {
-            wanted.push_back({&shift_escaped_[apart], variant(shift, "shift escaped" + suffix, "shift",
+            wanted.push_back({&shift_escaped_[apart], variant(shift, fmt::format("shift escaped{}", suffix), "shift",
                                                               with({{"ESCAPED", "1"}, {"APART", value}}))});
-            wanted.push_back({&offset_escape_[apart], variant(emission, "gradient escape" + suffix, "gradient_emission",
-                                                              {{"ESCAPED", "1"}, {"APART", value}})});
+            wanted.push_back(
+                {&offset_escape_[apart], variant(emission, fmt::format("gradient escape{}", suffix),
+                                                 "gradient_emission", {{"ESCAPED", "1"}, {"APART", value}})});
         }
         if (emission_wanted())
             wanted.push_back(
-                {&offset_emission_[apart], variant(emission, "gradient emission" + suffix, "gradient_emission",
-                                                   {{"ESCAPED", "0"}, {"APART", value}})});
+                {&offset_emission_[apart], variant(emission, fmt::format("gradient emission{}", suffix),
+                                                   "gradient_emission", {{"ESCAPED", "0"}, {"APART", value}})});
     }
     // At the vertices where offset paths are apart, some may have reconnected.
     const std::string both = keeps_apart() ? "1" : "0";
@@ -130,19 +134,19 @@ std::vector<PathTracer::Wanted> GradientPathTracer::wanted_kernels() {
         const std::string &kind = kinds[k];
         if (samples_lights(bsdf_kind_is_dirac(kind))) {
             const KernelRequest light = request_of("gradient_light", kind);
-            wanted.push_back({&kernels.light_apart,
-                              variant(light, "gradient_light apart " + kind, "gradient_light", with(at_apart))});
-            wanted.push_back(
-                {&kernels.light_joined, variant(light, "gradient_light " + kind, "gradient_light", with(at_joined))});
+            wanted.push_back({&kernels.light_apart, variant(light, fmt::format("gradient_light apart {}", kind),
+                                                            "gradient_light", with(at_apart))});
+            wanted.push_back({&kernels.light_joined, variant(light, fmt::format("gradient_light {}", kind),
+                                                             "gradient_light", with(at_joined))});
         }
         const KernelRequest scatter = request_of("gradient_scatter", kind);
-        wanted.push_back({&kernels.scatter_joined,
-                          variant(scatter, "gradient_scatter " + kind, "gradient_scatter", {{"APART", "0"}})});
-        wanted.push_back(
-            {&kernels.scatter_apart,
-             keeps_apart()
-                 ? variant(scatter, "gradient_scatter apart " + kind, "gradient_scatter", {{"APART", "1"}})
-                 : variant(request_of("scatter", kind), "scatter apart " + kind, "scatter", {{"KEEP_DARK", "1"}})});
+        wanted.push_back({&kernels.scatter_joined, variant(scatter, fmt::format("gradient_scatter {}", kind),
+                                                           "gradient_scatter", {{"APART", "0"}})});
+        wanted.push_back({&kernels.scatter_apart,
+                          keeps_apart() ? variant(scatter, fmt::format("gradient_scatter apart {}", kind),
+                                                  "gradient_scatter", {{"APART", "1"}})
+                                        : variant(request_of("scatter", kind), fmt::format("scatter apart {}", kind),
+                                                  "scatter", {{"KEEP_DARK", "1"}})});
     }
     return wanted;
 }

@@ -117,9 +117,9 @@ TEST(HalfVectorStability, AtGrazingIncidence) {
     const Bsdf metal = rough(BsdfKind::roughconductor, 0.02);
     scene.parallelogram({0, -0.3f, -1}, {0, 0, 2}, {1, 0, 0}, scene.material(two_sided(metal, metal)));
     scene.look({0.05, -0.24, -3}, {0, -0.25, 1}, 12);
-    expect_no_bias(gradient_bias(scene.scene, {8, 64, 512}),
+    expect_no_bias(gradient_bias(scene.scene, {8, 32, 256}),
                    row("grazing incidence: the Jacobian's cosines go to 0",
-                       "floors of mirror and of polished metal, seen at two degrees", 0.15));
+                       "floors of mirror and of polished metal, seen at two degrees", 0.25));
 }
 
 // Glass that is hardly there.
