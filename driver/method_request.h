@@ -12,7 +12,7 @@ class App;
 namespace gradus {
 
 struct MethodRequest {
-    std::string method = "pt";
+    std::string method = "gpt";
     std::string device; ///< Device's selector
     RenderOptions options;
 };

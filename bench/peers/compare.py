@@ -56,7 +56,7 @@ def run(command):
 def gradus_rate(arguments, scene, size, spp, folder):
     """Samples per second of one render by gradus, from the statistics that it writes."""
     file = pathlib.Path(folder) / "statistics.json"
-    command = [arguments.gradus, "render", scene, "-o", pathlib.Path(folder) / "image.exr", "--stats", file, "--quiet"]
+    command = [arguments.gradus, "render", scene, "--method", "pt", "-o", pathlib.Path(folder) / "image.exr", "--stats", file, "--quiet"]
     command += ["--size", f"{size[0]}x{size[1]}", "--spp", spp, "--max-depth", arguments.max_depth]
     command += ["--rr-depth", RR_DEPTH_OFF, "--nthreads", arguments.nthreads]
     run(command + (["--device", arguments.device] if arguments.device else []))

@@ -25,7 +25,7 @@ DEVICES = {"PoCL": "portable computing", "Intel": second_device.SELECTOR}
 def render(arguments, environment, scene, device, spp, folder):
     path, _, size = scene.rpartition(":")
     file = pathlib.Path(folder) / "statistics.json"
-    command = [arguments.gradus, "render", path, "-o", pathlib.Path(folder) / "image.exr", "--stats", file, "--quiet"]
+    command = [arguments.gradus, "render", path, "--method", "pt", "-o", pathlib.Path(folder) / "image.exr", "--stats", file, "--quiet"]
     command += ["--size", size, "--spp", spp, "--device", device, "--max-depth", 13, "--rr-depth", 1_000_000]
     result = subprocess.run([str(part) for part in command], capture_output=True, text=True, env=environment)
     if result.returncode != 0:

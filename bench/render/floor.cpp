@@ -62,11 +62,11 @@ nlohmann::json measure_floor(const Settings &settings, const Job &job) {
     RenderOptions options;
     options.threads = settings.threads;
     // One render is recorded and kept; its time does not count, as recording costs time.
-    PathTracer recorder(settings.device, job.scene, options);
-    const std::uint64_t batches = (recorder.total_samples() + (1u << 16) - 1) >> 16;
+    const std::unique_ptr<PathTracer> recorder = make_tracer(settings, job, options);
+    const std::uint64_t batches = (recorder->total_samples() + (1u << 16) - 1) >> 16;
     const int depth = job.scene.settings.max_depth < 0 ? 16 : job.scene.settings.max_depth;
-    recorder.tracer().record(record_interval(batches * static_cast<std::uint64_t>(depth)));
-    while (recorder.render_batch()) {
+    recorder->tracer().record(record_interval(batches * static_cast<std::uint64_t>(depth)));
+    while (recorder->render_batch()) {
     }
 
     std::vector<double> ratios, render_rates, replay_rates, seconds, extension, shadow;
@@ -74,9 +74,9 @@ nlohmann::json measure_floor(const Settings &settings, const Job &job) {
     std::vector<double> floors;
     std::uint64_t recorded = 0;
     for (int i = 0; i < settings.repeats; ++i) {
-        const Replay before = replay(recorder.tracer());
+        const Replay before = replay(recorder->tracer());
         renders.push_back(render(settings, job));
-        const Replay after = replay(recorder.tracer());
+        const Replay after = replay(recorder->tracer());
         const Render &r = renders.back();
         recorded = after.rays;
         const double per_ray = 0.5 * (before.seconds_per_ray + after.seconds_per_ray);
@@ -95,8 +95,8 @@ nlohmann::json measure_floor(const Settings &settings, const Job &job) {
     std::vector<Row> rows = profile(renders[middle], floors[middle]);
 
     const Render &r = renders[middle];
-    fmt::print("{}\n  render / Embree-only replay of the same rays: {:.2f} (target 1.5, aim 1.2)\n", job.name,
-               median(ratios));
+    fmt::print("{}, {}\n  render / Embree-only replay of the same rays: {:.2f} (target {})\n", job.name,
+               settings.method, median(ratios), settings.method == "pt" ? "1.5, aim 1.2" : "1.6");
     fmt::print("  {:.1f} M rays/s against {:.1f} M rays/s; {:.2f} M samples/s, {:.2f} rays a sample, "
                "{:.2f} M of {:.1f} M rays recorded\n",
                median(render_rates), median(replay_rates), double(r.statistics.samples) / r.seconds() / 1e6,

@@ -2,6 +2,7 @@
 
 #include "runtime/error.h"
 #include "runtime/io/load_scene.h"
+#include "runtime/methods/gradient_path_tracer.h"
 
 #include <fmt/format.h>
 
@@ -60,18 +61,24 @@ double Render::stage_seconds(const std::string &name) const {
     return 0;
 }
 
+std::unique_ptr<PathTracer> make_tracer(const Settings &settings, const Job &job, const RenderOptions &options) {
+    if (settings.method == "gpt")
+        return std::make_unique<GradientPathTracer>(settings.device, job.scene, options);
+    return std::make_unique<PathTracer>(settings.device, job.scene, options);
+}
+
 Render render(const Settings &settings, const Job &job, const RenderOptions &options,
               const std::function<void(PathTracer &)> &prepare) {
     RenderOptions own = options;
     own.threads = settings.threads;
-    PathTracer method(settings.device, job.scene, own);
+    const std::unique_ptr<PathTracer> method = make_tracer(settings, job, own);
     if (prepare)
-        prepare(method);
-    while (method.render_batch()) {
+        prepare(*method);
+    while (method->render_batch()) {
     }
     Render result;
-    result.image = method.image();
-    result.statistics = method.statistics();
+    result.image = method->image();
+    result.statistics = method->statistics();
     if (result.statistics.non_finite > 0)
         throw Error(ExitCode::failure,
                     fmt::format("{}: {} samples were not finite", job.name, result.statistics.non_finite));

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct Settings {
     Device &device;
     int threads = 0;
     int repeats = 5;
+    std::string method = "pt";
 };
 
 /// The file at this size and number of samples. `roulette` false: max depth 13 without Russian roulette, as against
@@ -41,6 +43,9 @@ struct Render {
     /// Of one row of the profile; 0 where there is none.
     double stage_seconds(const std::string &name) const;
 };
+
+/// The method of the settings, which is a path tracer with or without gradients.
+std::unique_ptr<PathTracer> make_tracer(const Settings &settings, const Job &job, const RenderOptions &options);
 
 /// Renders all samples. `prepare` is called before the first batch. Throws Error where a sample was not finite: such
 /// a render is no measurement.

@@ -15,7 +15,7 @@ namespace {
 struct Arguments {
     std::vector<std::string> scenes;
     std::set<std::string> parts = {"floor", "specialisation", "order"};
-    std::string json, device;
+    std::string json, device, method = "pt";
     std::uint64_t samples_per_pixel = 64;
     int threads = 0, repeats = 5;
     bool no_roulette_only = false;
@@ -40,7 +40,7 @@ int run(const Arguments &arguments) {
     using namespace gradus;
     using namespace gradus::bench;
     Device device(arguments.device, arguments.threads);
-    const Settings settings{device, arguments.threads, arguments.repeats};
+    const Settings settings{device, arguments.threads, arguments.repeats, arguments.method};
     nlohmann::json results = {{"device", device.description().name},
                               {"platform", device.description().platform},
                               {"threads", arguments.threads},
@@ -79,6 +79,9 @@ int main(int argc, char **argv) {
         ->delimiter(',');
     app.add_option("--spp", arguments.samples_per_pixel, "Samples a pixel")->capture_default_str();
     app.add_option("--repeats", arguments.repeats, "Turns")->check(CLI::Range(1, 1000))->capture_default_str();
+    app.add_option("--method", arguments.method, "pt or gpt")
+        ->check(CLI::IsMember({"pt", "gpt"}))
+        ->capture_default_str();
     app.add_option("--nthreads", arguments.threads, "Processor threads; 0: all")->check(CLI::Range(0, 4096));
     app.add_option("--device", arguments.device, "OpenCL device, as gradus takes it");
     app.add_flag("--no-roulette-only", arguments.no_roulette_only, "Leave out the floor with the file's own settings");

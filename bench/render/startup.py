@@ -24,7 +24,7 @@ SLOW = 2.0  # seconds
 def render(arguments, scene, folder, cache):
     """Wall seconds and the statistics of one process."""
     file = pathlib.Path(folder) / "statistics.json"
-    command = [arguments.gradus, "render", scene, "-o", pathlib.Path(folder) / "image.exr", "--stats", file, "--quiet"]
+    command = [arguments.gradus, "render", scene, "--method", "pt", "-o", pathlib.Path(folder) / "image.exr", "--stats", file, "--quiet"]
     command += ["--size", "128x128", "--spp", "1"]
     if arguments.device:
         command += ["--device", arguments.device]

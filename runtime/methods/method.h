@@ -30,7 +30,7 @@ struct RenderOptions {
     Strategy strategy = Strategy::mis;  ///< for tests: light sampling alone or BSDF sampling alone
     PoissonNorm norm = PoissonNorm::l1; ///< of the reconstruction, gradient-domain methods
     std::optional<double> alpha;        ///< their weight of the primal; none: from the variances
-    double shift_threshold = 0.05;      ///< offset paths reconnect at surfaces of this roughness (alpha) or more
+    double shift_threshold = 0.01;      ///< offset paths reconnect at surfaces of this roughness (alpha) or more
     std::string dump_kernels;           ///< folder for the source of each kernel as it was compiled; empty: none
     /// Called when a kernel has been compiled: its name, how many are ready, of how many, and its seconds.
     std::function<void(const std::string &, std::size_t, std::size_t, double)> on_compiled;

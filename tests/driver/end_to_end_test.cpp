@@ -58,8 +58,8 @@ TEST_F(EndToEnd, TheImageDependsOnTheSeedAndNotOnThreadsOrBatches) {
 }
 
 TEST_F(EndToEnd, ACropIsThatPartOfTheImage) {
-    ASSERT_EQ(run(render("full.exr", {"--spp", "4"})).exit_code, 0);
-    ASSERT_EQ(run(render("crop.exr", {"--spp", "4", "--crop", "9,4,7,5"})).exit_code, 0);
+    ASSERT_EQ(run(render("full.exr", {"--method", "pt", "--spp", "4"})).exit_code, 0);
+    ASSERT_EQ(run(render("crop.exr", {"--method", "pt", "--spp", "4", "--crop", "9,4,7,5"})).exit_code, 0);
     const Image full = read_image(at("full.exr")), crop = read_image(at("crop.exr"));
     ASSERT_EQ(crop.width, 7u);
     ASSERT_EQ(crop.height, 5u);

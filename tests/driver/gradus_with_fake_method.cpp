@@ -130,7 +130,7 @@ int main(int argc, char **argv) {
     gradus::Services services;
     services.load_scene = gradus::load_fake_scene;
     services.list_devices = [] { return std::vector<gradus::DeviceDescription>(); };
-    services.method_names = [] { return std::vector<std::string>{"pt", "auto"}; };
+    services.method_names = [] { return std::vector<std::string>{"pt", "gpt", "auto"}; };
     services.traits = [](const gradus::Scene &) {
         return std::vector<std::pair<std::string, int>>{{"HAS_DIFFUSE", 1}, {"HAS_CONSTANT", 0}};
     };

@@ -37,7 +37,7 @@ TEST_F(Render, WritesTheImageWithItsMetadata) {
     EXPECT_EQ(value(image, "G"), 4);
     EXPECT_EQ(value(image, "B"), 0.5f);
     EXPECT_EQ(image.metadata.at("scene"), "scene.xml");
-    EXPECT_EQ(image.metadata.at("method"), "pt");
+    EXPECT_EQ(image.metadata.at("method"), "gpt");
     EXPECT_EQ(image.metadata.at("precision"), "single");
     EXPECT_EQ(image.metadata.at("spp"), "4");
     EXPECT_EQ(image.metadata.at("seed"), "5");
@@ -79,7 +79,7 @@ TEST_F(Render, WritesPngAndStatistics) {
 TEST_F(Render, StatisticsToStandardOutput) {
     const Outcome outcome = render({"-o", "out.exr", "--stats", "-"});
     ASSERT_EQ(outcome.exit_code, 0);
-    EXPECT_EQ(nlohmann::json::parse(outcome.out).at("method"), "pt");
+    EXPECT_EQ(nlohmann::json::parse(outcome.out).at("method"), "gpt");
 }
 
 TEST_F(Render, SaysWhichMethodWasChosenAndWhy) {

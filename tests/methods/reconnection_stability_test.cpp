@@ -123,11 +123,11 @@ TEST(ReconnectionStability, FromChalkBesideMirrors) {
                     "never mixes them: the shift fails for both directions alike; unbiased", 0.3});
 }
 
-// Stripes of metal whose roughness is just under and just over 0.05, and far under it, beside chalk.
+// Stripes of metal whose roughness is just under and just over 0.01, and far under it, beside chalk.
 TEST(ReconnectionStability, FromMetalAboutTheRoughnessThreshold) {
     SceneMaker scene = maker();
-    const std::uint32_t materials[] = {scene.material(glossy(0.049)), scene.material(glossy(0.051)),
-                                       scene.material(both_sides(0.5)), scene.material(glossy(0.01))};
+    const std::uint32_t materials[] = {scene.material(glossy(0.0099)), scene.material(glossy(0.0101)),
+                                       scene.material(both_sides(0.5)), scene.material(glossy(0.002))};
     for (int i = 0; i < 12; ++i)
         add_floor(scene, 0.1f * float(i) - 0.6f, 0.1f * float(i) - 0.5f, 1, materials[i % 4]);
     scene.parallelogram({-1, 0, 1}, {0, 1, 0}, {2, 0, 0}, materials[2]);
@@ -137,7 +137,7 @@ TEST(ReconnectionStability, FromMetalAboutTheRoughnessThreshold) {
                    {area,
                     "glossy just over and under the roughness threshold: base and offset path would take different "
                     "shifts",
-                    "a floor of metal, roughness 0.049, 0.051 and 0.01, and chalk, in stripes of three pixels",
+                    "a floor of metal, roughness 0.0099, 0.0101 and 0.002, and chalk, in stripes of three pixels",
                     "unbiased, whichever shift is taken", 0.3});
 }
 

@@ -41,7 +41,8 @@ class Threads : public ProgramTest, public ::testing::WithParamInterface<std::pa
 
 TEST_P(Threads, DoNotChangeTheImage) {
     const auto [scene, precision] = GetParam();
-    expect_one_image(scene, {"--size", "160x120", "--spp", "4", "--precision", precision});
+    for (const char *method : {"pt", "gpt"})
+        expect_one_image(scene, {"--method", method, "--size", "96x72", "--spp", "4", "--precision", precision});
 }
 
 /// Enough samples for a pilot.

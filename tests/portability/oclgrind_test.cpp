@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <fstream>
 #include <set>
 
@@ -55,6 +56,8 @@ class Oclgrind : public ProgramTest {
                                               "--nthreads",
                                               "1",
                                               "--quiet"};
+        if (std::find(more.begin(), more.end(), "--method") == more.end())
+            more.insert(more.end(), {"--method", "pt"});
         arguments.insert(arguments.end(), more.begin(), more.end());
         const Outcome outcome = run(arguments);
         EXPECT_EQ(outcome.signal, 0);
