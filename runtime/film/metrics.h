@@ -15,6 +15,9 @@
 
 namespace gradus {
 
+/// The same channels with the same values bit for bit.
+bool equal_bits(const Image &a, const Image &b);
+
 /// Mean over pixels and channels of (I - R)^2 / (R^2 + 0.001) (as Hua et al. 2017 compare gradient-domain
 /// methods).
 double relative_mse(const Image &image, const Image &reference);
