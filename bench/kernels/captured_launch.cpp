@@ -170,6 +170,7 @@ Replay CapturedLaunch::replay(Precision precision, const std::map<std::string, s
 }
 
 double CapturedLaunch::table_bytes_an_item() {
+    restore();
     Replay launch = replay(Precision::single);
     std::vector<std::vector<char>> before, result;
     for (const CapturedBuffer &captured : buffers_)

@@ -91,8 +91,8 @@ int main(int argc, char **argv) {
     app.add_option("--repeats", arguments.repeats, "Runs of each build")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
-    app.add_flag("--quick", arguments.quick, "Two kinds, no queue over 2^14, fewer cases, no build without vectoriser");
-    app.add_flag("--no-vectoriser", arguments.no_vectoriser, "Leave out PoCL's build without its vectoriser");
+    app.add_flag("--quick", arguments.quick, "Two kinds, no queue over 2^14, fewer cases, nothing on the vectoriser");
+    app.add_flag("--no-vectoriser", arguments.no_vectoriser, "Do not ask PoCL what it vectorised, which compiles each kernel anew");
     app.add_option("--nthreads", arguments.threads, "Processor threads; 0: all")->check(CLI::Range(0, 4096));
     app.add_option("--device", arguments.device, "OpenCL device, as gradus takes it");
     app.add_option("--json", arguments.json, "Also write all figures to this file");

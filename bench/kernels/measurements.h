@@ -21,7 +21,7 @@ struct Settings {
     std::vector<std::string> methods;       ///< that are rendered with
     std::uint32_t cases = 0; ///< of each function and domain, for the accuracy
     bool is_quick = false;
-    bool compares_vectoriser = true; ///< where the device is PoCL
+    bool asks_vectoriser = true; ///< whether PoCL vectorised a kernel
 };
 
 /// Every kernel of a render and of a solve in its builds, over queue sizes.

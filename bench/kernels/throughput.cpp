@@ -13,6 +13,7 @@
 #include "bench/kernels/interleaved.h"
 #include "bench/kernels/measurements.h"
 #include "bench/kernels/solver_traffic.h"
+#include "bench/kernels/vector_width.h"
 #include "bench/spread.h"
 #include "runtime/error.h"
 #include "runtime/io/load_scene.h"
@@ -23,9 +24,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <functional>
 #include <map>
+#include <optional>
 #include <set>
 
 namespace gradus::bench {
@@ -33,32 +34,6 @@ namespace gradus::bench {
 namespace {
 
 constexpr int depth = 5; // a stage is at its most long before
-
-/// What PoCL compiles with when it is not told otherwise: loops over work-items, which LLVM vectorises.
-constexpr const char *pocl_method = "POCL_WORK_GROUP_METHOD";
-
-bool is_pocl(const Device &device) { return device.description().platform.find("Portable") != std::string::npos; }
-
-/// A scope in which PoCL leaves the loops over work-items as they are.
-class WithoutVectoriser {
-  public:
-    WithoutVectoriser() {
-        if (const char *value = std::getenv(pocl_method))
-            before_ = value;
-        setenv(pocl_method, "loops", 1);
-    }
-    ~WithoutVectoriser() {
-        if (before_.empty())
-            unsetenv(pocl_method);
-        else
-            setenv(pocl_method, before_.c_str(), 1);
-    }
-    WithoutVectoriser(const WithoutVectoriser &) = delete;
-    WithoutVectoriser &operator=(const WithoutVectoriser &) = delete;
-
-  private:
-    std::string before_;
-};
 
 /// The room with every surface of one kind, and emitting.
 Scene room(const std::string &path, const std::string &kind, std::uint32_t queue) {
@@ -129,6 +104,8 @@ class Throughput {
             observe_launches(device_, {});
         };
         with_observer([&](const Launch &launch) {
+            if (is_empty(launch))
+                return;
             Largest &largest = launches[launch.request.name];
             if (launch.items > largest.items)
                 largest = {launch.items, largest.seen, largest.seen};
@@ -137,14 +114,22 @@ class Throughput {
         for (auto &[name, largest] : launches)
             largest.seen = 0;
         with_observer([&](const Launch &launch) {
+            if (is_empty(launch))
+                return;
             Largest &largest = launches.at(launch.request.name);
-            // Launches of one item only warm the kernels, or end a sum.
+            // A launch of one item ends a sum.
             if (largest.seen++ != largest.ordinal || launch.items == 1 || !is_wanted(launch) ||
                 !known_.insert(launch.request.name).second)
                 return;
             CapturedLaunch captured(device_, launch);
             measure_kernel(queue, captured);
         });
+    }
+
+    /// Kernels are launched on no rows before a render, to be compiled.
+    static bool is_empty(const Launch &launch) {
+        const auto count = launch.arguments.find("count");
+        return count != launch.arguments.end() && std::get<std::uint32_t>(count->second.value) == 0;
     }
 
     /// The solver has kernels without number that run once a solve.
@@ -174,15 +159,11 @@ class Throughput {
         replays["relaxed"] = launch.replay(Precision::relaxed);
         if (device_.description().has_double)
             replays["double"] = launch.replay(Precision::double_);
-        if (settings_.compares_vectoriser && is_pocl(device_)) {
-            // Compiled when it first runs. The definition keeps it apart from the other build.
-            const WithoutVectoriser scope;
-            Replay &scalar = replays["loops"] = launch.replay(Precision::single, {{"WITHOUT_VECTORISER", "1"}});
-            scalar.run();
-        }
         // By experiment once, at the smallest queue: the columns are the same at every size.
         if (!bytes_.contains(launch.name()))
             bytes_[launch.name()] = bytes_an_item(launch);
+        if (settings_.asks_vectoriser && !widths_.contains(launch.name()))
+            widths_[launch.name()] = pocl_vector_width(launch);
         const std::optional<double> bytes = bytes_.at(launch.name());
 
         std::map<std::string, std::function<double()>> builds;
@@ -221,7 +202,7 @@ class Throughput {
         const double single = median(seconds.at("float"));
         for (const auto &[build, of] : seconds) {
             row["seconds"][build] = spread(of);
-            if (build != "triad" && build != "loops")
+            if (build != "triad")
                 row["items_per_second"][build] = double(launch.items()) / median(of);
         }
         const auto ratio = [&](const char *build) -> std::optional<double> {
@@ -238,8 +219,10 @@ class Throughput {
         row["float_over_relaxed"] = 1 / *ratio("relaxed");
         if (const auto wide = ratio("double"))
             row["float_over_double"] = 1 / *wide;
-        if (const auto gain = ratio("loops"))
-            row["gain_of_vectoriser"] = *gain;
+        const auto width = widths_.find(launch.name());
+        const std::optional<int> items_a_vector = width == widths_.end() ? std::nullopt : width->second;
+        if (items_a_vector)
+            row["vector_width"] = *items_a_vector;
         const auto text = [](std::optional<double> value, const char *format) {
             return value ? fmt::format(fmt::runtime(format), *value) : std::string("-");
         };
@@ -249,7 +232,7 @@ class Throughput {
         fmt::print("  {:<32} {:>8} {:>9.2f} {:>8} {:>8} {:>7} {:>7} {:>7}\n", launch.name(), launch.items(),
                    1e-6 * double(launch.items()) / single, text(inverse(ratio("relaxed")), "{:.2f}"),
                    text(inverse(ratio("double")), "{:.2f}"), text(bytes, "{:.0f}"), text(share, "{:.2f}"),
-                   text(ratio("loops"), "{:.1f}"));
+                   items_a_vector ? std::to_string(*items_a_vector) : "-");
         rows_.push_back(row);
     }
 
@@ -257,6 +240,7 @@ class Throughput {
     Device &device_;
     std::set<std::string> known_; ///< kernels that this queue size has been measured for
     std::map<std::string, std::optional<double>> bytes_;
+    std::map<std::string, std::optional<int>> widths_;
     nlohmann::json rows_ = nlohmann::json::array();
 };
 
