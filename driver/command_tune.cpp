@@ -60,9 +60,8 @@ void add_tune_command(CLI::App &app, const Services &services, std::function<int
     command.add_option("--nthreads", request->threads, "Processor threads; 0: all")
         ->check(CLI::Range(0, 4096))
         ->capture_default_str();
-    command.callback([request, &services, &chosen] {
-        chosen = [request, &services] { return run_tune(*request, services); };
-    });
+    command.callback(
+        [request, &services, &chosen] { chosen = [request, &services] { return run_tune(*request, services); }; });
 }
 
 } // namespace gradus

@@ -156,8 +156,7 @@ Replay CapturedLaunch::replay(Precision precision, const std::map<std::string, s
         Replay::Memory memory{captured.buffer, nullptr, is_written_[b]};
         if (precision == Precision::double_) {
             memory.content = std::make_shared<const std::vector<char>>(widened(captured));
-            memory.buffer =
-                Buffer(device_, captured.buffer.name(), memory.content->data(), memory.content->size());
+            memory.buffer = Buffer(device_, captured.buffer.name(), memory.content->data(), memory.content->size());
         } else {
             // Not owned: the capture outlives its replays.
             memory.content = std::shared_ptr<const std::vector<char>>(std::shared_ptr<void>(), &captured.content);

@@ -33,7 +33,14 @@ int run(const Arguments &arguments) {
     using namespace gradus::bench;
     Device device(arguments.device, arguments.threads);
     const bool quick = arguments.quick;
-    Settings settings{device, arguments.scene, arguments.repeats, {}, arguments.kinds, arguments.methods, arguments.cases, quick,
+    Settings settings{device,
+                      arguments.scene,
+                      arguments.repeats,
+                      {},
+                      arguments.kinds,
+                      arguments.methods,
+                      arguments.cases,
+                      quick,
                       !arguments.no_vectoriser && !quick};
     for (const int bits : arguments.queue_bits)
         if (!quick || bits <= 14)
@@ -92,7 +99,8 @@ int main(int argc, char **argv) {
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     app.add_flag("--quick", arguments.quick, "Two kinds, no queue over 2^14, fewer cases, nothing on the vectoriser");
-    app.add_flag("--no-vectoriser", arguments.no_vectoriser, "Do not ask PoCL what it vectorised, which compiles each kernel anew");
+    app.add_flag("--no-vectoriser", arguments.no_vectoriser,
+                 "Do not ask PoCL what it vectorised, which compiles each kernel anew");
     app.add_option("--nthreads", arguments.threads, "Processor threads; 0: all")->check(CLI::Range(0, 4096));
     app.add_option("--device", arguments.device, "OpenCL device, as gradus takes it");
     app.add_option("--json", arguments.json, "Also write all figures to this file");

@@ -52,7 +52,9 @@ Arguments arguments_of(const Columns &columns, std::size_t i) {
 MeasuredFunction bsdf(const std::string &kind) {
     const bool is_dielectric = kind.find("dielectric") != std::string::npos, is_rough = kind.starts_with("rough");
     MeasuredFunction f{kind, "kernels/measure/bsdf.cl", "measure_bsdf", {{"BSDF", kind}}, 12, {}, 11, {}, {}, {}};
-    f.outputs = {{"eval", 0, 3, 1e-6}, {"pdf", 3, 1, 1e-6}, {"sampled direction", 4, 3, 0, true, true},
+    f.outputs = {{"eval", 0, 3, 1e-6},
+                 {"pdf", 3, 1, 1e-6},
+                 {"sampled direction", 4, 3, 0, true, true},
                  {"sample weight", 7, 3, 1e-6, false, true}};
     f.domains.push_back({"inside", [](Random &random) { return columns_of(testing::draw_arguments(random, 0.01)); }});
     f.domains.push_back({"grazing", [](Random &random) {
@@ -101,47 +103,61 @@ MeasuredFunction bsdf(const std::string &kind) {
 }
 
 MeasuredFunction fresnel_of_dielectrics() {
-    MeasuredFunction f{"fresnel dielectric", "kernels/measure/fresnel.cl", "measure_fresnel_dielectric", {}, 2,
-                       {{"reflectance", 0, 1, 1e-6}, {"transmitted cosine", 1, 1, 1e-6}}, 0, {}, {}, {}};
+    MeasuredFunction f{"fresnel dielectric",
+                       "kernels/measure/fresnel.cl",
+                       "measure_fresnel_dielectric",
+                       {},
+                       2,
+                       {{"reflectance", 0, 1, 1e-6}, {"transmitted cosine", 1, 1, 1e-6}},
+                       0,
+                       {},
+                       {},
+                       {}};
     const auto draw_eta = [](Random &random) {
         const double eta = 1.05 + 1.45 * uniform(random);
         return rounded(uniform(random) < 0.5 ? eta : 1 / eta);
     };
     const auto at_root = [](double cosine, double eta) { return cosine * cosine + (eta - 1) * (eta + 1); };
-    f.domains = {
-        {"inside",
-         [=](Random &random) {
-             for (;;) {
-                 const double cosine = rounded(0.01 + 0.99 * uniform(random)), eta = draw_eta(random);
-                 if (std::fabs(at_root(cosine, eta)) > 1e-2)
-                     return std::vector<double>{cosine, eta};
-             }
-         }},
-        {"grazing",
-         [=](Random &random) {
-             return std::vector<double>{rounded(log_uniform(random, 1e-4, 1e-2)), draw_eta(random)};
-         }},
-        {"critical angle",
-         [=](Random &random) {
-             const double eta = rounded(1 / (1.05 + 1.45 * uniform(random)));
-             const double near = sign(random) * log_uniform(random, 1e-7, 1e-2);
-             return std::vector<double>{rounded(std::sqrt(1 - eta * eta + near)), eta};
-         }},
-        {"index ratio near 1",
-         [=](Random &random) {
-             const double eta = rounded(1 + sign(random) * log_uniform(random, 1e-4, 0.05));
-             for (;;) {
-                 const double cosine = rounded(0.01 + 0.99 * uniform(random));
-                 if (at_root(cosine, eta) > 1e-2 * cosine * cosine)
-                     return std::vector<double>{cosine, eta};
-             }
-         }}};
+    f.domains = {{"inside",
+                  [=](Random &random) {
+                      for (;;) {
+                          const double cosine = rounded(0.01 + 0.99 * uniform(random)), eta = draw_eta(random);
+                          if (std::fabs(at_root(cosine, eta)) > 1e-2)
+                              return std::vector<double>{cosine, eta};
+                      }
+                  }},
+                 {"grazing",
+                  [=](Random &random) {
+                      return std::vector<double>{rounded(log_uniform(random, 1e-4, 1e-2)), draw_eta(random)};
+                  }},
+                 {"critical angle",
+                  [=](Random &random) {
+                      const double eta = rounded(1 / (1.05 + 1.45 * uniform(random)));
+                      const double near = sign(random) * log_uniform(random, 1e-7, 1e-2);
+                      return std::vector<double>{rounded(std::sqrt(1 - eta * eta + near)), eta};
+                  }},
+                 {"index ratio near 1", [=](Random &random) {
+                      const double eta = rounded(1 + sign(random) * log_uniform(random, 1e-4, 0.05));
+                      for (;;) {
+                          const double cosine = rounded(0.01 + 0.99 * uniform(random));
+                          if (at_root(cosine, eta) > 1e-2 * cosine * cosine)
+                              return std::vector<double>{cosine, eta};
+                      }
+                  }}};
     return f;
 }
 
 MeasuredFunction fresnel_of_conductors() {
-    MeasuredFunction f{"fresnel conductor", "kernels/measure/fresnel.cl", "measure_fresnel_conductor", {}, 1,
-                       {{"reflectance", 0, 1, 1e-6}}, 0, {}, {}, {}};
+    MeasuredFunction f{"fresnel conductor",
+                       "kernels/measure/fresnel.cl",
+                       "measure_fresnel_conductor",
+                       {},
+                       1,
+                       {{"reflectance", 0, 1, 1e-6}},
+                       0,
+                       {},
+                       {},
+                       {}};
     const auto draw = [](double low, double high) {
         return [=](Random &random) {
             return std::vector<double>{rounded(log_uniform(random, low, high)), rounded(0.05 + 2 * uniform(random)),
@@ -153,10 +169,16 @@ MeasuredFunction fresnel_of_conductors() {
 }
 
 MeasuredFunction microfacet(const std::string &distribution) {
-    MeasuredFunction f{"microfacet " + distribution, "kernels/measure/microfacet.cl", "measure_microfacet",
-                       {{"DISTRIBUTION", "microfacet_" + distribution}}, 5,
+    MeasuredFunction f{"microfacet " + distribution,
+                       "kernels/measure/microfacet.cl",
+                       "measure_microfacet",
+                       {{"DISTRIBUTION", "microfacet_" + distribution}},
+                       5,
                        {{"density", 0, 1, 1e-6}, {"projected area", 1, 1, 1e-6}, {"sampled normal", 2, 3, 0, true}},
-                       0, {}, {}, {}};
+                       0,
+                       {},
+                       {},
+                       {}};
     // A normal within some widths of the lobe, so that the density is not all tail.
     const auto draw = [](double lowest_alpha, double highest_alpha, double lowest_z) {
         return [=](Random &random) {
@@ -166,8 +188,9 @@ MeasuredFunction microfacet(const std::string &distribution) {
             const double x = slope * u * std::cos(turn), y = slope * v * std::sin(turn);
             const double length = std::hypot(x, y, 1.0);
             const auto w = direction_of(log_uniform(random, lowest_z, 1), draw_azimuth(random));
-            return std::vector<double>{rounded(x / length), rounded(y / length), rounded(1 / length), w[0], w[1], w[2],
-                                       rounded(u), rounded(v), draw_unit(random), draw_unit(random)};
+            return std::vector<double>{
+                rounded(x / length), rounded(y / length), rounded(1 / length), w[0], w[1], w[2], rounded(u),
+                rounded(v),          draw_unit(random),   draw_unit(random)};
         };
     };
     f.domains = {{"inside", draw(0.01, 1, 0.01)},
@@ -177,24 +200,33 @@ MeasuredFunction microfacet(const std::string &distribution) {
 }
 
 MeasuredFunction warps() {
-    MeasuredFunction f{"warp", "kernels/measure/warp.cl", "measure_warp", {}, 13,
-                       {{"cosine hemisphere", 0, 3, 0, true}, {"uniform sphere", 3, 3, 0, true},
-                        {"uniform cone", 6, 3, 0, true}, {"uniform triangle", 9, 2, 0, true}, {"tent", 11, 1, 0, true},
+    MeasuredFunction f{"warp",
+                       "kernels/measure/warp.cl",
+                       "measure_warp",
+                       {},
+                       13,
+                       {{"cosine hemisphere", 0, 3, 0, true},
+                        {"uniform sphere", 3, 3, 0, true},
+                        {"uniform cone", 6, 3, 0, true},
+                        {"uniform triangle", 9, 2, 0, true},
+                        {"tent", 11, 1, 0, true},
                         {"gaussian", 12, 1, 0, true}},
-                       0, {}, {}, {}};
+                       0,
+                       {},
+                       {},
+                       {}};
     const auto draw_end = [](Random &random) {
         const double near = std::ldexp(double(random() % 64), -24);
         return uniform(random) < 0.5 ? near : 1 - std::ldexp(1.0, -24) - near;
     };
-    f.domains = {{"inside",
-                  [](Random &random) {
-                      return std::vector<double>{draw_unit(random), draw_unit(random),
-                                                 rounded(log_uniform(random, 1e-4, 2))};
-                  }},
-                 {"corners", [=](Random &random) {
-                      return std::vector<double>{draw_end(random), draw_end(random),
-                                                 rounded(log_uniform(random, 1e-8, 1e-4))};
-                  }}};
+    f.domains = {
+        {"inside",
+         [](Random &random) {
+             return std::vector<double>{draw_unit(random), draw_unit(random), rounded(log_uniform(random, 1e-4, 2))};
+         }},
+        {"corners", [=](Random &random) {
+             return std::vector<double>{draw_end(random), draw_end(random), rounded(log_uniform(random, 1e-8, 1e-4))};
+         }}};
     return f;
 }
 
@@ -203,8 +235,16 @@ void append(std::vector<double> &row, const testing::LongVector &v) {
 }
 
 MeasuredFunction reconnection() {
-    MeasuredFunction f{"reconnection", "kernels/measure/shift.cl", "measure_reconnection", {}, 1,
-                       {{"Jacobian", 0, 1, 1e-30}}, 0, {}, {}, {}};
+    MeasuredFunction f{"reconnection",
+                       "kernels/measure/shift.cl",
+                       "measure_reconnection",
+                       {},
+                       1,
+                       {{"Jacobian", 0, 1, 1e-30}},
+                       0,
+                       {},
+                       {},
+                       {}};
     const auto cases = std::make_shared<testing::ShiftCases>(1, 0.01);
     // Around the origin: then a short distance keeps its digits.
     const auto draw = [cases](double nearest, double farthest, double lowest_cosine, double highest_cosine) {
@@ -234,8 +274,11 @@ MeasuredFunction reconnection() {
 }
 
 MeasuredFunction copied_shift(const std::string &name, const std::string &entry) {
-    MeasuredFunction f{name, "kernels/measure/shift.cl", entry, {}, 5,
-                       {{"Jacobian", 0, 1, 1e-30, false, true}, {"direction", 1, 3, 0, true, true}}, 4, {}, {}, {}};
+    MeasuredFunction f{name,  "kernels/measure/shift.cl",
+                       entry, {},
+                       5,     {{"Jacobian", 0, 1, 1e-30, false, true}, {"direction", 1, 3, 0, true, true}},
+                       4,     {},
+                       {},    {}};
     const auto draw = [](double smallest, double nearest, bool inside) {
         const auto cases = std::make_shared<testing::ShiftCases>(2, smallest, nearest);
         return [=](Random &) {
@@ -265,11 +308,10 @@ std::vector<MeasuredFunction> measured_functions(const std::vector<std::string> 
     for (const std::string &kind : kinds)
         if (kind != "null")
             functions.push_back(bsdf(kind));
-    for (MeasuredFunction &f :
-         std::vector<MeasuredFunction>{fresnel_of_dielectrics(), fresnel_of_conductors(), microfacet("ggx"),
-                                       microfacet("beckmann"), warps(), reconnection(),
-                                       copied_shift("half-vector copy", "measure_half_vector"),
-                                       copied_shift("specular copy", "measure_specular")})
+    for (MeasuredFunction &f : std::vector<MeasuredFunction>{
+             fresnel_of_dielectrics(), fresnel_of_conductors(), microfacet("ggx"), microfacet("beckmann"), warps(),
+             reconnection(), copied_shift("half-vector copy", "measure_half_vector"),
+             copied_shift("specular copy", "measure_specular")})
         functions.push_back(std::move(f));
     return functions;
 }

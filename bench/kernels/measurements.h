@@ -19,7 +19,7 @@ struct Settings {
     std::vector<std::uint32_t> queue_sizes; ///< squares of powers of two
     std::vector<std::string> kinds;         ///< of BSDFs
     std::vector<std::string> methods;       ///< that are rendered with
-    std::uint32_t cases = 0; ///< of each function and domain, for the accuracy
+    std::uint32_t cases = 0;                ///< of each function and domain, for the accuracy
     bool is_quick = false;
     bool asks_vectoriser = true; ///< whether PoCL vectorised a kernel
 };

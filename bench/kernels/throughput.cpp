@@ -1,7 +1,7 @@
-// Every kernel that a render by pt and gpt and a solve launch, measured in the render itself: where a kernel is about to
-// be launched on the most items that it gets in this render, the render is held, what the launch was given is kept, and
-// the kernel runs on it again and again, in its float, relaxed and double builds, before the render goes on. So tables,
-// arguments and specialisation are those of a real batch, whatever stages a method has.
+// Every kernel that a render by pt and gpt and a solve launch, measured in the render itself: where a kernel is about
+// to be launched on the most items that it gets in this render, the render is held, what the launch was given is kept,
+// and the kernel runs on it again and again, in its float, relaxed and double builds, before the render goes on. So
+// tables, arguments and specialisation are those of a real batch, whatever stages a method has.
 //
 // The scene is a room, scenes/cornell-box.xml, whose surfaces are all of one BSDF kind and all emit: then each stage
 // gets a queue as long as the batch. It is rendered once for each kind; a kernel that does not depend on the kind is
@@ -48,12 +48,12 @@ Scene room(const std::string &path, const std::string &kind, std::uint32_t queue
     for (Material &material : scene.materials)
         for (Bsdf *side_of : {&material.front, &material.back}) {
             Bsdf &bsdf = *side_of;
-            bsdf.kind = kind == "diffuse"                  ? BsdfKind::diffuse
-                        : kind == "conductor"              ? BsdfKind::conductor
-                        : kind == "dielectric"             ? BsdfKind::dielectric
-                        : kind == "null"                   ? BsdfKind::null
+            bsdf.kind = kind == "diffuse"                    ? BsdfKind::diffuse
+                        : kind == "conductor"                ? BsdfKind::conductor
+                        : kind == "dielectric"               ? BsdfKind::dielectric
+                        : kind == "null"                     ? BsdfKind::null
                         : kind.starts_with("roughconductor") ? BsdfKind::roughconductor
-                                                           : BsdfKind::roughdielectric;
+                                                             : BsdfKind::roughdielectric;
             bsdf.distribution = kind.ends_with("ggx") ? Microfacet::ggx : Microfacet::beckmann;
             bsdf.alpha_u = bsdf.alpha_v = 0.2f;
             const bool has_both_sides = bsdf.kind == BsdfKind::dielectric || bsdf.kind == BsdfKind::null ||
@@ -190,15 +190,19 @@ class Throughput {
     }
 
     static void print_heading() {
-        fmt::print("Kernels: M items/s of the float build, its time over those of the others, its bytes over a triad of "
-                   "as many bytes\n  {:<32} {:>8} {:>9} {:>8} {:>8} {:>7} {:>7} {:>7}\n",
-                   "kernel", "items", "M items/s", "relaxed", "double", "bytes", "/triad", "vector");
+        fmt::print(
+            "Kernels: M items/s of the float build, its time over those of the others, its bytes over a triad of "
+            "as many bytes\n  {:<32} {:>8} {:>9} {:>8} {:>8} {:>7} {:>7} {:>7}\n",
+            "kernel", "items", "M items/s", "relaxed", "double", "bytes", "/triad", "vector");
     }
 
     void report(std::uint32_t queue, const CapturedLaunch &launch, std::optional<double> bytes, double triad_bytes,
                 const std::map<std::string, std::vector<double>> &seconds) {
-        nlohmann::json row = {{"kernel", launch.name()}, {"file", launch.file()}, {"queue", queue},
-                              {"items", launch.items()}, {"bytes_per_item", nullptr}};
+        nlohmann::json row = {{"kernel", launch.name()},
+                              {"file", launch.file()},
+                              {"queue", queue},
+                              {"items", launch.items()},
+                              {"bytes_per_item", nullptr}};
         const double single = median(seconds.at("float"));
         for (const auto &[build, of] : seconds) {
             row["seconds"][build] = spread(of);

@@ -1,5 +1,5 @@
-// What the tuner gains on the scene, and whether that holds when it is measured anew: of several candidates the one that
-// chance favoured looks best.
+// What the tuner gains on the scene, and whether that holds when it is measured anew: of several candidates the one
+// that chance favoured looks best.
 #include "bench/kernels/measurements.h"
 #include "bench/spread.h"
 #include "runtime/io/load_scene.h"

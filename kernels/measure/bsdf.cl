@@ -4,13 +4,14 @@
 
 #define MATERIAL_FIELD_IN(name, text) m.name = IN(material_##name);
 
-MEASURE(measure_bsdf)
+STAGE measure_bsdf(MEASURE_ARGUMENTS) {
+    MEASURE_ITEM
     material m;
     GRADUS_MATERIAL_FIELDS(MATERIAL_FIELD_IN)
     const vec3 wi = IN_V3(material_stride), wo = IN_V3(material_stride + 3);
     const rgb value = PASTE(BSDF, _eval)(m, wi, wo);
-    const bsdf_sample s = PASTE(BSDF, _sample)(m, wi, IN(material_stride + 6), IN(material_stride + 7),
-                                               IN(material_stride + 8));
+    const bsdf_sample s =
+        PASTE(BSDF, _sample)(m, wi, IN(material_stride + 6), IN(material_stride + 7), IN(material_stride + 8));
     OUT(0) = value.r;
     OUT(1) = value.g;
     OUT(2) = value.b;
@@ -21,4 +22,4 @@ MEASURE(measure_bsdf)
     OUT(9) = s.weight.b;
     OUT(10) = s.pdf;
     OUT(11) = s.eta;
-END_MEASURE
+}

@@ -3,13 +3,15 @@
 #include "kernels/measure/function.h"
 
 /* In: cosine, index ratio. Out: reflectance, transmitted cosine. */
-MEASURE(measure_fresnel_dielectric)
+STAGE measure_fresnel_dielectric(MEASURE_ARGUMENTS) {
+    MEASURE_ITEM
     const fresnel_dielectric_result f = fresnel_dielectric(IN(0), IN(1));
     OUT(0) = f.reflectance;
     OUT(1) = f.cosine_transmitted;
-END_MEASURE
+}
 
 /* In: cosine, eta, k. */
-MEASURE(measure_fresnel_conductor)
+STAGE measure_fresnel_conductor(MEASURE_ARGUMENTS) {
+    MEASURE_ITEM
     OUT(0) = fresnel_conductor(IN(0), IN(1), IN(2));
-END_MEASURE
+}

@@ -5,12 +5,11 @@
 #define GRADUS_MEASURE_FUNCTION_H
 #include "kernels/shared/stage.h"
 
-#define MEASURE(name)                                                                                                  \
-    STAGE name(uint count, __global const real *in, __global real *out) {                                              \
-        const size_t i = get_global_id(0);                                                                             \
-        if (i >= count)                                                                                                \
-            return;
-#define END_MEASURE }
+#define MEASURE_ARGUMENTS uint count, __global const real *in, __global real *out
+#define MEASURE_ITEM                                                                                                   \
+    const size_t i = get_global_id(0);                                                                                 \
+    if (i >= count)                                                                                                    \
+        return;
 
 #define IN(column) in[(size_t)(column)*count + i]
 #define IN_V3(column) v3(IN(column), IN((column) + 1), IN((column) + 2))

@@ -4,21 +4,24 @@
 #include "kernels/measure/function.h"
 
 /* In: base, offset, target, its normal. */
-MEASURE(measure_reconnection)
+STAGE measure_reconnection(MEASURE_ARGUMENTS) {
+    MEASURE_ITEM
     OUT(0) = reconnection_jacobian(IN_V3(0), IN_V3(3), IN_V3(6), IN_V3(9));
-END_MEASURE
+}
 
 /* In: wi and wo of the base, wi of the offset, index ratios of both. Out: Jacobian, wo, whether it succeeds. */
-MEASURE(measure_half_vector)
+STAGE measure_half_vector(MEASURE_ARGUMENTS) {
+    MEASURE_ITEM
     const shifted_direction s = shift_half_vector(IN_V3(0), IN_V3(3), IN(9), IN_V3(6), IN(10));
     OUT(0) = s.jacobian;
     OUT_V3(1, s.wo);
     OUT(4) = s.is_valid ? R(1) : R(0);
-END_MEASURE
+}
 
-MEASURE(measure_specular)
+STAGE measure_specular(MEASURE_ARGUMENTS) {
+    MEASURE_ITEM
     const shifted_direction s = shift_specular(IN_V3(0), IN_V3(3), IN_V3(6), IN(10));
     OUT(0) = s.jacobian;
     OUT_V3(1, s.wo);
     OUT(4) = s.is_valid ? R(1) : R(0);
-END_MEASURE
+}

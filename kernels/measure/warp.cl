@@ -3,7 +3,8 @@
 #include "kernels/lib/warp.h"
 #include "kernels/measure/function.h"
 
-MEASURE(measure_warp)
+STAGE measure_warp(MEASURE_ARGUMENTS) {
+    MEASURE_ITEM
     const real u1 = IN(0), u2 = IN(1);
     const vec3 hemisphere = warp_cosine_hemisphere(u1, u2);
     OUT_V3(0, hemisphere);
@@ -16,4 +17,4 @@ MEASURE(measure_warp)
     OUT(10) = triangle.y;
     OUT(11) = warp_tent(u1);
     OUT(12) = warp_gaussian(u2, R(2), R(0.5));
-END_MEASURE
+}
