@@ -24,8 +24,12 @@ bool is_of(const nlohmann::json &entry, const DeviceDescription &device) {
 
 /// Throws nlohmann::json::exception or Error for an entry that this program has not written.
 Tuning tuning_of(const nlohmann::json &entry) {
-    const auto work_group = entry.at("work_group_size").get<std::uint64_t>(),
-               batch = entry.at("batch_size").get<std::uint64_t>();
+    const auto number = [&](const char *key) {
+        if (!entry.at(key).is_number_unsigned())
+            throw Error(ExitCode::failure, fmt::format("{} is {}", key, entry.at(key).dump()));
+        return entry.at(key).get<std::uint64_t>();
+    };
+    const std::uint64_t work_group = number("work_group_size"), batch = number("batch_size");
     const bool is_power = work_group >= 8 && work_group <= largest_work_group && (work_group & (work_group - 1)) == 0;
     if ((work_group != 0 && !is_power) || (batch != 0 && (batch < least_batch || batch > largest_batch)))
         throw Error(ExitCode::failure, fmt::format("work-groups of {}, batches of {}", work_group, batch));

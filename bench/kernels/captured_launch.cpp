@@ -43,20 +43,32 @@ std::vector<char> widened(const CapturedBuffer &captured) {
     return wide;
 }
 
-/// Other values that a kernel can be given as well: a whole number may be an index, and 0 and 1 are good ones.
-void disturb(char *column, std::size_t rows, bool is_uint) {
+std::uint32_t number_at(const char *column, std::size_t row) {
+    std::uint32_t number;
+    std::memcpy(&number, column + row * float_bytes, sizeof number);
+    return number;
+}
+
+/// Two ways to give a kernel other values. A whole number may be an index, so each row gets that of a row which the
+/// launch takes; where all are equal, 0 or 1.
+constexpr int disturbances = 2;
+
+void disturb(char *column, std::size_t rows, bool is_uint, std::size_t taken_row, int way) {
     if (is_uint) {
-        const bool all_zero = std::all_of(column, column + rows * float_bytes, [](char c) { return c == 0; });
-        for (std::size_t row = 0; row < rows; ++row) {
-            const std::uint32_t number = all_zero ? 1 : 0;
+        std::uint32_t number = number_at(column, taken_row);
+        bool all_equal = true;
+        for (std::size_t row = 0; row < rows; ++row)
+            all_equal = all_equal && number_at(column, row) == number;
+        if (all_equal)
+            number = number == 0 ? 1 : 0;
+        for (std::size_t row = 0; row < rows; ++row)
             std::memcpy(column + row * float_bytes, &number, sizeof number);
-        }
         return;
     }
     for (std::size_t row = 0; row < rows; ++row) {
         float value;
         std::memcpy(&value, column + row * float_bytes, sizeof value);
-        value = 0.5f * value + 0.3f;
+        value = way == 0 ? 0.5f * value + 0.3f : -value;
         std::memcpy(column + row * float_bytes, &value, sizeof value);
     }
 }
@@ -88,10 +100,6 @@ double Replay::seconds() {
 CapturedLaunch::CapturedLaunch(Device &device, const Launch &launch)
     : device_(device), request_(launch.request), traits_(launch.traits), arguments_(launch.arguments),
       items_(launch.items) {
-    const auto number = [&](const std::string &name) -> std::size_t {
-        const auto found = arguments_.find(name);
-        return found == arguments_.end() ? 0 : std::get<std::uint32_t>(found->second.value);
-    };
     for (const auto &[name, argument] : arguments_) {
         const Buffer *buffer = std::get_if<Buffer>(&argument.value);
         if (!buffer)
@@ -106,7 +114,7 @@ CapturedLaunch::CapturedLaunch(Device &device, const Launch &launch)
         }
         CapturedBuffer captured{{name}, *buffer, content_of(*buffer), !argument.type.starts_with("uint"), 0, {}};
         if (const TableLayout *layout = table_layout(name)) {
-            captured.rows = number(layout->rows_argument) * layout->rows_factor;
+            captured.rows = uint_argument(layout->rows_argument) * layout->rows_factor;
             captured.is_uint = layout->is_uint;
             if (captured.rows)
                 captured.is_uint.resize(
@@ -124,6 +132,11 @@ CapturedLaunch::CapturedLaunch(Device &device, const Launch &launch)
 }
 
 CapturedLaunch::~CapturedLaunch() { restore(); }
+
+std::size_t CapturedLaunch::uint_argument(const std::string &name) const {
+    const auto found = arguments_.find(name);
+    return found == arguments_.end() ? 0 : std::get<std::uint32_t>(found->second.value);
+}
 
 std::vector<std::vector<char>> CapturedLaunch::contents() const {
     std::vector<std::vector<char>> result;
@@ -171,12 +184,16 @@ Replay CapturedLaunch::replay(Precision precision, const std::map<std::string, s
 double CapturedLaunch::table_bytes_an_item() {
     restore();
     Replay launch = replay(Precision::single);
-    std::vector<std::vector<char>> before, result;
-    for (const CapturedBuffer &captured : buffers_)
-        before.push_back(captured.content);
     launch.run();
-    result = contents();
+    const std::vector<std::vector<char>> result = contents();
     restore();
+
+    // A row of the tables that the launch takes, and the place of it in the list of rows where there is one.
+    const std::size_t place = uint_argument("first");
+    std::size_t taken_row = place;
+    for (const CapturedBuffer &captured : buffers_)
+        if (captured.arguments.front() == "index")
+            taken_row = number_at(captured.content.data(), place);
 
     double bytes = 0;
     for (std::size_t b = 0; b < buffers_.size(); ++b) {
@@ -189,22 +206,21 @@ double CapturedLaunch::table_bytes_an_item() {
         const std::size_t columns = is_list ? 1 : captured.is_uint.size();
         for (std::size_t c = 0; c < columns; ++c) {
             const std::size_t first = c * rows * float_bytes, size = rows * float_bytes;
-            std::vector<char> disturbed = captured.content;
-            disturb(&disturbed[first], rows, is_list || captured.is_uint[c]);
-            write(captured.buffer, disturbed);
-            launch.run();
-            const std::vector<std::vector<char>> other = contents();
-            write(captured.buffer, captured.content);
-            restore();
+            bool is_read = false, is_written = differ(result[b], captured.content, first, size);
+            for (int way = 0; way < disturbances; ++way) {
+                std::vector<char> disturbed = captured.content;
+                disturb(&disturbed[first], rows, is_list || captured.is_uint[c],
+                        std::min(is_list ? place : taken_row, rows - 1), way);
+                write(captured.buffer, disturbed);
+                launch.run();
+                const std::vector<std::vector<char>> other = contents();
+                write(captured.buffer, captured.content);
+                restore();
 
-            bool is_read = false;
-            const bool is_written =
-                differ(result[b], before[b], first, size) || differ(other[b], disturbed, first, size);
-            for (std::size_t o = 0; o < buffers_.size() && !is_read; ++o) {
-                if (o != b) {
-                    is_read = other[o] != result[o];
-                    continue;
-                }
+                is_written = is_written || differ(other[b], disturbed, first, size);
+                for (std::size_t o = 0; o < buffers_.size(); ++o)
+                    if (o != b)
+                        is_read = is_read || other[o] != result[o];
                 for (std::size_t at = 0; at < result[b].size() && !is_read; at += float_bytes) {
                     const bool is_own = at >= first && at < first + size;
                     // What was disturbed stays so where it is not written: that is no reading.

@@ -71,6 +71,7 @@ class CapturedLaunch {
     double table_bytes_an_item();
 
   private:
+    std::size_t uint_argument(const std::string &name) const; ///< 0 where there is none
     std::vector<std::vector<char>> contents() const;
     void restore() const;
 

@@ -3,9 +3,10 @@
 // and the kernel runs on it again and again, in its float, relaxed and double builds, before the render goes on. So
 // tables, arguments and specialisation are those of a real batch, whatever stages a method has.
 //
-// The scene is a room, scenes/cornell-box.xml, whose surfaces are all of one BSDF kind and all emit: then each stage
-// gets a queue as long as the batch. It is rendered once for each kind; a kernel that does not depend on the kind is
-// measured with the first. A queue of n items is a film of n pixels with one sample each in batches of n paths.
+// The scene is a room, scenes/cornell-box.xml, whose surfaces are all of one BSDF kind and all but one emit: then each
+// stage gets a queue about as long as the batch. It is rendered once for each kind; a kernel that does not depend on
+// the kind is measured with the first. A queue of n items is a film of n pixels with one sample each in batches of n
+// paths.
 //
 // Google Benchmark runs the builds of a kernel in random order, interleaved, and takes the device's own clock. Between
 // two runs the memory that the kernel writes is restored, outside the clock.
@@ -35,7 +36,7 @@ namespace {
 
 constexpr int depth = 5; // a stage is at its most long before
 
-/// The room with every surface of one kind, and emitting.
+/// The room with every surface of one kind. All but one emit.
 Scene room(const std::string &path, const std::string &kind, std::uint32_t queue) {
     Scene scene = load_scene(path).scene;
     const std::uint32_t side = static_cast<std::uint32_t>(std::lround(std::sqrt(double(queue))));
@@ -45,27 +46,30 @@ Scene room(const std::string &path, const std::string &kind, std::uint32_t queue
     scene.settings.samples_per_pixel = 1;
     scene.settings.max_depth = depth;
     scene.settings.rr_depth = depth;
-    for (Material &material : scene.materials)
-        for (Bsdf *side_of : {&material.front, &material.back}) {
-            Bsdf &bsdf = *side_of;
-            bsdf.kind = kind == "diffuse"                    ? BsdfKind::diffuse
-                        : kind == "conductor"                ? BsdfKind::conductor
-                        : kind == "dielectric"               ? BsdfKind::dielectric
-                        : kind == "null"                     ? BsdfKind::null
-                        : kind.starts_with("roughconductor") ? BsdfKind::roughconductor
-                                                             : BsdfKind::roughdielectric;
-            bsdf.distribution = kind.ends_with("ggx") ? Microfacet::ggx : Microfacet::beckmann;
-            bsdf.alpha_u = bsdf.alpha_v = 0.2f;
-            const bool has_both_sides = bsdf.kind == BsdfKind::dielectric || bsdf.kind == BsdfKind::null ||
-                                        bsdf.kind == BsdfKind::roughdielectric;
+    float shade = 1; // each material another one, so that it matters which one a kernel reads
+    for (Material &material : scene.materials) {
+        shade *= 0.95f;
+        for (Bsdf *bsdf : {&material.front, &material.back}) {
+            bsdf->kind = kind == "diffuse"                    ? BsdfKind::diffuse
+                         : kind == "conductor"                ? BsdfKind::conductor
+                         : kind == "dielectric"               ? BsdfKind::dielectric
+                         : kind == "null"                     ? BsdfKind::null
+                         : kind.starts_with("roughconductor") ? BsdfKind::roughconductor
+                                                              : BsdfKind::roughdielectric;
+            bsdf->distribution = kind.ends_with("ggx") ? Microfacet::ggx : Microfacet::beckmann;
+            bsdf->specular_reflectance = bsdf->specular_transmittance = {shade, shade, shade};
+            bsdf->alpha_u = bsdf->alpha_v = 0.2f * shade;
+            const bool has_both_sides = bsdf->kind == BsdfKind::dielectric || bsdf->kind == BsdfKind::null ||
+                                        bsdf->kind == BsdfKind::roughdielectric;
             material.two_sided = !has_both_sides;
         }
+    }
     Emitter glow;
     glow.value = {0.1f, 0.1f, 0.1f};
     scene.emitters.push_back(glow);
-    for (Shape &shape : scene.shapes)
-        if (shape.emitter < 0)
-            shape.emitter = static_cast<std::int32_t>(scene.emitters.size()) - 1;
+    for (std::size_t i = 0; i < scene.shapes.size(); ++i)
+        if (i != 1 && scene.shapes[i].emitter < 0)
+            scene.shapes[i].emitter = static_cast<std::int32_t>(scene.emitters.size()) - 1;
     return scene;
 }
 

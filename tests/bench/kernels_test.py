@@ -18,6 +18,9 @@ BYTES = {
     "connect": REAL * (1 + 3 + 1 + 2 * 3),
     # ray: primitive; bin: written
     "classify": REAL * 2,
+    # vertex: depth, keys, material, throughput, position, offset, wi and geometric normal; depth, throughput and pdf are
+    # written; ray: origin, direction and primitive are written
+    "scatter roughconductor_ggx": REAL * (4 + 3 + 3 + 1 + 3 + 3 + 1 + 3 + 1 + 7),
     # radiance: read; film: six sums, read and written. That nothing is added to a seventh column is not seen.
     "accumulate": REAL * (3 + 2 * 6),
 }
