@@ -119,7 +119,7 @@ TuningReport tune(Device &device, const std::string &method, const Scene &scene,
         }
     };
     const std::uint32_t usual = default_batch_size(device);
-    for (const std::uint32_t batch : {usual / 16, usual / 8, usual / 4, usual / 2, usual * 2, usual * 4})
+    for (const std::uint32_t batch : {usual / 16, usual / 8, usual / 4, usual / 2, usual * 2})
         consider({0, batch});
     const std::uint32_t batch = report.chosen.batch_size;
     for (const std::uint32_t work_group : work_groups)

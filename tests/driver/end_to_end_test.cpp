@@ -108,7 +108,7 @@ TEST_F(EndToEndTuning, RendersWhereTheTuningIsDamaged) {
 }
 
 TEST_F(EndToEndTuning, TuneKeepsWhatItFinds) {
-    const Outcome outcome = run({"tune", scene, "--size", "48x48"});
+    const Outcome outcome = run({"tune", scene, "--size", "48x48", "--max-depth", "2"});
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_THAT(outcome.out, HasSubstr("tuning.json"));
     EXPECT_THAT(outcome.err, HasSubstr("times as fast"));
