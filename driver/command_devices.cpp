@@ -1,5 +1,6 @@
 #include "driver/commands.h"
 #include "driver/standard_streams.h"
+#include "driver/tuning_store.h"
 #include "runtime/error.h"
 
 #include <CLI/CLI.hpp>
@@ -17,6 +18,21 @@ constexpr const char *advice =
     "and for a graphics card the OpenCL driver of its maker. The folder /etc/OpenCL/vendors, or the one that\n"
     "OCL_ICD_VENDORS names, must hold an .icd file for each.\n";
 
+std::string tuning_text(const DeviceDescription &device) {
+    std::string problem;
+    const std::optional<Tuning> tuning = stored_tuning(device, &problem);
+    if (!problem.empty())
+        return "no: " + problem;
+    return tuning ? name_of(*tuning) : "no";
+}
+
+nlohmann::json tuning_json(const DeviceDescription &device) {
+    const std::optional<Tuning> tuning = stored_tuning(device);
+    if (!tuning)
+        return nullptr;
+    return {{"work_group_size", tuning->work_group_size}, {"batch_size", tuning->batch_size}};
+}
+
 std::string device_table(const std::vector<DeviceDescription> &devices) {
     std::string text;
     for (std::size_t i = 0; i < devices.size(); ++i) {
@@ -29,6 +45,7 @@ std::string device_table(const std::vector<DeviceDescription> &devices) {
                             double(device.memory_bytes) / double(1 << 30),
                             double(device.allocation_bytes) / double(1 << 30));
         text += fmt::format("   double       {}\n", device.has_double ? "yes" : "no");
+        text += fmt::format("   tuned        {}\n", tuning_text(device));
     }
     return text;
 }
@@ -45,7 +62,8 @@ std::string device_json(const std::vector<DeviceDescription> &devices) {
                         {"compute_units", device.compute_units},
                         {"memory_bytes", device.memory_bytes},
                         {"allocation_bytes", device.allocation_bytes},
-                        {"double", device.has_double}});
+                        {"double", device.has_double},
+                        {"tuning", tuning_json(device)}});
     return list.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 

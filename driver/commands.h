@@ -17,6 +17,7 @@ void add_inspect_command(CLI::App &app, const Services &services, std::function<
 void add_devices_command(CLI::App &app, const Services &services, std::function<int()> &chosen);
 void add_compare_command(CLI::App &app, std::function<int()> &chosen);
 void add_solve_command(CLI::App &app, const Services &services, std::function<int()> &chosen);
+void add_tune_command(CLI::App &app, const Services &services, std::function<int()> &chosen);
 void add_warm_command(CLI::App &app, const Services &services, std::function<int()> &chosen);
 
 } // namespace gradus

@@ -1,5 +1,7 @@
 #include "driver/program.h"
 #include "driver/solve_job.h"
+#include "driver/standard_streams.h"
+#include "driver/tuning_store.h"
 #include "runtime/scene/traits.h"
 
 int main(int argc, char **argv) {
@@ -11,8 +13,18 @@ int main(int argc, char **argv) {
     services.prepare = [](const std::string &method, const std::string &selector, const gradus::Scene &scene,
                           const gradus::RenderOptions &options) {
         const auto device = std::make_shared<gradus::Device>(selector, options.threads);
+        gradus::RenderOptions tuned = options;
+        std::string problem;
+        gradus::apply_tuning(gradus::stored_tuning(device->description(), &problem), tuned);
+        if (!problem.empty())
+            gradus::print_message("gradus: warning: " + problem + "\n");
         return gradus::PreparedMethod{device, device->description(),
-                                      gradus::make_method(method, *device, scene, options)};
+                                      gradus::make_method(method, *device, scene, tuned)};
+    };
+    services.tune = [](const std::string &selector, int threads, const gradus::Scene &scene,
+                       const gradus::TuningOptions &options) {
+        gradus::Device device(selector, threads);
+        return gradus::TunedDevice{device.description(), gradus::tune(device, "pt", scene, options)};
     };
     services.prepare_solver = [](const std::string &selector, int threads, std::uint32_t width, std::uint32_t height,
                                  std::uint32_t channels) {

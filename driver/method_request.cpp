@@ -27,7 +27,8 @@ void add_method_options(CLI::App &command, const Services &services, MethodReque
         ->group(group);
     command
         .add_option("--batch-size", request.options.batch_size,
-                    "Paths in flight at once; 0: the device's default. The image does not depend on it")
+                    "Paths in flight at once; 0: what `gradus tune` found, or the device's default. The image does "
+                    "not depend on it")
         ->check(CLI::Range(std::uint32_t(0), std::uint32_t(1) << 28))
         ->capture_default_str()
         ->group(group);

@@ -25,6 +25,7 @@ constexpr const char *examples = R"(Examples:
   gradus solve layers.exr -o out.exr                      an image from its gradients
   gradus compare out.exr reference.exr                    how far from the truth
   gradus warm scene.xml                                   compile the kernels ahead
+  gradus tune scene.xml                                   find what renders fastest on this device
   gradus devices                                          the OpenCL devices of this machine
 
 `gradus COMMAND --help` explains the options of a command.
@@ -71,6 +72,7 @@ int run_program(int argc, const char *const *argv, const Services &services) {
         add_compare_command(app, chosen);
         add_solve_command(app, services, chosen);
         add_warm_command(app, services, chosen);
+        add_tune_command(app, services, chosen);
         try {
             app.parse(argc, argv);
         } catch (const CLI::ParseError &error) {

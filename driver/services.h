@@ -4,6 +4,7 @@
 #include "runtime/device/device.h"
 #include "runtime/io/load_scene.h"
 #include "runtime/methods/method.h"
+#include "runtime/methods/tuner.h"
 #include "solver/poisson_solver.h"
 
 #include <cstdint>
@@ -29,6 +30,12 @@ struct PreparedSolver {
     std::function<PoissonReport(const HostImages &, const PoissonOptions &, float *result)> solve;
 };
 
+/// What a tuner found, and for which device.
+struct TunedDevice {
+    DeviceDescription description;
+    TuningReport report;
+};
+
 struct Services {
     std::function<LoadedScene(const std::string &path, const LoadOptions &)> load_scene;
     std::function<std::vector<DeviceDescription>()> list_devices;
@@ -41,6 +48,8 @@ struct Services {
     std::function<PreparedSolver(const std::string &device, int threads, std::uint32_t width, std::uint32_t height,
                                  std::uint32_t channels)>
         prepare_solver;
+    /// Opens the device and tunes it with the scene.
+    std::function<TunedDevice(const std::string &device, int threads, const Scene &, const TuningOptions &)> tune;
     /// The traits that specialise the kernels of a scene, by name.
     std::function<std::vector<std::pair<std::string, int>>(const Scene &)> traits;
 };

@@ -15,8 +15,9 @@ packages=(
     # Ray tracing, images, scene files, command line, text.
     libembree-dev libtbb-dev libopenimageio-dev libpugixml-dev zlib1g-dev
     libcli11-dev nlohmann-json3-dev libfmt-dev
-    # Tests; oclgrind checks every memory access of the kernels. FFTW is what the solver is measured against.
-    libgtest-dev libgmock-dev oclgrind libfftw3-dev
+    # Tests; oclgrind checks every memory access of the kernels. FFTW is what the solver is measured against, Google Benchmark
+    # times the kernels.
+    libgtest-dev libgmock-dev oclgrind libfftw3-dev libbenchmark-dev
 )
 
 if [ "${1:-}" = --list ]; then

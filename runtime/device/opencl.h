@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/device/device.h"
+#include "runtime/device/launch_observer.h"
 
 #define CL_TARGET_OPENCL_VERSION 120
 #define CL_HPP_TARGET_OPENCL_VERSION 120
@@ -31,6 +32,7 @@ struct Device::Implementation {
     unsigned compile_threads = 1; ///< kernels that are compiled at a time
     std::uint64_t allocated_bytes = 0, peak_bytes = 0;
     ProgramCache built;
+    LaunchObserver observer; ///< empty: none
 };
 
 /// Runs a function and turns an OpenCL error into an Error that says what was being done.

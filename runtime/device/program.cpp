@@ -1,6 +1,7 @@
 #include "runtime/device/program.h"
 
 #include "runtime/device/kernel_source.h"
+#include "runtime/device/launch_observer.h"
 #include "runtime/device/opencl.h"
 #include "runtime/error.h"
 
@@ -14,6 +15,7 @@
 #include <mutex>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 namespace gradus {
 
@@ -21,13 +23,16 @@ struct Kernel::Handle {
     KernelRequest request;
     Device::Implementation *device = nullptr;
     Precision precision = Precision::single;
-    std::uint32_t work_group_size = 64;
+    std::uint32_t work_group_size = default_work_group_size;
     cl::Program program;
     cl::Kernel kernel;
     std::map<std::string, cl_uint> arguments; ///< index by name
     std::vector<bool> is_set;
     Usage usage;
     std::vector<cl::Event> pending;
+    bool is_observed = false; ///< then what follows is kept
+    TraitValues traits;
+    std::map<std::string, Launch::Argument> values;
 
     void collect() {
         for (const cl::Event &event : pending) {
@@ -38,29 +43,43 @@ struct Kernel::Handle {
         pending.clear();
     }
 
-    void set(const std::string &argument, std::size_t bytes, const void *value) {
+    template <class Value>
+    void set(const std::string &argument, std::size_t bytes, const void *bits, const Value &value) {
         const auto found = arguments.find(argument);
         if (found == arguments.end())
             return;
-        opencl_call("setting " + argument + " of " + request.name, [&] { kernel.setArg(found->second, bytes, value); });
+        opencl_call("setting " + argument + " of " + request.name, [&] { kernel.setArg(found->second, bytes, bits); });
         is_set[found->second] = true;
+        if (is_observed)
+            values[argument].value = value;
+    }
+
+    /// Tells the device's observer, which is not told of what it launches itself.
+    void observe(std::size_t items) {
+        if (!is_observed || !device->observer)
+            return;
+        const LaunchObserver observer = std::exchange(device->observer, nullptr);
+        observer({request, traits, values, items});
+        device->observer = observer;
     }
 };
 
 const std::string &Kernel::name() const { return handle_->request.name; }
 
 void Kernel::bind(const std::string &argument, const Buffer &buffer) {
-    handle_->set(argument, sizeof(cl_mem), buffer.argument());
+    handle_->set(argument, sizeof(cl_mem), buffer.argument(), buffer);
 }
 
-void Kernel::set(const std::string &argument, std::uint32_t value) { handle_->set(argument, sizeof value, &value); }
+void Kernel::set(const std::string &argument, std::uint32_t value) {
+    handle_->set(argument, sizeof value, &value, value);
+}
 
 void Kernel::set_real(const std::string &argument, double value) {
     const float single = static_cast<float>(value);
     if (handle_->precision == Precision::double_)
-        handle_->set(argument, sizeof value, &value);
+        handle_->set(argument, sizeof value, &value, value);
     else
-        handle_->set(argument, sizeof single, &single);
+        handle_->set(argument, sizeof single, &single, value);
 }
 
 void Kernel::launch(std::size_t items) {
@@ -71,6 +90,7 @@ void Kernel::launch(std::size_t items) {
     const std::size_t padded = (items + group - 1) / group * group;
     if (padded == 0)
         return;
+    handle_->observe(items);
     const bool profiles = handle_->device->profiles;
     opencl_call("launching " + name(), [&] {
         cl::Event event;
@@ -95,14 +115,13 @@ void Kernel::reset_usage() {
     handle_->usage = {};
 }
 
-KernelLibrary::KernelLibrary(Device &device, TraitValues traits, Precision precision)
-    : device_(device), traits_(std::move(traits)), precision_(precision) {
+KernelLibrary::KernelLibrary(Device &device, TraitValues traits, Precision precision, std::uint32_t work_group_size)
+    : device_(device), traits_(std::move(traits)), precision_(precision),
+      work_group_size_(work_group_size ? work_group_size : default_work_group_size) {
     const DeviceDescription &d = device.description();
     if (precision == Precision::double_ && !d.has_double)
         throw Error(ExitCode::device, fmt::format("{} has no double precision (cl_khr_fp64)", d.name));
 }
-
-std::uint32_t KernelLibrary::work_group_size() const { return 64; }
 
 namespace {
 
@@ -172,6 +191,13 @@ cl::Program built_program(Device::Implementation &device, const std::string &tex
     return program.get();
 }
 
+std::string type_name(const cl::Kernel &kernel, cl_uint argument) {
+    std::string name = kernel.getArgInfo<CL_KERNEL_ARG_TYPE_NAME>(argument);
+    while (!name.empty() && name.back() == '\0')
+        name.pop_back();
+    return name;
+}
+
 } // namespace
 
 std::vector<Kernel> KernelLibrary::build(const std::vector<KernelRequest> &requests, const Progress &progress,
@@ -194,6 +220,9 @@ std::vector<Kernel> KernelLibrary::build(const std::vector<KernelRequest> &reque
         handle->device = &d;
         handle->precision = precision_;
         handle->work_group_size = work_group_size();
+        handle->is_observed = static_cast<bool>(d.observer);
+        if (handle->is_observed)
+            handle->traits = traits_;
         opencl_call("compiling kernel " + request.name, [&] {
             handle->program = built_program(d, source.text, options, request.name);
             handle->kernel = cl::Kernel(handle->program, request.entry.c_str());
@@ -203,6 +232,8 @@ std::vector<Kernel> KernelLibrary::build(const std::vector<KernelRequest> &reque
                 while (!name.empty() && name.back() == '\0')
                     name.pop_back();
                 handle->arguments[name] = i;
+                if (handle->is_observed)
+                    handle->values[name].type = type_name(handle->kernel, i);
             }
             handle->is_set.assign(count, false);
         });
@@ -237,6 +268,10 @@ std::vector<Kernel> KernelLibrary::build(const std::vector<KernelRequest> &reque
     if (failure)
         std::rethrow_exception(failure);
     return kernels;
+}
+
+void observe_launches(Device &device, LaunchObserver observer) {
+    device.implementation().observer = std::move(observer);
 }
 
 void finish(Device &device) {

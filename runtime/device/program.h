@@ -58,11 +58,15 @@ class Kernel {
     std::shared_ptr<Handle> handle_;
 };
 
+constexpr std::uint32_t default_work_group_size = 64;
+
 /// Builds kernels and keeps them; equal requests share a program.
 class KernelLibrary {
   public:
-    /// Throws Error(ExitCode::device) for double on a device that has none.
-    KernelLibrary(Device &device, TraitValues traits, Precision precision = Precision::single);
+    /// `work_group_size` 0: default_work_group_size, the only one that the solver's kernels take. Throws
+    /// Error(ExitCode::device) for double on a device that has none.
+    KernelLibrary(Device &device, TraitValues traits, Precision precision = Precision::single,
+                  std::uint32_t work_group_size = 0);
 
     /// Called after each program was built: its name, how many are built, of how many, and its seconds.
     using Progress = std::function<void(const std::string &, std::size_t, std::size_t, double)>;
@@ -71,12 +75,13 @@ class KernelLibrary {
     std::vector<Kernel> build(const std::vector<KernelRequest> &requests, const Progress &progress = {},
                               const std::string &dump_folder = "");
 
-    std::uint32_t work_group_size() const;
+    std::uint32_t work_group_size() const { return work_group_size_; }
 
   private:
     Device &device_;
     TraitValues traits_;
     Precision precision_;
+    std::uint32_t work_group_size_;
 };
 
 /// Waits until the device has done all that was asked of it.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <set>
 
@@ -101,6 +102,18 @@ std::vector<const Channel *> compared_channels(const Image &image, const Image &
     if (pixels == 0 || channels.empty())
         fail("an image has no pixels or no channels");
     return channels;
+}
+
+bool equal_bits(const Image &a, const Image &b) {
+    if (a.width != b.width || a.height != b.height || a.channels.size() != b.channels.size())
+        return false;
+    for (std::size_t c = 0; c < a.channels.size(); ++c) {
+        const Channel &x = a.channels[c], &y = b.channels[c];
+        if (x.name != y.name || x.values.size() != y.values.size() ||
+            std::memcmp(x.values.data(), y.values.data(), sizeof(float) * x.values.size()) != 0)
+            return false;
+    }
+    return true;
 }
 
 double relative_mse(const Image &image, const Image &reference) {

@@ -18,6 +18,9 @@ namespace gradus {
 /// Squared radiance that keeps black pixels from deciding relMSE.
 constexpr double relative_mse_epsilon = 0.001;
 
+/// The same channels with the same values bit for bit.
+bool equal_bits(const Image &a, const Image &b);
+
 /// Mean over pixels and channels of (I - R)^2 / (R^2 + 0.001) (as Hua et al. 2017 compare gradient-domain
 /// methods).
 double relative_mse(const Image &image, const Image &reference);

@@ -23,6 +23,7 @@ struct RenderOptions {
     std::uint64_t seed = 0;
     int threads = 0;                         ///< host threads that trace; 0: all
     std::uint32_t batch_size = 0;            ///< paths in flight; 0: the device's default
+    std::uint32_t work_group_size = 0;       ///< of the renderer's kernels; 0: the default
     Precision precision = Precision::single; ///< of the kernels; rays are always traced in float
     bool aov = false;                        ///< also albedo, normal, depth, variance
     bool all_traits = false; ///< for measuring: compile the kernels for everything, as if the scene had it

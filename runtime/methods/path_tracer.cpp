@@ -130,7 +130,7 @@ void PathTracer::build_kernels(const std::vector<std::string> &kinds, const Addi
     std::vector<KernelRequest> requests;
     for (const Wanted &w : wanted)
         requests.push_back(w.request);
-    KernelLibrary library(device_, traits_, options_.precision);
+    KernelLibrary library(device_, traits_, options_.precision, options_.work_group_size);
     const std::vector<Kernel> built = library.build(
         requests,
         [&](const std::string &name, std::size_t, std::size_t, double seconds) {

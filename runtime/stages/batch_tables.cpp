@@ -52,6 +52,10 @@ std::size_t batch_bytes_per_path(const TraitMap &traits, Precision precision) {
     return columns * real_bytes(precision) + 2 * sizeof(std::uint32_t);
 }
 
+std::uint32_t default_batch_size(const Device &device) {
+    return device.description().type == "cpu" ? default_batch_cpu : default_batch_other;
+}
+
 std::uint32_t choose_batch_size(Device &device, std::uint32_t requested, std::uint64_t samples, const TraitMap &traits,
                                 Precision precision) {
     const DeviceDescription &d = device.description();
@@ -65,7 +69,7 @@ std::uint32_t choose_batch_size(Device &device, std::uint32_t requested, std::ui
         std::min<std::uint64_t>(d.memory_bytes / 2 / per_path, d.allocation_bytes / largest_table);
     if (fits < least_batch)
         throw Error(ExitCode::device, fmt::format("{} has not enough memory for {} paths", d.name, least_batch));
-    std::uint64_t size = requested ? requested : d.type == "cpu" ? default_batch_cpu : default_batch_other;
+    std::uint64_t size = requested ? requested : default_batch_size(device);
     size = std::min<std::uint64_t>({size, largest_batch, std::max<std::uint64_t>(samples, 1)});
     const std::uint64_t rounded_up = (size + least_batch - 1) / least_batch * least_batch;
     return static_cast<std::uint32_t>(std::min(rounded_up, fits / least_batch * least_batch));

@@ -34,6 +34,9 @@ struct BatchTables {
 /// Bytes of a batch for each path in it.
 std::size_t batch_bytes_per_path(const TraitMap &traits, Precision precision);
 
+/// Paths in flight where nobody asks for another number.
+std::uint32_t default_batch_size(const Device &device);
+
 /// The batch size for a request (0: the device's default), bounded by the device's memory and by what there is to
 /// do. Throws Error where not even a small batch fits.
 std::uint32_t choose_batch_size(Device &device, std::uint32_t requested, std::uint64_t samples, const TraitMap &traits,

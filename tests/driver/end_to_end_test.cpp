@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include <csignal>
+#include <cstdlib>
+#include <fstream>
 
 namespace gradus {
 namespace {
@@ -55,6 +57,72 @@ TEST_F(EndToEnd, TheImageDependsOnTheSeedAndNotOnThreadsOrBatches) {
     ASSERT_EQ(run(render("third.exr", {"--spp", "4", "--seed", "4"})).exit_code, 0);
     expect_equal_pixels("first.exr", "second.exr");
     EXPECT_GT(relative_mse(read_image(at("first.exr")), read_image(at("third.exr"))), 0);
+}
+
+/// A cache folder of the test's own.
+class EndToEndTuning : public EndToEnd {
+  protected:
+    void SetUp() override {
+        EndToEnd::SetUp();
+        setenv("XDG_CACHE_HOME", at("cache").c_str(), 1);
+    }
+    void TearDown() override {
+        unsetenv("XDG_CACHE_HOME");
+        EndToEnd::TearDown();
+    }
+    void write_tuning(const std::string &text) const {
+        std::filesystem::create_directories(folder / "cache" / "gradus");
+        std::ofstream(folder / "cache" / "gradus" / "tuning.json") << text;
+    }
+    nlohmann::json devices() const { return nlohmann::json::parse(run({"devices", "--json"}).out); }
+};
+
+TEST_F(EndToEndTuning, ATunedRenderHasTheSameImage) {
+    ASSERT_EQ(run(render("default.exr", {"--spp", "4"})).exit_code, 0);
+    nlohmann::json entries = nlohmann::json::array();
+    for (const nlohmann::json &device : devices()) {
+        EXPECT_EQ(device.at("tuning"), nullptr);
+        entries.push_back({{"platform", device.at("platform")},
+                           {"name", device.at("name")},
+                           {"driver", device.at("driver")},
+                           {"compute_units", device.at("compute_units")},
+                           {"work_group_size", 128},
+                           {"batch_size", 640}});
+    }
+    write_tuning(nlohmann::json{{"version", 1}, {"devices", entries}}.dump());
+    EXPECT_EQ(devices().at(0).at("tuning").at("batch_size"), 640);
+    EXPECT_THAT(run({"devices"}).out, HasSubstr("work-groups 128, batches 640"));
+    const Outcome tuned = run(render("tuned.exr", {"--spp", "4", "--dump-kernels", "kernels"}));
+    ASSERT_EQ(tuned.exit_code, 0) << tuned.err;
+    EXPECT_THAT(text_of("kernels/camera.cl"), HasSubstr("-D WORK_GROUP_SIZE=128")) << "the tuning was not used";
+    expect_equal_pixels("default.exr", "tuned.exr");
+}
+
+TEST_F(EndToEndTuning, RendersWhereTheTuningIsDamaged) {
+    write_tuning("{\"version\": 1, \"devices\": [{");
+    const Outcome outcome = run(render("out.exr", {"--spp", "1"}));
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_THAT(outcome.err, HasSubstr("warning"));
+    EXPECT_THAT(outcome.err, HasSubstr("tuning.json"));
+    EXPECT_THAT(run({"devices"}).out, HasSubstr("tuned        no: "));
+}
+
+TEST_F(EndToEndTuning, TuneKeepsWhatItFinds) {
+    const Outcome outcome = run({"tune", scene, "--size", "48x48", "--max-depth", "2"});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("tuning.json"));
+    EXPECT_THAT(outcome.err, HasSubstr("times as fast"));
+    EXPECT_THAT(outcome.err, ::testing::Not(HasSubstr("another image")));
+    EXPECT_NE(devices().at(0).at("tuning"), nullptr);
+}
+
+TEST_F(EndToEndTuning, TuneSaysWhereItCannotKeepAnything) {
+    std::ofstream(folder / "cache") << "in the way";
+    const Outcome rendered = run(render("out.exr", {"--spp", "1"}));
+    EXPECT_EQ(rendered.exit_code, 0) << rendered.err;
+    const Outcome tuned = run({"tune", scene, "--size", "48x48"});
+    EXPECT_EQ(tuned.exit_code, 5);
+    EXPECT_THAT(tuned.err, HasSubstr("error"));
 }
 
 TEST_F(EndToEnd, ACropIsThatPartOfTheImage) {

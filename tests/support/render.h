@@ -83,18 +83,6 @@ inline Spread spread_of(const Image &image, const std::string &channel = "G") {
     return spread_of(std::vector<double>(values.begin(), values.end()));
 }
 
-/// The pixels of R, G and B one after the other, bit for bit.
-inline bool equal_bits(const Image &a, const Image &b) {
-    if (a.width != b.width || a.height != b.height || a.channels.size() != b.channels.size())
-        return false;
-    for (std::size_t c = 0; c < a.channels.size(); ++c)
-        if (a.channels[c].name != b.channels[c].name ||
-            std::memcmp(a.channels[c].values.data(), b.channels[c].values.data(),
-                        sizeof(float) * a.channels[c].values.size()) != 0)
-            return false;
-    return true;
-}
-
 /// The mean over images by pixel, and the variance of that mean from their spread.
 struct MeanAndVariance {
     Image mean, variance;

@@ -1,0 +1,36 @@
+// The measurements of gradus-bench-kernels, one file each. Each prints its table and returns the same as JSON.
+#pragma once
+
+#include "runtime/device/device.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace gradus::bench {
+
+/// What all measurements share.
+struct Settings {
+    Device &device;
+    std::string scene; ///< a file; see throughput.cpp
+    int repeats = 5;
+    std::vector<std::uint32_t> queue_sizes; ///< squares of powers of two
+    std::vector<std::string> kinds;         ///< of BSDFs
+    std::vector<std::string> methods;       ///< that are rendered with
+    std::uint32_t cases = 0;                ///< of each function and domain, for the accuracy
+    bool is_quick = false;
+    bool asks_vectoriser = true; ///< whether PoCL vectorised a kernel
+};
+
+/// Every kernel of a render and of a solve in its builds, over queue sizes.
+nlohmann::json measure_throughput(const Settings &settings);
+
+/// Errors of the float and relaxed builds of kernels/lib against the double build, on the device.
+nlohmann::json measure_accuracy(const Settings &settings);
+
+/// What the work-group and batch size that a tuner chose gain.
+nlohmann::json measure_tuning(const Settings &settings);
+
+} // namespace gradus::bench

@@ -1,0 +1,31 @@
+#include "bench/kernels/solver_traffic.h"
+
+#include "kernels/shared/solver_shared.h"
+
+#include <map>
+
+namespace gradus::bench {
+
+namespace {
+
+// From reading kernels/solver. An item is one pixel, but for transfers: 8 pixels of a coarse row.
+const std::map<std::string, double> values_of_item = {
+    {"residual", 3},                           // u, right side; residual
+    {"smooth", 4},                             // u, right side, inverse diagonal; smoothed: a step of Chebyshev's
+    {"smooth_twice_from_zero", 3},             // right side, inverse diagonal; smoothed
+    {"restrict_sum", 4 * 8 + 8},               // fine; coarse
+    {"prolong", 8 / 2 + 16 + 16},              // coarse, each of its rows for two fine ones; u twice
+    {"prolong_onto", 8 / 2 + 16 + 16 + 16},    // and smoothed
+    {"direction", 4},                          // z, old direction; direction, image
+    {"advance", 6},                            // direction, image, u, residual; u, residual
+    {"reduce_products", SOLVER_REDUCTION + 1}, // <r, r>, which is the first that a solve asks for
+};
+
+} // namespace
+
+std::optional<double> solver_traffic(const std::string &kernel) {
+    const auto found = values_of_item.find(kernel);
+    return found == values_of_item.end() ? std::nullopt : std::optional<double>(found->second);
+}
+
+} // namespace gradus::bench

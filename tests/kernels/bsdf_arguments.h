@@ -1,0 +1,69 @@
+// Arguments for the functions of a BSDF, drawn at random, all of them numbers that float holds exactly.
+#pragma once
+
+#include "tests/kernels/function_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace gradus::testing {
+
+inline double rounded(double x) { return static_cast<float>(x); }
+
+inline std::array<double, 3> draw_direction(std::mt19937_64 &random) {
+    std::normal_distribution<double> normal;
+    double v[3] = {normal(random), normal(random), normal(random)};
+    const double length = std::hypot(v[0], v[1], v[2]);
+    return {rounded(v[0] / length), rounded(v[1] / length), rounded(v[2] / length)};
+}
+
+/// Roughness over [smallest, 1], index ratios on both sides of 1, coloured factors, any directions.
+inline Arguments draw_arguments(std::mt19937_64 &random, double smallest_alpha) {
+    std::uniform_real_distribution<double> uniform;
+    Arguments a;
+    const auto factor = [&] { return rounded(0.1 + 0.9 * uniform(random)); };
+    for (int i = 0; i < 9; ++i)
+        a.material[i] = factor(); // three reflectances
+    for (int i = 9; i < 12; ++i)
+        a.material[i] = rounded(0.05 + 2 * uniform(random)); // eta
+    for (int i = 12; i < 15; ++i)
+        a.material[i] = rounded(0.5 + 4 * uniform(random)); // k
+    const double ior = 1.1 + 1.4 * uniform(random);
+    a.material[15] = rounded(uniform(random) < 0.5 ? ior : 1 / ior);
+    a.material[16] = rounded(std::pow(smallest_alpha, uniform(random)));
+    a.material[17] = rounded(std::pow(smallest_alpha, uniform(random)));
+    a.wi = draw_direction(random);
+    a.wo = draw_direction(random);
+    a.u_lobe = std::ldexp(double(random() >> 40), -24);
+    a.u1 = std::ldexp(double(random() >> 40), -24);
+    a.u2 = std::ldexp(double(random() >> 40), -24);
+    return a;
+}
+
+/// Grazing directions or microfacets (cosine below 0.01), short half vectors, and the critical angle, where the
+/// slope of Fresnel's curve is infinite; and for values below 1e-6 the error is not relative any more.
+inline bool is_edge(const Arguments &a, bool is_dielectric) {
+    if (std::min(std::fabs(a.wi[2]), std::fabs(a.wo[2])) < 0.01)
+        return true;
+    const double below = a.wi[2] > 0 ? a.material[15] : 1 / a.material[15];
+    const double eta = is_dielectric && a.wi[2] * a.wo[2] < 0 ? below : 1;
+    std::array<double, 3> h;
+    for (int axis = 0; axis < 3; ++axis)
+        h[axis] = a.wi[axis] + eta * a.wo[axis];
+    const double length = std::hypot(h[0], h[1], h[2]);
+    double from = 0, to = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        from += a.wi[axis] * h[axis] / length;
+        to += a.wo[axis] * h[axis] / length;
+    }
+    const double critical = from * from + (below - 1) * (below + 1);
+    return length < 0.1 || std::min(std::fabs(from), std::fabs(to)) < 0.01 ||
+           (is_dielectric && std::fabs(critical) < 1e-3);
+}
+
+inline double distance(const std::array<double, 3> &a, const std::array<double, 3> &b) {
+    return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
+} // namespace gradus::testing

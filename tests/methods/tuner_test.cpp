@@ -1,0 +1,63 @@
+// The tuner: what it tries has the same image, and it takes nothing that does not gain.
+#include "runtime/methods/tuner.h"
+#include "tests/methods/reference_scene.h"
+#include "tests/support/render.h"
+#include "tests/support/small_scenes.h"
+
+namespace gradus::testing {
+namespace {
+
+/// Passes are some hundred thousand paths long whatever the scene: short paths keep them short.
+Scene small_room() {
+    Scene scene = own_scene("cornell-box.xml", 48, 48);
+    scene.settings.max_depth = 2;
+    return scene;
+}
+
+TEST(Tuner, TriesOnlyWhatHasTheSameImage) {
+    TuningOptions options;
+    options.turns = 3;
+    options.seconds_a_turn = 0.005;
+    std::size_t told = 0;
+    options.on_trial = [&](const TuningTrial &) { ++told; };
+    const TuningReport report = tune(shared_device(), "pt", small_room(), options);
+    EXPECT_EQ(told, report.trials.size());
+    EXPECT_GE(report.trials.size(), 5u);
+    bool is_tried = report.chosen == Tuning{};
+    for (const TuningTrial &trial : report.trials) {
+        EXPECT_TRUE(trial.failure.empty()) << name_of(trial.tuning) << ": " << trial.failure;
+        EXPECT_TRUE(trial.same_image) << name_of(trial.tuning);
+        EXPECT_EQ(trial.gains.size(), 3u);
+        is_tried = is_tried || (trial.tuning == report.chosen && trial.median_gain >= 1.03);
+    }
+    EXPECT_TRUE(is_tried) << name_of(report.chosen);
+}
+
+TEST(Tuner, LeavesOutWhatTheDeviceDoesNotTake) {
+    TuningOptions options;
+    options.turns = 1;
+    options.seconds_a_turn = 0.001;
+    const TuningTrial trial = try_tuning(shared_device(), "pt", small_room(), {1u << 20, 0}, options);
+    EXPECT_FALSE(trial.failure.empty());
+    EXPECT_TRUE(trial.gains.empty());
+}
+
+class TunedImages : public ::testing::TestWithParam<const char *> {};
+
+TEST_P(TunedImages, AreTheSameBitForBit) {
+    Scene scene = own_scene("materials.xml", 64, 48);
+    scene.settings.samples_per_pixel = 4;
+    const Image image = render(scene, {}, GetParam()).image;
+    for (const std::uint32_t work_group : {16u, 32u, 128u, 256u}) {
+        RenderOptions options;
+        options.work_group_size = work_group;
+        options.batch_size = 1000;
+        EXPECT_TRUE(equal_bits(image, render(scene, options, GetParam()).image)) << work_group;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, TunedImages, ::testing::Values("pt", "gpt"),
+                         [](const auto &info) { return std::string(info.param); });
+
+} // namespace
+} // namespace gradus::testing
