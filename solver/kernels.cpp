@@ -71,7 +71,7 @@ Kernels::Kernels(Device &device, Precision precision, std::uint32_t channels, We
         wanted.push_back(&entry);
         KernelRequest request{entry.name, fmt::format("kernels/solver/{}.cl", entry.file), entry.name, {}};
         if (entry.definition)
-            request.definitions[entry.definition] = "1";
+            request.definitions.emplace(entry.definition, "1");
         requests.push_back(std::move(request));
     }
     std::vector<Kernel> built = library.build(requests);
