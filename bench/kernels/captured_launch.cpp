@@ -50,16 +50,16 @@ std::uint32_t number_at(const char *column, std::size_t row) {
 }
 
 /// Two ways to give a kernel other values. A whole number may be an index, so each row gets that of a row which the
-/// launch takes; where all are equal, 0 or 1.
+/// launch takes; where all are equal, and the second time in columns of tables that may hold flags, 0 or 1.
 constexpr int disturbances = 2;
 
-void disturb(char *column, std::size_t rows, bool is_uint, std::size_t taken_row, int way) {
+void disturb(char *column, std::size_t rows, bool is_uint, bool is_table, std::size_t taken_row, int way) {
     if (is_uint) {
         std::uint32_t number = number_at(column, taken_row);
         bool all_equal = true;
         for (std::size_t row = 0; row < rows; ++row)
             all_equal = all_equal && number_at(column, row) == number;
-        if (all_equal)
+        if (all_equal || (way == 1 && is_table && number <= 1))
             number = number == 0 ? 1 : 0;
         for (std::size_t row = 0; row < rows; ++row)
             std::memcpy(column + row * float_bytes, &number, sizeof number);
@@ -209,7 +209,7 @@ double CapturedLaunch::table_bytes_an_item() {
             bool is_read = false, is_written = differ(result[b], captured.content, first, size);
             for (int way = 0; way < disturbances; ++way) {
                 std::vector<char> disturbed = captured.content;
-                disturb(&disturbed[first], rows, is_list || captured.is_uint[c],
+                disturb(&disturbed[first], rows, is_list || captured.is_uint[c], !is_list,
                         std::min(is_list ? place : taken_row, rows - 1), way);
                 write(captured.buffer, disturbed);
                 launch.run();

@@ -49,6 +49,10 @@ int run(const Arguments &arguments) {
         settings.kinds = {"diffuse", "roughdielectric_ggx"};
         settings.cases = std::min(settings.cases, 20'000u);
     }
+    if (arguments.parts.contains("remarks")) {
+        remark_on_kernels(settings);
+        return 0;
+    }
     nlohmann::json results = {{"device", device.description().name},
                               {"platform", device.description().platform},
                               {"driver", device.description().driver},
@@ -78,8 +82,9 @@ int main(int argc, char **argv) {
 
     Arguments arguments;
     CLI::App app("Kernel benchmarks. Every ratio is of runs that are mixed in one process, the median of --repeats");
-    app.add_option("--parts", arguments.parts, "Any of throughput, accuracy, tuning")
-        ->check(CLI::IsMember(all_parts))
+    app.add_option("--parts", arguments.parts,
+                   "Any of throughput, accuracy, tuning; or remarks, what PoCL's compiler says of each kernel")
+        ->check(CLI::IsMember({"throughput", "accuracy", "tuning", "remarks"}))
         ->delimiter(',');
     app.add_option("--scene", arguments.scene, "The room whose surfaces take each kind")->capture_default_str();
     app.add_option("--kinds", arguments.kinds, "BSDF kinds")

@@ -27,6 +27,9 @@ struct Settings {
 /// Every kernel of a render and of a solve in its builds, over queue sizes.
 nlohmann::json measure_throughput(const Settings &settings);
 
+/// Has PoCL's compiler make its remarks on each of these kernels; see vector_width.h.
+void remark_on_kernels(const Settings &settings);
+
 /// Errors of the float and relaxed builds of kernels/lib against the double build, on the device.
 nlohmann::json measure_accuracy(const Settings &settings);
 

@@ -78,7 +78,21 @@ class Throughput {
     explicit Throughput(const Settings &settings) : settings_(settings), device_(settings.device) {}
 
     nlohmann::json measure() {
+        if (settings_.asks_vectoriser)
+            widths_ = pocl_vector_widths(settings_);
         print_heading();
+        measure_queues();
+        return rows_;
+    }
+
+    /// Has the compiler make its remarks on each kernel, in place of measuring it.
+    void remark() {
+        is_remarking_ = true;
+        measure_queues();
+    }
+
+  private:
+    void measure_queues() {
         for (const std::uint32_t queue : settings_.queue_sizes) {
             known_.clear();
             for (const std::string &kind : settings_.kinds) {
@@ -92,10 +106,8 @@ class Throughput {
             }
             measure_solver(queue);
         }
-        return rows_;
     }
 
-  private:
     /// `work` is done twice: once to learn which launch of each kernel is the largest, once to measure there.
     void measure_launches(std::uint32_t queue, const std::function<void()> &work) {
         struct Largest {
@@ -126,7 +138,10 @@ class Throughput {
                 !known_.insert(launch.request.name).second)
                 return;
             CapturedLaunch captured(device_, launch);
-            measure_kernel(queue, captured);
+            if (is_remarking_)
+                print_remarks(captured);
+            else
+                measure_kernel(queue, captured);
         });
     }
 
@@ -166,8 +181,6 @@ class Throughput {
         // By experiment once, at the smallest queue: the columns are the same at every size.
         if (!bytes_.contains(launch.name()))
             bytes_[launch.name()] = bytes_an_item(launch);
-        if (settings_.asks_vectoriser && !widths_.contains(launch.name()))
-            widths_[launch.name()] = pocl_vector_width(launch);
         const std::optional<double> bytes = bytes_.at(launch.name());
 
         std::map<std::string, std::function<double()>> builds;
@@ -228,9 +241,8 @@ class Throughput {
         if (const auto wide = ratio("double"))
             row["float_over_double"] = 1 / *wide;
         const auto width = widths_.find(launch.name());
-        const std::optional<int> items_a_vector = width == widths_.end() ? std::nullopt : width->second;
-        if (items_a_vector)
-            row["vector_width"] = *items_a_vector;
+        if (width != widths_.end())
+            row["vector_width"] = width->second;
         const auto text = [](std::optional<double> value, const char *format) {
             return value ? fmt::format(fmt::runtime(format), *value) : std::string("-");
         };
@@ -240,20 +252,23 @@ class Throughput {
         fmt::print("  {:<32} {:>8} {:>9.2f} {:>8} {:>8} {:>7} {:>7} {:>7}\n", launch.name(), launch.items(),
                    1e-6 * double(launch.items()) / single, text(inverse(ratio("relaxed")), "{:.2f}"),
                    text(inverse(ratio("double")), "{:.2f}"), text(bytes, "{:.0f}"), text(share, "{:.2f}"),
-                   items_a_vector ? std::to_string(*items_a_vector) : "-");
+                   width != widths_.end() ? std::to_string(width->second) : "-");
         rows_.push_back(row);
     }
 
     const Settings &settings_;
     Device &device_;
+    bool is_remarking_ = false;
     std::set<std::string> known_; ///< kernels that this queue size has been measured for
     std::map<std::string, std::optional<double>> bytes_;
-    std::map<std::string, std::optional<int>> widths_;
+    std::map<std::string, int> widths_; ///< of vectors
     nlohmann::json rows_ = nlohmann::json::array();
 };
 
 } // namespace
 
 nlohmann::json measure_throughput(const Settings &settings) { return Throughput(settings).measure(); }
+
+void remark_on_kernels(const Settings &settings) { Throughput(settings).remark(); }
 
 } // namespace gradus::bench

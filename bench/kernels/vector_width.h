@@ -2,13 +2,19 @@
 #pragma once
 
 #include "bench/kernels/captured_launch.h"
+#include "bench/kernels/measurements.h"
 
-#include <optional>
+#include <map>
+#include <string>
 
 namespace gradus::bench {
 
-/// How many work-items PoCL runs in one vector; 1 where it did not vectorise the loop over them, nothing on another
-/// device or where PoCL does not tell. Compiles the kernel once more, for only a compiler that runs makes remarks.
-std::optional<int> pocl_vector_width(CapturedLaunch &launch);
+/// How many work-items PoCL runs in one vector, by kernel: 1 where it did not vectorise the loop over them. Empty on
+/// another device. PoCL's compiler says so in remarks on stdout, if an environment variable was set when it was loaded;
+/// so this runs the program again (`--parts remarks`, which prints them) and reads what that prints.
+std::map<std::string, int> pocl_vector_widths(const Settings &settings);
+
+/// Compiles the kernel anew, so that its compiler makes its remarks, between two lines that say which it is.
+void print_remarks(CapturedLaunch &launch);
 
 } // namespace gradus::bench

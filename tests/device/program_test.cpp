@@ -1,5 +1,6 @@
 // Building kernels and launching them.
 #include "runtime/device/kernel_source.h"
+#include "runtime/device/launch_observer.h"
 #include "runtime/device/opencl.h"
 #include "runtime/device/program.h"
 #include "runtime/error.h"
@@ -43,6 +44,33 @@ TEST_F(Program, LaunchesWithArgumentsByName) {
     std::vector<std::uint32_t> result(8);
     range.read(result.data(), 32);
     EXPECT_THAT(result, ::testing::ElementsAre(0, 4, 9, 23, canary, canary, canary, canary));
+}
+
+TEST_F(Program, TellsAnObserverOfLaunchesAndNotOfItsOwn) {
+    std::vector<std::string> seen;
+    const Buffer offset(device, "offset", 64), range(device, "range", 64);
+    const auto launch = [&] {
+        Kernel kernel = library.build({scan})[0];
+        kernel.bind(offset);
+        kernel.bind(range);
+        kernel.set("bins", 1);
+        kernel.set("chunks", 3);
+        kernel.launch(1);
+    };
+    observe_launches(device, [&](const Launch &seen_launch) {
+        seen.push_back(seen_launch.request.name);
+        EXPECT_EQ(seen_launch.items, 1u);
+        EXPECT_EQ(std::get<std::uint32_t>(seen_launch.arguments.at("chunks").value), 3u);
+        EXPECT_EQ(std::get<Buffer>(seen_launch.arguments.at("range").value).bytes(), range.bytes());
+        EXPECT_TRUE(seen_launch.arguments.at("range").type.starts_with("uint"));
+        launch();
+    });
+    launch();
+    launch();
+    EXPECT_EQ(seen.size(), 2u);
+    observe_launches(device, {});
+    launch();
+    EXPECT_EQ(seen.size(), 2u);
 }
 
 TEST_F(Program, WillNotLaunchWithoutAnArgument) {
