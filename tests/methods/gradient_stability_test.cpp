@@ -75,10 +75,9 @@ TEST(GradientStability, InACaustic) {
     scene.parallelogram({-0.7f, 2.5f, -0.7f}, {1.4f, 0, 0}, {0, 0, 1.4f}, grey, light);
     scene.look({0, 1.3, -2.6}, {0, 0.15, 0}, 30);
     expect_no_bias(gradient_bias(scene.scene, {8, 64, 256}),
-                   {area,
-                    "caustics: reconnecting to a Dirac vertex carries nothing, so the shift fails and noise stays",
+                   {area, "caustics: reconnecting to a Dirac vertex carries nothing",
                     "a glass ball over a floor, and what lies behind it",
-                    "the base path counts for itself where the shift fails; unbiased, without gain", 0.4});
+                    "copies half vectors along the chain, between rough vertices too; unbiased", 0.4});
 }
 
 // A card before a wall: at both edges of its shadow a pixel whose path sees the light has a neighbour whose path does
