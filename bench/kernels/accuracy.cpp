@@ -126,7 +126,7 @@ nlohmann::json measure_accuracy(const Settings &settings) {
                "absolute), and in units in the last place\n  {:<24} {:<20} {:<31} {:<8} {:>8} {:>8} {:>9} {:>9}\n",
                "function", "result", "domain", "build", "99.9 %", "largest", "99.9 % ULP", "largest");
     nlohmann::json rows = nlohmann::json::array(), rates = nlohmann::json::array();
-    for (MeasuredFunction &f : std::vector<MeasuredFunction>(measured_functions(settings.kinds))) {
+    for (const MeasuredFunction &f : measured_functions(settings.kinds)) {
         std::mt19937_64 random(17);
         const std::size_t arguments = f.domains.front().draw(random).size(), cases = settings.cases;
         Build single(settings.device, f, Precision::single, arguments, cases);
