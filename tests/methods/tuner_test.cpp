@@ -42,22 +42,30 @@ TEST(Tuner, LeavesOutWhatTheDeviceDoesNotTake) {
     EXPECT_TRUE(trial.gains.empty());
 }
 
-class TunedImages : public ::testing::TestWithParam<const char *> {};
+struct TunedImage {
+    const char *method, *scene;
+    std::vector<std::uint32_t> work_groups; ///< each has kernels of its own to compile
+};
+
+class TunedImages : public ::testing::TestWithParam<TunedImage> {};
 
 TEST_P(TunedImages, AreTheSameBitForBit) {
-    Scene scene = own_scene("materials.xml", 64, 48);
+    const auto &[method, name, work_groups] = GetParam();
+    Scene scene = own_scene(std::string(name) + ".xml", 64, 48);
     scene.settings.samples_per_pixel = 4;
-    const Image image = render(scene, {}, GetParam()).image;
-    for (const std::uint32_t work_group : {16u, 32u, 128u, 256u}) {
+    const Image image = render(scene, {}, method).image;
+    for (const std::uint32_t work_group : work_groups) {
         RenderOptions options;
         options.work_group_size = work_group;
         options.batch_size = 1000;
-        EXPECT_TRUE(equal_bits(image, render(scene, options, GetParam()).image)) << work_group;
+        EXPECT_TRUE(equal_bits(image, render(scene, options, method).image)) << work_group;
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, TunedImages, ::testing::Values("pt", "gpt"),
-                         [](const auto &info) { return std::string(info.param); });
+INSTANTIATE_TEST_SUITE_P(Methods, TunedImages,
+                         ::testing::Values(TunedImage{"pt", "materials", {16, 32, 128, 256}},
+                                           TunedImage{"gpt", "cornell-box", {32, 256}}),
+                         [](const auto &info) { return std::string(info.param.method); });
 
 } // namespace
 } // namespace gradus::testing
