@@ -101,7 +101,7 @@ class Measurement:
     def mitsuba(self, python, samples):
         command = [python, PEERS / "mitsuba_images.py", self.scene.file, self.folder]
         command += ["--size", f"{self.scene.width}x{self.scene.height}", "--spp", *samples]
-        command += ["--seeds", *range(1, self.arguments.seeds + 1), "-D", "rfilter=box"]
+        command += ["--seeds", *range(1, self.arguments.seeds + 1), *renders.box_filter(self.scene)]
         for name, value in self.scene.parameters.items():
             command += ["-D", f"{name}={value}"]
         if self.scene.max_depth is not None:

@@ -83,12 +83,18 @@ def find_scene(text):
     return Scene(f"{pathlib.Path(path).stem} {size}", pathlib.Path(path).resolve(), int(width), int(height))
 
 
+def box_filter(scene):
+    """References are made with the box filter: the options that say so, where the scene has that parameter."""
+    return ["-D", "rfilter=box"] if "$rfilter" in scene.file.read_text() else []
+
+
 def render(gradus, scene, method, seed, output, samples=None, seconds=None, aov=False, png=False, options=()):
     """Renders so many samples a pixel, or so long, to `output` (.exr) and returns the statistics. aov: with the layers
     albedo, normal, depth and variance; png: a picture beside it, tone-mapped; options: more of `gradus render`."""
     record = pathlib.Path(output).with_suffix(".json")
     command = [gradus, "render", scene.file, "-o", output, "--stats", record, "--quiet", "--method", method]
-    command += ["--seed", seed, "--size", f"{scene.width}x{scene.height}", "-D", "rfilter=box"]
+    command += ["--seed", seed, "--size", f"{scene.width}x{scene.height}"]
+    command += box_filter(scene)
     for name, value in scene.parameters.items():
         command += ["-D", f"{name}={value}"]
     if scene.max_depth is not None:
