@@ -361,6 +361,10 @@ GRADUS_LIB_END
     AT_IN(pointer, table, column##_r, row) = (value).r;                                                                \
     AT_IN(pointer, table, column##_g, row) = (value).g;                                                                \
     AT_IN(pointer, table, column##_b, row) = (value).b
+#define SCALE_RGB(table, column, row, factor)                                                                          \
+    AT(table, column##_r, row) *= (factor);                                                                            \
+    AT(table, column##_g, row) *= (factor);                                                                            \
+    AT(table, column##_b, row) *= (factor)
 #define ADD_RGB(table, column, row, value)                                                                             \
     AT(table, column##_r, row) += (value).r;                                                                           \
     AT(table, column##_g, row) += (value).g;                                                                           \

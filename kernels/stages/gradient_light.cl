@@ -120,8 +120,7 @@ STAGE gradient_light(uint count, uint unit, uint first, uint capacity, uint slot
         real jacobian = R(1);
         jacobian = is_point ? nearer : jacobian;
         jacobian = is_surface ? (cosine > R(0) && base_cosine > R(0) ? nearer * cosine / base_cosine : R(0)) : jacobian;
-        /* The same point of the same light: chosen with the same density by area. Spheres are sampled by their cones.
-         */
+        /* The same point of the same light, chosen with the same density by area. Spheres are sampled by cones. */
         real own_light = jacobian > R(0) ? R(1) : R(0);
 #if TRAIT_LIGHT_SPHERE
         const vec3 to_center = v3_sub(FIELD_V3(light, lights, chosen.light, p), from);

@@ -78,9 +78,7 @@ STAGE gradient_scatter(uint count, uint unit, uint first, uint capacity, uint sl
 #pragma unroll
     for (uint j = 0; j < 4; ++j) {
         const size_t at = (size_t)j * capacity + row;
-        AT(shifted, value_r, at) *= inverse_survival;
-        AT(shifted, value_g, at) *= inverse_survival;
-        AT(shifted, value_b, at) *= inverse_survival;
+        SCALE_RGB(shifted, value, at, inverse_survival);
     }
 #else
     /* From here on the row's throughput counts from 1, but for its size, which roulette goes by; the slot has the
@@ -90,9 +88,7 @@ STAGE gradient_scatter(uint count, uint unit, uint first, uint capacity, uint sl
 #pragma unroll
     for (uint j = 0; j < 4; ++j) {
         const size_t to = (size_t)j * slots + slot;
-        AT(difference, throughput_r, to) *= inverse;
-        AT(difference, throughput_g, to) *= inverse;
-        AT(difference, throughput_b, to) *= inverse;
+        SCALE_RGB(difference, throughput, to, inverse);
     }
     SET_RGB(vertex, throughput, row, rgb_gray(alive ? brightest / survival : R(0)));
 #endif

@@ -28,14 +28,13 @@ STAGE scatter(uint count, uint unit, uint first, uint capacity, uint max_depth, 
 #endif
     /* Mitsuba's rule: survive with the largest throughput, freed of the radiance scaling by eta^2, at most 0.95. */
     real survival = depth + 1u >= roulette_depth ? r_min(rgb_max(throughput) * eta * eta, R(0.95)) : R(1);
+    int alive = depth + 1u < max_depth && s.pdf > R(0);
 #ifdef KEEP_DARK
     /* A black path may have offset paths that are not: it must go on. No roulette at its first vertex. */
     survival = R(1);
-    const int bright = 1;
 #else
-    const int bright = rgb_max(throughput) > R(0);
+    alive = alive && rgb_max(throughput) > R(0) && u.d < survival;
 #endif
-    const int alive = depth + 1u < max_depth && s.pdf > R(0) && bright && u.d < survival;
     throughput = rgb_scale(throughput, R(1) / (alive ? survival : R(1)));
 
     const vec3 direction = v3_normalize(frame_to_world(axes, s.wo));

@@ -27,31 +27,24 @@ KernelRequest variant(KernelRequest request, const std::string &name, const std:
 
 std::uint32_t chunks_of(std::uint32_t rows) { return (rows + partition_chunk - 1) / partition_chunk; }
 
+/// Whether offset paths may reconnect there.
+bool is_rough(const Bsdf &bsdf, double threshold) {
+    return bsdf.kind == BsdfKind::diffuse ||
+           (!bsdf_kind_is_dirac(bsdf_kind_name(bsdf)) && std::min(bsdf.alpha_u, bsdf.alpha_v) >= threshold);
+}
+
 /// By material record, the kind with what `kind` in kernels/shared/tables.h says of it.
-std::vector<std::uint32_t> shift_kinds(const SceneTables &tables, double threshold) {
-    const std::vector<std::string> names = all_bsdf_kinds();
+std::vector<std::uint32_t> shift_kinds(const Scene &scene, double threshold) {
     std::vector<std::uint32_t> kinds;
-    for (std::size_t record = 0; record < tables.material_kind.size(); ++record) {
-        const std::uint32_t kind = tables.material_kind[record];
-        const float *fields = &tables.materials[record * material_stride];
-        const bool is_dirac = bsdf_kind_is_dirac(names[kind]);
-        const bool is_rough = !is_dirac && (kind == bsdf_kind_diffuse ||
-                                            std::min(fields[material_alpha_u], fields[material_alpha_v]) >= threshold);
-        kinds.push_back(kind | (is_rough ? kind_is_rough : 0) | (is_dirac ? kind_is_dirac : 0));
-    }
+    for (const Bsdf &bsdf : material_records(scene))
+        kinds.push_back(bsdf_kind_number(bsdf) | (is_rough(bsdf, threshold) ? kind_is_rough : 0) |
+                        (bsdf_kind_is_dirac(bsdf_kind_name(bsdf)) ? kind_is_dirac : 0));
     return kinds;
 }
 
 TraitMap gradient_traits(const Scene &scene, const RenderOptions &options) {
-    const auto is_rough = [&](const Bsdf &bsdf) {
-        return bsdf.kind == BsdfKind::diffuse || (!bsdf_kind_is_dirac(bsdf_kind_name(bsdf)) &&
-                                                  std::min(bsdf.alpha_u, bsdf.alpha_v) >= options.shift_threshold);
-    };
     bool apart = options.all_traits;
-    for (const Shape &shape : scene.shapes) {
-        const Material &material = scene.materials[shape.material];
-        apart = apart || !is_rough(material.front) || (material.two_sided && !is_rough(material.back));
-    }
+    for_each_bsdf(scene, [&](const Bsdf &bsdf) { apart = apart || !is_rough(bsdf, options.shift_threshold); });
     return {{"TRAIT_SHARED_JITTER", 1}, {"TRAIT_APART", apart}};
 }
 
@@ -66,6 +59,8 @@ KernelRequest strict(KernelRequest request) {
 GradientPathTracer::GradientPathTracer(Device &device, const Scene &scene, const RenderOptions &options)
     : PathTracer(device, scene, options, gradient_traits(scene, options)) {
     gradient_kinds_.resize(scene_tables_.kinds.size());
+    const std::vector<std::uint32_t> kinds = shift_kinds(scene, options.shift_threshold);
+    material_kind_ = Buffer(device, "material_kind", kinds.data(), kinds.size() * sizeof(kinds[0]));
     Additions additions;
     additions.phases = keeps_apart() ? phases : phases - 1;
     additions.whole_frames = true;
@@ -169,8 +164,6 @@ void GradientPathTracer::allocate() {
     primary_.clear(); // rows of escaped paths have no material, and are read all the same
     outcome_ = Buffer(device_, "outcome", shift_outcomes * chunks_of(tables_->capacity) * sizeof(std::uint32_t));
     outcome_.clear();
-    const std::vector<std::uint32_t> kinds = shift_kinds(scene_tables_, options_.shift_threshold);
-    material_kind_ = Buffer(device_, "material_kind", kinds.data(), kinds.size() * sizeof(kinds[0]));
     if (keeps_apart()) {
         for (Buffer &shifted : shifted_)
             shifted = table("shifted", shifted_columns, 4 * capacity);
@@ -184,9 +177,8 @@ void GradientPathTracer::allocate() {
 }
 
 void GradientPathTracer::bind_kernels() {
-    std::vector<const Buffer *> buffers = {&material_kind_, &primary_,    &gain_,   &link_,
-                                           &prefix_,        &difference_, &direct_, &gradient_film_};
-    buffers.push_back(&outcome_);
+    std::vector<const Buffer *> buffers = {&material_kind_, &primary_, &gain_,          &link_,   &prefix_,
+                                           &difference_,    &direct_,  &gradient_film_, &outcome_};
     if (keeps_apart())
         buffers.insert(buffers.end(), {&offset_vertex_, &offset_ray_, &offset_state_});
     std::vector<Kernel *> kernels = more_kernels_;
@@ -357,10 +349,10 @@ bool GradientPathTracer::render_batch() {
     if (done_ >= total_)
         return false;
     const auto start = std::chrono::steady_clock::now();
-    if (done_ == 0 && settings_.max_depth != 0 && !settings_.hide_emitters)
-        direct_edges_ =
-            sample_direct_edges(scene_tables_, film_settings_, tracer_, options_.seed,
-                                static_cast<std::uint32_t>(settings_.samples_per_pixel), statistics_.rays["edge"]);
+    if (!direct_edges_ && settings_.max_depth != 0 && !settings_.hide_emitters)
+        direct_edges_ = sample_direct_edges(scene_tables_, film_settings_, tracer_, options_.seed,
+                                            static_cast<std::uint32_t>(settings_.samples_per_pixel), edge_rays_);
+    statistics_.rays["edge"] = edge_rays_;
     const std::uint32_t paths = begin_pass();
     if (settings_.max_depth == 0) {
         for (Buffer *buffer : {&tables_->radiance, &tables_->feature, &direct_, &prefix_, &difference_})
@@ -447,7 +439,7 @@ Image GradientPathTracer::image() {
     return reconstruct(*solver_, whole,
                        read_gradient_film(HostTable(gradient_film_, film_->pixels(), options_.precision),
                                           film_->pixels(), done_ / film_->pixels()),
-                       direct_edges_, options_);
+                       direct_edges_.value_or(std::vector<DirectPixel>()), options_);
 }
 
 void GradientPathTracer::count_outcomes(Range rows) {

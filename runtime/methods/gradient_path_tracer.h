@@ -13,6 +13,7 @@
 #include "solver/poisson_solver.h"
 
 #include <memory>
+#include <optional>
 
 namespace gradus {
 
@@ -81,7 +82,8 @@ class GradientPathTracer final : public PathTracer {
     Kernel shift_[2], shift_escaped_[2], offset_emission_[2],
         offset_escape_[2]; ///< [1]: where offset paths may be apart
     std::vector<GradientKernels> gradient_kinds_;
-    std::vector<DirectPixel> direct_edges_;
+    std::optional<std::vector<DirectPixel>> direct_edges_; ///< once sampled: a restart needs no others
+    std::uint64_t edge_rays_ = 0;
     std::unique_ptr<PoissonSolver> solver_;
     Buffer material_kind_, primary_, gain_, link_, prefix_, difference_, direct_, gradient_film_;
     Buffer shifted_[2]; ///< as BatchTables::vertex; the same where none stay apart

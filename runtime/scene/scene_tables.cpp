@@ -223,24 +223,30 @@ void add_material_record(const Bsdf &bsdf, SceneTables &tables) {
     record[material_alpha_u] = bsdf.alpha_u;
     record[material_alpha_v] = bsdf.alpha_v;
     tables.material_back.push_back(static_cast<std::uint32_t>(tables.material_back.size()));
-    const std::vector<std::string> all = all_bsdf_kinds();
-    tables.material_kind.push_back(
-        static_cast<std::uint32_t>(std::find(all.begin(), all.end(), bsdf_kind_name(bsdf)) - all.begin()));
 }
 
+bool has_own_back(const Material &material) { return material.two_sided && !(material.back == material.front); }
+
 void add_materials(const Scene &scene, SceneTables &tables) {
-    for (const Material &material : scene.materials)
-        add_material_record(material.front, tables);
-    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-        const Material &material = scene.materials[i];
-        if (material.two_sided && !(material.back == material.front)) {
-            tables.material_back[i] = static_cast<std::uint32_t>(tables.material_back.size());
-            add_material_record(material.back, tables);
-        }
-    }
+    for (const Bsdf &bsdf : material_records(scene))
+        add_material_record(bsdf, tables);
+    std::uint32_t back = static_cast<std::uint32_t>(scene.materials.size());
+    for (std::size_t i = 0; i < scene.materials.size(); ++i)
+        if (has_own_back(scene.materials[i]))
+            tables.material_back[i] = back++;
 }
 
 } // namespace
+
+std::vector<Bsdf> material_records(const Scene &scene) {
+    std::vector<Bsdf> records;
+    for (const Material &material : scene.materials)
+        records.push_back(material.front);
+    for (const Material &material : scene.materials)
+        if (has_own_back(material))
+            records.push_back(material.back);
+    return records;
+}
 
 SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits) {
     SceneTables tables;

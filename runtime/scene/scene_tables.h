@@ -15,7 +15,6 @@ struct SceneTables {
     /// By primitive. The material bears the bit material_two_sided; the bins are those of `classify`, by the side.
     std::vector<std::uint32_t> primitive_material, primitive_light, primitive_bin, primitive_back_bin;
     std::vector<std::uint32_t> material_back;            ///< by material record: the record of its back
-    std::vector<std::uint32_t> material_kind;            ///< by material record: its number of GRADUS_BSDF_KINDS
     std::vector<std::uint32_t> light_kinds, light_alias; ///< by light
     std::vector<std::string> kinds; ///< the BSDF kinds of the scene: kind k has the bins 1 + 2 k and 2 + 2 k
     std::uint32_t triangle_count = 0, light_count = 0, environment_light = 0;
@@ -24,6 +23,9 @@ struct SceneTables {
 
 /// Lays out the scene for these traits. `film_width` and `film_height` are those of the full film.
 SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits);
+
+/// The BSDF of each material record: the fronts of all materials, then the backs that differ from them.
+std::vector<Bsdf> material_records(const Scene &scene);
 
 /// Bytes that the tables take.
 std::size_t table_bytes(const SceneTables &tables);

@@ -48,17 +48,6 @@ bool is_anisotropic(const Bsdf &bsdf) {
            bsdf.alpha_u != bsdf.alpha_v;
 }
 
-/// Calls visit(bsdf) for each side of each material that a shape has.
-template <class Visit>
-void for_each_bsdf(const Scene &scene, Visit visit) {
-    for (const Shape &shape : scene.shapes) {
-        const Material &material = scene.materials[shape.material];
-        visit(material.front);
-        if (material.two_sided)
-            visit(material.back);
-    }
-}
-
 } // namespace
 
 std::string bsdf_kind_name(const Bsdf &bsdf) {
@@ -85,6 +74,13 @@ std::vector<std::string> all_bsdf_kinds() {
     for (const KindEntry &kind : kinds)
         names.push_back(kind.name);
     return names;
+}
+
+std::uint32_t bsdf_kind_number(const Bsdf &bsdf) {
+    const std::string name = bsdf_kind_name(bsdf);
+    return static_cast<std::uint32_t>(
+        std::find_if(std::begin(kinds), std::end(kinds), [&](const KindEntry &kind) { return kind.name == name; }) -
+        std::begin(kinds));
 }
 
 std::vector<std::string> bsdf_kinds(const Scene &scene) {

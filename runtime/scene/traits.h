@@ -3,6 +3,7 @@
 
 #include "runtime/scene/scene.h"
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <utility>
@@ -29,6 +30,20 @@ std::string bsdf_kind_name(const Bsdf &bsdf);
 
 /// All of GRADUS_BSDF_KINDS by name; a kind's place is its number in kernels.
 std::vector<std::string> all_bsdf_kinds();
+
+/// That place for the kind of one Bsdf.
+std::uint32_t bsdf_kind_number(const Bsdf &bsdf);
+
+/// Calls visit(bsdf) for each side of each material that a shape has.
+template <class Visit>
+void for_each_bsdf(const Scene &scene, Visit visit) {
+    for (const Shape &shape : scene.shapes) {
+        const Material &material = scene.materials[shape.material];
+        visit(material.front);
+        if (material.two_sided)
+            visit(material.back);
+    }
+}
 
 /// The kinds that occur on the scene's shapes, in the order of GRADUS_BSDF_KINDS.
 std::vector<std::string> bsdf_kinds(const Scene &scene);
