@@ -1,0 +1,60 @@
+// The shifts of a render, taken back: at each launch of the stage `shift` every offset path that arrives is made a base
+// path of its own, and the same kernel takes it to where its base path came from.
+#pragma once
+
+#include "kernels/lib/vector.h"
+#include "runtime/device/launch_observer.h"
+#include "runtime/methods/method.h"
+#include "runtime/scene/scene_tables.h"
+#include "runtime/trace/tracer.h"
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace gradus::testing {
+
+/// What was found of the shifts of one kind, reconnections or copies of the half vector.
+struct InverseShifts {
+    std::uint64_t shifts = 0;     ///< those that arrive, with a density that is not 0
+    std::uint64_t one_way = 0;    ///< of them those whose way back fails
+    std::uint64_t other_kind = 0; ///< or is a shift of the other kind
+    std::uint64_t elsewhere = 0;  ///< or ends at another vertex: by more than 1e-3 of the way there
+    /// Of the others, |J_ij J_ji - 1|, the larger factor taken as the one above 1.
+    std::vector<float> jacobian_errors;
+};
+
+/// Watches the launches of a device while it exists.
+class ShiftInverter {
+  public:
+    ShiftInverter(Device &device, const Scene &scene);
+    ~ShiftInverter();
+    ShiftInverter(const ShiftInverter &) = delete;
+    ShiftInverter &operator=(const ShiftInverter &) = delete;
+
+    const InverseShifts &reconnections() const { return found_[0]; }
+    const InverseShifts &copies() const { return found_[1]; }
+
+  private:
+    struct Base;
+    void on_launch(const Launch &launch);
+    /// The shifts of a launch that arrive.
+    std::vector<Base> arrivals(const Launch &launch);
+    void take_back(const Launch &launch, const std::vector<Base> &bases);
+    std::uint32_t record_found(std::uint32_t primitive, lib_float::vec3 origin, lib_float::vec3 direction) const;
+    lib_float::vec3 hit(std::uint32_t primitive, lib_float::vec3 origin, lib_float::vec3 direction) const;
+    Kernel &kernel_for(const Launch &launch, bool as_apart);
+    void bind_rest(Kernel &kernel, const Launch &launch) const;
+    std::uint32_t number(const Launch &launch, const char *name) const;
+
+    Device &device_;
+    SceneTables tables_;
+    Tracer tracer_;
+    std::map<std::pair<std::string, std::string>, Kernel> kernels_; ///< by APART and ESCAPED
+    std::map<std::string, Launch::Argument> arguments_;             ///< the last that any launch had under each name
+    InverseShifts found_[2];
+};
+
+} // namespace gradus::testing

@@ -1,0 +1,93 @@
+// On the paths of renders: each shift has a way back, it ends where the base path is, and the product of both Jacobians
+// is 1. Gradient-domain path tracing is unbiased only if that is so.
+//
+// GRADUS_SHIFT_SAMPLES: samples a pixel of 128 x 96, a little more than 30000 shifts each.
+#include "tests/methods/reference_scene.h"
+#include "tests/methods/shift_inverse.h"
+#include "tests/support/render.h"
+#include "tests/support/stability.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace gradus::testing {
+namespace {
+
+struct InverseCase {
+    const char *name, *scene;
+    double threshold; ///< of the roughness from which on offset paths reconnect
+};
+
+void PrintTo(const InverseCase &c, std::ostream *out) { *out << c.name; }
+
+double quantile(std::vector<float> values, double share) {
+    if (values.empty())
+        return 0;
+    const auto place = values.begin() + std::ptrdiff_t(share * double(values.size() - 1));
+    std::nth_element(values.begin(), place, values.end());
+    return *place;
+}
+
+void record(const InverseCase &c, const char *area, const char *kind, const InverseShifts &s, double limit) {
+    if (s.shifts == 0)
+        return;
+    const std::string provoked_by = fmt::format("{} of {}, threshold {}", kind, c.scene, c.threshold);
+    const double shifts = double(s.shifts);
+    record_stability({area, "a shift without a way back biases the image", provoked_by,
+                      "what fails one way fails the other way: of two densities the smaller has a say",
+                      "shifts with no way back, or with one of another kind, of a million",
+                      1e6 * double(s.one_way + s.other_kind) / shifts, 30});
+    record_stability({area, "a way back that ends elsewhere biases the image", provoked_by,
+                      "rays and hits of both ways are computed alike; where they pass edges, rounding decides",
+                      "shifts whose way back ends further off than a thousandth of the way, of a million",
+                      1e6 * double(s.elsewhere) / shifts, 100});
+    record_stability({area, "Jacobians that are not each other's inverse bias the image", provoked_by,
+                      "formulas hold to rounding; rays start off the surface, which turns a short segment",
+                      "99.9th percentile of the product of Jacobians less 1", quantile(s.jacobian_errors, 0.999),
+                      limit});
+    ::testing::Test::RecordProperty(fmt::format("{}_shifts", area[0] == 'R' ? "reconnection" : "copy"),
+                                    std::to_string(s.shifts));
+    std::printf("%s: %llu shifts, %llu without a way back, %llu of another kind, %llu elsewhere; product of Jacobians "
+                "less 1: median %.2g, 99.9 %% %.2g, largest %.2g\n",
+                provoked_by.c_str(), static_cast<unsigned long long>(s.shifts),
+                static_cast<unsigned long long>(s.one_way), static_cast<unsigned long long>(s.other_kind),
+                static_cast<unsigned long long>(s.elsewhere), quantile(s.jacobian_errors, 0.5),
+                quantile(s.jacobian_errors, 0.999), quantile(s.jacobian_errors, 1));
+}
+
+class ShiftInverse : public ::testing::TestWithParam<InverseCase> {};
+
+TEST_P(ShiftInverse, BringsEveryPathBack) {
+    const InverseCase &c = GetParam();
+    Scene scene = own_scene(fmt::format("{}.xml", c.scene), 128, 96);
+    scene.settings.samples_per_pixel = GRADUS_SHIFT_SAMPLES;
+    RenderOptions options;
+    options.shift_threshold = c.threshold;
+    ShiftInverter inverter(shared_device(), scene);
+    render(scene, options, "gpt");
+    EXPECT_GT(inverter.reconnections().shifts + inverter.copies().shifts, 10000u * GRADUS_SHIFT_SAMPLES);
+    record(c, "Reconnection", "reconnections", inverter.reconnections(), 0.03);
+    record(c, "Half-vector copy", "copies", inverter.copies(), 0.01);
+}
+
+std::string name_of(const ::testing::TestParamInfo<InverseCase> &info) { return info.param.name; }
+
+INSTANTIATE_TEST_SUITE_P(
+    Methods, ShiftInverse,
+    ::testing::Values(InverseCase{"cornell_box", "cornell-box", 0.01}, InverseCase{"door_ajar", "door-ajar", 0.01},
+                      InverseCase{"holes", "holes", 0.01}, InverseCase{"materials", "materials", 0.01},
+                      InverseCase{"materials_copied", "materials", 0.21}, InverseCase{"plates", "plates", 0.01},
+                      InverseCase{"torus", "torus-rough-glass", 0.01}),
+    name_of);
+
+#if GRADUS_SHIFT_SAMPLES > 2
+/// Kernels that no other test compiles.
+INSTANTIATE_TEST_SUITE_P(Copies, ShiftInverse,
+                         ::testing::Values(InverseCase{"plates_copied", "plates", 0.2},
+                                           InverseCase{"torus_copied", "torus-rough-glass", 0.2}),
+                         name_of);
+#endif
+
+} // namespace
+} // namespace gradus::testing
