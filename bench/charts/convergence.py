@@ -81,7 +81,8 @@ def draw(pyplot, results, metric="relmse"):
     columns = min(COLUMNS, len(by_scene))
     rows = math.ceil(len(by_scene) / columns)
     width = max(4.1 * columns, 7)
-    figure, grid = pyplot.subplots(rows, columns, figsize=(width, (3.1 if columns > 1 else 4) * rows + 1), squeeze=False)
+    height = (3.1 if columns > 1 else 4) * rows + 1
+    figure, grid = pyplot.subplots(rows, columns, figsize=(width, height), squeeze=False)
     panels = [axes for row in grid for axes in row]
     for axes, (scene, methods) in zip(panels, by_scene.items()):
         lowest = min(entry["error"]["least"] for curve in methods.values() for entry in curve)

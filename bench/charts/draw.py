@@ -28,7 +28,7 @@ class Report:
 
     def __init__(self, folder, output, pyplot):
         self.folder, self.output, self.pyplot = folder, output, pyplot
-        self.sections, self.missing = [], []
+        self.sections, self.found, self.missing = [], [], []
 
     def read(self, name):
         path = self.folder / name
@@ -36,10 +36,11 @@ class Report:
             self.missing.append(f"{name} is not there")
             return None
         try:
-            return json.loads(path.read_text())
+            self.found.append(json.loads(path.read_text()))
         except json.JSONDecodeError as error:
             self.missing.append(f"{name} is no JSON: {error}")
             return None
+        return self.found[-1]
 
     def figure(self, name, draw, *arguments, **options):
         """The chart as HTML; empty without matplotlib."""
@@ -54,22 +55,19 @@ class Report:
         self.sections.append((heading, content))
 
 
-def ratio(entry, key):
-    found = entry.get(key)
+def ratio(found, at):
+    """Two cells: the ratio, and the error or the seconds at which it is; empty where it was not found."""
     if not found:
         return "", ""
-    return f"{'over ' if found.get('at_least') else ''}{found['ratio']:.2f}", f"{found[list(found)[0]]:.2g}"
+    return f"{'over ' if found.get('at_least') else ''}{found['ratio']:.2f}", f"{found[at]:.2g}"
 
 
 def summary_rows(results, metric):
     rows = []
     for entry in curves.summaries(results["points"], metric):
         slope = "" if entry["slope"] is None else f"{entry['slope']:.2f}"
-        time, at_error = ratio(entry, "time")
-        equal, at_seconds = (f"{entry['equal_time']['ratio']:.2f}", f"{entry['equal_time']['seconds']:.2g}") \
-            if entry.get("equal_time") else ("", "")
-        rows.append([entry["scene"], entry["method"], slope, time, at_error, equal, at_seconds,
-                     entry.get("against_denoised", "")])
+        rows.append([entry["scene"], entry["method"], slope, *ratio(entry.get("time"), "error"),
+                     *ratio(entry.get("equal_time"), "seconds"), entry.get("against_denoised", "")])
     return rows
 
 
@@ -130,6 +128,30 @@ def add_stages(report):
                    + page.folded("As a table", page.table(["scene", "method", *stages.COLOURS], rows)))
 
 
+def add_floors(report):
+    rows = []
+    for name, method in (("floor.json", "pt"), ("gradient-floor.json", "gpt")):
+        entries = (report.read(name) or {}).get("floor", [])
+        rows += [[entry["job"], method, f"{entry['ratio']['median']:.2f}",
+                  f"{entry['ratio']['least']:.2f} to {entry['ratio']['largest']:.2f}", entry["target"]]
+                 for entry in entries]
+    if rows:
+        report.add("Rendering against its floor", page.text(
+            "Seconds of a render over those in which Embree alone traces the same rays again.") + page.table(
+                ["job", "method", "render / Embree alone", "least to largest", "target"], rows))
+
+
+def add_holes(report):
+    results = report.read("holes.json")
+    if results:
+        rows = [[entry["holes"], f"{entry['gain']:.2f}", f"{entry['alpha']:g}", entry["paper"]]
+                for entry in results["holes"]]
+        report.add("Gradients behind more and more occluders", page.text(
+            f"The experiment of Kettunen et al. 2015, figure 3, on a scene of our own, at {results['spp']} samples a "
+            "pixel: L2 reconstruction with the alpha that is best.") + page.table(
+                ["holes along a side", "squared error of pt / of gpt", "alpha", "in the paper"], rows))
+
+
 def add_kernels(report):
     results = report.read("kernels.json")
     if not results:
@@ -157,11 +179,8 @@ def add_log(report):
 
 def add_conditions(report):
     """Machine and commands of each file that tells them, and what is missing."""
-    rows = []
-    for name in ("convergence.json", "profile.json", "pictures.json"):
-        path = report.folder / name
-        if path.exists() and "machine" in (results := json.loads(path.read_text())):
-            rows.append([" ".join(results["command"]), plotting.machine_line(results)])
+    rows = [[" ".join(results["command"]), plotting.machine_line(results)] for results in report.found
+            if "machine" in results]
     content = page.table(["command", "machine"], rows) if rows else ""
     content += "".join(page.text(f"Left out: {missing}.") for missing in report.missing)
     content += page.text("Measured by bench/report; drawn again from the JSON files by bench/report --draw-only.")
@@ -178,7 +197,8 @@ def main():
     output = arguments.output or arguments.folder / "report"
     output.mkdir(parents=True, exist_ok=True)
     report = Report(arguments.folder, output, plotting.pyplot())
-    for add in (add_convergence, add_pictures, add_stages, add_kernels, add_solver, add_log, add_conditions):
+    for add in (add_convergence, add_pictures, add_holes, add_stages, add_floors, add_kernels, add_solver, add_log,
+                add_conditions):
         add(report)
     for missing in report.missing:
         print(f"left out: {missing}")

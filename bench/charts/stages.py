@@ -8,8 +8,8 @@ PARTS = [
     ("gradient_light", "light sampling"), ("light_sample", "light sampling"),
     ("gradient_scatter", "scattering"), ("scatter", "scattering"),
     ("surface", "surface"),
-    ("shift", "shifts"), ("settle", "shifts"), ("gradient_begin", "shifts"), ("gradient connect", "shifts"),
-    ("gradient_connect", "shifts"), ("half", "shifts"),
+    ("shift", "shifts"), ("settle", "shifts"), ("close links", "shifts"), ("offset", "shifts"),
+    ("gradient_begin", "shifts"), ("gradient connect", "shifts"),
     ("accumulate", "film"), ("gradient_accumulate", "film"), ("gradient_combine", "film"),
 ]
 COLOURS = {

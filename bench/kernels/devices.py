@@ -11,55 +11,45 @@ import argparse
 import json
 import pathlib
 import statistics
-import subprocess
 import sys
-import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-sys.path.insert(0, str(ROOT / "bench" / "render"))
-import second_device  # noqa: E402
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "render"))
+import curves  # noqa: E402
+import renders  # noqa: E402
+import two_devices  # noqa: E402
 
-DEVICES = {"PoCL": "portable computing", "Intel": second_device.SELECTOR}
 TURNS = 3
 
 
 def measure(arguments, environment, device, folder):
-    file = pathlib.Path(folder) / "kernels.json"
+    """{(kernel, queue): what was measured}."""
+    record = pathlib.Path(folder) / "kernels.json"
     command = [arguments.bench, "--parts", "throughput", "--queue-bits", "10,14" if arguments.quick else "10,14,18",
-               "--device", device, "--repeats", arguments.repeats, "--no-vectoriser", "--json", file]
-    command += ["--quick"] if arguments.quick else []
-    result = subprocess.run([str(part) for part in command], capture_output=True, text=True, env=environment)
-    if result.returncode != 0:
-        sys.exit(f"failed with exit code {result.returncode}: {' '.join(map(str, command))}\n{result.stderr}")
-    return {(row["kernel"], row["queue"]): row for row in json.loads(file.read_text())["throughput"]}
+               "--device", device, "--repeats", arguments.repeats, "--no-vectoriser", "--json", record]
+    renders.run(*command, *(["--quick"] if arguments.quick else []), environment=environment)
+    return {(row["kernel"], row["queue"]): row for row in json.loads(record.read_text())["throughput"]}
 
 
 def main():
     parser = argparse.ArgumentParser(description="each kernel on two OpenCL implementations")
-    parser.add_argument("--bench", type=pathlib.Path, default=ROOT / "build" / "gradus-bench-kernels")
+    parser.add_argument("--bench", type=pathlib.Path, default=renders.ROOT / "build" / "gradus-bench-kernels")
     parser.add_argument("--repeats", type=int, default=5, help="runs of each build in a turn")
     parser.add_argument("--quick", action="store_true", help="two kinds, no large queue, one turn")
     parser.add_argument("--json", type=pathlib.Path, help="also write all figures to this file")
     arguments = parser.parse_args()
-    with tempfile.TemporaryDirectory() as folder:
-        environment = second_device.environment(folder)
-        if environment is None:
-            print(second_device.HOW_TO_GET, file=sys.stderr)
-            print("skipped: no second OpenCL implementation")
-            return
-        turns = [{name: measure(arguments, environment, selector, folder) for name, selector in DEVICES.items()}
-                 for _ in range(1 if arguments.quick else TURNS)]
+    with two_devices.two_devices() as (folder, environment):
+        turns = two_devices.take_turns(1 if arguments.quick else TURNS,
+                                       lambda device: measure(arguments, environment, device, folder))
     results = []
     print(f"{'kernel':<34} {'queue':>8} {'PoCL M items/s':>15} {'Intel':>10} {'Intel / PoCL':>13}")
     for key in turns[0]["PoCL"]:
         if key not in turns[0]["Intel"]:
             continue
-        rates = {name: [turn[name][key]["items_per_second"]["float"] for turn in turns] for name in DEVICES}
-        ratios = [intel / pocl for pocl, intel in zip(*rates.values())]
+        rates = two_devices.by_device(turns, lambda rows: rows[key]["items_per_second"]["float"])
+        ratio = curves.spread(two_devices.ratios(rates))
         print(f"{key[0]:<34} {key[1]:>8} {statistics.median(rates['PoCL']) / 1e6:>15.2f} "
-              f"{statistics.median(rates['Intel']) / 1e6:>10.2f} {statistics.median(ratios):>13.2f}", flush=True)
-        results.append({"kernel": key[0], "queue": key[1], "items_per_second": rates, "ratio": {
-            "median": statistics.median(ratios), "least": min(ratios), "largest": max(ratios)}})
+              f"{statistics.median(rates['Intel']) / 1e6:>10.2f} {ratio['median']:>13.2f}", flush=True)
+        results.append({"kernel": key[0], "queue": key[1], "items_per_second": rates, "ratio": ratio})
     if arguments.json:
         arguments.json.write_text(json.dumps(results, indent=2) + "\n")
 

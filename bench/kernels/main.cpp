@@ -1,8 +1,8 @@
 // gradus-bench-kernels: how fast each kernel is in its builds, how exact kernels/lib is on the device, and what tuning
 // gains.
 #include "bench/kernels/measurements.h"
+#include "bench/program.h"
 #include "bench/write_results.h"
-#include "runtime/error.h"
 #include "runtime/methods/method.h"
 #include "runtime/scene/traits.h"
 
@@ -11,24 +11,23 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <iostream>
 #include <set>
 
 namespace {
 
 const std::vector<std::string> all_parts = {"throughput", "accuracy", "tuning"};
 
-struct Arguments {
+struct Arguments : gradus::bench::ProgramOptions {
     std::set<std::string> parts{all_parts.begin(), all_parts.end()};
-    std::string json, device, scene = GRADUS_SCENES "/cornell-box.xml";
+    std::string scene = GRADUS_SCENES "/cornell-box.xml";
     std::vector<int> queue_bits = {10, 14, 18};
     std::vector<std::string> kinds = gradus::all_bsdf_kinds(), methods = gradus::method_names();
-    int threads = 0, repeats = 5;
+    int repeats = 5;
     std::uint32_t cases = 200'000;
     bool quick = false, no_vectoriser = false;
 };
 
-int run(const Arguments &arguments) {
+void run(const Arguments &arguments) {
     using namespace gradus;
     using namespace gradus::bench;
     Device device(arguments.device, arguments.threads);
@@ -51,7 +50,7 @@ int run(const Arguments &arguments) {
     }
     if (arguments.parts.contains("remarks")) {
         remark_on_kernels(settings);
-        return 0;
+        return;
     }
     nlohmann::json results = {{"device", device.description().name},
                               {"platform", device.description().platform},
@@ -68,7 +67,6 @@ int run(const Arguments &arguments) {
     if (arguments.parts.contains("tuning"))
         results["tuning"] = measure_tuning(settings);
     write_results(results, arguments.json);
-    return 0;
 }
 
 } // namespace
@@ -81,7 +79,8 @@ int main(int argc, char **argv) {
     benchmark::Initialize(&benchmark_count, benchmark_arguments);
 
     Arguments arguments;
-    CLI::App app("Kernel benchmarks. Every ratio is of runs that are mixed in one process, the median of --repeats");
+    CLI::App app("Kernel benchmarks. Every ratio is of runs that are mixed in one process, the median of --repeats",
+                 "gradus-bench-kernels");
     app.add_option("--parts", arguments.parts,
                    "Any of throughput, accuracy, tuning; or remarks, what PoCL's compiler says of each kernel")
         ->check(CLI::IsMember({"throughput", "accuracy", "tuning", "remarks"}))
@@ -106,14 +105,6 @@ int main(int argc, char **argv) {
     app.add_flag("--quick", arguments.quick, "Two kinds, no queue over 2^14, fewer cases, nothing on the vectoriser");
     app.add_flag("--no-vectoriser", arguments.no_vectoriser,
                  "Do not ask PoCL what it vectorised, which compiles each kernel anew");
-    app.add_option("--nthreads", arguments.threads, "Processor threads; 0: all")->check(CLI::Range(0, 4096));
-    app.add_option("--device", arguments.device, "OpenCL device, as gradus takes it");
-    app.add_option("--json", arguments.json, "Also write all figures to this file");
-    CLI11_PARSE(app, argc, argv);
-    try {
-        return run(arguments);
-    } catch (const gradus::Error &error) {
-        std::cerr << "gradus-bench-kernels: error: " << error.what() << "\n";
-        return static_cast<int>(error.code);
-    }
+    gradus::bench::add_program_options(app, arguments);
+    return gradus::bench::run_program(app, argc, argv, [&] { run(arguments); });
 }

@@ -13,27 +13,14 @@ import argparse
 import json
 import pathlib
 import statistics
-import subprocess
 import sys
 import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
-ROOT = HERE.parent.parent
-sys.path.insert(0, str(HERE))
+sys.path[:0] = [str(HERE), str(HERE.parent / "render")]
 import mitsuba_setup  # noqa: E402
+import renders  # noqa: E402
 from pythons import find_python  # noqa: E402
-
-RR_DEPTH_OFF = 1_000_000
-
-
-def default_jobs():
-    """The scenes by others where the checkout has them beside it, else our own."""
-    shared = ROOT.parent / "shared" / "scenes"
-    jobs = [(shared / "cornell-box" / "scene.xml", (512, 512)), (shared / "torus" / "scene.xml", (512, 384))]
-    if all(path.exists() for path, _ in jobs):
-        return jobs
-    own = ROOT / "scenes"
-    return [(own / "cornell-box.xml", (512, 512)), (own / "torus-rough-glass.xml", (512, 384))]
 
 
 def parse_job(text):
@@ -44,22 +31,13 @@ def parse_job(text):
     return pathlib.Path(path), (width, height)
 
 
-def run(command):
-    """The command's standard output. Exits with 1 and what the command said where it failed."""
-    result = subprocess.run([str(part) for part in command], capture_output=True, text=True)
-    if result.returncode != 0:
-        sys.stderr.write(result.stderr)
-        sys.exit(f"failed with exit code {result.returncode}: {' '.join(str(part) for part in command)}")
-    return result.stdout
-
-
 def gradus_rate(arguments, scene, size, spp, folder):
     """Samples per second of one render by gradus, from the statistics that it writes."""
-    file = pathlib.Path(folder) / "statistics.json"
-    command = [arguments.gradus, "render", scene, "--method", "pt", "-o", pathlib.Path(folder) / "image.exr", "--stats", file, "--quiet"]
+    image, file = pathlib.Path(folder) / "image.exr", pathlib.Path(folder) / "statistics.json"
+    command = [arguments.gradus, "render", scene, "--method", "pt", "-o", image, "--stats", file, "--quiet"]
     command += ["--size", f"{size[0]}x{size[1]}", "--spp", spp, "--max-depth", arguments.max_depth]
-    command += ["--rr-depth", RR_DEPTH_OFF, "--nthreads", arguments.nthreads]
-    run(command + (["--device", arguments.device] if arguments.device else []))
+    command += ["--rr-depth", renders.NO_ROULETTE, "--nthreads", arguments.nthreads]
+    renders.run(*command, *(["--device", arguments.device] if arguments.device else []))
     record = json.loads(file.read_text())
     if record["samples"] != size[0] * size[1] * spp:
         sys.exit(f"{scene}: gradus took {record['samples']} samples, not {size[0] * size[1] * spp}")
@@ -70,7 +48,7 @@ def mitsuba_record(arguments, python, scene, size):
     command = [python, HERE / "mitsuba_rate.py", scene, "--size", f"{size[0]}x{size[1]}", "--spp", arguments.spp]
     command += ["--max-depth", arguments.max_depth, "--repeats", 1, "--nthreads", arguments.nthreads]
     # Mitsuba may print warnings before the JSON, which is its last line.
-    return json.loads(run(command).strip().splitlines()[-1])
+    return json.loads(renders.run(*command).strip().splitlines()[-1])
 
 
 def compare(arguments, python, scene, size, folder):
@@ -100,7 +78,7 @@ def compare(arguments, python, scene, size, folder):
 def main():
     parser = argparse.ArgumentParser(description="gradus against Mitsuba 3: ratio of samples per second")
     parser.add_argument("jobs", nargs="*", type=parse_job, metavar="SCENE.xml:WxH", help="default: two known scenes")
-    parser.add_argument("--gradus", type=pathlib.Path, default=ROOT / "build" / "gradus")
+    parser.add_argument("--gradus", type=pathlib.Path, default=renders.ROOT / "build" / "gradus")
     parser.add_argument("--python", help="a Python that has Mitsuba (default: GRADUS_MITSUBA_PYTHON, then this one)")
     parser.add_argument("--spp", type=int, default=64)
     parser.add_argument("--max-depth", type=int, default=13)
@@ -122,7 +100,7 @@ def main():
 
     results = []
     with tempfile.TemporaryDirectory() as folder:
-        for scene, size in arguments.jobs or default_jobs():
+        for scene, size in arguments.jobs or map(parse_job, renders.default_jobs()):
             if not arguments.json:
                 depth = f"max depth {arguments.max_depth}, no Russian roulette"
                 print(f"{scene} at {size[0]}x{size[1]}, {arguments.spp} spp, {depth}", flush=True)

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Images by Mitsuba 3's path tracer and the seconds of each, as JSON on stdout: [{"spp", "seed", "seconds", "image"}].
+"""Images by Mitsuba 3's path tracer and the seconds of each, as JSON on stdout: {"version", "images": [{"spp", "seed",
+"seconds", "image"}]}.
 
     PYTHON-WITH-MITSUBA bench/peers/mitsuba_images.py SCENE.xml FOLDER --size 128x128 --spp 4 16 --seeds 1 2
 
@@ -44,13 +45,9 @@ def main():
     parser.add_argument("--seeds", type=int, nargs="+", required=True)
     parser.add_argument("--max-depth", type=int)
     parser.add_argument("-D", dest="parameters", action="append", default=[], metavar="NAME=VALUE")
-    parser.add_argument("--variant", default="llvm_ad_rgb")
-    parser.add_argument("--llvm", help="path of libLLVM (default: DRJIT_LIBLLVM_PATH, then the newest found)")
+    mitsuba_setup.add_mitsuba_options(parser)
     arguments = parser.parse_args()
-    try:
-        mitsuba = mitsuba_setup.start_mitsuba(arguments.variant, arguments.llvm)
-    except ImportError:
-        sys.exit(mitsuba_setup.HOW_TO_GET)
+    mitsuba = mitsuba_setup.start_mitsuba(arguments)
     width, height = (int(part) for part in arguments.size.split("x"))
     parameters = dict(text.split("=", 1) for text in arguments.parameters)
     if arguments.max_depth is not None:

@@ -70,14 +70,9 @@ def main():
     parser.add_argument("--max-depth", type=int, default=13)
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--nthreads", type=int, default=0, help="processor threads; 0: all")
-    parser.add_argument("--variant", default="llvm_ad_rgb")
-    parser.add_argument("--llvm", help="path of libLLVM (default: DRJIT_LIBLLVM_PATH, then the newest found)")
+    mitsuba_setup.add_mitsuba_options(parser)
     arguments = parser.parse_args()
-    try:
-        mitsuba = mitsuba_setup.start_mitsuba(arguments.variant, arguments.llvm)
-    except ImportError:
-        sys.exit(mitsuba_setup.HOW_TO_GET)
-    print(json.dumps(measure(mitsuba, arguments)))
+    print(json.dumps(measure(mitsuba_setup.start_mitsuba(arguments), arguments)))
 
 
 if __name__ == "__main__":

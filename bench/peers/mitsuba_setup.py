@@ -4,6 +4,7 @@ import glob
 import os
 import pathlib
 import re
+import sys
 
 PYTHON_VARIABLE = "GRADUS_MITSUBA_PYTHON"
 
@@ -24,16 +25,23 @@ def find_llvm():
     return max(candidates)[1] if candidates else None
 
 
-def start_mitsuba(variant="llvm_ad_rgb", llvm=None):
-    """Imports Mitsuba and sets its variant. llvm: path of libLLVM; else DRJIT_LIBLLVM_PATH; else the newest found.
+def add_mitsuba_options(parser):
+    """The options that start_mitsuba() takes."""
+    parser.add_argument("--variant", default="llvm_ad_rgb")
+    parser.add_argument("--llvm", help="path of libLLVM (default: DRJIT_LIBLLVM_PATH, then the newest found)")
 
-    Raises ImportError where Mitsuba is missing."""
-    path = llvm or os.environ.get("DRJIT_LIBLLVM_PATH") or find_llvm()
-    if path:
-        os.environ["DRJIT_LIBLLVM_PATH"] = str(path)
-    import mitsuba
 
-    mitsuba.set_variant(variant)
+def start_mitsuba(arguments):
+    """Imports Mitsuba and sets its variant. Ends the program where Mitsuba is missing, and says how to get it."""
+    llvm = arguments.llvm or os.environ.get("DRJIT_LIBLLVM_PATH") or find_llvm()
+    if llvm:
+        os.environ["DRJIT_LIBLLVM_PATH"] = str(llvm)
+    try:
+        import mitsuba
+
+        mitsuba.set_variant(arguments.variant)
+    except ImportError:
+        sys.exit(HOW_TO_GET)
     return mitsuba
 
 

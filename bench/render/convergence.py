@@ -113,10 +113,9 @@ class Measurement:
 
 def find_rivals(arguments, samples):
     """(Python for denoising or None, Python for Mitsuba or None, notes on what is left out and why)."""
-    notes = []
-    denoiser = mitsuba = None
     if arguments.no_rivals:
         return None, None, ["rivals left out by --no-rivals"]
+    notes = []
     denoiser = find_python(denoiser_setup.MODULES, denoiser_setup.PYTHON_VARIABLE)
     if not denoiser:
         notes.append(f"denoised: skipped, Open Image Denoise is missing ({denoiser_setup.PYTHON_VARIABLE}; see "
@@ -189,14 +188,14 @@ def main():
                 measurement.mitsuba(mitsuba, arguments.spp)
         results["machine"]["device"] = measurement.device
         results["points"] += measurement.points
+        own_error = measurement.points[0]["reference_error"]
         results["scenes"].append({"name": scene.name, "file": os.path.relpath(scene.file, renders.ROOT),
                                   "parameters": scene.parameters, "width": scene.width, "height": scene.height,
                                   "max_depth": scene.max_depth, "reference": scene.reference.renderer,
                                   "reference_spp": scene.reference.spp,
-                                  "reference_error": measurement.points[0]["reference_error"]})
+                                  "reference_error": own_error})
         results["machine"]["load_after"] = os.getloadavg()[0]
         arguments.json.write_text(json.dumps(results, indent=1) + "\n")  # what there is, should the next one fail
-        own_error = measurement.points[0]["reference_error"]
         print(f"{scene.name}: {len(measurement.points)} images, reference by {scene.reference.renderer}, "
               f"{scene.reference.spp} samples, its own relMSE {own_error:.2g}", flush=True)
     print_summary(curves.summaries(results["points"]))

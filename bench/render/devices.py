@@ -11,61 +11,49 @@ import argparse
 import json
 import pathlib
 import statistics
-import subprocess
 import sys
-import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-import second_device  # noqa: E402
-
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-DEVICES = {"PoCL": "portable computing", "Intel": second_device.SELECTOR}
+import renders  # noqa: E402
+import two_devices  # noqa: E402
 
 
 def render(arguments, environment, scene, device, spp, folder):
     path, _, size = scene.rpartition(":")
-    file = pathlib.Path(folder) / "statistics.json"
-    command = [arguments.gradus, "render", path, "--method", "pt", "-o", pathlib.Path(folder) / "image.exr", "--stats", file, "--quiet"]
-    command += ["--size", size, "--spp", spp, "--device", device, "--max-depth", 13, "--rr-depth", 1_000_000]
-    result = subprocess.run([str(part) for part in command], capture_output=True, text=True, env=environment)
-    if result.returncode != 0:
-        sys.exit(f"failed with exit code {result.returncode}: {' '.join(map(str, command))}\n{result.stderr}")
-    return json.loads(file.read_text())
+    image, record = pathlib.Path(folder) / "image.exr", pathlib.Path(folder) / "statistics.json"
+    renders.run(arguments.gradus, "render", path, "--method", "pt", "-o", image, "--stats", record, "--quiet", "--size",
+                size, "--spp", spp, "--device", device, "--max-depth", 13, "--rr-depth", renders.NO_ROULETTE,
+                environment=environment)
+    return json.loads(record.read_text())
 
 
-def kernel_seconds(record):
-    return sum(stage["seconds"] for stage in record["stages"] if stage["name"] not in ("trace", "launch and wait"))
+def kernel_share(record):
+    """Of the render's time, that of all kernels."""
+    seconds = sum(stage["seconds"] for stage in record["stages"] if stage["name"] not in ("trace", "launch and wait"))
+    return seconds / record["render_seconds"]
 
 
 def main():
     parser = argparse.ArgumentParser(description="two OpenCL implementations side by side")
     parser.add_argument("scenes", nargs="+", metavar="SCENE.xml:WxH")
-    parser.add_argument("--gradus", type=pathlib.Path, default=ROOT / "build" / "gradus")
+    parser.add_argument("--gradus", type=pathlib.Path, default=renders.ROOT / "build" / "gradus")
     parser.add_argument("--spp", type=int, default=16)
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--json", type=pathlib.Path, help="also write all figures to this file")
     arguments = parser.parse_args()
     results = []
-    with tempfile.TemporaryDirectory() as folder:
-        environment = second_device.environment(folder)
-        if environment is None:
-            print(second_device.HOW_TO_GET, file=sys.stderr)
-            print("skipped: no second OpenCL implementation")
-            return
+    with two_devices.two_devices() as (folder, environment):
         for scene in arguments.scenes:
-            rates, kernels = {name: [] for name in DEVICES}, {name: [] for name in DEVICES}
-            for name, selector in DEVICES.items():
-                render(arguments, environment, scene, selector, 1, folder)  # fills the kernel cache
-            for _ in range(arguments.repeats):
-                for name, selector in DEVICES.items():
-                    record = render(arguments, environment, scene, selector, arguments.spp, folder)
-                    rates[name].append(record["samples_per_second"])
-                    kernels[name].append(kernel_seconds(record) / record["render_seconds"])
-            pocl, intel = rates.values()
-            ratio = statistics.median(b / a for a, b in zip(pocl, intel))
+            # The first turn fills the kernel caches.
+            two_devices.take_turns(1, lambda device: render(arguments, environment, scene, device, 1, folder))
+            turns = two_devices.take_turns(arguments.repeats, lambda device: render(
+                arguments, environment, scene, device, arguments.spp, folder))
+            rates = two_devices.by_device(turns, lambda record: record["samples_per_second"])
+            kernels = two_devices.by_device(turns, kernel_share)
+            ratio = statistics.median(two_devices.ratios(rates))
             print(f"{scene}\n  " + ", ".join(
                 f"{name} {statistics.median(rates[name]) / 1e6:.2f} M samples/s (kernels "
-                f"{100 * statistics.median(kernels[name]):.0f} % of the render)" for name in DEVICES)
+                f"{100 * statistics.median(kernels[name]):.0f} % of the render)" for name in rates)
                 + f"; Intel / PoCL {ratio:.2f}", flush=True)
             results.append({"scene": scene, "samples_per_second": rates, "kernel_share": kernels,
                             "median_ratio": ratio})

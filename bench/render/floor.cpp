@@ -11,6 +11,9 @@ namespace {
 /// Enough recorded calls of the tracer to stand for all, few enough to fit into memory.
 constexpr std::size_t recorded_calls = 40;
 
+/// Of a render's time over the replay's.
+double target_of(const std::string &method) { return method == "pt" ? 1.5 : 1.6; }
+
 /// A prime near the quotient, so that the recorded calls meet all depths of a path in turn.
 std::size_t record_interval(std::size_t calls) {
     const std::size_t aim = std::max<std::size_t>(calls / recorded_calls, 1);
@@ -95,8 +98,9 @@ nlohmann::json measure_floor(const Settings &settings, const Job &job) {
     std::vector<Row> rows = profile(renders[middle], floors[middle]);
 
     const Render &r = renders[middle];
-    fmt::print("{}, {}\n  render / Embree-only replay of the same rays: {:.2f} (target {})\n", job.name,
-               settings.method, median(ratios), settings.method == "pt" ? "1.5, aim 1.2" : "1.6");
+    const double target = target_of(settings.method);
+    fmt::print("{}, {}\n  render / Embree-only replay of the same rays: {:.2f} (target {}{})\n", job.name,
+               settings.method, median(ratios), target, settings.method == "pt" ? ", aim 1.2" : "");
     fmt::print("  {:.1f} M rays/s against {:.1f} M rays/s; {:.2f} M samples/s, {:.2f} rays a sample, "
                "{:.2f} M of {:.1f} M rays recorded\n",
                median(render_rates), median(replay_rates), double(r.statistics.samples) / r.seconds() / 1e6,
@@ -111,9 +115,9 @@ nlohmann::json measure_floor(const Settings &settings, const Job &job) {
     fmt::print("  the difference is mostly {} ({:.1f} %), {} ({:.1f} %) and {} ({:.1f} %)\n\n", rows[0].name,
                100 * rows[0].share, rows[1].name, 100 * rows[1].share, rows[2].name, 100 * rows[2].share);
     return {{"job", job.name},
+            {"method", settings.method},
             {"ratio", spread(ratios)},
-            {"target", 1.5},
-            {"aim", 1.2},
+            {"target", target},
             {"render_seconds", spread(seconds)},
             {"render_mrays_per_second", spread(render_rates)},
             {"replay_mrays_per_second", spread(replay_rates)},

@@ -11,6 +11,7 @@ references of tests/references, made by another renderer.
 
 import argparse
 import json
+import os
 import pathlib
 import statistics
 import sys
@@ -35,7 +36,8 @@ def main():
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--json", type=pathlib.Path, help="also write all figures to this file")
     arguments = parser.parse_args()
-    results = []
+    results = {"machine": renders.machine(), "command": ["bench/render/holes.py", *sys.argv[1:]], "spp": arguments.spp,
+               "holes": []}
     print(f"{'holes':>5} {'best alpha':>10} {'gain in MSE':>11} {'paper':>5}")
     with tempfile.TemporaryDirectory() as folder:
         plain, layers, solved = (pathlib.Path(folder) / name for name in ("plain.exr", "layers.exr", "solved.exr"))
@@ -44,7 +46,7 @@ def main():
             gains = {alpha: [] for alpha in ALPHAS}
             for seed in range(1, arguments.repeats + 1):
                 renders.render(arguments.gradus, scene, "pt", seed, plain, samples=arguments.spp)
-                renders.render(arguments.gradus, scene, "gpt", seed, layers, samples=arguments.spp)
+                record = renders.render(arguments.gradus, scene, "gpt", seed, layers, samples=arguments.spp)
                 error = squared_error(arguments.gradus, plain, scene)
                 for alpha, found in gains.items():
                     renders.run(arguments.gradus, "solve", layers, "-o", solved, "--norm", "L2", "--alpha", alpha,
@@ -52,8 +54,10 @@ def main():
                     found.append(error / squared_error(arguments.gradus, solved, scene))
             best = max(ALPHAS, key=lambda alpha: statistics.median(gains[alpha]))
             gain = statistics.median(gains[best])
+            results["machine"]["device"] = record["device"]
             print(f"{holes:5} {best:10g} {gain:11.2f} {paper:5}", flush=True)
-            results.append({"holes": holes, "alpha": best, "gain": gain, "paper": paper, "gains": gains})
+            results["holes"].append({"holes": holes, "alpha": best, "gain": gain, "paper": paper, "gains": gains})
+    results["machine"]["load_after"] = os.getloadavg()[0]
     if arguments.json:
         arguments.json.write_text(json.dumps(results, indent=2) + "\n")
 

@@ -1,4 +1,5 @@
 // gradus-bench-render: how near a render comes to its floor, and what specialised kernels and ordered rays gain.
+#include "bench/program.h"
 #include "bench/render/measurements.h"
 #include "bench/write_results.h"
 #include "runtime/error.h"
@@ -7,17 +8,16 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <iostream>
 #include <set>
 
 namespace {
 
-struct Arguments {
+struct Arguments : gradus::bench::ProgramOptions {
     std::vector<std::string> scenes;
     std::set<std::string> parts = {"floor", "specialisation", "order"};
-    std::string json, device, method = "pt";
+    std::string method = "pt";
     std::uint64_t samples_per_pixel = 64;
-    int threads = 0, repeats = 5;
+    int repeats = 5;
     bool no_roulette_only = false;
 };
 
@@ -36,7 +36,7 @@ SceneSize parse_scene(const std::string &text) {
     return s;
 }
 
-int run(const Arguments &arguments) {
+void run(const Arguments &arguments) {
     using namespace gradus;
     using namespace gradus::bench;
     Device device(arguments.device, arguments.threads);
@@ -65,14 +65,14 @@ int run(const Arguments &arguments) {
         std::fflush(stdout);
     }
     write_results(results, arguments.json);
-    return 0;
 }
 
 } // namespace
 
 int main(int argc, char **argv) {
     Arguments arguments;
-    CLI::App app("Render benchmarks in one process. Every figure is a ratio, the median of --repeats turns");
+    CLI::App app("Render benchmarks in one process. Every figure is a ratio, the median of --repeats turns",
+                 "gradus-bench-render");
     app.add_option("SCENES", arguments.scenes, "SCENE.xml:WxH")->required();
     app.add_option("--parts", arguments.parts, "Any of floor, specialisation, order")
         ->check(CLI::IsMember({"floor", "specialisation", "order"}))
@@ -82,15 +82,7 @@ int main(int argc, char **argv) {
     app.add_option("--method", arguments.method, "pt or gpt")
         ->check(CLI::IsMember({"pt", "gpt"}))
         ->capture_default_str();
-    app.add_option("--nthreads", arguments.threads, "Processor threads; 0: all")->check(CLI::Range(0, 4096));
-    app.add_option("--device", arguments.device, "OpenCL device, as gradus takes it");
     app.add_flag("--no-roulette-only", arguments.no_roulette_only, "Leave out the floor with the file's own settings");
-    app.add_option("--json", arguments.json, "Also write all figures to this file");
-    CLI11_PARSE(app, argc, argv);
-    try {
-        return run(arguments);
-    } catch (const gradus::Error &error) {
-        std::cerr << "gradus-bench-render: error: " << error.what() << "\n";
-        return static_cast<int>(error.code);
-    }
+    gradus::bench::add_program_options(app, arguments);
+    return gradus::bench::run_program(app, argc, argv, [&] { run(arguments); });
 }

@@ -70,15 +70,15 @@ def draw(pyplot, measured):
             axes.imshow(pyplot.imread(file), interpolation="nearest")
             axes.set_title(title, fontsize=9)
             axes.set_axis_off()
-    figure.text(0.5, 0.08 / inches, "pt and gpt take the same time, reconstruction counted; errors: red too bright, blue "
-                "too dark, full colour at 100 %", ha="center", fontsize=8)
+    figure.text(0.5, 0.08 / inches, "pt and gpt take the same time, reconstruction counted; errors: red too bright, "
+                "blue too dark, full colour at 100 %", ha="center", fontsize=8)
     figure.tight_layout(pad=0.4, rect=(0, 0.25 / inches, 1, 1))
     return figure
 
 
 def main():
     parser = argparse.ArgumentParser(description="pictures at equal time")
-    parser.add_argument("--scene", nargs="+", choices=SCENES, default=list(SCENES), help="own scenes")
+    parser.add_argument("--scene", nargs="+", choices=SCENES, default=list(SCENES), help="the rows (default: all)")
     parser.add_argument("--gradus", type=pathlib.Path, default=renders.ROOT / "build" / "gradus")
     parser.add_argument("--spp", type=int, default=16, help="samples a pixel of gpt (16)")
     parser.add_argument("--reference-spp", type=int, default=8192)

@@ -44,8 +44,7 @@ def main():
     parser.add_argument("--json", type=pathlib.Path, default=renders.ROOT / "build" / "bench" / "profile.json")
     arguments = parser.parse_args()
     results = {"machine": renders.machine(), "command": ["bench/render/profile.py", *sys.argv[1:]], "profiles": []}
-    for name in arguments.scenes:
-        scene = renders.find_scene(name)
+    for scene in map(renders.find_scene, arguments.scenes):
         with tempfile.TemporaryDirectory() as folder:
             image = pathlib.Path(folder) / "image.exr"
             rate = rays_per_second(arguments, scene, folder)
@@ -56,7 +55,7 @@ def main():
                 turns.sort(key=lambda record: record["render_seconds"])
                 record = turns[len(turns) // 2]
                 rays = sum(kind["count"] for kind in record["rays"].values())
-                profile = {"scene": name, "method": method, "spp": record["spp"],
+                profile = {"scene": scene.name, "method": method, "spp": record["spp"],
                            "render_seconds": record["render_seconds"],
                            "reconstruction_seconds": renders.reconstruction_seconds(arguments.gradus, image),
                            "embree_seconds": rays / rate if rate else None, "rays": rays, "stages": record["stages"]}
@@ -64,8 +63,8 @@ def main():
                 results["machine"]["device"] = record["device"]
                 floor = f", Embree alone {100 * rays / rate / record['render_seconds']:.0f} %" if rate else ""
                 largest = sorted(record["stages"], key=lambda stage: -stage["seconds"])[:4]
-                print(f"{name:<20} {method:<6} " + ", ".join(f"{stage['name']} {100 * stage['share']:.0f} %"
-                                                             for stage in largest) + floor, flush=True)
+                print(f"{scene.name:<20} {method:<6} " + ", ".join(
+                    f"{stage['name']} {100 * stage['share']:.0f} %" for stage in largest) + floor, flush=True)
     results["machine"]["load_after"] = os.getloadavg()[0]
     arguments.json.parent.mkdir(parents=True, exist_ok=True)
     arguments.json.write_text(json.dumps(results, indent=1) + "\n")

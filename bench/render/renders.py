@@ -16,6 +16,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 REFERENCES = ROOT / "tests" / "references"
 SHARED = ROOT.parent / "shared"
 SHARED_CORNELL_BOX = "cornell-box-256"
+NO_ROULETTE = 1_000_000  # a depth at which no path begins with Russian roulette
+NO_GRADIENTS = 6  # gradus's exit code for an input image that does not fit
 
 
 @dataclasses.dataclass(frozen=True)
@@ -39,12 +41,26 @@ class Scene:
     reference: Reference | None = None
 
 
-def run(*command):
-    """The command's standard output. Ends the program where the command fails, with what it said."""
-    result = subprocess.run([str(part) for part in command], capture_output=True, text=True)
-    if result.returncode != 0:
+def finished(*command, environment=None, accepted=(0,)):
+    """The finished process. Ends the program where its exit code is none of those accepted, with what it said."""
+    result = subprocess.run([str(part) for part in command], capture_output=True, text=True, env=environment)
+    if result.returncode not in accepted:
         sys.exit(f"failed with exit code {result.returncode}: {' '.join(map(str, command))}\n{result.stderr}")
-    return result.stdout
+    return result
+
+
+def run(*command, environment=None):
+    """The command's standard output. Ends the program where the command fails, with what it said."""
+    return finished(*command, environment=environment).stdout
+
+
+def default_jobs():
+    """SCENE.xml:WxH of the scenes whose speed is measured: those by others where they are beside the checkout, else our
+    own."""
+    shared = SHARED / "scenes"
+    if (shared / "cornell-box" / "scene.xml").exists() and (shared / "torus" / "scene.xml").exists():
+        return [f"{shared}/cornell-box/scene.xml:512x512", f"{shared}/torus/scene.xml:512x384"]
+    return [f"{ROOT}/scenes/cornell-box.xml:512x512", f"{ROOT}/scenes/torus-rough-glass.xml:512x384"]
 
 
 def scene_names():
@@ -113,21 +129,16 @@ def compare(gradus, image, reference, *options):
     return {**compared["images"][0], "reference_relative_mse": compared["reference_relative_mse"]}
 
 
-NO_GRADIENTS = 6  # gradus: an input image that does not fit
-
-
 def reconstruction_seconds(gradus, image):
     """Seconds in which the image is reconstructed from its gradients, all kernels compiled; 0 where it has none.
 
     A render reconstructs once, after the time that its statistics call render_seconds, and loads kernels meanwhile;
     here the third of three is timed."""
     record, output = pathlib.Path(image).with_suffix(".solved.json"), pathlib.Path(image).with_suffix(".solved.exr")
-    command = [gradus, "solve", image, "-o", output, "--stats", record, "--repeats", 3, "--quiet"]
-    result = subprocess.run([str(part) for part in command], capture_output=True, text=True)
+    result = finished(gradus, "solve", image, "-o", output, "--stats", record, "--repeats", 3, "--quiet",
+                      accepted=(0, NO_GRADIENTS))
     if result.returncode == NO_GRADIENTS:
         return 0.0
-    if result.returncode != 0:
-        sys.exit(f"failed with exit code {result.returncode}: {' '.join(map(str, command))}\n{result.stderr}")
     return json.loads(record.read_text())["seconds"]
 
 

@@ -12,29 +12,25 @@ import json
 import os
 import pathlib
 import statistics
-import subprocess
 import sys
 import tempfile
 import time
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import renders  # noqa: E402
+
 SLOW = 2.0  # seconds
 
 
 def render(arguments, scene, folder, cache):
     """Wall seconds and the statistics of one process."""
-    file = pathlib.Path(folder) / "statistics.json"
-    command = [arguments.gradus, "render", scene, "--method", "pt", "-o", pathlib.Path(folder) / "image.exr", "--stats", file, "--quiet"]
-    command += ["--size", "128x128", "--spp", "1"]
-    if arguments.device:
-        command += ["--device", arguments.device]
+    image, record = pathlib.Path(folder) / "image.exr", pathlib.Path(folder) / "statistics.json"
+    command = [arguments.gradus, "render", scene, "--method", "pt", "-o", image, "--stats", record, "--quiet"]
+    command += ["--size", "128x128", "--spp", 1, *(["--device", arguments.device] if arguments.device else [])]
+    environment = {**os.environ, "POCL_CACHE_DIR": cache}
     started = time.perf_counter()
-    result = subprocess.run([str(part) for part in command], capture_output=True, text=True,
-                            env={**os.environ, "POCL_CACHE_DIR": cache})
-    seconds = time.perf_counter() - started
-    if result.returncode != 0:
-        sys.exit(f"failed with exit code {result.returncode}: {' '.join(map(str, command))}\n{result.stderr}")
-    return seconds, json.loads(file.read_text())
+    renders.run(*command, environment=environment)
+    return time.perf_counter() - started, json.loads(record.read_text())
 
 
 def measure(arguments, scene):
@@ -53,8 +49,8 @@ def measure(arguments, scene):
 
 def main():
     parser = argparse.ArgumentParser(description="time to the first image, warm and cold")
-    parser.add_argument("scenes", nargs="*", type=pathlib.Path, default=[ROOT / "scenes" / "cornell-box.xml"])
-    parser.add_argument("--gradus", type=pathlib.Path, default=ROOT / "build" / "gradus")
+    parser.add_argument("scenes", nargs="*", type=pathlib.Path, default=[renders.ROOT / "scenes" / "cornell-box.xml"])
+    parser.add_argument("--gradus", type=pathlib.Path, default=renders.ROOT / "build" / "gradus")
     parser.add_argument("--device", help="OpenCL device of gradus")
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--json", type=pathlib.Path, help="also write all figures to this file")
@@ -64,8 +60,9 @@ def main():
         record = measure(arguments, scene)
         results.append(record)
         print(f"{scene.name} 128x128 1 spp\n  warm cache: {record['warm_seconds']:.2f} s (target under 1 s)\n"
-              f"  empty cache: {record['cold_seconds']:.2f} s, of these compiling {record['cold_compile_seconds']:.2f} s "
-              f"({len(record['kernels'])} kernels, summed over threads), prepared after {record['cold_prepare_seconds']:.2f} s")
+              f"  empty cache: {record['cold_seconds']:.2f} s, of these compiling "
+              f"{record['cold_compile_seconds']:.2f} s ({len(record['kernels'])} kernels, summed over threads), "
+              f"prepared after {record['cold_prepare_seconds']:.2f} s")
         slowest = max(record["kernels"].items(), key=lambda item: item[1])
         print(f"  slowest kernel: {slowest[0]}, {slowest[1]:.2f} s")
         for name, seconds in record["slow_kernels"].items():

@@ -11,21 +11,18 @@ import argparse
 import json
 import pathlib
 import statistics
-import subprocess
 import sys
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import renders  # noqa: E402
 
 
 def measure(arguments, scene, threads, folder):
     """Rays per second of the render and of the replay."""
     file = pathlib.Path(folder) / "floor.json"
-    command = [arguments.bench, scene, "--parts", "floor", "--no-roulette-only", "--spp", arguments.spp]
-    command += ["--repeats", 1, "--nthreads", threads, "--json", file]
-    result = subprocess.run([str(part) for part in command], capture_output=True, text=True)
-    if result.returncode != 0:
-        sys.exit(f"failed with exit code {result.returncode}: {' '.join(map(str, command))}\n{result.stderr}")
+    renders.run(arguments.bench, scene, "--parts", "floor", "--no-roulette-only", "--spp", arguments.spp,
+                "--repeats", 1, "--nthreads", threads, "--json", file)
     record = json.loads(file.read_text())["floor"][0]
     return record["render_mrays_per_second"]["median"], record["replay_mrays_per_second"]["median"]
 
@@ -33,7 +30,7 @@ def measure(arguments, scene, threads, folder):
 def main():
     parser = argparse.ArgumentParser(description="two threads against one")
     parser.add_argument("scenes", nargs="+", metavar="SCENE.xml:WxH")
-    parser.add_argument("--bench", type=pathlib.Path, default=ROOT / "build" / "gradus-bench-render")
+    parser.add_argument("--bench", type=pathlib.Path, default=renders.ROOT / "build" / "gradus-bench-render")
     parser.add_argument("--spp", type=int, default=32)
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--json", type=pathlib.Path, help="also write all figures to this file")

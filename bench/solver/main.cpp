@@ -1,13 +1,12 @@
 // gradus-bench-solver: error against time for each method of the Poisson solver, and its distance from its rivals.
+#include "bench/program.h"
 #include "bench/solver/measurements.h"
 #include "bench/write_results.h"
-#include "runtime/error.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <iostream>
 #include <set>
 #include <thread>
 
@@ -15,15 +14,14 @@ namespace {
 
 const std::vector<std::string> all_parts = {"direct", "l1", "bandwidth", "scaling", "curves"};
 
-struct Arguments {
+struct Arguments : gradus::bench::ProgramOptions {
     std::set<std::string> parts{all_parts.begin(), all_parts.end()};
-    std::string json, device;
-    int threads = 0, repeats = 5;
+    int repeats = 5;
     double longest = 2;
     bool quick = false;
 };
 
-int run(const Arguments &arguments) {
+void run(const Arguments &arguments) {
     using namespace gradus;
     using namespace gradus::bench;
     Device device(arguments.device, arguments.threads);
@@ -60,14 +58,14 @@ int run(const Arguments &arguments) {
             results["curves"].push_back(measure_curves(settings, problem));
         }
     write_results(results, arguments.json);
-    return 0;
 }
 
 } // namespace
 
 int main(int argc, char **argv) {
     Arguments arguments;
-    CLI::App app("Solver benchmarks in one process. Every ratio is of turns of one run, the median of --repeats turns");
+    CLI::App app("Solver benchmarks in one process. Every ratio is of turns of one run, the median of --repeats turns",
+                 "gradus-bench-solver");
     app.add_option("--parts", arguments.parts, "Any of direct, l1, bandwidth, scaling, curves")
         ->check(CLI::IsMember(all_parts))
         ->delimiter(',');
@@ -76,14 +74,6 @@ int main(int argc, char **argv) {
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
     app.add_flag("--quick", arguments.quick, "Leave out the large images");
-    app.add_option("--nthreads", arguments.threads, "Processor threads; 0: all")->check(CLI::Range(0, 4096));
-    app.add_option("--device", arguments.device, "OpenCL device, as gradus takes it");
-    app.add_option("--json", arguments.json, "Also write all figures to this file");
-    CLI11_PARSE(app, argc, argv);
-    try {
-        return run(arguments);
-    } catch (const gradus::Error &error) {
-        std::cerr << "gradus-bench-solver: error: " << error.what() << "\n";
-        return static_cast<int>(error.code);
-    }
+    gradus::bench::add_program_options(app, arguments);
+    return gradus::bench::run_program(app, argc, argv, [&] { run(arguments); });
 }

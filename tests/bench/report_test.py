@@ -56,6 +56,16 @@ def kernels():
                                     error("relaxed", False, 3e-7), error("relaxed", True, 0.0)]}}
 
 
+def floor(*ratios):
+    return {"floor": [{"job": "torus 8x8 4 spp", "ratio": {"median": ratio, "least": ratio / 2, "largest": 2 * ratio},
+                       "target": 1.5} for ratio in ratios]}
+
+
+def holes():
+    return {"machine": MACHINE, "command": ["holes.py", "--spp", "4"], "spp": 4,
+            "holes": [{"holes": 7, "alpha": 0.5, "gain": 5.375, "paper": 15}]}
+
+
 class Headline(unittest.TestCase):
     def of(self, *ratios, at_least=False):
         return chart.headline([{"scene": f"scene {number}", "method": "gpt",
@@ -94,6 +104,9 @@ class DrawOnly(unittest.TestCase):
         self.write("convergence.json", convergence())
         self.write("profile.json", profile())
         self.write("kernels.json", kernels())
+        self.write("floor.json", floor(1.25, 1.5))
+        self.write("gradient-floor.json", floor(3))
+        self.write("holes.json", holes())
         _, page = self.draw()
         for name in ("convergence", "convergence-trimmed", "stages", "functions", "kernels"):
             self.assertTrue((self.folder / "report" / f"{name}.png").exists(), name)
@@ -108,16 +121,23 @@ class DrawOnly(unittest.TestCase):
         self.assertIn("mitsuba: skipped", page)
         self.assertIn("a processor, 2 processors; a device", page)
         self.assertIn("<td>gpt</td><td>-1.00</td><td>5.00</td>", page)
+        self.assertIn("<td>torus 8x8 4 spp</td><td>pt</td><td>1.25</td><td>0.62 to 2.50</td><td>1.5</td>", page)
+        self.assertIn("<td>torus 8x8 4 spp</td><td>gpt</td><td>3.00</td><td>1.50 to 6.00</td><td>1.5</td>", page)
+        self.assertIn("<td>7</td><td>5.38</td><td>0.5</td><td>15</td>", page)
+        self.assertIn("<td>holes.py --spp 4</td>", page)
         self.assertNotIn("box <1>", page)
         self.assertEqual(re.findall(r'(?:src|href)="(?!data:|#)', page), [], "the page names another file")
 
     def test_what_is_missing_is_named(self):
         self.write("profile.json", profile())
-        (self.folder / "solver.json").write_text("{")
+        for name in ("solver.json", "pictures.json"):
+            (self.folder / name).write_text("{")
         self.write("kernels.json", {"specialisation": [{"job": "of an older version"}]})
         printed, page = self.draw()
         self.assertIn("left out: convergence.json is not there", printed)
         self.assertIn("Left out: solver.json is no JSON", page)
+        self.assertIn("Left out: pictures.json is no JSON", page)
+        self.assertIn("<td>profile.py</td>", page)
         self.assertIn("kernels.json holds nothing", page)
         self.assertEqual(page.count("<svg"), 1)
 

@@ -135,16 +135,12 @@ def main():
     parser.add_argument("--scale", type=float, default=1, help="factor on the samples, for a quick look")
     parser.add_argument("--seed", type=int, default=1, help="first seed; a render takes one seed or more each")
     parser.add_argument("--png", action="store_true", help="also write a tone-mapped picture to look at")
-    parser.add_argument("--variant", default="llvm_ad_rgb")
-    parser.add_argument("--llvm", help="path of libLLVM (default: DRJIT_LIBLLVM_PATH, then the newest found)")
+    mitsuba_setup.add_mitsuba_options(parser)
     arguments = parser.parse_args()
     unknown = [name for name in arguments.names if name not in REFERENCES]
     if unknown:
         parser.error(f"no such reference: {', '.join(unknown)}")
-    try:
-        mitsuba = mitsuba_setup.start_mitsuba(arguments.variant, arguments.llvm)
-    except ImportError:
-        sys.exit(mitsuba_setup.HOW_TO_GET)
+    mitsuba = mitsuba_setup.start_mitsuba(arguments)
     for name in arguments.names or REFERENCES:
         make_reference(mitsuba, name, arguments)
 
