@@ -86,6 +86,23 @@ class ShiftCases {
         }
     }
 
+    /// One refraction where both materials have that index and no direction grazes the surface; none where the draw
+    /// fails.
+    std::optional<ShiftCase> draw_refraction_of_index(double ior) {
+        ShiftCase c = draw();
+        if (c.is_reflection)
+            return {};
+        const LongVector m = c.normal();
+        c.ior_base = c.ior_offset = ior;
+        const auto wo = refracted(c.wi_base, m, c.base_eta());
+        if (!wo || c.wi_base.z * wo->z > -1e-2L)
+            return {};
+        c.wo_base = *wo;
+        if (!(c.wo_offset().z * c.wi_offset.z < -1e-2L)) // NaN where the copy fails
+            return {};
+        return c;
+    }
+
     /// One refraction by a microfacet whose normal has that cosine against the surface's; none where the draw fails.
     std::optional<ShiftCase> draw_refraction_at_height(double height) { return draw_at(height, false); }
 

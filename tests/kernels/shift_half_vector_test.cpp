@@ -6,6 +6,7 @@
 #include "kernels/lib/shift_half_vector.h"
 
 #include <cstdio>
+#include <vector>
 
 using namespace gradus::testing;
 
@@ -51,6 +52,23 @@ NumericalJacobian numerical(const ShiftCase &c) {
     // A move of wo turns the normal by some 1 / |h| of it: small against the cosine, for refraction against its square.
     const long double step = 0.02L * half_vector * cosine * (c.is_reflection ? 1 : cosine);
     return solid_angle_jacobian([&](LongVector move) { return c.copy(normalized(c.wo_base + move)); }, c.wo_base, step);
+}
+
+/// The Jacobian's error over what rounding of the arguments allows; the differences know it to 1e-8.
+double jacobian_error_over_allowed(const ShiftCase &c, const lib::shifted_direction &result) {
+    const double error = std::fabs(result.jacobian / double(numerical(c).value) - 1);
+    return error / (8 * epsilon * condition(c) + 1e-8);
+}
+
+/// Cases that draw() makes. It may fail, and then gives none.
+template <class Draw>
+std::vector<ShiftCase> draw_200(Draw draw) {
+    std::vector<ShiftCase> cases;
+    for (int tries = 0; cases.size() < 200 && tries < 1'000'000; ++tries)
+        if (const std::optional<ShiftCase> drawn = draw())
+            cases.push_back(*drawn);
+    EXPECT_EQ(cases.size(), 200u) << "draws fail too often";
+    return cases;
 }
 
 struct JacobianFactors {
@@ -123,26 +141,11 @@ TEST(ShiftHalfVector, IndexRatiosNearOne) {
     ShiftCases cases(2, 0.3);
     double worst = 0;
     for (const double contrast : {1e-4, 1e-3, 1e-2, -1e-2, -1e-3, -1e-4})
-        for (int found = 0, tries = 0; found < 200; ++tries) {
-            ASSERT_LT(tries, 100'000);
-            ShiftCase c = cases.draw();
-            if (c.is_reflection)
-                continue;
-            const LongVector m = c.normal();
-            c.ior_base = c.ior_offset = real(1 + contrast);
-            const auto wo = refracted(c.wi_base, m, c.base_eta());
-            if (!wo || c.wi_base.z * wo->z > -1e-2L)
-                continue;
-            c.wo_base = *wo;
-            const LongVector wo_offset = c.wo_offset();
-            if (!(wo_offset.z * c.wi_offset.z < -1e-2L))
-                continue;
-            ++found;
+        for (const ShiftCase &c : draw_200([&] { return cases.draw_refraction_of_index(real(1 + contrast)); })) {
             const lib::shifted_direction result = shifted(c);
             ASSERT_TRUE(result.is_valid) << contrast;
-            ASSERT_LT(distance(as_long(result.wo), wo_offset), 32 * epsilon);
-            const double error = std::fabs(result.jacobian / double(numerical(c).value) - 1);
-            worst = std::max(worst, error / (8 * epsilon * condition(c) + 1e-8));
+            ASSERT_LT(distance(as_long(result.wo), c.wo_offset()), 32 * epsilon);
+            worst = std::max(worst, jacobian_error_over_allowed(c, result));
         }
     record_stability({area, "index ratios near 1: the half vector vanishes and its normal is rounding",
                       "index ratios that differ from 1 by 1e-4 to 1e-2, to both sides",
@@ -154,21 +157,14 @@ TEST(ShiftHalfVector, NormalsNearTheSurface) {
     ShiftCases cases(6, 0.0101);
     double worst = 0;
     for (const double height : {1e-2, 1e-3, 1e-4, 1e-5})
-        for (int found = 0, tries = 0; found < 200; ++tries) {
-            ASSERT_LT(tries, 1'000'000);
-            const auto c = cases.draw_refraction_at_height(height);
-            if (!c)
-                continue;
-            ++found;
-            const lib::shifted_direction result = shifted(*c);
+        for (const ShiftCase &c : draw_200([&] { return cases.draw_refraction_at_height(height); })) {
+            const lib::shifted_direction result = shifted(c);
             // Within rounding of the surface the normal may be taken for one on the other side.
-            if (!result.is_valid && height < 16 * epsilon / c->half_vector_length())
+            if (!result.is_valid && height < 16 * epsilon / c.half_vector_length())
                 continue;
             ASSERT_TRUE(result.is_valid) << height;
-            const double allowed = 8 * epsilon * condition(*c);
-            ASSERT_LT(distance(as_long(result.wo), c->wo_offset()), allowed);
-            const double error = std::fabs(result.jacobian / double(numerical(*c).value) - 1);
-            worst = std::max(worst, error / (allowed + 1e-8));
+            ASSERT_LT(distance(as_long(result.wo), c.wo_offset()), 8 * epsilon * condition(c));
+            worst = std::max(worst, jacobian_error_over_allowed(c, result));
         }
     record_stability({area, "a transmitted half vector near the surface: rounding decides on which side it is",
                       "refractions with normals at 1e-5 to 1e-2 above the surface",

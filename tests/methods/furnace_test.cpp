@@ -49,13 +49,6 @@ Bsdf rough(BsdfKind kind, Microfacet distribution, double alpha_u, double alpha_
     return bsdf;
 }
 
-Bsdf smooth(BsdfKind kind, double ior = 1.5046) {
-    Bsdf bsdf;
-    bsdf.kind = kind;
-    bsdf.ior = float(ior);
-    return bsdf;
-}
-
 constexpr ConvexShape both_shapes[] = {ConvexShape::sphere, ConvexShape::cube};
 
 const char *name_of(ConvexShape shape) { return shape == ConvexShape::sphere ? "sphere" : "cube"; }
@@ -63,16 +56,18 @@ const char *name_of(ConvexShape shape) { return shape == ConvexShape::sphere ? "
 // With BSDF sampling alone each single path of these carries what it must: nothing is left to chance. A smooth
 // dielectric scales radiance by the squared index on the way in and back on the way out.
 TEST(Furnace, MaterialsThatLoseNothingVanish) {
+    Bsdf nothing;
+    nothing.kind = BsdfKind::null;
     const struct {
         const char *name;
         Material material;
     } cases[] = {{"white diffuse", material_of(diffuse(1))},
-                 {"white diffuse on both sides", two_sided(diffuse(1), diffuse(1))},
-                 {"mirror", material_of(smooth(BsdfKind::conductor))},
-                 {"mirror on both sides", two_sided(smooth(BsdfKind::conductor), smooth(BsdfKind::conductor))},
-                 {"glass", material_of(smooth(BsdfKind::dielectric))},
-                 {"air in water", material_of(smooth(BsdfKind::dielectric, 0.75))},
-                 {"null", material_of(smooth(BsdfKind::null))}};
+                 {"white diffuse on both sides", two_sided(diffuse(1))},
+                 {"mirror", material_of(mirror())},
+                 {"mirror on both sides", two_sided(mirror())},
+                 {"glass", material_of(glass(1.5046))},
+                 {"air in water", material_of(glass(0.75))},
+                 {"null", material_of(nothing)}};
     double worst = 0;
     for (const auto &c : cases)
         for (const ConvexShape shape : both_shapes) {
@@ -124,8 +119,7 @@ TEST(Furnace, AConvexDiffuseObjectShowsItsAlbedo) {
 }
 
 TEST(Furnace, TheBackOfAOneSidedMaterialIsBlack) {
-    const Bsdf kinds[] = {diffuse(1), smooth(BsdfKind::conductor),
-                          rough(BsdfKind::roughconductor, Microfacet::ggx, 0.3, 0.3),
+    const Bsdf kinds[] = {diffuse(1), mirror(), rough_metal(0.3),
                           rough(BsdfKind::roughconductor, Microfacet::beckmann, 0.3, 0.3)};
     for (const Bsdf &bsdf : kinds)
         for (const ConvexShape shape : both_shapes) {
@@ -137,7 +131,7 @@ TEST(Furnace, TheBackOfAOneSidedMaterialIsBlack) {
 
 TEST(Furnace, TwoSidedMaterialsShowTheSideThatIsSeen) {
     const Material two_paints = two_sided(diffuse(0.25), diffuse(0.75));
-    const Material two_kinds = two_sided(smooth(BsdfKind::conductor), diffuse(0.5));
+    const Material two_kinds = two_sided(mirror(), diffuse(0.5));
     for (const ConvexShape shape : both_shapes) {
         SCOPED_TRACE(name_of(shape));
         const auto shown = [&](const Material &material, bool flip) {
@@ -206,7 +200,7 @@ std::vector<WalkCase> walk_cases() {
                 cases.push_back(
                     {fmt::format("{}_{:.0f}_{:.0f}", bsdf_kind_name(bsdf), 100 * alpha[0], 100 * alpha[1]), bsdf});
             }
-    Bsdf copper = smooth(BsdfKind::conductor);
+    Bsdf copper = mirror();
     copper.eta = {0.271f, 0.677f, 1.317f};
     copper.k = {3.61f, 2.625f, 2.292f};
     copper.specular_reflectance = {0.9f, 0.8f, 0.7f};
@@ -214,7 +208,7 @@ std::vector<WalkCase> walk_cases() {
     copper.kind = BsdfKind::roughconductor;
     copper.alpha_u = copper.alpha_v = 0.3f;
     cases.push_back({"rough_copper", copper});
-    Bsdf tinted = smooth(BsdfKind::dielectric, 1.33);
+    Bsdf tinted = glass(1.33);
     tinted.specular_reflectance = {0.5f, 0.75f, 1};
     tinted.specular_transmittance = {0.9f, 0.6f, 0.3f};
     cases.push_back({"tinted_glass", tinted});

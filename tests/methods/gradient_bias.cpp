@@ -5,10 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
+#include <tuple>
 
 namespace gradus::testing {
-
 namespace {
 
 /// The mean product of the vectors of two seeds, and its standard error if the vectors had mean 0: then the products of
@@ -25,31 +26,12 @@ std::pair<double, double> mean_product(const std::vector<std::vector<double>> &v
     return {sum / pairs, std::sqrt(squares) / pairs};
 }
 
-std::vector<double> values_of(const Image &image) {
-    std::vector<double> values;
-    for (const char *color : colors) {
-        const std::vector<float> &channel = image.find(color)->values;
-        values.insert(values.end(), channel.begin(), channel.end());
-    }
+/// Of differences to the right and downwards.
+std::vector<double> values_of_both(const Image &right, const Image &down) {
+    std::vector<double> values = values_of(right);
+    const std::vector<double> more = values_of(down);
+    values.insert(values.end(), more.begin(), more.end());
     return values;
-}
-
-std::vector<double> less(std::vector<double> a, const std::vector<double> &b) {
-    std::transform(a.begin(), a.end(), b.begin(), a.begin(), std::minus<>());
-    return a;
-}
-
-std::vector<double> joined(std::vector<double> a, const std::vector<double> &b) {
-    a.insert(a.end(), b.begin(), b.end());
-    return a;
-}
-
-/// dx or dy of a gradient-domain render, with what the camera sees of lights.
-std::vector<double> estimated_differences(const Image &image, bool right) {
-    const Image seen = differences(image, "direct", right);
-    return values_of(image_of(image.width, image.height, [&](int c, std::uint32_t x, std::uint32_t y) {
-        return layer(image, right ? "dx" : "dy", c, x, y) + layer(seen, "", c, x, y);
-    }));
 }
 
 } // namespace
@@ -58,12 +40,22 @@ double BiasEstimate::at_most() const { return std::sqrt((std::max(squared, 0.0) 
 
 double GradientBias::at_most() const { return std::max(primal.at_most(), differences.at_most()); }
 
-BiasEstimate estimate_bias(const std::vector<std::vector<double>> &residuals,
+BiasEstimate estimate_bias(const std::vector<std::vector<double>> &estimates,
                            const std::vector<std::vector<double>> &truths) {
-    BiasEstimate estimate;
-    std::tie(estimate.squared, estimate.standard_error) = mean_product(residuals);
-    estimate.magnitude = mean_product(truths).first;
-    return estimate;
+    std::vector<std::vector<double>> residuals = estimates;
+    for (std::size_t seed = 0; seed < truths.size(); ++seed)
+        std::transform(residuals[seed].begin(), residuals[seed].end(), truths[seed].begin(), residuals[seed].begin(),
+                       std::minus<>());
+    BiasEstimate bias;
+    std::tie(bias.squared, bias.standard_error) = mean_product(residuals);
+    bias.magnitude = mean_product(truths).first;
+    return bias;
+}
+
+SceneMaker scene_for_bias(int max_depth) {
+    SceneMaker scene(32, 1);
+    scene.scene.settings.max_depth = max_depth;
+    return scene;
 }
 
 GradientBias gradient_bias(const Scene &scene, const GradientSamples &samples) {
@@ -74,17 +66,14 @@ GradientBias gradient_bias(const Scene &scene, const Scene &path_traced, const G
     Scene with_gradients = scene, without = path_traced;
     with_gradients.settings.samples_per_pixel = samples.gradient_domain;
     without.settings.samples_per_pixel = samples.path_tracing;
-    const std::vector<Image> estimates = render_seeds(with_gradients, samples.seeds, {}, 1, "gpt");
-    const std::vector<Image> truths = render_seeds(without, samples.seeds, {}, 1 + samples.seeds, "pt");
-    std::vector<std::vector<double>> primal, true_primal, change, true_change;
-    for (std::size_t seed = 0; seed < samples.seeds; ++seed) {
-        true_primal.push_back(values_of(truths[seed]));
-        primal.push_back(less(values_of(whole(estimates[seed])), true_primal.back()));
-        true_change.push_back(
-            joined(values_of(differences(truths[seed], "", true)), values_of(differences(truths[seed], "", false))));
-        change.push_back(
-            less(joined(estimated_differences(estimates[seed], true), estimated_differences(estimates[seed], false)),
-                 true_change.back()));
+    std::vector<std::vector<double>> primal, change, true_primal, true_change;
+    for (const Image &image : render_seeds(with_gradients, samples.seeds, {}, 1, "gpt")) {
+        primal.push_back(values_of(whole(image)));
+        change.push_back(values_of_both(whole_differences(image, true), whole_differences(image, false)));
+    }
+    for (const Image &image : render_seeds(without, samples.seeds, {}, 1 + samples.seeds, "pt")) {
+        true_primal.push_back(values_of(image));
+        true_change.push_back(values_of_both(differences(image, "", true), differences(image, "", false)));
     }
     return {estimate_bias(primal, true_primal), estimate_bias(change, true_change)};
 }

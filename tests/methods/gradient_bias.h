@@ -3,6 +3,7 @@
 #pragma once
 
 #include "runtime/scene/scene.h"
+#include "tests/support/small_scenes.h"
 
 #include <cstdint>
 #include <string>
@@ -10,7 +11,7 @@
 
 namespace gradus::testing {
 
-/// What independent residuals, estimate less truth, say of a bias.
+/// What independent residuals, estimates less truths, say of a bias.
 struct BiasEstimate {
     double squared = 0;        ///< squared bias, summed over values; without bias itself, so it may be negative
     double standard_error = 0; ///< of it, where there is no bias
@@ -23,8 +24,8 @@ struct BiasEstimate {
     double at_most() const;
 };
 
-/// From vectors of equal size: residuals and truths, an entry for each seed.
-BiasEstimate estimate_bias(const std::vector<std::vector<double>> &residuals,
+/// From vectors of equal size: estimates and truths, an entry for each seed.
+BiasEstimate estimate_bias(const std::vector<std::vector<double>> &estimates,
                            const std::vector<std::vector<double>> &truths);
 
 struct GradientBias {
@@ -36,6 +37,9 @@ struct GradientSamples {
     std::size_t seeds = 8;
     std::uint64_t gradient_domain = 16, path_tracing = 32; ///< samples a pixel and seed
 };
+
+/// The beginning of a small scene, of 32 x 32 pixels; gradient_bias() sets its samples.
+SceneMaker scene_for_bias(int max_depth = 6);
 
 /// Renders a scene with both methods. What the camera sees of lights counts as primal.
 GradientBias gradient_bias(const Scene &scene, const GradientSamples &samples);

@@ -3,6 +3,7 @@
 #include "tests/methods/reference_scene.h"
 #include "tests/support/render.h"
 #include "tests/support/stability.h"
+#include "tests/support/test_name.h"
 
 namespace gradus::testing {
 namespace {
@@ -39,11 +40,7 @@ TEST_P(GradientInvariance, ToTheThreadsThatTrace) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, GradientInvariance, ::testing::Values("cornell-box", "materials", "plates"),
-                         [](const auto &info) {
-                             std::string name = info.param;
-                             std::replace(name.begin(), name.end(), '-', '_');
-                             return name;
-                         });
+                         name_of_scene);
 
 /// Films without neighbours to one side or at all, no depth, black lights.
 TEST(GradientEdges, HaveFiniteImages) {

@@ -3,6 +3,7 @@
 #include "tests/methods/reference_scene.h"
 #include "tests/support/gradient_layers.h"
 #include "tests/support/stability.h"
+#include "tests/support/test_name.h"
 
 #include <gtest/gtest.h>
 
@@ -14,15 +15,6 @@ namespace {
 
 constexpr std::size_t seeds = 64;
 
-std::vector<double> values_of(const Image &image) {
-    std::vector<double> values;
-    for (const char *color : colors) {
-        const std::vector<float> &channel = image.find(color)->values;
-        values.insert(values.end(), channel.begin(), channel.end());
-    }
-    return values;
-}
-
 /// At a fixed alpha the reconstruction is linear in samples that are unbiased; at one from their variances it is not.
 TEST(GradientMean, OfL2IsUnbiased) {
     Scene scene = own_scene("cornell-box.xml", 48, 48);
@@ -32,17 +24,15 @@ TEST(GradientMean, OfL2IsUnbiased) {
         if (fixed)
             options.alpha = 0.2;
         scene.settings.samples_per_pixel = 4;
-        const std::vector<Image> images = render_seeds(scene, seeds, options, 1, "gpt");
+        const std::vector<Image> reconstructed = render_seeds(scene, seeds, options, 1, "gpt");
         scene.settings.samples_per_pixel = 64;
-        const std::vector<Image> truths = render_seeds(scene, seeds, {}, 1 + seeds, "pt");
-        std::vector<std::vector<double>> residuals, means;
+        const std::vector<Image> path_traced = render_seeds(scene, seeds, {}, 1 + seeds, "pt");
+        std::vector<std::vector<double>> estimates, truths;
         for (std::size_t i = 0; i < seeds; ++i) {
-            means.push_back(values_of(truths[i]));
-            residuals.push_back(values_of(images[i]));
-            std::transform(residuals.back().begin(), residuals.back().end(), means.back().begin(),
-                           residuals.back().begin(), std::minus<>());
+            estimates.push_back(values_of(reconstructed[i]));
+            truths.push_back(values_of(path_traced[i]));
         }
-        const BiasEstimate bias = estimate_bias(residuals, means);
+        const BiasEstimate bias = estimate_bias(estimates, truths);
         std::printf("L2, alpha %s: squared bias %.1f standard errors, relative bias at most %.2g\n",
                     fixed ? "0.2" : "from variances", bias.squared / bias.standard_error, bias.at_most());
         if (fixed) {
@@ -91,11 +81,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, GradientMeanOf,
                          ::testing::Values(std::pair{"cornell-box", 0.01}, std::pair{"plates", 0.01},
                                            // Most of its light comes in rare samples.
                                            std::pair{"door-ajar", 0.06}),
-                         [](const auto &info) {
-                             std::string name = info.param.first;
-                             std::replace(name.begin(), name.end(), '-', '_');
-                             return name;
-                         });
+                         [](const auto &info) { return test_name(info.param.first); });
 
 } // namespace
 } // namespace gradus::testing

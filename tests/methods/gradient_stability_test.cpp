@@ -9,27 +9,19 @@
 namespace gradus::testing {
 namespace {
 
-constexpr std::uint32_t size = 32;
 constexpr const char *area = "Gradients";
 
-SceneMaker maker() {
-    SceneMaker maker(size, 1);
-    maker.scene.settings.max_depth = 6;
-    return maker;
-}
-
-Material both_sides(double albedo) { return two_sided(diffuse(albedo), diffuse(albedo)); }
-
 /// z = 0, its front towards -z, where the camera is.
-void wall(SceneMaker &maker, std::uint32_t material) {
-    maker.parallelogram({-2, -2, 0}, {0, 4, 0}, {4, 0, 0}, material);
+void add_wall(SceneMaker &scene, std::uint32_t material) {
+    scene.parallelogram({-2, -2, 0}, {0, 4, 0}, {4, 0, 0}, material);
 }
 
 // Tilted cards of two greys float before a wall: depth, normal and albedo jump from pixel to pixel.
 TEST(GradientStability, AtEdgesOfDepthNormalAndAlbedo) {
-    SceneMaker scene = maker();
-    const std::uint32_t light_grey = scene.material(both_sides(0.8)), dark_grey = scene.material(both_sides(0.3));
-    wall(scene, light_grey);
+    SceneMaker scene = scene_for_bias();
+    const std::uint32_t light_grey = scene.material(two_sided(diffuse(0.8)));
+    const std::uint32_t dark_grey = scene.material(two_sided(diffuse(0.3)));
+    add_wall(scene, light_grey);
     for (int i = 0; i < 4; ++i)
         for (int j = 0; j < 4; ++j) {
             const float x = 0.25f * float(i) - 0.45f, y = 0.25f * float(j) - 0.45f,
@@ -48,9 +40,9 @@ TEST(GradientStability, AtEdgesOfDepthNormalAndAlbedo) {
 
 // A lamp of 2 mm that shines on a wall 5 cm away, as bright as it takes.
 TEST(GradientStability, FromATinyBrightLight) {
-    SceneMaker scene = maker();
-    const std::uint32_t grey = scene.material(both_sides(0.8));
-    wall(scene, grey);
+    SceneMaker scene = scene_for_bias();
+    const std::uint32_t grey = scene.material(two_sided(diffuse(0.8)));
+    add_wall(scene, grey);
     const std::int32_t light = scene.emitter(Emitter::Kind::area, {1e6f, 1e6f, 1e6f});
     // Its front is towards the wall.
     scene.parallelogram({0.6f, 0, -0.05f}, {0.002f, 0, 0}, {0, 0.002f, 0}, grey, light);
@@ -64,15 +56,11 @@ TEST(GradientStability, FromATinyBrightLight) {
 
 // A ball of glass between a lamp and the floor: light sampling cannot find the caustic.
 TEST(GradientStability, InACaustic) {
-    SceneMaker scene = maker();
-    const std::uint32_t grey = scene.material(both_sides(0.6));
-    Bsdf glass;
-    glass.kind = BsdfKind::dielectric;
-    glass.ior = 1.5f;
-    scene.parallelogram({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, grey);
-    scene.sphere({0, 0.6f, 0}, 0.4f, scene.material(glass));
-    const std::int32_t light = scene.emitter(Emitter::Kind::area, {6, 6, 6});
-    scene.parallelogram({-0.7f, 2.5f, -0.7f}, {1.4f, 0, 0}, {0, 0, 1.4f}, grey, light);
+    SceneMaker scene = scene_for_bias();
+    const std::uint32_t grey = scene.material(two_sided(diffuse(0.6)));
+    scene.floor(-2, 2, 2, grey);
+    scene.sphere({0, 0.6f, 0}, 0.4f, scene.material(glass(1.5)));
+    scene.lamp({0, 2.5f, 0}, 1.4f, 1.4f, 6, grey);
     scene.look({0, 1.3, -2.6}, {0, 0.15, 0}, 30);
     expect_no_bias(gradient_bias(scene.scene, {8, 64, 256}),
                    {area, "caustics: reconnecting to a Dirac vertex carries nothing",
@@ -83,9 +71,9 @@ TEST(GradientStability, InACaustic) {
 // A card before a wall: at both edges of its shadow a pixel whose path sees the light has a neighbour whose path does
 // not.
 SceneMaker shadow() {
-    SceneMaker scene = maker();
-    const std::uint32_t grey = scene.material(both_sides(0.7));
-    wall(scene, grey);
+    SceneMaker scene = scene_for_bias();
+    const std::uint32_t grey = scene.material(two_sided(diffuse(0.7)));
+    add_wall(scene, grey);
     scene.parallelogram({-0.1f, -1, -1}, {0, 2, 0}, {0.2f, 0, 0}, grey); // half as wide as its shadow
     scene.look({0, 0, -0.9}, {0, 0, 0}, 40);                             // from behind the card
     return scene;

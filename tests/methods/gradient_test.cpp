@@ -4,6 +4,7 @@
 #include "tests/methods/reference_scene.h"
 #include "tests/support/gradient_layers.h"
 #include "tests/support/stability.h"
+#include "tests/support/test_name.h"
 
 namespace gradus::testing {
 namespace {
@@ -22,7 +23,6 @@ class GradientReference : public ::testing::TestWithParam<const char *> {
     /// The differences against those of the reference, times the sign that they have in a third, independent image: a
     /// shift whose differences are too small everywhere shows in every block.
     ::testing::AssertionResult differences_agree(bool right) {
-        const char *name = right ? "dx" : "dy";
         Scene scene = reference_.scene;
         scene.settings.samples_per_pixel = 64;
         RenderOptions options;
@@ -34,14 +34,10 @@ class GradientReference : public ::testing::TestWithParam<const char *> {
             });
         };
         std::vector<Image> ours;
-        for (const Image &image : images_) {
-            const Image seen = differences(image, "direct", right);
-            ours.push_back(signed_by(image_of(image.width, image.height, [&](int c, std::uint32_t x, std::uint32_t y) {
-                return layer(image, name, c, x, y) + layer(seen, "", c, x, y);
-            })));
-        }
+        for (const Image &image : images_)
+            ours.push_back(signed_by(whole_differences(image, right)));
         ReferenceScene expected = reference_;
-        expected.name = reference_.name + "-" + name;
+        expected.name += right ? "-dx" : "-dy";
         expected.mean = signed_by(differences(reference_.mean, "", right));
         const Image &variance = reference_.variance;
         expected.variance = image_of(variance.width, variance.height, [&](int c, std::uint32_t x, std::uint32_t y) {
@@ -97,11 +93,7 @@ TEST_P(GradientReference, IsMetByPrimalAndDifferences) {
 INSTANTIATE_TEST_SUITE_P(Image, GradientReference,
                          ::testing::Values("cornell-box", "torus-rough-glass", "plates", "holes-7", "holes-14",
                                            "holes-28", "door-ajar", "materials"),
-                         [](const auto &info) {
-                             std::string name = info.param;
-                             std::replace(name.begin(), name.end(), '-', '_');
-                             return name;
-                         });
+                         name_of_scene);
 
 /// The difference between two pixels that look alike is nothing, whatever the noise of the primal.
 TEST(GradientNoise, OfAPlainWallIsFarBelowThePrimals) {

@@ -4,6 +4,7 @@
 #include "tests/methods/gradient_bias.h"
 #include "tests/support/small_scenes.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace gradus::testing {
@@ -12,43 +13,16 @@ namespace {
 constexpr const char *area = "Half-vector copy";
 constexpr const char *unbiased = "copies the half vector, or fails both ways; primal and differences are unbiased";
 
-Material both_sides(double albedo) { return two_sided(diffuse(albedo), diffuse(albedo)); }
-
-Bsdf mirror() {
-    Bsdf bsdf;
-    bsdf.kind = BsdfKind::conductor;
-    return bsdf;
-}
-
-Bsdf glass(double ior) {
-    Bsdf bsdf;
-    bsdf.kind = BsdfKind::dielectric;
-    bsdf.ior = float(ior);
-    return bsdf;
-}
-
-Bsdf rough(BsdfKind kind, double alpha, double ior = 1.5) {
-    Bsdf bsdf;
-    bsdf.kind = kind;
-    bsdf.distribution = Microfacet::ggx;
-    bsdf.alpha_u = bsdf.alpha_v = float(alpha);
-    bsdf.ior = float(ior);
-    return bsdf;
-}
-
 /// A room open to the camera, at z = -3, with a lamp under its ceiling and a wall of two greys at z = 1.
 SceneMaker room() {
-    SceneMaker scene(32, 1);
-    scene.scene.settings.max_depth = 7;
-    const std::uint32_t white = scene.material(both_sides(0.7)), dark = scene.material(both_sides(0.2));
+    SceneMaker scene = scene_for_bias(7);
+    const std::uint32_t white = scene.material(two_sided(diffuse(0.7))), dark = scene.material(two_sided(diffuse(0.2)));
     scene.parallelogram({-1, -1, 1}, {0, 2, 0}, {1, 0, 0}, white);
     scene.parallelogram({0, -1, 1}, {0, 2, 0}, {1, 0, 0}, dark);
-    scene.parallelogram({-1, -1, -1}, {0, 0, 2}, {2, 0, 0}, white);
+    scene.floor(-1, 1, 1, white, -1);
     scene.parallelogram({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}, white);
-    const std::int32_t lamp = scene.emitter(Emitter::Kind::area, {3, 3, 3});
-    scene.parallelogram({-0.8f, 0.99f, -0.8f}, {1.6f, 0, 0}, {0, 0, 1.6f}, white, lamp);
-    const Bsdf hidden[] = {mirror(), glass(1.5), rough(BsdfKind::roughconductor, 0.3),
-                           rough(BsdfKind::roughdielectric, 0.3)};
+    scene.lamp({0, 0.99f, 0}, 1.6f, 1.6f, 3, white);
+    const Bsdf hidden[] = {mirror(), glass(1.5), rough_metal(0.3), rough_glass(0.3, 1.5)};
     for (int i = 0; i < 4; ++i)
         scene.sphere({float(i), 0, -20}, 0.1f, scene.material(hidden[i]));
     scene.look({0.1, 0.05, -3}, {0, 0, 0}, 36);
@@ -62,7 +36,7 @@ GradientRow row(const std::string &failure, const std::string &provoked_by, doub
 // Two mirrors that face each other show the wall and the lamp after one to four reflections.
 TEST(HalfVectorStability, InAChainOfMirrors) {
     SceneMaker scene = room();
-    const std::uint32_t polished = scene.material(two_sided(mirror(), mirror()));
+    const std::uint32_t polished = scene.material(two_sided(mirror()));
     scene.parallelogram({-0.5f, -0.9f, 0.6f}, {0.2f, 1.8f, 0}, {0.9f, 0, -0.3f}, polished);
     scene.parallelogram({-0.2f, -0.9f, -0.8f}, {0, 0.7f, 0.1f}, {0.7f, 0, 0.2f}, polished);
     expect_no_bias(gradient_bias(scene.scene, {8, 16, 128}),
@@ -94,18 +68,16 @@ class HalfVectorStabilityAtRoughness : public ::testing::TestWithParam<double> {
 // A pane of glass between camera and wall, and a metal ball before it.
 TEST_P(HalfVectorStabilityAtRoughness, OfGlassAndMetal) {
     SceneMaker scene = room();
-    const std::uint32_t pane = scene.material(rough(BsdfKind::roughdielectric, GetParam()));
-    const std::uint32_t metal = scene.material(rough(BsdfKind::roughconductor, GetParam()));
+    const std::uint32_t pane = scene.material(rough_glass(GetParam(), 1.5));
+    const std::uint32_t metal = scene.material(rough_metal(GetParam()));
     scene.parallelogram({-0.9f, -0.8f, 0.3f}, {0, 1.5f, 0.1f}, {1.2f, 0, 0}, pane);
     scene.parallelogram({-0.9f, -0.8f, 0.4f}, {1.2f, 0, 0}, {0, 1.5f, 0.1f}, pane);
     scene.sphere({0.5f, -0.3f, -0.2f}, 0.4f, metal);
-    char scene_name[80];
-    std::snprintf(scene_name, sizeof scene_name, "a pane and a metal ball of roughness %g", GetParam());
     expect_no_bias(
         gradient_bias(scene.scene, {8, 32, 256}),
         row("roughness 1e-4 to 1: densities over many orders of magnitude, transmitted half vectors near the "
             "surface",
-            scene_name, 0.3));
+            fmt::format("a pane and a metal ball of roughness {}", GetParam()), 0.3));
 }
 
 INSTANTIATE_TEST_SUITE_P(Shifts, HalfVectorStabilityAtRoughness, ::testing::Values(1e-4, 1e-3, 0.02, 0.1, 0.5, 1.0));
@@ -113,9 +85,8 @@ INSTANTIATE_TEST_SUITE_P(Shifts, HalfVectorStabilityAtRoughness, ::testing::Valu
 // Polished floors seen along their plane.
 TEST(HalfVectorStability, AtGrazingIncidence) {
     SceneMaker scene = room();
-    scene.parallelogram({-1, -0.3f, -1}, {0, 0, 2}, {1, 0, 0}, scene.material(two_sided(mirror(), mirror())));
-    const Bsdf metal = rough(BsdfKind::roughconductor, 0.02);
-    scene.parallelogram({0, -0.3f, -1}, {0, 0, 2}, {1, 0, 0}, scene.material(two_sided(metal, metal)));
+    scene.floor(-1, 0, 1, scene.material(two_sided(mirror())), -0.3f);
+    scene.floor(0, 1, 1, scene.material(two_sided(rough_metal(0.02))), -0.3f);
     scene.look({0.05, -0.24, -3}, {0, -0.25, 1}, 12);
     expect_no_bias(gradient_bias(scene.scene, {8, 32, 256}),
                    row("grazing incidence: the Jacobian's cosines go to 0",
@@ -130,7 +101,7 @@ TEST(HalfVectorStability, AtIndexRatiosNearOne) {
         scene.sphere({0.42f * float(i % 2) - 0.2f, 0.42f * float(i / 2) - 0.2f, 0}, 0.2f, scene.material(glass(ior)));
         ++i;
     }
-    scene.sphere({0.65f, 0, 0}, 0.2f, scene.material(rough(BsdfKind::roughdielectric, 0.02, 1.001)));
+    scene.sphere({0.65f, 0, 0}, 0.2f, scene.material(rough_glass(0.02, 1.001)));
     expect_no_bias(gradient_bias(scene.scene, {8, 16, 128}),
                    row("an index ratio near 1: refraction has no half vector",
                        "balls of smooth glass, index 1 to 1.02, and one of nearly smooth", 0.15));
@@ -141,7 +112,7 @@ TEST(HalfVectorStability, ToLampsThatMirror) {
     SceneMaker scene = room();
     const std::int32_t light = scene.emitter(Emitter::Kind::area, {1, 0.5f, 0.2f});
     scene.sphere({-0.4f, -0.4f, 0}, 0.35f, scene.material(mirror()), light);
-    scene.sphere({0.4f, -0.4f, 0}, 0.35f, scene.material(rough(BsdfKind::roughconductor, 0.02)), light);
+    scene.sphere({0.4f, -0.4f, 0}, 0.35f, scene.material(rough_metal(0.02)), light);
     expect_no_bias(gradient_bias(scene.scene, {8, 16, 128}),
                    row("a vertex that emits and mirrors: a path that ends there reconnects, one that goes on does not",
                        "balls of mirror and of polished metal that shine", 0.15));

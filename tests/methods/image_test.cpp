@@ -2,6 +2,7 @@
 #include "runtime/film/metrics.h"
 #include "tests/methods/reference_scene.h"
 #include "tests/support/render.h"
+#include "tests/support/test_name.h"
 
 #include <functional>
 
@@ -19,15 +20,10 @@ class OwnReference : public ::testing::TestWithParam<const char *> {};
 
 TEST_P(OwnReference, IsMet) { EXPECT_TRUE(renders_as_referenced(own_reference(GetParam()), 64)); }
 
-std::string test_name(std::string name) {
-    std::replace(name.begin(), name.end(), '-', '_');
-    return name;
-}
-
 INSTANTIATE_TEST_SUITE_P(Image, OwnReference,
                          ::testing::Values("cornell-box", "torus-rough-glass", "plates", "holes-7", "holes-14",
                                            "holes-28", "door-ajar", "materials"),
-                         [](const auto &info) { return test_name(info.param); });
+                         name_of_scene);
 
 struct SharedCase {
     SharedReference reference;

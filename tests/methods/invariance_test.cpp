@@ -2,6 +2,7 @@
 #include "tests/methods/reference_scene.h"
 #include "tests/support/render.h"
 #include "tests/support/small_scenes.h"
+#include "tests/support/test_name.h"
 
 #include <fmt/format.h>
 
@@ -97,12 +98,7 @@ TEST_P(Invariance, ToSpecialisationButForRounding) {
     EXPECT_LE(far, count / 100);
 }
 
-INSTANTIATE_TEST_SUITE_P(Image, Invariance, ::testing::Values("cornell-box", "plates", "materials"),
-                         [](const auto &info) {
-                             std::string name = info.param;
-                             std::replace(name.begin(), name.end(), '-', '_');
-                             return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(Image, Invariance, ::testing::Values("cornell-box", "plates", "materials"), name_of_scene);
 
 TEST(PartialImage, DividesEachPixelByItsOwnCount) {
     constexpr std::uint32_t pixels = 50 * 50;

@@ -1,6 +1,7 @@
 // Light sampling alone, BSDF sampling alone and both combined estimate the same image.
 #include "tests/methods/reference_scene.h"
 #include "tests/support/render.h"
+#include "tests/support/test_name.h"
 
 namespace gradus::testing {
 namespace {
@@ -33,12 +34,7 @@ TEST_P(Strategies, Agree) {
     EXPECT_FALSE(equal_bits(mis[0], bsdf[0]));
 }
 
-INSTANTIATE_TEST_SUITE_P(Image, Strategies, ::testing::Values("cornell-box", "plates", "materials"),
-                         [](const auto &info) {
-                             std::string name = info.param;
-                             std::replace(name.begin(), name.end(), '-', '_');
-                             return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(Image, Strategies, ::testing::Values("cornell-box", "plates", "materials"), name_of_scene);
 
 } // namespace
 } // namespace gradus::testing

@@ -3,6 +3,7 @@
 #include "runtime/io/load_scene.h"
 #include "runtime/stages/trace_stage.h"
 #include "tests/portability/wavefront.h"
+#include "tests/support/test_name.h"
 
 #include <gtest/gtest.h>
 
@@ -197,12 +198,7 @@ TEST_P(DoubleBuild, AgreesWithTheFloatBuildInEveryStage) {
     print_figures();
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, DoubleBuild, ::testing::Values("cornell-box", "materials", "plates"),
-                         [](const auto &info) {
-                             std::string name = info.param;
-                             std::replace(name.begin(), name.end(), '-', '_');
-                             return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(Scenes, DoubleBuild, ::testing::Values("cornell-box", "materials", "plates"), name_of_scene);
 
 } // namespace
 } // namespace gradus

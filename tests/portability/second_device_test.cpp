@@ -4,6 +4,7 @@
 #include "runtime/io/load_scene.h"
 #include "runtime/methods/method.h"
 #include "tests/support/render.h"
+#include "tests/support/test_name.h"
 
 #include <gtest/gtest.h>
 
@@ -98,11 +99,7 @@ TEST_P(SecondDevice, TheSameSeedGivesNearlyTheSamePixels) {
 INSTANTIATE_TEST_SUITE_P(Scenes, SecondDevice,
                          ::testing::Values("cornell-box", "torus-rough-glass", "plates", "door-ajar", "holes",
                                            "materials"),
-                         [](const auto &info) {
-                             std::string name = info.param;
-                             std::replace(name.begin(), name.end(), '-', '_');
-                             return name;
-                         });
+                         testing::name_of_scene);
 
 } // namespace
 } // namespace gradus

@@ -23,6 +23,16 @@ Image image_of(std::uint32_t width, std::uint32_t height, Value value) {
     return image;
 }
 
+/// All red values, all green ones, all blue ones.
+inline std::vector<double> values_of(const Image &image) {
+    std::vector<double> values;
+    for (const char *color : colors) {
+        const std::vector<float> &channel = image.find(color)->values;
+        values.insert(values.end(), channel.begin(), channel.end());
+    }
+    return values;
+}
+
 inline double layer(const Image &image, const std::string &name, int c, std::uint32_t x, std::uint32_t y) {
     return pixel(image, x, y, name.empty() ? colors[c] : name + "." + colors[c]);
 }
@@ -41,6 +51,14 @@ inline Image differences(const Image &image, const std::string &name, bool right
         return to_x < image.width && to_y < image.height
                    ? layer(image, name, c, to_x, to_y) - layer(image, name, c, x, y)
                    : 0.0;
+    });
+}
+
+/// dx or dy, with the differences of what the camera sees of lights: an estimate of the differences of whole().
+inline Image whole_differences(const Image &image, bool right) {
+    const Image seen = differences(image, "direct", right);
+    return image_of(image.width, image.height, [&](int c, std::uint32_t x, std::uint32_t y) {
+        return layer(image, right ? "dx" : "dy", c, x, y) + layer(seen, "", c, x, y);
     });
 }
 

@@ -3,32 +3,12 @@
 
 #include "runtime/scene/scene.h"
 #include "runtime/scene/transform.h"
+#include "tests/support/materials.h"
 
 #include <array>
 #include <string>
 
 namespace gradus::testing {
-
-inline Bsdf diffuse(double albedo) {
-    Bsdf bsdf;
-    bsdf.kind = BsdfKind::diffuse;
-    bsdf.reflectance = {float(albedo), float(albedo), float(albedo)};
-    return bsdf;
-}
-
-inline Material material_of(const Bsdf &front) {
-    Material material;
-    material.front = front;
-    return material;
-}
-
-inline Material two_sided(const Bsdf &front, const Bsdf &back) {
-    Material material;
-    material.front = front;
-    material.back = back;
-    material.two_sided = true;
-    return material;
-}
 
 /// Grows a scene. The functions return the index of what they add.
 struct SceneMaker {
@@ -88,6 +68,15 @@ struct SceneMaker {
         add_parallelogram(mesh, p, u, v);
         scene.meshes.push_back(mesh);
         shape(Shape::Kind::mesh, scene.meshes.size() - 1, material, emitter);
+    }
+    /// A floor with its front upwards: x from x0 to x1, z from -extent to extent.
+    void floor(float x0, float x1, float extent, std::uint32_t material, float y = 0) {
+        parallelogram({x0, y, -extent}, {0, 0, 2 * extent}, {x1 - x0, 0, 0}, material);
+    }
+    /// A rectangle that shines downwards: x over the width, z over the depth.
+    void lamp(Vector3 center, float width, float depth, float radiance, std::uint32_t material) {
+        parallelogram({center.x - width / 2, center.y, center.z - depth / 2}, {width, 0, 0}, {0, 0, depth}, material,
+                      emitter(Emitter::Kind::area, {radiance, radiance, radiance}));
     }
     /// The cube [-1, 1]^3, its front inside where `inward`. Its sides have texture coordinates, so that anisotropic
     /// roughness has a direction.

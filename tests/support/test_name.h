@@ -1,0 +1,20 @@
+// Names of tests whose parameter is a scene.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+namespace gradus::testing {
+
+/// Scenes have hyphens in their names, where GoogleTest takes underscores only.
+inline std::string test_name(std::string scene) {
+    std::replace(scene.begin(), scene.end(), '-', '_');
+    return scene;
+}
+
+/// For INSTANTIATE_TEST_SUITE_P, where the parameter is the scene's name.
+inline std::string name_of_scene(const ::testing::TestParamInfo<const char *> &info) { return test_name(info.param); }
+
+} // namespace gradus::testing
