@@ -172,7 +172,7 @@
     REAL(gain, value_r, "what the offset path gains, times the Jacobian")                                              \
     REAL(gain, value_g, "")                                                                                            \
     REAL(gain, value_b, "")                                                                                            \
-    REAL(gain, base_bsdf, "density of BSDF sampling, base path")                                                       \
+    REAL(gain, base_bsdf, "of offset 0 alone: density of BSDF sampling, base path")                                    \
     REAL(gain, offset_light, "density of light sampling, offset path; or shift_failed, shift_absent")                  \
     REAL(gain, offset_bsdf, "density of BSDF sampling, offset path; or gain_split")
 

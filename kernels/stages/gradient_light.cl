@@ -61,6 +61,7 @@ STAGE gradient_light(uint count, uint unit, uint first, uint capacity, uint slot
     const real base_bsdf = PASTE(BSDF, _pdf)(m, wi, wo) * inverse_light_pdf;
     const rgb base = rgb_mul(rgb_mul(AT_RGB(vertex, throughput, row), arriving), PASTE(BSDF, _eval)(m, wi, wo));
     real any_offset = R(0);
+    AT(gain, base_bsdf, row) = base_bsdf;
 
 #if APART
     const vec3 light_point = v3_add(position, s.connection);
@@ -166,7 +167,6 @@ STAGE gradient_light(uint count, uint unit, uint first, uint capacity, uint slot
         AT_UINT(link, open, segment) = asks ? 1u : 0u;
 #endif
         SET_RGB(gain, value, at, value);
-        AT(gain, base_bsdf, at) = base_bsdf;
         AT(gain, offset_light, at) = offset_light;
         AT(gain, offset_bsdf, at) = offset_bsdf;
         any_offset = r_max(any_offset, asks_base);
