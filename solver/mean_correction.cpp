@@ -9,7 +9,10 @@ namespace gradus::solver {
 
 namespace {
 
-constexpr double smoothness = 0.1;
+/// More takes more of the noise of I0, less leaves more of a local loss: over those at 0.1, relMSE is 1 to 2 % larger at
+/// 0.2 and up to 9 % at 0.3; of scenes/door-ajar.xml with 16 samples, 128 x 96, the worst mean of 32 x 32 pixels is off
+/// by 2.1 %, 0.7 % and 0.5 %.
+constexpr double smoothness = 0.2;
 /// Of the mean of I, which has no outliers: darker pixels count as this bright.
 constexpr double least_brightness = 1e-3;
 /// Each divides the error by about ten, and this much less than the noise of I0 is enough.

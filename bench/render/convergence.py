@@ -2,7 +2,7 @@
 """Error against time: methods x scenes x budgets x seeds, with rivals where they are there.
 
     python3 bench/render/convergence.py [SCENE ...] [--method pt gpt] [--spp 4 16 64] [--seconds 1 4] [--seeds 5]
-    python3 bench/render/convergence.py --quick       # three scenes, few samples, two seeds
+    python3 bench/render/convergence.py --quick       # two scenes, few samples, two seeds
 
 SCENE is a name in tests/references, whose reference another renderer made; cornell-box-256, the Cornell box of
 ../shared where that is present; or SCENE.xml:WxH, for which a reference is made once by path tracing with
@@ -35,7 +35,7 @@ import references  # noqa: E402
 import renders  # noqa: E402
 from pythons import find_python  # noqa: E402
 
-QUICK_SCENES = ["cornell-box", "door-ajar", "torus-rough-glass"]
+QUICK_SCENES = ["cornell-box", "door-ajar"]
 QUICK_SPP, FULL_SPP = [4, 16, 64], [4, 16, 64, 256, 1024]
 
 
