@@ -65,7 +65,8 @@ def headline(found):
     if not costs:
         return "Where the time of a sample goes"
     least, largest = f"{min(costs):.2g}", f"{max(costs):.2g}"
-    return f"A sample of gpt costs {least if least == largest else f'{least} to {largest}'} samples of pt"
+    return (f"A sample of gpt costs {least if least == largest else f'{least} to {largest}'} samples of pt, "
+            "the reconstruction left out")
 
 
 def draw(pyplot, results):

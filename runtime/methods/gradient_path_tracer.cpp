@@ -102,7 +102,9 @@ std::vector<PathTracer::Wanted> GradientPathTracer::wanted_kernels() {
     }
     for (int apart = 0; apart <= int(keeps_apart()); ++apart) {
         const std::string suffix = apart ? " apart" : "", value = apart ? "1" : "0";
-        const KernelRequest shift = request_of("shift"), emission = request_of("gradient_emission");
+        // Relaxed, its like computations would be packed into short vectors again (kernels/lib/ordered.h), at a
+        // third of the speed.
+        const KernelRequest shift = strict(request_of("shift")), emission = request_of("gradient_emission");
         wanted.push_back({&shift_[apart], variant(shift, fmt::format("shift{}", suffix), "shift",
                                                   with({{"ESCAPED", "0"}, {"APART", value}}))});
         if (escape_wanted()) {

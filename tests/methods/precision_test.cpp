@@ -64,7 +64,7 @@ TEST_P(PrecisionOfKernels, DecidesFewPaths) {
 }
 
 TEST_P(PrecisionOfKernels, HasOneImageForAllBatchesAndThreads) {
-    Scene scene = own_scene("cornell-box.xml", 48, 36); // materials in double: thread_test.cpp
+    Scene scene = own_scene("cornell-box.xml", 48, 36);
     scene.settings.samples_per_pixel = 4;
     const Image image = image_of(scene, precision());
     for (const std::uint32_t batch_size : {64u, 1000u})

@@ -32,10 +32,10 @@ double quantile(std::vector<float> values, double share) {
 void record(const InverseCase &c, const char *area, const char *kind, const InverseShifts &s, double limit) {
     if (s.shifts == 0)
         return;
-    const std::string provoked_by = fmt::format("{} of {}, threshold {}", kind, c.scene, c.threshold);
+    const std::string provoked_by = fmt::format("{} in renders of the project's scenes", kind);
     const double shifts = double(s.shifts);
     record_stability({area, "a shift without a way back biases the image", provoked_by,
-                      "what fails one way fails the other way: of two densities the smaller has a say",
+                      "both ways decide by the same vertices",
                       "shifts with no way back, or with one of another kind, of a million",
                       1e6 * double(s.one_way + s.other_kind) / shifts, 30});
     record_stability({area, "a way back that ends elsewhere biases the image", provoked_by,
@@ -48,9 +48,9 @@ void record(const InverseCase &c, const char *area, const char *kind, const Inve
                       limit});
     ::testing::Test::RecordProperty(fmt::format("{}_shifts", area[0] == 'R' ? "reconnection" : "copy"),
                                     std::to_string(s.shifts));
-    std::printf("%s: %llu shifts, %llu without a way back, %llu of another kind, %llu elsewhere; product of Jacobians "
-                "less 1: median %.2g, 99.9 %% %.2g, largest %.2g\n",
-                provoked_by.c_str(), static_cast<unsigned long long>(s.shifts),
+    std::printf("%s of %s, threshold %g: %llu shifts, %llu without a way back, %llu of another kind, %llu elsewhere; "
+                "product of Jacobians less 1: median %.2g, 99.9 %% %.2g, largest %.2g\n",
+                kind, c.scene, c.threshold, static_cast<unsigned long long>(s.shifts),
                 static_cast<unsigned long long>(s.one_way), static_cast<unsigned long long>(s.other_kind),
                 static_cast<unsigned long long>(s.elsewhere), quantile(s.jacobian_errors, 0.5),
                 quantile(s.jacobian_errors, 0.999), quantile(s.jacobian_errors, 1));
