@@ -37,9 +37,7 @@ GRADUS_FN light_found light_found_at(GRADUS_GLOBAL const uint *primitive_light, 
 #endif
     const real seen = side > R(0) ? R(1) : R(0);
     light_found found;
-    found.radiance = rgb_scale(rgb3(FIELD_OF(light, lights, light, value_r), FIELD_OF(light, lights, light, value_g),
-                                    FIELD_OF(light, lights, light, value_b)),
-                               seen);
+    found.radiance = rgb_scale(FIELD_RGB(light, lights, light, value), seen);
     found.pdf = pdf * FIELD_OF(light, lights, light, probability);
     return found;
 }

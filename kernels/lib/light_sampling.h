@@ -41,8 +41,7 @@ GRADUS_FN chosen_light light_sampling(GRADUS_GLOBAL const real *lights, GRADUS_G
     const uint column = min((uint)(u.a * (real)light_count), light_count - 1u);
     const uint light = u.b < FIELD_OF(light, lights, column, alias_threshold) ? column : light_alias[column];
     const real probability = FIELD_OF(light, lights, light, probability);
-    const rgb value = rgb3(FIELD_OF(light, lights, light, value_r), FIELD_OF(light, lights, light, value_g),
-                           FIELD_OF(light, lights, light, value_b));
+    const rgb value = FIELD_RGB(light, lights, light, value);
     const vec3 p = FIELD_V3(light, lights, light, p);
 #if TRAIT_LIGHT_TRIANGLE || TRAIT_LIGHT_SPHERE
     const vec3 e1 = FIELD_V3(light, lights, light, e1);

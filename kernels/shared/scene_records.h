@@ -118,6 +118,9 @@ enum light_kind {
 #define FIELD_V3(record, array, index, field)                                                                          \
     v3(FIELD_OF(record, array, index, field##_x), FIELD_OF(record, array, index, field##_y),                           \
        FIELD_OF(record, array, index, field##_z))
+#define FIELD_RGB(record, array, index, field)                                                                         \
+    rgb3(FIELD_OF(record, array, index, field##_r), FIELD_OF(record, array, index, field##_g),                         \
+         FIELD_OF(record, array, index, field##_b))
 
 GRADUS_LIB_END
 #endif

@@ -347,8 +347,10 @@ GRADUS_LIB_END
 
 /* Three columns at once, as vec3 or rgb; kernels/lib/vector.h must be included. */
 #define AT_V3(table, column, row) v3(AT(table, column##_x, row), AT(table, column##_y, row), AT(table, column##_z, row))
-#define AT_RGB(table, column, row)                                                                                     \
-    rgb3(AT(table, column##_r, row), AT(table, column##_g, row), AT(table, column##_b, row))
+#define AT_RGB_IN(pointer, table, column, row)                                                                         \
+    rgb3(AT_IN(pointer, table, column##_r, row), AT_IN(pointer, table, column##_g, row),                               \
+         AT_IN(pointer, table, column##_b, row))
+#define AT_RGB(table, column, row) AT_RGB_IN(table, table, column, row)
 #define SET_V3(table, column, row, value)                                                                              \
     AT(table, column##_x, row) = (value).x;                                                                            \
     AT(table, column##_y, row) = (value).y;                                                                            \

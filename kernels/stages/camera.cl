@@ -6,6 +6,7 @@
 //! traits: TRAIT_FILTER_TENT TRAIT_FILTER_GAUSSIAN TRAIT_AOV TRAIT_SHARED_JITTER
 #include "kernels/lib/additive_sequence.h"
 #include "kernels/lib/begin_path.h"
+#include "kernels/lib/camera_ray.h"
 #include "kernels/lib/division.h"
 
 /* Filter importance sampling (Ernst et al. 2006): the offset from the pixel's center is drawn from the filter. */
@@ -52,9 +53,7 @@ STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ra
 #endif
     const real film_x = (real)x + R(0.5) + filter_offset(camera, unit, u.a);
     const real film_y = (real)y + R(0.5) + filter_offset(camera, unit, u.b);
-    const vec3 direction =
-        v3_normalize(v3_mad(v3_mad(FIELD_V3(camera, camera, 0, corner), film_x, FIELD_V3(camera, camera, 0, right)),
-                            film_y, FIELD_V3(camera, camera, 0, down)));
+    const vec3 direction = camera_direction(camera, unit, film_x, film_y);
     const vec3 origin = FIELD_V3(camera, camera, 0, origin);
     SET_V3(ray, origin, row, origin);
     SET_V3(ray, direction, row, direction);

@@ -24,9 +24,7 @@ STAGE emission(uint count, uint unit, uint first, uint capacity, uint slots, __g
 #if TRAIT_HIDE_EMITTERS
     weight = AT_UINT_IN(vertex_old, vertex, depth, row) > 0u ? weight : R(0);
 #endif
-    const rgb throughput =
-        rgb3(AT_IN(vertex_old, vertex, throughput_r, row), AT_IN(vertex_old, vertex, throughput_g, row),
-             AT_IN(vertex_old, vertex, throughput_b, row));
+    const rgb throughput = AT_RGB_IN(vertex_old, vertex, throughput, row);
     const rgb gained = rgb_mul(rgb_scale(found.radiance, weight), throughput);
     ADD_RGB(radiance, value, slot, gained);
 }

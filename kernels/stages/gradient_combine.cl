@@ -14,8 +14,7 @@ STAGE gradient_combine(uint count, uint slots, __global real *radiance, __global
     const rgb after = AT_RGB(radiance, value, slot);
     const rgb base = rgb_mul(AT_RGB(prefix, throughput, slot), after);
     const rgb primal = rgb_add(AT_RGB(prefix, value, slot), base);
-    const rgb seen = rgb3(AT_IN(direct, radiance, value_r, slot), AT_IN(direct, radiance, value_g, slot),
-                          AT_IN(direct, radiance, value_b, slot));
+    const rgb seen = AT_RGB_IN(direct, radiance, value, slot);
     const rgb whole = rgb_add(primal, seen);
     SET_RGB(radiance, value, slot, whole);
     int finite = IS_FINITE_RGB(whole);

@@ -31,14 +31,10 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint to, uint capacit
     const uint row = index[first + i];
     const uint slot = AT_UINT_IN(vertex_old, vertex, slot, row);
     const real bsdf_pdf = AT_IN(vertex_old, vertex, pdf, row);
-    const rgb throughput =
-        rgb3(AT_IN(vertex_old, vertex, throughput_r, row), AT_IN(vertex_old, vertex, throughput_g, row),
-             AT_IN(vertex_old, vertex, throughput_b, row));
+    const rgb throughput = AT_RGB_IN(vertex_old, vertex, throughput, row);
 #if ESCAPED
     light_found found;
-    found.radiance =
-        rgb3(FIELD_OF(light, lights, environment_light, value_r), FIELD_OF(light, lights, environment_light, value_g),
-             FIELD_OF(light, lights, environment_light, value_b));
+    found.radiance = FIELD_RGB(light, lights, environment_light, value);
     found.pdf = FIELD_OF(light, lights, environment_light, probability) * (R(0.25) * GRADUS_INV_PI);
 #else
     const uint primitive = AT_UINT(ray, primitive, row);

@@ -81,9 +81,7 @@ STAGE shift(uint count, uint unit, uint first, uint to, uint capacity, uint slot
 #if TRAIT_APART
         const size_t from_row = LONE_ROW(j, row, 0u);
         const real ratio_before = AT_IN(shifted_old, shifted, ratio, from_row);
-        const rgb value_before =
-            rgb3(AT_IN(shifted_old, shifted, value_r, from_row), AT_IN(shifted_old, shifted, value_g, from_row),
-                 AT_IN(shifted_old, shifted, value_b, from_row));
+        const rgb value_before = AT_RGB_IN(shifted_old, shifted, value, from_row);
         const int is_there = ratio_before >= R(0);
         const int is_apart = is_there & (AT_UINT_IN(shifted_old, shifted, state, from_row) < shift_reconnected);
 #else

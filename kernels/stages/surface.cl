@@ -14,9 +14,7 @@ STAGE surface(uint count, uint unit, uint first, uint capacity, __global const u
         return;
     const uint row = index[first + i];
     const vec3 direction = AT_V3(ray, direction, row);
-    const rgb throughput =
-        rgb3(AT_IN(vertex_old, vertex, throughput_r, row), AT_IN(vertex_old, vertex, throughput_g, row),
-             AT_IN(vertex_old, vertex, throughput_b, row));
+    const rgb throughput = AT_RGB_IN(vertex_old, vertex, throughput, row);
     const surface_point point = surface_point_of(triangles, triangle_normals, triangle_tangents, spheres, unit,
                                                  triangle_count, primitive_material, material_back,
                                                  AT_UINT(ray, primitive, row), AT_V3(ray, origin, row), direction);

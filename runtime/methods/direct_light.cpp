@@ -5,6 +5,7 @@
 #define TRAIT_LIGHT_TRIANGLE 1
 #define TRAIT_LIGHT_SPHERE 1
 #include "kernels/lib/additive_sequence.h"
+#include "kernels/lib/camera_ray.h"
 #include "kernels/lib/light_found.h"
 #include "kernels/shared/tables.h"
 
@@ -31,9 +32,7 @@ class DirectRays {
     /// A ray through a point of the full film, in pixels.
     void add(float film_x, float film_y) {
         const float *camera = tables_.camera.data();
-        const vec3 direction =
-            v3_normalize(v3_mad(v3_mad(FIELD_V3(camera, camera, 0, corner), film_x, FIELD_V3(camera, camera, 0, right)),
-                                film_y, FIELD_V3(camera, camera, 0, down)));
+        const vec3 direction = camera_direction(camera, unit, film_x, film_y);
         const float values[] = {camera[camera_origin_x],
                                 camera[camera_origin_y],
                                 camera[camera_origin_z],
@@ -43,11 +42,10 @@ class DirectRays {
         for (int i = 0; i < 6; ++i)
             columns_[i].push_back(values[i]);
     }
-    std::size_t size() const { return columns_[0].size(); }
 
     /// The light along each ray, in the order in which they were added; then there are none.
     std::vector<rgb> trace() {
-        const std::size_t count = size();
+        const std::size_t count = columns_[0].size();
         std::vector<std::uint32_t> primitive(count, ray_pending);
         RayColumns columns{};
         for (int axis = 0; axis < 3; ++axis) {
@@ -70,9 +68,7 @@ class DirectRays {
     rgb light_along(std::size_t i, std::uint32_t primitive) const {
         const float *lights = tables_.lights.data();
         if (primitive == ray_escaped)
-            return rgb3(FIELD_OF(light, lights, tables_.environment_light, value_r),
-                        FIELD_OF(light, lights, tables_.environment_light, value_g),
-                        FIELD_OF(light, lights, tables_.environment_light, value_b));
+            return FIELD_RGB(light, lights, tables_.environment_light, value);
         if (tables_.primitive_light[primitive] == no_light)
             return rgb_gray(0);
         const vec3 origin = v3(columns_[0][i], columns_[1][i], columns_[2][i]);

@@ -1,6 +1,7 @@
 // The scene's primitives on the host, whichever a scene has.
 #define TRAIT_TRIANGLES 1
 #define TRAIT_SPHERES 1
+#define TRAIT_TWO_FACED 1
 #include "tests/methods/shift_inverse.h"
 
 #include "kernels/lib/reconnectable.h"
@@ -76,39 +77,32 @@ struct ShiftInverter::Base {
 
 namespace {
 
-template <class Columns>
-Vertex read_lone(const HostTable &table, const Columns &c, std::size_t row, bool has_shading, bool has_along) {
+/// Where `primary` and `offset_vertex` have the first of the columns that they share (GRADUS_LONE_VERTEX_COLUMNS).
+constexpr int in_primary = primary_kind, in_offset_vertex = offset_vertex_kind;
+static_assert(in_offset_vertex == 0);
+
+Vertex read_lone(const HostTable &table, int first, std::size_t row, bool has_shading, bool has_along) {
     Vertex v;
-    v.kind = table.uint(c.kind, row);
-    v.material = table.uint(c.material, row);
-    v.position = vector_at(table, c.position, row);
-    v.wi = vector_at(table, c.wi, row);
-    v.geometric = vector_at(table, c.geometric, row);
-    v.shading = has_shading ? vector_at(table, c.shading, row) : v.geometric;
-    v.along = has_along ? vector_at(table, c.along, row) : v3(0, 0, 0);
-    v.offset = float(table.real(c.offset, row));
+    v.kind = table.uint(first + offset_vertex_kind, row);
+    v.material = table.uint(first + offset_vertex_material, row);
+    v.position = vector_at(table, first + offset_vertex_position_x, row);
+    v.wi = vector_at(table, first + offset_vertex_wi_x, row);
+    v.geometric = vector_at(table, first + offset_vertex_geometric_x, row);
+    v.shading = has_shading ? vector_at(table, first + offset_vertex_shading_x, row) : v.geometric;
+    v.along = has_along ? vector_at(table, first + offset_vertex_along_x, row) : v3(0, 0, 0);
+    v.offset = float(table.real(first + offset_vertex_offset, row));
     return v;
 }
 
-/// Where the columns are that `primary` and `offset_vertex` share.
-struct LoneColumns {
-    int kind, material, position, offset, wi, geometric, shading, along;
-};
-constexpr LoneColumns in_primary = {primary_kind, primary_material,    primary_position_x, primary_offset,
-                                    primary_wi_x, primary_geometric_x, primary_shading_x,  primary_along_x};
-constexpr LoneColumns in_offset_vertex = {offset_vertex_kind,      offset_vertex_material, offset_vertex_position_x,
-                                          offset_vertex_offset,    offset_vertex_wi_x,     offset_vertex_geometric_x,
-                                          offset_vertex_shading_x, offset_vertex_along_x};
-
-void write_lone(MadeTable &table, const LoneColumns &c, std::size_t row, const Vertex &v) {
-    table.set(c.kind, row, v.kind);
-    table.set(c.material, row, v.material);
-    table.set(c.position, row, v.position);
-    table.set(c.wi, row, v.wi);
-    table.set(c.geometric, row, v.geometric);
-    table.set(c.shading, row, v.shading);
-    table.set(c.along, row, v.along);
-    table.at(c.offset, row) = v.offset;
+void write_lone(MadeTable &table, int first, std::size_t row, const Vertex &v) {
+    table.set(first + offset_vertex_kind, row, v.kind);
+    table.set(first + offset_vertex_material, row, v.material);
+    table.set(first + offset_vertex_position_x, row, v.position);
+    table.set(first + offset_vertex_wi_x, row, v.wi);
+    table.set(first + offset_vertex_geometric_x, row, v.geometric);
+    table.set(first + offset_vertex_shading_x, row, v.shading);
+    table.set(first + offset_vertex_along_x, row, v.along);
+    table.at(first + offset_vertex_offset, row) = v.offset;
 }
 
 /// The row of offset j of base row n: j = 0 goes back, j = 1 stays, so that its ratio is the density at home.
@@ -189,9 +183,12 @@ std::vector<ShiftInverter::Base> ShiftInverter::arrivals(const Launch &launch) {
     };
     const HostTable vertex = table("vertex", capacity), ray = table("ray", capacity), index = table("index", capacity),
                     shifted = table("shifted", 4 * capacity), shifted_before = table("shifted_old", 4 * capacity),
-                    material_kind = table("material_kind", 1), link_table = table("link", 8 * capacity),
+                    link_table = table("link", 8 * capacity),
                     lone = may_be_apart ? table("offset_vertex", 4 * capacity) : table("primary", slots),
                     tangent = table("tangent", has_along ? capacity : 1);
+    const Buffer kinds = std::get<Buffer>(arguments_.at("material_kind").value);
+    std::vector<std::uint32_t> material_kind(kinds.bytes() / sizeof(std::uint32_t));
+    kinds.read(material_kind.data(), kinds.bytes());
     const std::uint32_t link_first = number(launch, "link_first"), link_stride = number(launch, "link_stride");
     MadeTable links = copy_of(link_table, link_columns, link_first + 4 * link_stride);
     std::size_t sent_end = 0;
@@ -206,7 +203,7 @@ std::vector<ShiftInverter::Base> ShiftInverter::arrivals(const Launch &launch) {
     const auto base_vertex = [&](std::size_t row) {
         Vertex v;
         v.material = vertex.uint(vertex_material, row);
-        v.kind = material_kind.uint(int(v.material), 0);
+        v.kind = material_kind[v.material];
         v.position = vector_at(vertex, vertex_position_x, row);
         v.wi = vector_at(vertex, vertex_wi_x, row);
         v.geometric = vector_at(vertex, vertex_geometric_x, row);
@@ -264,21 +261,18 @@ std::vector<ShiftInverter::Base> ShiftInverter::arrivals(const Launch &launch) {
             b.base = base_vertex(row);
             if (may_be_apart && shifted.uint(shifted_state, at) == shift_apart_rough && !is_escaped) {
                 // What `offset_surface` sees to: there the way back would reconnect.
-                const std::uint32_t record = record_found(b.offset_primitive, b.offset_origin, b.offset_direction);
-                if (is_reconnectable(material_kind.uint(int(record), 0), tables_.primitive_light[b.offset_primitive]))
+                const int is_behind =
+                    primitive_is_behind(tables_.triangles.data(), tables_.spheres.data(), unit, tables_.triangle_count,
+                                        b.offset_primitive, b.offset_origin, b.offset_direction);
+                const std::uint32_t kind =
+                    kind_of_primitive(tables_.primitive_material.data(), tables_.material_back.data(),
+                                      material_kind.data(), b.offset_primitive, is_behind);
+                if (is_reconnectable(kind, tables_.primitive_light[b.offset_primitive]))
                     continue;
             }
             bases.push_back(b);
         }
     return bases;
-}
-
-/// The material record on the side that a ray finds.
-std::uint32_t ShiftInverter::record_found(std::uint32_t primitive, vec3 origin, vec3 direction) const {
-    const std::uint32_t sided = tables_.primitive_material[primitive], record = material_record(sided);
-    const bool is_behind = primitive_is_behind(tables_.triangles.data(), tables_.spheres.data(), unit,
-                                               tables_.triangle_count, primitive, origin, direction) != 0;
-    return (sided & material_two_sided) != 0 && is_behind ? tables_.material_back[record] : record;
 }
 
 vec3 ShiftInverter::hit(std::uint32_t primitive, vec3 origin, vec3 direction) const {

@@ -43,7 +43,6 @@ class ShiftInverter {
     /// The shifts of a launch that arrive.
     std::vector<Base> arrivals(const Launch &launch);
     void take_back(const Launch &launch, const std::vector<Base> &bases);
-    std::uint32_t record_found(std::uint32_t primitive, lib_float::vec3 origin, lib_float::vec3 direction) const;
     lib_float::vec3 hit(std::uint32_t primitive, lib_float::vec3 origin, lib_float::vec3 direction) const;
     Kernel &kernel_for(const Launch &launch, bool as_apart);
     void bind_rest(Kernel &kernel, const Launch &launch) const;
