@@ -57,6 +57,13 @@ void add_method_options(CLI::App &command, const Services &services, MethodReque
         ->check(CLI::Range(0.0, 1.0))
         ->capture_default_str()
         ->group("Shifts (gpt)");
+    command
+        .add_option("--shift-distance", request.options.shift_distance,
+                    "Offset paths copy instead of reconnecting over ways shorter than this share of the scene's "
+                    "diameter, or than eight times the distance of the two paths if that is less; 0: never")
+        ->check(CLI::Range(0.0, 1.0))
+        ->capture_default_str()
+        ->group("Shifts (gpt)");
     const char *measuring = "For measuring";
     command
         .add_option("--dump-kernels", request.options.dump_kernels, "Write the source of each kernel to this folder")

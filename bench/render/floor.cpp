@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <string>
+#include <utility>
 
 namespace gradus::bench {
 
@@ -23,21 +26,14 @@ std::size_t record_interval(std::size_t calls) {
     return 1;
 }
 
-struct Replay {
-    double seconds_per_ray = 0;
-    std::uint64_t rays = 0;
-};
-
-/// The median of three passes: one is short.
-Replay replay(Tracer &tracer) {
-    Replay result;
+/// Seconds a ray, the median of three passes: one is short.
+double seconds_per_ray(Tracer &tracer, ReplayedAs as) {
     std::vector<double> seconds;
     for (int pass = 0; pass < 3; ++pass) {
-        double recorded_seconds = 0;
-        seconds.push_back(tracer.replay(recorded_seconds, result.rays));
+        const Replayed replayed = tracer.replay(as);
+        seconds.push_back(replayed.seconds / double(replayed.rays));
     }
-    result.seconds_per_ray = median(seconds) / double(result.rays);
-    return result;
+    return median(seconds);
 }
 
 /// One row of the profile as a share of the render. The tracer's row is split in two: Embree, as the replay says, and
@@ -72,22 +68,28 @@ nlohmann::json measure_floor(const Settings &settings, const Job &job) {
     while (recorder->render_batch()) {
     }
 
-    std::vector<double> ratios, render_rates, replay_rates, seconds, extension, shadow;
+    std::vector<double> ratios, render_rates, replay_rates, seconds;
     std::vector<Render> renders;
     std::vector<double> floors;
-    std::uint64_t recorded = 0;
+    std::map<std::string, std::vector<double>> other_ratios, other_rates;
+    Tracer &tracer = recorder->tracer();
+    const std::uint64_t recorded = tracer.replay(ReplayedAs::traced).rays;
     for (int i = 0; i < settings.repeats; ++i) {
-        const Replay before = replay(recorder->tracer());
+        const double before = seconds_per_ray(tracer, ReplayedAs::traced);
         renders.push_back(render(settings, job));
-        const Replay after = replay(recorder->tracer());
+        const double after = seconds_per_ray(tracer, ReplayedAs::traced);
         const Render &r = renders.back();
-        recorded = after.rays;
-        const double per_ray = 0.5 * (before.seconds_per_ray + after.seconds_per_ray);
+        const double per_ray = 0.5 * (before + after);
         floors.push_back(per_ray * double(r.rays()));
         ratios.push_back(r.seconds() / floors.back());
         seconds.push_back(r.seconds());
         render_rates.push_back(double(r.rays()) / r.seconds() / 1e6);
         replay_rates.push_back(1e-6 / per_ray);
+        for (const auto &[name, as] : {std::pair("packets", ReplayedAs::packets), {"single", ReplayedAs::single}}) {
+            const double other = seconds_per_ray(tracer, as);
+            other_ratios[name].push_back(r.seconds() / (other * double(r.rays())));
+            other_rates[name].push_back(1e-6 / other);
+        }
     }
     // The profile of the render of the median ratio.
     std::vector<std::size_t> order(ratios.size());
@@ -105,6 +107,13 @@ nlohmann::json measure_floor(const Settings &settings, const Job &job) {
                "{:.2f} M of {:.1f} M rays recorded\n",
                median(render_rates), median(replay_rates), double(r.statistics.samples) / r.seconds() / 1e6,
                double(r.rays()) / double(r.statistics.samples), double(recorded) / 1e6, double(r.rays()) / 1e6);
+    fmt::print("  over a replay in packets of 16 that are no beams: {:.2f} ({:.1f} M rays/s); ray by ray: {:.2f} "
+               "({:.1f} M rays/s)\n",
+               median(other_ratios["packets"]), median(other_rates["packets"]), median(other_ratios["single"]),
+               median(other_rates["single"]));
+    nlohmann::json others;
+    for (const auto &[name, values] : other_ratios)
+        others[name] = {{"ratio", spread(values)}, {"replay_mrays_per_second", spread(other_rates[name])}};
     nlohmann::json stages = nlohmann::json::array();
     for (const Row &row : rows) {
         fmt::print("  {:32} {:6.1f} %\n", row.name, 100 * row.share);
@@ -124,6 +133,7 @@ nlohmann::json measure_floor(const Settings &settings, const Job &job) {
             {"samples", r.statistics.samples},
             {"rays", r.statistics.rays},
             {"recorded_rays", recorded},
+            {"other_replays", others},
             {"profile", stages}};
 }
 

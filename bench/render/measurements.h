@@ -6,7 +6,8 @@
 
 namespace gradus::bench {
 
-/// Render time against the time in which Embree alone traces the very same rays in the same order: the floor.
+/// Render time against the time in which Embree alone traces the very same rays in the same order and packets: the
+/// floor. Beside it the same rays in packets that are no beams, and one by one, as Embree is mostly called.
 nlohmann::json measure_floor(const Settings &settings, const Job &job);
 
 /// Kernels compiled for the scene against kernels with every trait on: time, and the largest difference of the images.

@@ -178,7 +178,7 @@
 
 /* Segments that offset paths ask about, from origin along direction to distance 1. */
 #define GRADUS_LINK_COLUMNS(REAL, UINT)                                                                                \
-    REAL(link, origin_x, "")                                                                                           \
+    REAL(link, origin_x, "of an offset path that copies, with TRAIT_SHIFT_DISTANCE: its vertex")                                                                                           \
     REAL(link, origin_y, "")                                                                                           \
     REAL(link, origin_z, "")                                                                                           \
     REAL(link, direction_x, "not normalised")                                                                          \
@@ -285,7 +285,7 @@ enum gradient_film_column {
 
 /* offset_state, of a base path's vertex, by row: what will become of those of its offset paths that are apart. */
 #define offset_none 0u  /* none is */
-#define offset_rough 1u /* all reconnect, if the next vertex lets them */
+#define offset_rough 1u /* all reconnect, if the next vertex lets them and is not too near */
 #define offset_mixed 2u /* not all do */
 
 /* gain_offset_bsdf where each sampler is an integrand of its own. */
@@ -346,7 +346,10 @@ GRADUS_LIB_END
 #define AT_UINT(table, column, row) AT_UINT_IN(table, table, column, row)
 
 /* Three columns at once, as vec3 or rgb; kernels/lib/vector.h must be included. */
-#define AT_V3(table, column, row) v3(AT(table, column##_x, row), AT(table, column##_y, row), AT(table, column##_z, row))
+#define AT_V3_IN(pointer, table, column, row)                                                                          \
+    v3(AT_IN(pointer, table, column##_x, row), AT_IN(pointer, table, column##_y, row),                                 \
+       AT_IN(pointer, table, column##_z, row))
+#define AT_V3(table, column, row) AT_V3_IN(table, table, column, row)
 #define AT_RGB_IN(pointer, table, column, row)                                                                         \
     rgb3(AT_IN(pointer, table, column##_r, row), AT_IN(pointer, table, column##_g, row),                               \
          AT_IN(pointer, table, column##_b, row))

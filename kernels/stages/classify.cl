@@ -25,6 +25,10 @@ STAGE classify(uint count, uint unit, uint capacity, __global const real *ray, _
                __global const uint *offset_state, __global const uint *primitive_material,
                __global const uint *primitive_light, __global const uint *material_back,
                __global const uint *material_kind
+#if TRAIT_SHIFT_DISTANCE
+               ,
+               __global const real *vertex, __global const real *offset_reach
+#endif
 #endif
 #endif
 ) {
@@ -50,7 +54,15 @@ STAGE classify(uint count, uint unit, uint capacity, __global const real *ray, _
 #if TRAIT_APART
     const uint state = offset_state[row < shifting ? row : 0u];
     const uint kind = kind_of_primitive(primitive_material, material_back, material_kind, present, behind);
-    const int reconnectable = !hit | is_reconnectable(kind, primitive_light[present]);
+    int reconnectable = !hit | is_reconnectable(kind, primitive_light[present]);
+#if TRAIT_SHIFT_DISTANCE
+    const vec3 next = primitive_hit_of(triangles, spheres, unit, triangle_count, present, AT_V3(ray, origin, row),
+                                       AT_V3(ray, direction, row))
+                          .position;
+    const vec3 way = v3_sub(next, AT_V3(vertex, position, row));
+    const real reach = offset_reach[row < shifting ? row : 0u];
+    reconnectable &= !hit | (primitive_light[present] != no_light) | (v3_dot(way, way) >= reach * reach);
+#endif
     const int stay_apart = (state == offset_mixed) | ((state == offset_rough) & !reconnectable);
     phase = row < shifting && stay_apart ? 1u : phase;
 #endif

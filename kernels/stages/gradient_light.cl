@@ -4,8 +4,9 @@
  * adds it up once it is known who sees the light.
  *
  * APART: offset paths may be at vertices of their own. JOINED: or have reconnected, and come to the base's vertex from
- * another side, or from the same. Where a vertex of their own is not rough, or the base's is not, the two samplers
- * shift differently: each is then an integrand of its own (gain_split), weighted by its share within each path. */
+ * another side, or from the same. APART alone is for first vertices, where nothing has happened yet. Where a vertex of
+ * their own is not rough, or the base's is not, the two samplers shift differently: each is then an integrand of its own
+ * (gain_split), weighted by its share within each path. */
 #include "kernels/lib/bsdf_any.h"
 #include "kernels/lib/gradient.h"
 #include "kernels/lib/light_sampling.h"
@@ -25,11 +26,11 @@ STAGE gradient_light(uint count, uint unit, uint first, uint capacity, uint slot
                      FILM_PLACE
 #endif
 #endif
-#if JOINED
+#if JOINED || TRAIT_APART
                      ,
                      __global const real *shifted
 #endif
-#if APART && JOINED
+#if APART && TRAIT_APART
                      ,
                      __global const uint *material_kind
 #endif
@@ -77,7 +78,7 @@ STAGE gradient_light(uint count, uint unit, uint first, uint capacity, uint slot
     const film_pixel pixel = PIXEL_OF(slot);
 #endif
 #endif
-#if APART && JOINED
+#if APART && TRAIT_APART
     const uint base_kind = material_kind[AT_UINT(vertex, material, row)];
 #endif
 #pragma unroll
@@ -102,6 +103,11 @@ STAGE gradient_light(uint count, uint unit, uint first, uint capacity, uint slot
         const size_t from_row = LONE_ROW(j, row, 0u);
         const real ratio_before = ratio;
         const int is_apart = is_there & (AT_UINT(shifted, state, at) < shift_reconnected);
+#elif TRAIT_APART
+        const size_t from_row = LONE_ROW(j, row, 0u);
+        const real ratio_before = AT(shifted, ratio, at);
+        const rgb so_far = rgb_gray(R(1));
+        const int is_apart = ratio_before >= R(0);
 #else
         const uint neighbour = gradient_neighbour(slot, j, pixel, crop_width, crop_height);
         const uint from_row = LONE_ROW(j, row, neighbour);
@@ -136,12 +142,13 @@ STAGE gradient_light(uint count, uint unit, uint first, uint capacity, uint slot
         const bsdf_value f = bsdf_any(kind, own_material, frame_to_local(own_axes, AT_V3(LONE, wi, from_row)),
                                       frame_to_local(own_axes, direction));
         const real own_bsdf = f.pdf * jacobian * inverse_light_pdf;
-#if JOINED
+#if TRAIT_APART
         const int both_rough = (base_kind & kind & kind_is_rough) != 0u;
         const int scatters = (kind != kind_none) & ((kind & kind_is_dirac) == 0u);
         const real own_share = both_rough ? R(1) : R(1) / (R(1) + (own_light > R(0) ? own_bsdf / own_light : R(0)));
         const rgb own_value =
             rgb_scale(rgb_mul(rgb_mul(so_far, arriving), f.value), scatters ? jacobian * own_share : R(0));
+#if JOINED
         value =
             rgb3(is_apart ? own_value.r : value.r, is_apart ? own_value.g : value.g, is_apart ? own_value.b : value.b);
         offset_light =
@@ -149,6 +156,14 @@ STAGE gradient_light(uint count, uint unit, uint first, uint capacity, uint slot
         offset_bsdf = is_apart ? (both_rough ? own_bsdf * ratio_before : gain_split) : offset_bsdf;
         const int asks = is_apart & (rgb_max(value) > R(0));
         asks_base = is_apart ? (asks ? base_bsdf : R(0)) : asks_base;
+#else
+        const rgb value =
+            rgb3(is_apart ? own_value.r : R(0), is_apart ? own_value.g : R(0), is_apart ? own_value.b : R(0));
+        const real offset_light = is_apart ? (scatters ? own_light : shift_failed(outcome_failed_kinds)) : ratio_before;
+        const real offset_bsdf = is_apart ? (both_rough ? own_bsdf : gain_split) : R(0);
+        const int asks = is_apart & (rgb_max(value) > R(0));
+        const real asks_base = asks ? base_bsdf : R(0);
+#endif
 #else
         const int is_rough = (kind & kind_is_rough) != 0u;
         const rgb value = rgb_scale(rgb_mul(arriving, f.value), is_rough ? jacobian : R(0));

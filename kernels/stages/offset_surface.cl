@@ -8,7 +8,12 @@
 /* Of first vertices, rows `first` on: those that the neighbours' own paths see. */
 STAGE offset_begin(uint count, uint first, uint capacity, uint slots, __global const real *vertex,
                    __global const real *primary, __global const uint *material_kind, __global real *offset_vertex,
-                   __global real *shifted, __global uint *offset_state, FILM_PLACE) {
+                   __global real *shifted, __global uint *offset_state, FILM_PLACE
+#if TRAIT_SHIFT_DISTANCE
+                   ,
+                   __global real *offset_reach, real shift_distance
+#endif
+) {
     const size_t i = get_global_id(0);
     if (i >= count)
         return;
@@ -17,6 +22,10 @@ STAGE offset_begin(uint count, uint first, uint capacity, uint slots, __global c
     const film_pixel pixel = PIXEL_OF(slot);
     int all_rough = (material_kind[AT_UINT(vertex, material, row)] & kind_is_rough) != 0u;
     int any = 0;
+#if TRAIT_SHIFT_DISTANCE
+    const vec3 base = AT_V3(vertex, position, row);
+    real reach = R(0);
+#endif
 #pragma unroll
     for (uint j = 0; j < 4; ++j) {
         const uint neighbour = gradient_neighbour(slot, j, pixel, crop_width, crop_height);
@@ -45,8 +54,14 @@ STAGE offset_begin(uint count, uint first, uint capacity, uint slots, __global c
         AT_UINT(shifted, state, at) = shift_apart;
         any |= is_apart;
         all_rough &= (kind & kind_is_rough) != 0u || !is_apart;
+#if TRAIT_SHIFT_DISTANCE
+        reach = r_max(reach, is_apart ? reach_of(base, position, shift_distance) : R(0));
+#endif
     }
     offset_state[row] = any ? (all_rough ? offset_rough : offset_mixed) : offset_none;
+#if TRAIT_SHIFT_DISTANCE
+    offset_reach[row] = reach;
+#endif
 }
 
 /* Of later ones, rows `first` on, by the rays that `shift` sent out; base paths have rows index[escaped + first] on.
@@ -58,7 +73,13 @@ STAGE offset_surface(uint count, uint unit, uint first, uint escaped, uint capac
                      __global const real *triangles, __global const real *triangle_normals,
                      __global const real *triangle_tangents, __global const real *spheres, uint triangle_count,
                      __global const uint *primitive_material, __global const uint *primitive_light,
-                     __global const uint *material_back, __global const uint *material_kind) {
+                     __global const uint *material_back, __global const uint *material_kind
+#if TRAIT_SHIFT_DISTANCE
+                     ,
+                     __global const real *vertex_old, __global const real *link, uint link_first, uint link_stride,
+                     __global real *offset_reach, real shift_distance
+#endif
+) {
     const size_t i = get_global_id(0);
     if (i >= count)
         return;
@@ -74,6 +95,13 @@ STAGE offset_surface(uint count, uint unit, uint first, uint escaped, uint capac
         kind_of_primitive(primitive_material, material_back, material_kind, base_primitive, base_is_behind);
     int all_rough = (base_kind & kind_is_rough) != 0u;
     int any = 0;
+#if TRAIT_SHIFT_DISTANCE
+    const vec3 base_before = AT_V3_IN(vertex_old, vertex, position, base);
+    const vec3 base_position = primitive_hit_of(triangles, spheres, unit, triangle_count, base_primitive,
+                                                AT_V3(ray, origin, base), AT_V3(ray, direction, base))
+                                   .position;
+    real reach = R(0);
+#endif
 #pragma unroll
     for (uint j = 0; j < 4; ++j) {
         const size_t at = (size_t)j * capacity + row, sent = offset_first + (size_t)j * offset_stride + i;
@@ -88,7 +116,13 @@ STAGE offset_surface(uint count, uint unit, uint first, uint escaped, uint capac
             surface_point_of(triangles, triangle_normals, triangle_tangents, spheres, unit, triangle_count,
                              primitive_material, material_back, present, AT_V3(offset_ray, origin, sent), direction);
         const uint kind = material_kind[point.material];
-        const int comes_back = (state != shift_apart_rough) | !is_reconnectable(kind, primitive_light[present]);
+        int would_reconnect = is_reconnectable(kind, primitive_light[present]);
+#if TRAIT_SHIFT_DISTANCE
+        const size_t segment = link_first + (size_t)j * link_stride + i;
+        would_reconnect &= (primitive_light[present] != no_light) |
+                           is_far(base_before, AT_V3(link, origin, segment), point.position, shift_distance);
+#endif
+        const int comes_back = (state != shift_apart_rough) | !would_reconnect;
         const int is_apart = was_apart & is_hit & comes_back;
         AT(shifted, ratio, at) =
             (was_apart & !is_apart) ? shift_failed(is_hit ? outcome_failed_back : outcome_failed_nothing) : ratio;
@@ -106,6 +140,12 @@ STAGE offset_surface(uint count, uint unit, uint first, uint escaped, uint capac
 #endif
         any |= is_apart;
         all_rough &= (kind & kind_is_rough) != 0u || !is_apart;
+#if TRAIT_SHIFT_DISTANCE
+        reach = r_max(reach, is_apart ? reach_of(base_position, point.position, shift_distance) : R(0));
+#endif
     }
     offset_state[row] = any ? (all_rough ? offset_rough : offset_mixed) : offset_none;
+#if TRAIT_SHIFT_DISTANCE
+    offset_reach[row] = reach;
+#endif
 }

@@ -32,6 +32,10 @@ STAGE shift(uint count, uint unit, uint first, uint to, uint capacity, uint slot
             __global const real *tangent, __global const uint *primitive_material, __global const uint *primitive_light,
             __global const uint *material_back, __global const uint *material_kind, __global real *offset_ray,
             uint offset_first, uint offset_stride
+#if TRAIT_SHIFT_DISTANCE
+            ,
+            real shift_distance
+#endif
 #endif
 ) {
     const size_t i = get_global_id(0);
@@ -66,6 +70,9 @@ STAGE shift(uint count, uint unit, uint first, uint to, uint capacity, uint slot
     const uint next_kind =
         kind_of_primitive(primitive_material, material_back, material_kind, primitive, base_side < R(0));
     const int reconnectable = is_reconnectable(next_kind, primitive_light[primitive]);
+#if TRAIT_SHIFT_DISTANCE
+    const int emits = primitive_light[primitive] != no_light;
+#endif
 #endif
 #else
     const real base_pdf = pdf;
@@ -109,7 +116,12 @@ STAGE shift(uint count, uint unit, uint first, uint to, uint capacity, uint slot
         const vec3 wi = frame_to_local(axes, AT_V3(LONE, wi, from_row));
 #if APART
         const int both_rough = base_is_rough & is_rough;
-        const int reconnects = both_rough & reconnectable;
+#if TRAIT_SHIFT_DISTANCE && !ESCAPED
+        const int is_long = emits | is_far(base, from, hit.position, shift_distance);
+#else
+        const int is_long = 1;
+#endif
+        const int reconnects = both_rough & reconnectable & is_long;
         const int is_dirac = (kind & kind_is_dirac) != 0u;
         const int alike = (kind != kind_none) & (is_dirac == base_is_dirac);
         const real ior = kind_number(kind) == bsdf_kind_null ? R(1) : m.ior;
@@ -160,7 +172,13 @@ STAGE shift(uint count, uint unit, uint first, uint to, uint capacity, uint slot
 
         const vec3 origin = ray_origin(from, AT_V3(LONE, geometric, from_row), AT(LONE, offset, from_row), direction);
         const size_t segment = link_first + (size_t)j * link_stride + i;
+#if APART && TRAIT_SHIFT_DISTANCE
+        /* Where nothing is asked, `offset_surface` asks which vertex this was. */
+        SET_V3(link, origin, segment,
+               v3(reconnects ? origin.x : from.x, reconnects ? origin.y : from.y, reconnects ? origin.z : from.z));
+#else
         SET_V3(link, origin, segment, origin);
+#endif
 #if ESCAPED
         SET_V3(link, direction, segment, v3_scale(direction, scene_diameter));
 #else

@@ -43,9 +43,10 @@ std::vector<std::uint32_t> shift_kinds(const Scene &scene, double threshold) {
 }
 
 TraitMap gradient_traits(const Scene &scene, const RenderOptions &options) {
-    bool apart = options.all_traits;
+    const bool distance = options.all_traits || options.shift_distance > 0;
+    bool apart = distance;
     for_each_bsdf(scene, [&](const Bsdf &bsdf) { apart = apart || !is_rough(bsdf, options.shift_threshold); });
-    return {{"TRAIT_SHARED_JITTER", 1}, {"TRAIT_APART", apart}};
+    return {{"TRAIT_SHARED_JITTER", 1}, {"TRAIT_APART", apart}, {"TRAIT_SHIFT_DISTANCE", distance}};
 }
 
 /// A request that relaxed arithmetic does not change.
@@ -121,7 +122,8 @@ std::vector<PathTracer::Wanted> GradientPathTracer::wanted_kernels() {
     }
     // At the vertices where offset paths are apart, some may have reconnected.
     const std::string both = keeps_apart() ? "1" : "0";
-    const std::map<std::string, std::string> at_apart = {{"APART", "1"}, {"JOINED", both}},
+    const std::map<std::string, std::string> at_first = {{"APART", "1"}, {"JOINED", "0"}},
+                                             at_apart = {{"APART", "1"}, {"JOINED", both}},
                                              at_joined = {{"APART", "0"}, {"JOINED", "1"}};
     const KernelRequest connect = request_of("gradient_connect");
     wanted.push_back({&connect_apart_, variant(connect, "gradient connect apart", "gradient_connect", at_apart)});
@@ -131,8 +133,11 @@ std::vector<PathTracer::Wanted> GradientPathTracer::wanted_kernels() {
         const std::string &kind = kinds[k];
         if (samples_lights(bsdf_kind_is_dirac(kind))) {
             const KernelRequest light = request_of("gradient_light", kind);
-            wanted.push_back({&kernels.light_apart, variant(light, fmt::format("gradient_light apart {}", kind),
-                                                            "gradient_light", with(at_apart))});
+            wanted.push_back({&kernels.light_first, variant(light, fmt::format("gradient_light first {}", kind),
+                                                            "gradient_light", with(at_first))});
+            if (keeps_apart())
+                wanted.push_back({&kernels.light_apart, variant(light, fmt::format("gradient_light apart {}", kind),
+                                                                "gradient_light", with(at_apart))});
             wanted.push_back({&kernels.light_joined, variant(light, fmt::format("gradient_light {}", kind),
                                                              "gradient_light", with(at_joined))});
         }
@@ -173,6 +178,8 @@ void GradientPathTracer::allocate() {
         offset_vertex_.clear(); // as `primary`
         offset_ray_ = table("offset_ray", offset_ray_columns, 4 * capacity);
         offset_state_ = Buffer(device_, "offset_state", capacity * sizeof(std::uint32_t));
+        if (keeps_distance())
+            offset_reach_ = table("offset_reach", 1, capacity);
     } else {
         shifted_[0] = shifted_[1] = table("shifted", shifted_state, 4 * capacity);
     }
@@ -183,6 +190,9 @@ void GradientPathTracer::bind_kernels() {
                                            &difference_,    &direct_,  &gradient_film_, &outcome_};
     if (keeps_apart())
         buffers.insert(buffers.end(), {&offset_vertex_, &offset_ray_, &offset_state_});
+    if (keeps_distance())
+        buffers.push_back(&offset_reach_);
+    const double shift_distance = options_.shift_distance * scene_tables_.scene_diameter;
     std::vector<Kernel *> kernels = more_kernels_;
     kernels.push_back(&classify_);
     for (Kernel *kernel : kernels) {
@@ -192,16 +202,19 @@ void GradientPathTracer::bind_kernels() {
         kernel->bind("shifted_old", shifted_[1]);
         bind_film_place(*kernel);
         kernel->set("chunks_at_most", chunks_of(tables_->capacity));
+        kernel->set_real("shift_distance", shift_distance);
         for (const char *number :
              {"link_first", "link_stride", "offset_first", "offset_stride", "to", "escaped", "shifting", "fresh"})
             kernel->set(number, 0);
     }
 }
 
-GradientPathTracer::Vertices GradientPathTracer::partition(const Vertices &old, std::uint32_t fresh) {
+GradientPathTracer::Vertices GradientPathTracer::partition(const Vertices &old, std::uint32_t fresh,
+                                                           const Buffer &vertex) {
     const std::uint32_t rays = old.count + fresh;
     classify_.set("shifting", old.shifting());
     classify_.set("fresh", old.count);
+    classify_.bind("vertex", vertex);
     run(classify_, 0, rays);
     const std::vector<std::uint32_t> &range = partition_->run(rays);
     const std::size_t kinds = kinds_.size(), present = keeps_apart() ? phases : phases - 1;
@@ -234,7 +247,7 @@ void GradientPathTracer::trace_primaries(std::uint32_t paths) {
         primary_begin_.bind("vertex", tables_->vertex[0]);
         run(primary_begin_, 0, rows);
         trace(rows, 0);
-        const Vertices vertices = partition(Vertices(), rows);
+        const Vertices vertices = partition(Vertices(), rows, tables_->vertex[0]);
         surface_.bind("vertex_old", tables_->vertex[0]);
         surface_.bind("vertex", tables_->vertex[1]);
         run(surface_, vertices.escaped_count, vertices.count);
@@ -284,7 +297,7 @@ void GradientPathTracer::connect(const Vertices &vertices, const Buffer &vertex)
         kernel->bind("vertex", vertex);
     connect_apart_.set("link_stride", vertices.shifting());
     for (std::size_t k = 0; k < kinds_.size(); ++k)
-        if (gradient_kinds_[k].light_apart.valid()) {
+        if (gradient_kinds_[k].light_first.valid()) {
             for (const Phase phase : {first, apart})
                 run(connect_apart_, vertices.kinds[phase][k].first, vertices.kinds[phase][k].count);
             run(connect_joined_, vertices.kinds[joined][k].first, vertices.kinds[joined][k].count);
@@ -326,18 +339,23 @@ void GradientPathTracer::scatter(const Vertices &vertices, const Buffer &vertex)
     for (std::size_t k = 0; k < kinds_.size(); ++k) {
         KindKernels &kind = kinds_[k];
         GradientKernels &gradient = gradient_kinds_[k];
-        for (Kernel *kernel : {&kind.feature, &kind.light_sample, &kind.scatter, &gradient.light_apart,
-                               &gradient.light_joined, &gradient.scatter_apart, &gradient.scatter_joined})
+        for (Kernel *kernel :
+             {&kind.feature, &kind.light_sample, &kind.scatter, &gradient.light_first, &gradient.light_apart,
+              &gradient.light_joined, &gradient.scatter_apart, &gradient.scatter_joined})
             if (kernel->valid())
                 kernel->bind("vertex", vertex);
         const auto run_on = [&](Kernel &kernel, Phase phase) {
             run(kernel, vertices.kinds[phase][k].first, vertices.kinds[phase][k].count);
         };
         run_on(kind.feature, first);
-        Kernel &light_apart = gradient.light_apart.valid() ? gradient.light_apart : close_links_;
-        light_apart.set("link_stride", vertices.shifting());
-        for (const Phase phase : {first, apart}) {
-            run_on(light_apart, phase);
+        const bool samples = gradient.light_first.valid();
+        Kernel &light_first = samples ? gradient.light_first : close_links_;
+        Kernel &light_apart = samples ? gradient.light_apart : close_links_;
+        for (const auto &[phase, light] : {std::pair(first, &light_first), {apart, &light_apart}}) {
+            if (vertices.rows[phase].count == 0)
+                continue;
+            light->set("link_stride", vertices.shifting());
+            run_on(*light, phase);
             run_on(gradient.scatter_apart, phase);
         }
         run_on(gradient.light_joined, joined);
@@ -380,8 +398,8 @@ bool GradientPathTracer::render_batch() {
             break;
         trace(vertices.count + fresh, vertices.count);
 
-        const Vertices next = partition(vertices, fresh);
         const Buffer &old_vertex = tables_->vertex[newest], &new_vertex = tables_->vertex[1 - newest];
+        const Vertices next = partition(vertices, fresh, old_vertex);
         for (Kernel *kernel : more_kernels_) {
             kernel->bind("vertex_old", old_vertex);
             kernel->bind("vertex", new_vertex);
@@ -401,6 +419,8 @@ bool GradientPathTracer::render_batch() {
         const Shifting &apart_sent = shiftings.surface[apart];
         if (apart_sent.index.count > 0) {
             offset_surface_.set("escaped", next.escaped_count);
+            offset_surface_.set("link_first", apart_sent.link_first);
+            offset_surface_.set("link_stride", apart_sent.index.count);
             offset_surface_.set("offset_first", apart_sent.offset_first);
             offset_surface_.set("offset_stride", apart_sent.index.count);
             run(offset_surface_, next.rows[apart].first, next.rows[apart].count);

@@ -34,7 +34,7 @@ class GradientPathTracer final : public PathTracer {
     enum Phase { first, apart, joined, later, phases };
 
     struct GradientKernels {
-        Kernel light_apart, light_joined, scatter_apart, scatter_joined;
+        Kernel light_first, light_apart, light_joined, scatter_apart, scatter_joined;
     };
     struct Range {
         std::uint32_t first = 0, count = 0;
@@ -68,7 +68,7 @@ class GradientPathTracer final : public PathTracer {
     void bind_kernels();
     void trace_primaries(std::uint32_t paths);
     /// Classifies and sorts the rays of `vertices` and `fresh` new ones.
-    Vertices partition(const Vertices &vertices, std::uint32_t fresh);
+    Vertices partition(const Vertices &vertices, std::uint32_t fresh, const Buffer &vertex);
     Shiftings shift(const Vertices &vertices, const Vertices &next);
     void connect(const Vertices &vertices, const Buffer &vertex);
     void emit(const Vertices &next, const Shiftings &shiftings);
@@ -76,6 +76,7 @@ class GradientPathTracer final : public PathTracer {
 
     void count_outcomes(Range rows);
     bool keeps_apart() const { return traits_.at("TRAIT_APART") != 0; }
+    bool keeps_distance() const { return traits_.at("TRAIT_SHIFT_DISTANCE") != 0; }
 
     Kernel primary_begin_, primary_surface_, begin_, settle_, close_links_, offset_begin_, offset_surface_;
     Kernel connect_apart_, connect_joined_, combine_, gradient_accumulate_, count_;
@@ -87,7 +88,7 @@ class GradientPathTracer final : public PathTracer {
     std::unique_ptr<PoissonSolver> solver_;
     Buffer material_kind_, primary_, gain_, link_, prefix_, difference_, direct_, gradient_film_;
     Buffer shifted_[2]; ///< as BatchTables::vertex; the same where none stay apart
-    Buffer offset_vertex_, offset_ray_, offset_state_;
+    Buffer offset_vertex_, offset_ray_, offset_state_, offset_reach_;
     Buffer outcome_;
 };
 

@@ -16,6 +16,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <thread>
 
 // After all others: its short macro names are not for library headers.
@@ -64,11 +65,7 @@ struct Tracer::Implementation {
     tbb::enumerable_thread_specific<RayOrdering> orderings{[this] { return RayOrdering(low, high); }};
 
     std::size_t record_interval = 0, calls = 0;
-    double recorded_seconds = 0;
-    struct Chunk {
-        RecordedRays rays;
-    };
-    std::vector<std::vector<Chunk>> recorded; // by call, then by task, in the order of the rows
+    std::vector<std::vector<RecordedRays>> recorded; // by call, then by task, in the order of the rows
 
     ~Implementation() {
         if (scene)
@@ -312,17 +309,16 @@ std::uint64_t Tracer::Implementation::trace_shadow(const ShadowColumns &shadow, 
 TraceCounts Tracer::trace(const RayColumns &ray, std::size_t rays, const ShadowColumns &shadow, std::size_t shadows) {
     Implementation &im = *implementation_;
     const bool keep = im.record_interval > 0 && im.calls++ % im.record_interval == 0;
-    const double start = now();
     const std::size_t extension_tasks = (rays + chunk - 1) / chunk;
     const std::size_t tasks = extension_tasks + (shadows + chunk - 1) / chunk;
-    std::vector<Implementation::Chunk> kept(keep ? tasks : 0);
+    std::vector<RecordedRays> kept(keep ? tasks : 0);
     std::atomic<std::uint64_t> extension_count{0}, shadow_count{0};
     im.arena.execute([&] {
         tbb::parallel_for(
             std::size_t(0), tasks,
             [&](std::size_t task) {
                 flush_denormals();
-                RecordedRays *record = keep ? &kept[task].rays : nullptr;
+                RecordedRays *record = keep ? &kept[task] : nullptr;
                 if (task < extension_tasks) {
                     extension_count +=
                         im.trace_extension(ray, task * chunk, std::min(rays, (task + 1) * chunk), record);
@@ -333,10 +329,8 @@ TraceCounts Tracer::trace(const RayColumns &ray, std::size_t rays, const ShadowC
             },
             tbb::simple_partitioner());
     });
-    if (keep) {
-        im.recorded_seconds += now() - start;
+    if (keep)
         im.recorded.push_back(std::move(kept));
-    }
     return {extension_count, shadow_count};
 }
 
@@ -345,47 +339,77 @@ void Tracer::record(std::size_t interval) {
     im.record_interval = interval;
     im.calls = 0;
     im.recorded.clear();
-    im.recorded_seconds = 0;
 }
 
-double Tracer::replay(double &recorded_seconds, std::uint64_t &recorded_rays) {
-    Implementation &im = *implementation_;
-    recorded_seconds = im.recorded_seconds;
-    recorded_rays = 0;
-    for (const auto &call : im.recorded)
-        for (const Implementation::Chunk &part : call) {
-            for (int lanes : part.rays.extension_lanes)
-                recorded_rays += static_cast<std::uint64_t>(lanes);
-            for (int lanes : part.rays.shadow_lanes)
-                recorded_rays += static_cast<std::uint64_t>(lanes);
+namespace {
+
+/// Ray `lane` of a packet.
+RTCRay ray_of(const RTCRay16 &packet, int lane) {
+    RTCRay ray;
+    ray.org_x = packet.org_x[lane], ray.org_y = packet.org_y[lane], ray.org_z = packet.org_z[lane];
+    ray.dir_x = packet.dir_x[lane], ray.dir_y = packet.dir_y[lane], ray.dir_z = packet.dir_z[lane];
+    ray.tnear = packet.tnear[lane], ray.tfar = packet.tfar[lane], ray.time = packet.time[lane];
+    ray.mask = packet.mask[lane], ray.id = packet.id[lane], ray.flags = packet.flags[lane];
+    return ray;
+}
+
+/// Traces the packets, or (`single`) their rays one by one.
+void trace_again(RTCScene scene, const RecordedRays &rays, bool extension_beams, bool shadow_beams, bool single) {
+    RTCIntersectContext context = new_context(extension_beams);
+    for (std::size_t i = 0; i < rays.extension.size(); ++i) {
+        const int lanes = rays.extension_lanes[i];
+        if (single) {
+            for (int lane = 0; lane < lanes; ++lane) {
+                RTCRayHit ray;
+                ray.ray = ray_of(rays.extension[i].ray, lane);
+                ray.hit.geomID = ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+                rtcIntersect1(scene, &context, &ray);
+            }
+        } else {
+            alignas(64) RTCRayHit16 packet = rays.extension[i];
+            rtcIntersect16(first_lanes(lanes).lane, scene, &context, &packet);
         }
-    double seconds = 0;
+    }
+    context = new_context(shadow_beams);
+    for (std::size_t i = 0; i < rays.shadow.size(); ++i) {
+        const int lanes = rays.shadow_lanes[i];
+        if (single) {
+            for (int lane = 0; lane < lanes; ++lane) {
+                RTCRay ray = ray_of(rays.shadow[i], lane);
+                rtcOccluded1(scene, &context, &ray);
+            }
+        } else {
+            alignas(64) RTCRay16 packet = rays.shadow[i];
+            rtcOccluded16(first_lanes(lanes).lane, scene, &context, &packet);
+        }
+    }
+}
+
+} // namespace
+
+Replayed Tracer::replay(ReplayedAs as) {
+    Implementation &im = *implementation_;
+    const bool as_traced = as == ReplayedAs::traced;
+    const bool extension_beams = as_traced && im.beams(im.extension_order);
+    const bool shadow_beams = as_traced && im.beams(im.shadow_order);
+    Replayed result;
     for (const auto &call : im.recorded) {
+        for (const RecordedRays &rays : call)
+            for (const std::vector<int> *lanes : {&rays.extension_lanes, &rays.shadow_lanes})
+                result.rays += std::accumulate(lanes->begin(), lanes->end(), std::uint64_t(0));
         const double start = now();
         im.arena.execute([&] {
             tbb::parallel_for(
                 std::size_t(0), call.size(),
                 [&](std::size_t task) {
                     flush_denormals();
-                    const RecordedRays &rays = call[task].rays;
-                    RTCIntersectContext context = new_context(im.beams(im.extension_order));
-                    for (std::size_t i = 0; i < rays.extension.size(); ++i) {
-                        alignas(64) RTCRayHit16 packet = rays.extension[i];
-                        const Valid valid = first_lanes(rays.extension_lanes[i]);
-                        rtcIntersect16(valid.lane, im.scene, &context, &packet);
-                    }
-                    context = new_context(im.beams(im.shadow_order));
-                    for (std::size_t i = 0; i < rays.shadow.size(); ++i) {
-                        alignas(64) RTCRay16 packet = rays.shadow[i];
-                        const Valid valid = first_lanes(rays.shadow_lanes[i]);
-                        rtcOccluded16(valid.lane, im.scene, &context, &packet);
-                    }
+                    trace_again(im.scene, call[task], extension_beams, shadow_beams, as == ReplayedAs::single);
                 },
                 tbb::simple_partitioner());
         });
-        seconds += now() - start;
+        result.seconds += now() - start;
     }
-    return seconds;
+    return result;
 }
 
 } // namespace gradus

@@ -28,6 +28,15 @@ struct TraceCounts {
 /// Rays of traced batches, packed as they were traced, so that tracing alone can be timed again.
 struct RecordedRays;
 
+/// How recorded rays go to Embree again: in the packets and with the flags of the render; in the same packets, but
+/// never as beams; one by one.
+enum class ReplayedAs { traced, packets, single };
+
+struct Replayed {
+    double seconds = 0;
+    std::uint64_t rays = 0;
+};
+
 class Tracer {
   public:
     /// Builds the acceleration structures. Primitives are numbered triangles first (mesh by mesh in the order of
@@ -43,9 +52,8 @@ class Tracer {
 
     /// From now on keeps the packets of every `interval`-th call of trace(); 0 stops that.
     void record(std::size_t interval);
-    /// Traces what was recorded once more and returns the seconds that it took; `recorded_seconds` and
-    /// `recorded_rays` are what the recorded calls took, all of trace() included, and how many rays they held.
-    double replay(double &recorded_seconds, std::uint64_t &recorded_rays);
+    /// Traces what was recorded once more.
+    Replayed replay(ReplayedAs as);
 
     std::size_t memory_bytes() const;
 

@@ -73,6 +73,8 @@ struct ShiftInverter::Base {
     std::uint32_t base_primitive = 0, offset_primitive = 0; ///< what they meet
     bool reconnects = false;
     float ratio = 0; ///< of the offset path's density times the Jacobian to the base path's, for this segment
+    /// The offset path's density where it copied at a rough vertex; else 0: then it is that of its copy to itself.
+    float pdf = 0;
 };
 
 namespace {
@@ -107,6 +109,9 @@ void write_lone(MadeTable &table, int first, std::size_t row, const Vertex &v) {
 
 /// The row of offset j of base row n: j = 0 goes back, j = 1 stays, so that its ratio is the density at home.
 constexpr std::uint32_t back = 0, home = 1;
+
+/// Of the way to a vertex: further off is another one.
+constexpr float allowed_miss = 1e-3f;
 
 } // namespace
 
@@ -253,7 +258,11 @@ std::vector<ShiftInverter::Base> ShiftInverter::arrivals(const Launch &launch) {
                 if (links.whole(link_open)[segment] == 0)
                     continue;
             } else {
-                b.offset_primitive = sent.whole(offset_ray_primitive)[offset_first + j * offset_stride + i];
+                b.pdf = float(shifted.real(shifted_pdf, at));
+                const std::size_t sent_row = offset_first + j * offset_stride + i;
+                b.offset_origin = v3(sent.at(offset_ray_origin_x, sent_row), sent.at(offset_ray_origin_y, sent_row),
+                                     sent.at(offset_ray_origin_z, sent_row));
+                b.offset_primitive = sent.whole(offset_ray_primitive)[sent_row];
                 if ((b.offset_primitive == ray_escaped) != is_escaped)
                     continue;
             }
@@ -267,7 +276,12 @@ std::vector<ShiftInverter::Base> ShiftInverter::arrivals(const Launch &launch) {
                 const std::uint32_t kind =
                     kind_of_primitive(tables_.primitive_material.data(), tables_.material_back.data(),
                                       material_kind.data(), b.offset_primitive, is_behind);
-                if (is_reconnectable(kind, tables_.primitive_light[b.offset_primitive]))
+                const bool is_long = launch.traits.at("TRAIT_SHIFT_DISTANCE") == 0 ||
+                                     tables_.primitive_light[b.offset_primitive] != no_light ||
+                                     is_far(b.base.position, b.offset.position,
+                                            hit(b.offset_primitive, b.offset_origin, b.offset_direction),
+                                            real(std::get<double>(launch.arguments.at("shift_distance").value)));
+                if (is_long && is_reconnectable(kind, tables_.primitive_light[b.offset_primitive]))
                     continue;
             }
             bases.push_back(b);
@@ -362,7 +376,8 @@ void ShiftInverter::take_back(const Launch &launch, const std::vector<Base> &bas
         InverseShifts &found = found_[b.reconnects ? 0 : 1];
         ++found.shifts;
         const std::size_t back_row = back * rows + n, home_row = home * rows + n;
-        const double there = after.real(shifted_ratio, back_row), density = after.real(shifted_ratio, home_row);
+        const double there = after.real(shifted_ratio, back_row),
+                     density = b.pdf > 0 ? b.pdf : after.real(shifted_ratio, home_row);
         if (!(there > 0) || !(density > 0)) {
             ++found.one_way;
             continue;
@@ -372,7 +387,7 @@ void ShiftInverter::take_back(const Launch &launch, const std::vector<Base> &bas
             continue;
         }
         const vec3 direction = v3_neg(vector_at(after, shifted_wi_x, back_row));
-        const vec3 origin = v3(links.at(link_origin_x, n), links.at(link_origin_y, n), links.at(link_origin_z, n));
+        vec3 origin{};
         std::uint32_t primitive = b.base_primitive;
         if (b.reconnects) {
             if (links.whole(link_open)[n] == 0) {
@@ -381,6 +396,8 @@ void ShiftInverter::take_back(const Launch &launch, const std::vector<Base> &bas
             }
         } else {
             primitive = sent.whole(offset_ray_primitive)[n];
+            origin =
+                v3(sent.at(offset_ray_origin_x, n), sent.at(offset_ray_origin_y, n), sent.at(offset_ray_origin_z, n));
             if ((primitive == ray_escaped) != is_escaped) {
                 ++found.one_way;
                 continue;
@@ -390,12 +407,14 @@ void ShiftInverter::take_back(const Launch &launch, const std::vector<Base> &bas
         if (!is_escaped) {
             const vec3 end = hit(b.base_primitive, b.base_origin, b.base_direction);
             const vec3 way = v3_sub(end, b.base.position);
-            const vec3 miss = b.reconnects ? v3_sub(direction, v3_normalize(way))
-                                           : v3_scale(v3_sub(hit(primitive, origin, direction), end),
-                                                      1 / std::sqrt(v3_length_squared(way)));
+            // A miss of no more than rays start off the surface is rounding of positions, however short the way.
+            const vec3 miss = b.reconnects
+                                  ? v3_sub(direction, v3_normalize(way))
+                                  : v3_scale(v3_sub(hit(primitive, origin, direction), end),
+                                             1 / (std::sqrt(v3_length_squared(way)) + b.base.offset / allowed_miss));
             away = std::sqrt(v3_length_squared(miss));
         }
-        if (!(away < 1e-3)) {
+        if (!(away < allowed_miss)) {
             ++found.elsewhere;
             continue;
         }
