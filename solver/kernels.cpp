@@ -51,6 +51,7 @@ constexpr Entry entries[] = {
     {&Kernels::third_largest, "mean_correction", "third_largest", true},
     {&Kernels::correction_weights, "mean_correction", "correction_weights", true},
     {&Kernels::correction_right_side, "mean_correction", "correction_right_side", true},
+    {&Kernels::correction_pass, "mean_correction", "correction_pass", true},
     {&Kernels::add_correction, "mean_correction", "add_correction", true},
 };
 

@@ -28,7 +28,8 @@ struct Kernels {
     Kernel import_plane, gradient_residual, right_side, start, start_between_neighbours, compose;
     Kernel base_weights, least_squares_weights, residual_scale, reweight, extrapolate, squared_norm;
     Kernel fill_ring, mark_held, add_base;
-    Kernel largest_of_columns, third_largest, correction_weights, correction_right_side, add_correction;
+    Kernel largest_of_columns, third_largest, correction_weights, correction_right_side, correction_pass,
+        add_correction;
 
     /// Every kernel that was built.
     std::vector<Kernel *> all();

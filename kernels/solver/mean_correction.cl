@@ -68,7 +68,8 @@ SOLVE correction_weights(GRID, uint weight_plane, real least, real smoothness, _
     weight_data[to] = x < width ? smoothness * smoothness * here : R(0);
 }
 
-/* right_side = smoothness^2 times -u, |u| cut at the block's bound; 0 where the primal is missing. */
+/* right_side = smoothness^2 times -u, outliers cut by the block's bound; 0 where the primal is missing. |u| over the
+ * bound stays what it is up to 2, and falls back to 1 beyond. */
 SOLVE correction_right_side(GRID, uint blocks_x, real smoothness, __global const real *u, __global const real *valid,
                             __global const real *bound, __global real *right_side) {
     SOLVER_PLACE_OF_ALL_CHANNELS
@@ -79,11 +80,22 @@ SOLVE correction_right_side(GRID, uint blocks_x, real smoothness, __global const
         norm += u[channel * plane + at] * u[channel * plane + at];
     norm = r_sqrt(norm);
     const real limit = bound[y / SOLVER_BLOCK * blocks_x + (x < width ? x : 0) / SOLVER_BLOCK];
-    const real cut = norm > limit ? limit / norm : R(1);
+    const real over = r_min(norm / r_max(limit, R(1e-30)), R(1e30));
+    const real cut = over > R(2) ? (R(1) + R(1) / (over - R(1))) / over : R(1);
     const real factor = x < width ? smoothness * smoothness * valid[at] * cut : R(0);
 #pragma unroll
     for (size_t channel = 0; channel < SOLVER_CHANNELS; ++channel)
         right_side[channel * plane + at] = -factor * u[channel * plane + at];
+}
+
+/* Adds its share of what a pass has left to the correction, and asks the next pass to filter it again. */
+SOLVE correction_pass(GRID, uint weight_plane, real share, __global const real *weight_data,
+                      __global const real *passed, __global real *correction, __global real *right_side) {
+    SOLVER_PLACE
+    const size_t at = GRID_AT(channel, x, y);
+    const size_t weight = (SOLVER_WEIGHT_PLANES > 1 ? channel * weight_plane : 0) + GRID_AT(0, x, y);
+    correction[at] += share * passed[at];
+    right_side[at] = weight_data[weight] * passed[at];
 }
 
 /* correction = |I| times the relative correction, and corrected = u + correction. */

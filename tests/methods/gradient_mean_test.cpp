@@ -104,7 +104,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, GradientMeanOf,
                          ::testing::Values(MeanCase{"cornell-box", 0.01}, MeanCase{"plates", 0.01},
                                            MeanCase{"torus-rough-glass", 0.01},
                                            // Most of its light comes in rare samples.
-                                           MeanCase{"door-ajar", 0.02}),
+                                           MeanCase{"door-ajar", 0.01}),
                          [](const auto &info) { return test_name(info.param.scene); });
 
 } // namespace
