@@ -1,7 +1,7 @@
 /* Which vertices offset paths may reconnect to, and over which distance. */
 #ifndef GRADUS_LIB_RECONNECTABLE_H
 #define GRADUS_LIB_RECONNECTABLE_H
-//! traits: TRAIT_TWO_FACED TRAIT_SHIFT_DISTANCE
+//! traits: TRAIT_TWO_FACED
 #include "kernels/lib/vector.h"
 #include "kernels/shared/scene_records.h"
 #include "kernels/shared/tables.h"
@@ -26,9 +26,8 @@ GRADUS_FN int is_reconnectable(uint kind, uint light) { return ((kind & kind_is_
 
 /* Over shorter ways offset paths do not reconnect, since both ends would see them from too different directions: the
  * square of that way for base and offset vertices whose distance has this square. It is in proportion to that distance,
- * so that nothing depends on the film's resolution, and at most `shift_distance`, for neighbours that see different
- * things. The same for the shift back. Ways to a light have no least length: light sampling connects to it all the
- * same. */
+ * and so to the size of the pixels, and at most `shift_distance`, for neighbours that see different things. The same
+ * for the shift back. Ways to a light have no least length: light sampling connects to it all the same. */
 #define GRADUS_LEAST_WAY R(8) /* over the distance of the two vertices; measured, docs/design.md */
 GRADUS_FN real least_way_squared(real separation_squared, real shift_distance) {
     return r_min(GRADUS_LEAST_WAY * GRADUS_LEAST_WAY * separation_squared, shift_distance * shift_distance);

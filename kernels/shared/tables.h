@@ -176,9 +176,10 @@
     REAL(gain, offset_light, "density of light sampling, offset path; or shift_failed, shift_absent")                  \
     REAL(gain, offset_bsdf, "density of BSDF sampling, offset path; or gain_split")
 
-/* Segments that offset paths ask about, from origin along direction to distance 1. */
+/* Segments that offset paths ask about, from origin along direction to distance 1. With TRAIT_SHIFT_DISTANCE, where one
+ * copies and asks nothing, its vertex is the origin. */
 #define GRADUS_LINK_COLUMNS(REAL, UINT)                                                                                \
-    REAL(link, origin_x, "of an offset path that copies, with TRAIT_SHIFT_DISTANCE: its vertex")                                                                                           \
+    REAL(link, origin_x, "")                                                                                           \
     REAL(link, origin_y, "")                                                                                           \
     REAL(link, origin_z, "")                                                                                           \
     REAL(link, direction_x, "not normalised")                                                                          \

@@ -4,7 +4,7 @@
  * With PHASES, vertices are also kept apart by what becomes of offset paths there (gradient_path_tracer.h): first ones,
  * with TRAIT_APART then those where some are apart, then those where the last have reconnected, later ones. Bins 0 to
  * PHASES - 1 are for those that escaped, and bin b > 0 of phase p becomes PHASES - 1 + p (bins_of_phase - 1) + b. */
-//! traits: TRAIT_ENVIRONMENT TRAIT_TWO_FACED TRAIT_APART
+//! traits: TRAIT_ENVIRONMENT TRAIT_TWO_FACED TRAIT_APART TRAIT_SHIFT_DISTANCE
 #include "kernels/lib/reconnectable.h"
 #include "kernels/lib/scene_hit.h"
 #include "kernels/shared/stage.h"

@@ -5,13 +5,12 @@
  *
  * APART: offset paths may be at vertices of their own. JOINED: or have reconnected, and come to the base's vertex from
  * another side, or from the same. APART alone is for first vertices, where nothing has happened yet. Where a vertex of
- * their own is not rough, or the base's is not, the two samplers shift differently: each is then an integrand of its own
- * (gain_split), weighted by its share within each path. */
+ * their own is not rough, or the base's is not, the two samplers shift differently: each is then an integrand of its
+ * own (gain_split), weighted by its share within each path. */
 #include "kernels/lib/bsdf_any.h"
 #include "kernels/lib/gradient.h"
 #include "kernels/lib/light_sampling.h"
 #include "kernels/lib/mis.h"
-#include "kernels/lib/reconnectable.h"
 
 STAGE gradient_light(uint count, uint unit, uint first, uint capacity, uint slots, uint max_depth,
                      __global const real *vertex, __global const real *tangent, __global real *shadow,

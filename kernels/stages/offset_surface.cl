@@ -1,6 +1,6 @@
 /* offset_surface: the new vertices of offset paths that are apart from their base path, and what will become of them.
  * Only with TRAIT_APART. */
-//! traits: TRAIT_SHADING_NORMALS TRAIT_ANISOTROPIC
+//! traits: TRAIT_SHADING_NORMALS TRAIT_ANISOTROPIC TRAIT_SHIFT_DISTANCE
 #include "kernels/lib/gradient.h"
 #include "kernels/lib/reconnectable.h"
 #include "kernels/lib/surface_point.h"

@@ -9,6 +9,7 @@
  * The shift fails where the neighbour saw nothing, where the new vertex would be seen from its other side, between a
  * Dirac kind and one that is none, and where the half-vector copy does (kernels/lib/shift_half_vector.h,
  * shift_specular.h). */
+//! traits: TRAIT_SHIFT_DISTANCE
 #include "kernels/lib/bsdf_any.h"
 #include "kernels/lib/gradient.h"
 #include "kernels/lib/reconnectable.h"

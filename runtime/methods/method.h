@@ -32,8 +32,8 @@ struct RenderOptions {
     PoissonNorm norm = PoissonNorm::l1; ///< of the reconstruction, gradient-domain methods
     std::optional<double> alpha;        ///< their weight of the primal; none: from the variances
     double shift_threshold = 0.01;      ///< offset paths reconnect at surfaces of this roughness (alpha) or more
-    /// They never do over ways shorter than so many separations of base and offset vertex
-    /// (kernels/lib/reconnectable.h), or this share of the scene's diameter if that is less; 0: no such rule.
+    /// They do not over ways shorter than eight times the distance of base and offset vertex, or than this share of the
+    /// scene's diameter if that is less (kernels/lib/reconnectable.h); 0: over any.
     double shift_distance = 0;
     std::string dump_kernels; ///< folder for the source of each kernel as it was compiled; empty: none
     /// Called when a kernel has been compiled: its name, how many are ready, of how many, and its seconds.
