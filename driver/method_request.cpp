@@ -50,20 +50,18 @@ void add_method_options(CLI::App &command, const Services &services, MethodReque
     add_alpha_option(command, reconstruction, "auto",
                      "Weight of the primal image against its differences; auto: from their variances",
                      [&request](std::optional<double> alpha) { request.options.alpha = alpha; });
-    command
-        .add_option("--shift-threshold", request.options.shift_threshold,
-                    "Roughness (alpha) from which on offset paths reconnect at a surface; on smoother ones they copy "
-                    "the half vector")
-        ->check(CLI::Range(0.0, 1.0))
-        ->capture_default_str()
-        ->group("Shifts (gpt)");
-    command
-        .add_option("--shift-distance", request.options.shift_distance,
-                    "Offset paths copy instead of reconnecting over ways shorter than this share of the scene's "
-                    "diameter, or than eight times the distance of the two paths if that is less; 0: never")
-        ->check(CLI::Range(0.0, 1.0))
-        ->capture_default_str()
-        ->group("Shifts (gpt)");
+    const auto add_shift_option = [&command](const char *name, double &value, const char *text) {
+        command.add_option(name, value, text)
+            ->check(CLI::Range(0.0, 1.0))
+            ->capture_default_str()
+            ->group("Shifts (gpt)");
+    };
+    add_shift_option("--shift-threshold", request.options.shift_threshold,
+                     "Roughness (alpha) from which on offset paths reconnect at a surface; on smoother ones they copy "
+                     "the half vector");
+    add_shift_option("--shift-distance", request.options.shift_distance,
+                     "Offset paths copy instead of reconnecting over ways shorter than this share of the scene's "
+                     "diameter, or than eight times the distance of the two paths if that is less; 0: never");
     const char *measuring = "For measuring";
     command
         .add_option("--dump-kernels", request.options.dump_kernels, "Write the source of each kernel to this folder")

@@ -27,7 +27,7 @@ GRADUS_FN int is_reconnectable(uint kind, uint light) { return ((kind & kind_is_
 /* Over shorter ways offset paths do not reconnect, since both ends would see them from too different directions: the
  * square of that way for base and offset vertices whose distance has this square. It is in proportion to that distance,
  * and so to the size of the pixels, and at most `shift_distance`, for neighbours that see different things. The same
- * for the shift back. Ways to a light have no least length: light sampling connects to it all the same. */
+ * for the shift back. */
 #define GRADUS_LEAST_WAY R(8) /* over the distance of the two vertices; measured, docs/design.md */
 GRADUS_FN real least_way_squared(real separation_squared, real shift_distance) {
     return r_min(GRADUS_LEAST_WAY * GRADUS_LEAST_WAY * separation_squared, shift_distance * shift_distance);
@@ -41,11 +41,12 @@ GRADUS_FN real reach_of(vec3 base, vec3 offset, real shift_distance) {
     return r_sqrt(least_way_squared(squared, shift_distance)) + r_sqrt(squared);
 }
 
-/* 1 where the ways from base and offset vertex to `next` are long enough. */
-GRADUS_FN int is_far(vec3 base, vec3 offset, vec3 next, real shift_distance) {
+/* 1 where the ways from base and offset vertex to `next` are long enough. Ways to a light have no least length: light
+ * sampling connects to it all the same. */
+GRADUS_FN int is_far(vec3 base, vec3 offset, vec3 next, uint next_light, real shift_distance) {
     const vec3 separation = v3_sub(offset, base), way = v3_sub(next, base), offset_way = v3_sub(next, offset);
     const real least = least_way_squared(v3_dot(separation, separation), shift_distance);
-    return (v3_dot(way, way) >= least) & (v3_dot(offset_way, offset_way) >= least);
+    return (next_light != no_light) | ((v3_dot(way, way) >= least) & (v3_dot(offset_way, offset_way) >= least));
 }
 
 GRADUS_LIB_END

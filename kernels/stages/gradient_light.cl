@@ -107,6 +107,8 @@ STAGE gradient_light(uint count, uint unit, uint first, uint capacity, uint slot
         const real ratio_before = AT(shifted, ratio, at);
         const rgb so_far = rgb_gray(R(1));
         const int is_apart = ratio_before >= R(0);
+        rgb value = rgb_gray(R(0));
+        real offset_light = ratio_before, offset_bsdf = R(0), asks_base = R(0);
 #else
         const uint neighbour = gradient_neighbour(slot, j, pixel, crop_width, crop_height);
         const uint from_row = LONE_ROW(j, row, neighbour);
@@ -147,7 +149,6 @@ STAGE gradient_light(uint count, uint unit, uint first, uint capacity, uint slot
         const real own_share = both_rough ? R(1) : R(1) / (R(1) + (own_light > R(0) ? own_bsdf / own_light : R(0)));
         const rgb own_value =
             rgb_scale(rgb_mul(rgb_mul(so_far, arriving), f.value), scatters ? jacobian * own_share : R(0));
-#if JOINED
         value =
             rgb3(is_apart ? own_value.r : value.r, is_apart ? own_value.g : value.g, is_apart ? own_value.b : value.b);
         offset_light =
@@ -155,14 +156,6 @@ STAGE gradient_light(uint count, uint unit, uint first, uint capacity, uint slot
         offset_bsdf = is_apart ? (both_rough ? own_bsdf * ratio_before : gain_split) : offset_bsdf;
         const int asks = is_apart & (rgb_max(value) > R(0));
         asks_base = is_apart ? (asks ? base_bsdf : R(0)) : asks_base;
-#else
-        const rgb value =
-            rgb3(is_apart ? own_value.r : R(0), is_apart ? own_value.g : R(0), is_apart ? own_value.b : R(0));
-        const real offset_light = is_apart ? (scatters ? own_light : shift_failed(outcome_failed_kinds)) : ratio_before;
-        const real offset_bsdf = is_apart ? (both_rough ? own_bsdf : gain_split) : R(0);
-        const int asks = is_apart & (rgb_max(value) > R(0));
-        const real asks_base = asks ? base_bsdf : R(0);
-#endif
 #else
         const int is_rough = (kind & kind_is_rough) != 0u;
         const rgb value = rgb_scale(rgb_mul(arriving, f.value), is_rough ? jacobian : R(0));

@@ -119,8 +119,8 @@ STAGE offset_surface(uint count, uint unit, uint first, uint escaped, uint capac
         int would_reconnect = is_reconnectable(kind, primitive_light[present]);
 #if TRAIT_SHIFT_DISTANCE
         const size_t segment = link_first + (size_t)j * link_stride + i;
-        would_reconnect &= (primitive_light[present] != no_light) |
-                           is_far(base_before, AT_V3(link, origin, segment), point.position, shift_distance);
+        would_reconnect &=
+            is_far(base_before, AT_V3(link, origin, segment), point.position, primitive_light[present], shift_distance);
 #endif
         const int comes_back = (state != shift_apart_rough) | !would_reconnect;
         const int is_apart = was_apart & is_hit & comes_back;

@@ -71,9 +71,6 @@ STAGE shift(uint count, uint unit, uint first, uint to, uint capacity, uint slot
     const uint next_kind =
         kind_of_primitive(primitive_material, material_back, material_kind, primitive, base_side < R(0));
     const int reconnectable = is_reconnectable(next_kind, primitive_light[primitive]);
-#if TRAIT_SHIFT_DISTANCE
-    const int emits = primitive_light[primitive] != no_light;
-#endif
 #endif
 #else
     const real base_pdf = pdf;
@@ -118,7 +115,7 @@ STAGE shift(uint count, uint unit, uint first, uint to, uint capacity, uint slot
 #if APART
         const int both_rough = base_is_rough & is_rough;
 #if TRAIT_SHIFT_DISTANCE && !ESCAPED
-        const int is_long = emits | is_far(base, from, hit.position, shift_distance);
+        const int is_long = is_far(base, from, hit.position, primitive_light[primitive], shift_distance);
 #else
         const int is_long = 1;
 #endif

@@ -276,12 +276,12 @@ std::vector<ShiftInverter::Base> ShiftInverter::arrivals(const Launch &launch) {
                 const std::uint32_t kind =
                     kind_of_primitive(tables_.primitive_material.data(), tables_.material_back.data(),
                                       material_kind.data(), b.offset_primitive, is_behind);
+                const std::uint32_t light = tables_.primitive_light[b.offset_primitive];
                 const bool is_long = launch.traits.at("TRAIT_SHIFT_DISTANCE") == 0 ||
-                                     tables_.primitive_light[b.offset_primitive] != no_light ||
                                      is_far(b.base.position, b.offset.position,
-                                            hit(b.offset_primitive, b.offset_origin, b.offset_direction),
+                                            hit(b.offset_primitive, b.offset_origin, b.offset_direction), light,
                                             real(std::get<double>(launch.arguments.at("shift_distance").value)));
-                if (is_long && is_reconnectable(kind, tables_.primitive_light[b.offset_primitive]))
+                if (is_long && is_reconnectable(kind, light))
                     continue;
             }
             bases.push_back(b);
