@@ -39,7 +39,7 @@ void Grid::launch(Kernel &kernel, Planes planes, std::uint32_t rows) const {
     kernel.set("plane", plane);
     kernel.set("first_channel", planes.first);
     kernel.set("channel_count", planes.count);
-    launch_groups(kernel, std::size_t(tiles(width)) * (rows > 0 ? rows : height) * planes.count);
+    launch_groups(kernel, std::size_t(tiles(width)) * planes.count, rows > 0 ? rows : height);
 }
 
 Buffer PlaneMaker::planes(const std::string &name, const Grid &grid, std::uint32_t count) const {
@@ -59,6 +59,8 @@ Buffer PlaneMaker::reals(const std::string &name, const std::vector<double> &val
     return Buffer(device_, name, single.data(), single.size() * sizeof(float));
 }
 
-void launch_groups(Kernel &kernel, std::size_t groups) { kernel.launch(groups * SOLVER_TILE); }
+void launch_groups(Kernel &kernel, std::size_t groups, std::size_t lines) {
+    kernel.launch(groups * SOLVER_TILE, lines);
+}
 
 } // namespace gradus::solver

@@ -46,7 +46,7 @@ class PlaneMaker {
     Precision precision_;
 };
 
-/// Launches work-groups of SOLVER_TILE items.
-void launch_groups(Kernel &kernel, std::size_t groups);
+/// Launches `lines` times `groups` work-groups of SOLVER_TILE items.
+void launch_groups(Kernel &kernel, std::size_t groups, std::size_t lines = 1);
 
 } // namespace gradus::solver

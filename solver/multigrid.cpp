@@ -47,7 +47,7 @@ void launch_transfer(Kernel &kernel, const Grid &fine, const Grid &coarse, std::
     kernel.set("first_channel", planes.first);
     kernel.set("channel_count", planes.count);
     const std::size_t tiles = (coarse.width - 1) / SOLVER_TILE + 1;
-    launch_groups(kernel, tiles * ((rows - 1) / 8 + 1) * planes.count);
+    launch_groups(kernel, tiles * planes.count, (rows - 1) / 8 + 1);
 }
 
 } // namespace

@@ -63,11 +63,10 @@ void Sums::run_products(Kernels &kernels, Kernel &kernel, Planes planes, std::ui
     const std::uint32_t reduced = quotient_up(plane_, SOLVER_REDUCTION), groups = quotient_up(reduced, SOLVER_TILE);
     kernel.set("plane", plane_);
     kernel.set("reduced_count", reduced);
-    kernel.set("groups_of_plane", groups);
     kernel.bind("reduced", reduced_[0]);
     kernel.set("first_channel", planes.first);
     kernel.set("channel_count", planes.count);
-    launch_groups(kernel, std::size_t(groups) * planes.count);
+    launch_groups(kernel, groups, planes.count);
     run(kernels, &reduced_[0], reduced, sums, slot, second, planes);
 }
 
@@ -82,8 +81,7 @@ void Sums::run(Kernels &kernels, const Buffer *from, std::uint32_t count, std::u
         reduce.bind("reduced", *to);
         reduce.set("count", count);
         reduce.set("reduced_count", reduced);
-        reduce.set("groups_of_plane", groups);
-        launch_groups(reduce, std::size_t(groups) * planes.count * sums);
+        launch_groups(reduce, groups, std::size_t(planes.count) * sums);
         from = to;
         count = reduced;
     }

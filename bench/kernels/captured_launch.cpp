@@ -86,7 +86,10 @@ void Replay::restore() const {
 }
 
 void Replay::run() {
-    kernel_.launch(items_);
+    if (lines_ > 0)
+        kernel_.launch(items_, lines_);
+    else
+        kernel_.launch(items_);
     finish(*device_);
 }
 
@@ -99,7 +102,7 @@ double Replay::seconds() {
 
 CapturedLaunch::CapturedLaunch(Device &device, const Launch &launch)
     : device_(device), request_(launch.request), traits_(launch.traits), arguments_(launch.arguments),
-      items_(launch.items) {
+      items_(launch.items), lines_(launch.lines) {
     for (const auto &[name, argument] : arguments_) {
         const Buffer *buffer = std::get_if<Buffer>(&argument.value);
         if (!buffer)
@@ -157,6 +160,7 @@ Replay CapturedLaunch::replay(Precision precision, const std::map<std::string, s
     Replay replay;
     replay.device_ = &device_;
     replay.items_ = items_;
+    replay.lines_ = lines_;
     replay.kernel_ = KernelLibrary(device_, traits_, precision).build({request}).front();
     for (const auto &[name, argument] : arguments_) {
         if (const auto *number = std::get_if<std::uint32_t>(&argument.value))

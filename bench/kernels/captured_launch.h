@@ -42,7 +42,7 @@ class Replay {
     };
     Device *device_ = nullptr;
     Kernel kernel_;
-    std::size_t items_ = 0;
+    std::size_t items_ = 0, lines_ = 0; ///< as of Launch
     std::vector<Memory> memory_;
 };
 
@@ -57,7 +57,7 @@ class CapturedLaunch {
 
     const std::string &name() const { return request_.name; }
     const std::string &file() const { return request_.file; }
-    std::size_t items() const { return items_; }
+    std::size_t items() const { return lines_ > 0 ? items_ * lines_ : items_; }
     Device &device() const { return device_; }
     const std::vector<CapturedBuffer> &buffers() const { return buffers_; }
 
@@ -79,7 +79,7 @@ class CapturedLaunch {
     KernelRequest request_;
     TraitValues traits_;
     std::map<std::string, Launch::Argument> arguments_;
-    std::size_t items_;
+    std::size_t items_, lines_;
     std::vector<CapturedBuffer> buffers_;
     std::vector<bool> is_written_; ///< by buffer
 };

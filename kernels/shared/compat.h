@@ -24,6 +24,9 @@ typedef float real;
 #endif
 #define GRADUS_GLOBAL __global
 
+/* The number of this work-item in a launch of so many of them: Kernel::launch spreads them over lines. */
+#define work_item() (get_global_id(1) * get_global_size(0) + get_global_id(0))
+
 #else /* host C++ */
 
 #include <cmath>

@@ -262,6 +262,9 @@ enum gradient_film_column {
 };
 #undef GRADUS_COLUMN_INDEX
 
+/* Frames that gradient_accumulate adds at once. */
+#define accumulated_frames 4u
+
 /* Values of ray_primitive that are no primitive. */
 #define ray_escaped 0xFFFFFFFFu /* traced, and nothing was hit */
 #define ray_pending 0xFFFFFFFEu /* to be traced */

@@ -34,8 +34,8 @@
 #define SOLVER_PLACE                                                                                                   \
     const uint group = (uint)get_group_id(0);                                                                          \
     const uint tiles = (width + SOLVER_TILE - 1) / SOLVER_TILE;                                                        \
-    const size_t y = group / (tiles * channel_count);                                                                  \
-    const size_t channel = first_channel + group / tiles % channel_count;                                              \
+    const size_t y = get_group_id(1);                                                                                  \
+    const size_t channel = first_channel + group / tiles;                                                              \
     const size_t item = get_local_id(0), x = group % tiles * SOLVER_TILE + item;                                       \
     const size_t tile = y * tiles + group % tiles;
 
@@ -59,8 +59,8 @@
 #define SOLVER_PLACE_OF_ALL_CHANNELS                                                                                   \
     const uint group = (uint)get_group_id(0);                                                                          \
     const uint tiles = (width + SOLVER_TILE - 1) / SOLVER_TILE;                                                        \
-    const size_t item = get_local_id(0), x = group % tiles * SOLVER_TILE + item;                                       \
-    const size_t y = group / tiles, tile = group;
+    const size_t item = get_local_id(0), x = group * SOLVER_TILE + item;                                               \
+    const size_t y = get_group_id(1), tile = y * tiles + group;
 
 /* A scalar that another kernel left, and a quotient of two of them, 0 where the divisor is next to nothing: a sum of
  * squares of which most underflowed. */

@@ -11,9 +11,9 @@
 #define SOLVER_VECTOR_PLACE(rows)                                                                                      \
     const uint group = (uint)get_group_id(0), item = (uint)get_local_id(0);                                            \
     const uint tiles = (coarse_width + SOLVER_TILE - 1) / SOLVER_TILE;                                                 \
-    const uint channel = first_channel + group / tiles % channel_count;                                                \
+    const uint channel = first_channel + group / tiles;                                                                \
     const uint coarse_x = group % tiles * SOLVER_TILE + item % 8 * 8;                                                  \
-    const uint vector_row = group / (tiles * channel_count) * 8 + item / 8;                                            \
+    const uint vector_row = (uint)get_group_id(1) * 8 + item / 8;                                                      \
     if (coarse_x >= coarse_width || vector_row >= (rows))                                                              \
         return;
 

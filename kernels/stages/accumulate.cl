@@ -17,7 +17,7 @@
 
 STAGE accumulate(uint count, uint slots, uint pixels, uint first_slot, uint first_pixel, __global const real *radiance,
                  __global const real *feature, __global real *film, __global real *feature_film) {
-    const size_t i = get_global_id(0);
+    const size_t i = work_item();
     if (i >= count)
         return;
     const uint slot = first_slot + (uint)i;

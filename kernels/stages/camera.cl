@@ -25,7 +25,7 @@ STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ra
              uint first_slot, uint first_pixel, uint first_sample_low, uint first_sample_high, uint pixels,
              uint pixels_multiplier, uint pixels_shift, uint width_multiplier, uint width_shift, uint crop_x,
              uint crop_y, uint crop_width, uint film_width, uint seed_low, uint seed_high) {
-    const size_t i = get_global_id(0);
+    const size_t i = work_item();
     if (i >= count)
         return;
     const size_t row = first_row + i;

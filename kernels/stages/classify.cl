@@ -32,7 +32,7 @@ STAGE classify(uint count, uint unit, uint capacity, __global const real *ray, _
 #endif
 #endif
 ) {
-    const size_t row = get_global_id(0);
+    const size_t row = work_item();
     if (row >= count)
         return;
     const uint primitive = AT_UINT(ray, primitive, row);
@@ -71,6 +71,9 @@ STAGE classify(uint count, uint unit, uint capacity, __global const real *ray, _
 #endif
 #if TRAIT_ENVIRONMENT
     const uint escaped_bin = primitive == ray_escaped ? phase : bin_none;
+#elif defined(PHASES)
+    /* Nothing is there to be found, but the sums of those that begin must. */
+    const uint escaped_bin = row >= fresh && primitive == ray_escaped ? 0u : bin_none;
 #else
     const uint escaped_bin = bin_none;
 #endif

@@ -4,7 +4,7 @@
 
 STAGE connect(uint count, uint first, uint capacity, uint slots, __global const real *vertex,
               __global const real *shadow, __global real *radiance) {
-    const size_t i = get_global_id(0);
+    const size_t i = work_item();
     if (i >= count)
         return;
     const size_t row = first + i;

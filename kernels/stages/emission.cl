@@ -9,7 +9,7 @@ STAGE emission(uint count, uint unit, uint first, uint capacity, uint slots, __g
                __global const real *ray, __global const real *vertex_old, __global real *radiance,
                __global const real *triangles, __global const real *spheres, uint triangle_count,
                __global const uint *primitive_light, __global const real *lights, uint light_count) {
-    const size_t i = get_global_id(0);
+    const size_t i = work_item();
     if (i >= count)
         return;
     const uint row = index[first + i];

@@ -6,7 +6,7 @@
 STAGE escape(uint count, uint unit, uint first, uint capacity, uint slots, __global const uint *index,
              __global const real *vertex_old, __global real *radiance, __global const real *lights,
              uint environment_light) {
-    const size_t i = get_global_id(0);
+    const size_t i = work_item();
     if (i >= count)
         return;
     const uint row = index[first + i];

@@ -6,7 +6,7 @@
 
 STAGE feature(uint count, uint unit, uint first, uint capacity, uint slots, __global const real *vertex,
               __global real *feature, __global const real *camera, __global const real *materials) {
-    const size_t i = get_global_id(0);
+    const size_t i = work_item();
     if (i >= count)
         return;
     const size_t row = first + i;

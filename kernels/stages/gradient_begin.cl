@@ -1,10 +1,12 @@
-/* gradient_begin: begins one base path a row from what the camera saw: its first ray, already traced. */
+/* gradient_begin: begins one base path a row from what the camera saw: its first ray, already traced. Its sums are begun
+ * where its first vertex is lit (gradient_connect with FIRST), or by `gradient_clear` where none is or lights are not
+ * sampled. */
 #include "kernels/lib/begin_path.h"
 
 STAGE gradient_begin(uint count, uint unit, uint capacity, uint slots, __global real *ray, __global real *vertex,
                      __global real *radiance, __global real *direct, __global real *prefix, __global real *difference,
                      __global const real *primary, __global const real *camera, uint first_row, uint first_slot) {
-    const size_t i = get_global_id(0);
+    const size_t i = work_item();
     if (i >= count)
         return;
     const size_t row = first_row + i;
@@ -17,12 +19,23 @@ STAGE gradient_begin(uint count, uint unit, uint capacity, uint slots, __global 
     BEGIN_PATH(row, slot, AT_UINT(primary, key_0, slot), AT_UINT(primary, key_1, slot))
     SET_RGB(radiance, value, slot, rgb_gray(R(0)));
     SET_RGB_IN(direct, radiance, value, slot, rgb_gray(R(0)));
-    SET_RGB(prefix, value, slot, rgb_gray(R(0)));
     SET_RGB(prefix, throughput, slot, rgb_gray(R(0)));
+#pragma unroll
+    for (uint j = 0; j < 4; ++j)
+        AT(difference, ratio, (size_t)j * slots + slot) = shift_absent;
+}
+
+/* Paths of rows index[first] on have gathered nothing. */
+STAGE gradient_clear(uint count, uint first, uint capacity, uint slots, __global const uint *index,
+                     __global const real *vertex_old, __global real *prefix, __global real *difference) {
+    const size_t i = work_item();
+    if (i >= count)
+        return;
+    const uint slot = AT_UINT_IN(vertex_old, vertex, slot, index[first + i]);
+    SET_RGB(prefix, value, slot, rgb_gray(R(0)));
 #pragma unroll
     for (uint j = 0; j < 4; ++j) {
         const size_t at = (size_t)j * slots + slot;
         SET_RGB(difference, value, at, rgb_gray(R(0)));
-        AT(difference, ratio, at) = shift_absent;
     }
 }

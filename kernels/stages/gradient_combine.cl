@@ -8,7 +8,7 @@
 
 STAGE gradient_combine(uint count, uint slots, __global real *radiance, __global const real *direct,
                        __global real *prefix, __global real *difference) {
-    const size_t slot = get_global_id(0);
+    const size_t slot = work_item();
     if (slot >= count)
         return;
     const rgb after = AT_RGB(radiance, value, slot);

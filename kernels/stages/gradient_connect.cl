@@ -3,9 +3,15 @@
  * sampling does not find it; light sampling still does, so this is no failure of the shift.
  *
  * APART: offset paths at vertices of their own have connections of their own. JOINED: those that are in the base's
- * vertex share one. */
+ * vertex share one. FIRST: at first vertices, where the sums begin. */
 #include "kernels/lib/weighted_difference.h"
 #include "kernels/shared/stage.h"
+
+#if FIRST
+#define GATHER_RGB SET_RGB
+#else
+#define GATHER_RGB ADD_RGB
+#endif
 
 STAGE gradient_connect(uint count, uint first, uint capacity, uint slots, __global const real *vertex,
                        __global const real *shadow, __global const real *gain, __global real *prefix,
@@ -19,7 +25,7 @@ STAGE gradient_connect(uint count, uint first, uint capacity, uint slots, __glob
                        __global const real *shifted_old
 #endif
 ) {
-    const size_t i = get_global_id(0);
+    const size_t i = work_item();
     if (i >= count)
         return;
     const size_t row = first + i;
@@ -28,7 +34,7 @@ STAGE gradient_connect(uint count, uint first, uint capacity, uint slots, __glob
     const rgb base = rgb_scale(AT_RGB(shadow, value, row), seen);
     const real base_bsdf = seen * AT(gain, base_bsdf, row);
     const rgb alone = rgb_scale(base, R(1) / (R(1) + base_bsdf));
-    ADD_RGB(prefix, value, slot, alone);
+    GATHER_RGB(prefix, value, slot, alone);
 #pragma unroll
     for (uint j = 0; j < 4; ++j) {
         const size_t at = (size_t)j * capacity + row;
@@ -49,6 +55,6 @@ STAGE gradient_connect(uint count, uint first, uint capacity, uint slots, __glob
         const real offset_bsdf = offset_seen * r_max(AT(gain, offset_bsdf, at), R(0));
         const rgb change = weighted_difference(mine, offset, mine_other, offset_light + offset_bsdf, offset_light);
         const size_t to = (size_t)j * slots + slot;
-        ADD_RGB(difference, value, to, change);
+        GATHER_RGB(difference, value, to, change);
     }
 }

@@ -25,7 +25,7 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint to, uint capacit
                         __global const real *offset_ray, uint offset_first, uint offset_stride
 #endif
 ) {
-    const size_t i = get_global_id(0);
+    const size_t i = work_item();
     if (i >= count)
         return;
     const uint row = index[first + i];

@@ -34,7 +34,7 @@ STAGE gradient_light(uint count, uint unit, uint first, uint capacity, uint slot
                      __global const uint *material_kind
 #endif
 ) {
-    const size_t i = get_global_id(0);
+    const size_t i = work_item();
     if (i >= count)
         return;
     const size_t row = first + i;

@@ -14,7 +14,7 @@ STAGE gradient_scatter(uint count, uint unit, uint first, uint capacity, uint sl
                        uint roulette_depth, __global real *vertex, __global const real *tangent, __global real *ray,
                        __global real *shifted, __global real *prefix, __global real *difference,
                        __global const real *materials) {
-    const size_t i = get_global_id(0);
+    const size_t i = work_item();
     if (i >= count)
         return;
     const size_t row = first + i;

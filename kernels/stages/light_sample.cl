@@ -10,7 +10,7 @@ STAGE light_sample(uint count, uint unit, uint first, uint capacity, uint max_de
                    __global const real *tangent, __global real *shadow, __global const real *materials,
                    __global const real *lights, __global const uint *light_kinds, __global const uint *light_alias,
                    uint light_count, real scene_diameter) {
-    const size_t i = get_global_id(0);
+    const size_t i = work_item();
     if (i >= count)
         return;
     const size_t row = first + i;

@@ -14,7 +14,7 @@ STAGE offset_begin(uint count, uint first, uint capacity, uint slots, __global c
                    __global real *offset_reach, real shift_distance
 #endif
 ) {
-    const size_t i = get_global_id(0);
+    const size_t i = work_item();
     if (i >= count)
         return;
     const size_t row = first + i;
@@ -80,7 +80,7 @@ STAGE offset_surface(uint count, uint unit, uint first, uint escaped, uint capac
                      __global real *offset_reach, real shift_distance
 #endif
 ) {
-    const size_t i = get_global_id(0);
+    const size_t i = work_item();
     if (i >= count)
         return;
     const size_t row = first + i;

@@ -6,7 +6,7 @@
 #include "kernels/shared/stage.h"
 
 STAGE partition_count(uint count, uint bins, uint chunks, __global const uint *bin, __global uint *offset) {
-    const uint chunk = (uint)get_global_id(0);
+    const uint chunk = (uint)work_item();
     if (chunk >= chunks)
         return;
     const uint begin = chunk * PARTITION_CHUNK;
@@ -20,7 +20,7 @@ STAGE partition_count(uint count, uint bins, uint chunks, __global const uint *b
 }
 
 STAGE partition_scan(uint bins, uint chunks, __global uint *offset, __global uint *range) {
-    if (get_global_id(0) != 0)
+    if (work_item() != 0)
         return;
     uint sum = 0;
     for (uint b = 0; b < bins; ++b) {
@@ -36,7 +36,7 @@ STAGE partition_scan(uint bins, uint chunks, __global uint *offset, __global uin
 
 STAGE partition_scatter(uint count, uint bins, uint chunks, __global const uint *bin, __global uint *offset,
                         __global uint *index) {
-    const uint chunk = (uint)get_global_id(0);
+    const uint chunk = (uint)work_item();
     if (chunk >= chunks)
         return;
     const uint begin = chunk * PARTITION_CHUNK;

@@ -6,7 +6,7 @@
 /* Rows of `camera`, before tracing. */
 STAGE primary_begin(uint count, uint capacity, uint slots, __global const real *ray, __global const real *vertex,
                     __global real *primary) {
-    const size_t row = get_global_id(0);
+    const size_t row = work_item();
     if (row >= count)
         return;
     const uint slot = AT_UINT(vertex, slot, row);
@@ -22,7 +22,7 @@ STAGE primary_begin(uint count, uint capacity, uint slots, __global const real *
 STAGE primary_surface(uint count, uint escaped, uint capacity, uint slots, __global const uint *index,
                       __global const real *ray, __global const real *vertex, __global const real *tangent,
                       __global const uint *material_kind, __global real *primary) {
-    const size_t row = get_global_id(0);
+    const size_t row = work_item();
     if (row >= count)
         return;
     const uint slot = AT_UINT(vertex, slot, row);

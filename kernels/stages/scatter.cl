@@ -8,7 +8,7 @@
 
 STAGE scatter(uint count, uint unit, uint first, uint capacity, uint max_depth, uint roulette_depth,
               __global real *vertex, __global const real *tangent, __global real *ray, __global const real *materials) {
-    const size_t i = get_global_id(0);
+    const size_t i = work_item();
     if (i >= count)
         return;
     const size_t row = first + i;

@@ -10,7 +10,7 @@ STAGE settle(uint count, uint first, uint capacity, __global real *shifted, __gl
              __global const real *vertex, __global const uint *material_kind
 #endif
 ) {
-    const size_t i = get_global_id(0);
+    const size_t i = work_item();
     if (i >= count)
         return;
 #if TRAIT_APART
@@ -32,7 +32,7 @@ STAGE settle(uint count, uint first, uint capacity, __global real *shifted, __gl
 
 /* No offset path of these vertices asks whether it sees a light. */
 STAGE close_links(uint count, uint first, uint capacity, __global real *link, uint link_stride) {
-    const size_t i = get_global_id(0);
+    const size_t i = work_item();
     if (i >= count)
         return;
 #pragma unroll

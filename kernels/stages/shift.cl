@@ -39,7 +39,7 @@ STAGE shift(uint count, uint unit, uint first, uint to, uint capacity, uint slot
 #endif
 #endif
 ) {
-    const size_t i = get_global_id(0);
+    const size_t i = work_item();
     if (i >= count)
         return;
     const uint row = index[first + i];

@@ -5,7 +5,7 @@
 
 STAGE shift_count(uint count, uint first, uint capacity, uint chunks, uint chunks_at_most, __global const real *shifted,
                   __global uint *outcome) {
-    const uint chunk = (uint)get_global_id(0);
+    const uint chunk = (uint)work_item();
     if (chunk >= chunks)
         return;
     const uint end = min((chunk + 1u) * PARTITION_CHUNK, count);

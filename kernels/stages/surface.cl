@@ -9,7 +9,7 @@ STAGE surface(uint count, uint unit, uint first, uint capacity, __global const u
               __global const real *triangles, __global const real *triangle_normals,
               __global const real *triangle_tangents, __global const real *spheres, uint triangle_count,
               __global const uint *primitive_material, __global const uint *material_back) {
-    const size_t i = get_global_id(0);
+    const size_t i = work_item();
     if (i >= count)
         return;
     const uint row = index[first + i];

@@ -23,6 +23,10 @@ struct Buffer::Handle {
     std::size_t bytes; ///< that we allocated: 0 for a caller's
 };
 
+struct Buffer::Event {
+    cl::Event event;
+};
+
 Buffer::Buffer(Device &device, const std::string &name, std::size_t bytes)
     : name_(name), bytes_(std::max<std::size_t>(bytes, 16)) {
     Device::Implementation &d = device.implementation();
@@ -77,12 +81,25 @@ void Buffer::read(void *data, std::size_t bytes) const {
                 [&] { handle_->device.queue.enqueueReadBuffer(handle_->memory, CL_TRUE, 0, bytes, data); });
 }
 
-Buffer::Mapping::Mapping(const Buffer &buffer, Access access) : buffer_(buffer) {
+Buffer::Reading::Reading(const Buffer &buffer, void *data, std::size_t bytes)
+    : handle_(buffer.handle_), done_(std::make_shared<Event>()) {
+    opencl_call("reading " + buffer.name_, [&] {
+        handle_->device.queue.enqueueReadBuffer(handle_->memory, CL_FALSE, 0, bytes, data, nullptr, &done_->event);
+        handle_->device.queue.flush();
+    });
+}
+
+void Buffer::Reading::wait() {
+    opencl_call("reading", [&] { done_->event.wait(); });
+}
+
+Buffer::Mapping::Mapping(const Buffer &buffer, Access access, Wait wait) : buffer_(buffer) {
     const cl_map_flags flags = access == Access::read    ? CL_MAP_READ
                                : access == Access::write ? CL_MAP_WRITE
                                                          : CL_MAP_READ | CL_MAP_WRITE;
     pointer_ = opencl_call("mapping " + buffer.name_, [&] {
-        return buffer.handle_->device.queue.enqueueMapBuffer(buffer.handle_->memory, CL_TRUE, flags, 0, buffer.bytes_);
+        return buffer.handle_->device.queue.enqueueMapBuffer(
+            buffer.handle_->memory, wait == Wait::now ? CL_TRUE : CL_FALSE, flags, 0, buffer.bytes_);
     });
 }
 

@@ -12,9 +12,13 @@ struct _cl_mem; // cl_mem, as OpenCL's headers declare it
 namespace gradus {
 
 enum class Access { read, write, read_write };
+enum class Wait { now, later };
 
 /// An array in device memory. On a CPU device it is host memory, and mapping it copies nothing.
 class Buffer {
+    struct Handle;
+    struct Event;
+
   public:
     Buffer() = default;
     /// `name` is for messages and for the arguments of kernels that bear it. An empty buffer holds one element, for
@@ -38,10 +42,25 @@ class Buffer {
     /// Waits for all work on the queue, then copies the content.
     void read(void *data, std::size_t bytes) const;
 
-    /// The host's view of the buffer, until it is destroyed. Waits for all work on the queue.
+    /// A copy of the content that is on its way: as it is once all work queued before is done.
+    class Reading {
+      public:
+        Reading(const Buffer &buffer, void *data, std::size_t bytes);
+        /// `data` must live until then.
+        void wait();
+
+      private:
+        std::shared_ptr<Handle> handle_;
+        std::shared_ptr<Event> done_;
+    };
+    /// Work may be queued before Reading::wait(), so that the device need not wait for the host.
+    Reading start_read(void *data, std::size_t bytes) const { return Reading(*this, data, bytes); }
+
+    /// The host's view of the buffer, until it is destroyed. Waits for all work on the queue, or (`later`) leaves that
+    /// to a later mapping or read.
     class Mapping {
       public:
-        Mapping(const Buffer &buffer, Access access);
+        Mapping(const Buffer &buffer, Access access, Wait wait);
         ~Mapping();
         Mapping(const Mapping &) = delete;
         Mapping &operator=(const Mapping &) = delete;
@@ -54,10 +73,9 @@ class Buffer {
         const Buffer &buffer_;
         void *pointer_;
     };
-    Mapping map(Access access) const { return Mapping(*this, access); }
+    Mapping map(Access access, Wait wait = Wait::now) const { return Mapping(*this, access, wait); }
 
   private:
-    struct Handle;
     std::string name_;
     std::size_t bytes_ = 0;
     std::shared_ptr<Handle> handle_;

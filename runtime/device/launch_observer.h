@@ -20,6 +20,7 @@ struct Launch {
     const TraitValues &traits;
     const std::map<std::string, Argument> &arguments; ///< by name
     std::size_t items;
+    std::size_t lines; ///< of so many items each; 0: Kernel::launch(items) makes them
 };
 
 using LaunchObserver = std::function<void(const Launch &)>;

@@ -55,14 +55,25 @@ struct Kernel::Handle {
     }
 
     /// Tells the device's observer, which is not told of what it launches itself.
-    void observe(std::size_t items) {
+    void observe(std::size_t items, std::size_t lines) {
         if (!is_observed || !device->observer)
             return;
         const LaunchObserver observer = std::exchange(device->observer, nullptr);
-        observer({request, traits, values, items});
+        observer({request, traits, values, items, lines});
         device->observer = observer;
     }
+
+    /// Enqueues `lines` times `groups` work-groups, for `items` work-items in all.
+    void enqueue(std::size_t groups, std::size_t lines, std::size_t items);
 };
+
+namespace {
+
+// PoCL compiles a kernel once for launches that are narrower than 65536 work-items in all dimensions, and once more for
+// others.
+constexpr std::size_t widest_line = 1u << 15;
+
+} // namespace
 
 const std::string &Kernel::name() const { return handle_->request.name; }
 
@@ -83,26 +94,38 @@ void Kernel::set_real(const std::string &argument, double value) {
 }
 
 void Kernel::launch(std::size_t items) {
-    for (const auto &[argument, index] : handle_->arguments)
-        if (!handle_->is_set[index])
-            throw std::logic_error("kernel " + name() + ": argument " + argument + " was not set");
-    const std::size_t group = handle_->work_group_size;
-    const std::size_t padded = (items + group - 1) / group * group;
-    if (padded == 0)
+    if (items == 0)
         return;
-    handle_->observe(items);
-    const bool profiles = handle_->device->profiles;
-    opencl_call("launching " + name(), [&] {
+    const std::size_t group = handle_->work_group_size, groups = (items + group - 1) / group;
+    const std::size_t lines = (groups * group + widest_line - 1) / widest_line;
+    handle_->observe(items, 0);
+    handle_->enqueue((groups + lines - 1) / lines, lines, items);
+}
+
+void Kernel::launch(std::size_t items, std::size_t lines) {
+    if (items == 0 || lines == 0)
+        return;
+    const std::size_t group = handle_->work_group_size;
+    handle_->observe(items, lines);
+    handle_->enqueue((items + group - 1) / group, lines, items * lines);
+}
+
+void Kernel::Handle::enqueue(std::size_t groups, std::size_t lines, std::size_t items) {
+    for (const auto &[argument, index] : arguments)
+        if (!is_set[index])
+            throw std::logic_error("kernel " + request.name + ": argument " + argument + " was not set");
+    const bool profiles = device->profiles;
+    opencl_call("launching " + request.name, [&] {
         cl::Event event;
-        handle_->device->queue.enqueueNDRangeKernel(handle_->kernel, cl::NullRange, cl::NDRange(padded),
-                                                    cl::NDRange(group), nullptr, profiles ? &event : nullptr);
+        device->queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(groups * work_group_size, lines),
+                                           cl::NDRange(work_group_size, 1), nullptr, profiles ? &event : nullptr);
         if (profiles)
-            handle_->pending.push_back(std::move(event));
+            pending.push_back(std::move(event));
     });
-    handle_->usage.launches += 1;
-    handle_->usage.items += items;
-    if (handle_->pending.size() >= 256)
-        opencl_call("timing " + name(), [&] { handle_->collect(); });
+    usage.launches += 1;
+    usage.items += items;
+    if (pending.size() >= 256)
+        opencl_call("timing " + request.name, [&] { collect(); });
 }
 
 Kernel::Usage Kernel::usage() const {

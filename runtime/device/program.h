@@ -41,8 +41,12 @@ class Kernel {
     void set(const std::string &argument, std::uint32_t value);
     void set_real(const std::string &argument, double value);
 
-    /// Enqueues `items` work-items. Every argument must have been set: throws std::logic_error that names it.
+    /// Enqueues `items` work-items or a few more, numbered by work_item() in the kernel. Every argument must have been
+    /// set: throws std::logic_error that names it.
     void launch(std::size_t items);
+    /// Enqueues `lines` times `items` work-items: get_group_id(1) is the line, and each has `items` or, for groups to
+    /// be whole, a few more.
+    void launch(std::size_t items, std::size_t lines);
 
     /// What all launches so far took on the device. Waits for them, where the queue times them; else seconds are 0.
     struct Usage {

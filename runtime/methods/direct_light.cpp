@@ -29,44 +29,48 @@ class DirectRays {
     DirectRays(const SceneTables &tables, Tracer &tracer, std::uint64_t &rays)
         : tables_(tables), tracer_(tracer), rays_(rays) {}
 
-    /// A ray through a point of the full film, in pixels.
-    void add(float film_x, float film_y) {
-        const float *camera = tables_.camera.data();
-        const vec3 direction = camera_direction(camera, unit, film_x, film_y);
-        const float values[] = {camera[camera_origin_x],
-                                camera[camera_origin_y],
-                                camera[camera_origin_z],
-                                direction.x,
-                                direction.y,
-                                direction.z};
-        for (int i = 0; i < 6; ++i)
-            columns_[i].push_back(values[i]);
-    }
-
-    /// The light along each ray, in the order in which they were added; then there are none.
-    std::vector<rgb> trace() {
-        const std::size_t count = columns_[0].size();
-        std::vector<std::uint32_t> primitive(count, ray_pending);
+    /// The light along `count` rays: ray i goes through the point place(i) of the full film, in pixels.
+    template <class Place>
+    const std::vector<rgb> &trace(std::size_t count, const Place &place) {
+        for (std::vector<float> &column : columns_)
+            column.resize(count);
+        primitive_.assign(count, ray_pending);
+        light_.resize(count);
+        tracer_.in_parallel(count, [&](std::size_t begin, std::size_t end) {
+            const float *camera = tables_.camera.data();
+            for (std::size_t i = begin; i < end; ++i) {
+                const point2 film = place(i);
+                const vec3 direction = camera_direction(camera, unit, film.x, film.y);
+                const float values[] = {camera[camera_origin_x],
+                                        camera[camera_origin_y],
+                                        camera[camera_origin_z],
+                                        direction.x,
+                                        direction.y,
+                                        direction.z};
+                for (int column = 0; column < 6; ++column)
+                    columns_[column][i] = values[column];
+            }
+        });
         RayColumns columns{};
         for (int axis = 0; axis < 3; ++axis) {
             columns.origin[axis] = columns_[axis].data();
             columns.direction[axis] = columns_[3 + axis].data();
         }
-        columns.primitive = primitive.data();
+        columns.primitive = primitive_.data();
         rays_ += tracer_.trace(columns, count, ShadowColumns{}, 0).extension;
-        std::vector<rgb> light(count);
-        for (std::size_t i = 0; i < count; ++i)
-            light[i] = light_along(i, primitive[i]);
-        for (std::vector<float> &column : columns_)
-            column.clear();
-        return light;
+        tracer_.in_parallel(count, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                light_[i] = light_along(i);
+        });
+        return light_;
     }
 
   private:
     static constexpr std::uint32_t unit = 1; // of FIELD_OF
 
-    rgb light_along(std::size_t i, std::uint32_t primitive) const {
+    rgb light_along(std::size_t i) const {
         const float *lights = tables_.lights.data();
+        const std::uint32_t primitive = primitive_[i];
         if (primitive == ray_escaped)
             return FIELD_RGB(light, lights, tables_.environment_light, value);
         if (tables_.primitive_light[primitive] == no_light)
@@ -84,6 +88,8 @@ class DirectRays {
     Tracer &tracer_;
     std::uint64_t &rays_;
     std::vector<float> columns_[6];
+    std::vector<std::uint32_t> primitive_;
+    std::vector<rgb> light_;
 };
 
 bool differ(rgb a, rgb b) { return a.r != b.r || a.g != b.g || a.b != b.b; }
@@ -97,11 +103,11 @@ std::vector<std::size_t> edge_pixels(const FilmSettings &film, DirectRays &rays,
     std::vector<char> mixed(seen.size(), 0);
     for (std::size_t begin = 0; begin < seen.size();) {
         const std::size_t end = std::min(seen.size(), begin + batch / pilots);
-        for (std::size_t pixel = begin; pixel < end; ++pixel)
-            for (std::uint32_t i = 0; i < pilots; ++i)
-                rays.add(float(film.crop_x + pixel % width) + (float(i % pilot_side) + 0.5f) / pilot_side,
-                         float(film.crop_y + pixel / width) + (float(i / pilot_side) + 0.5f) / pilot_side);
-        const std::vector<rgb> light = rays.trace();
+        const std::vector<rgb> &light = rays.trace(pilots * (end - begin), [&](std::size_t ray) {
+            const std::size_t pixel = begin + ray / pilots, i = ray % pilots;
+            return point2{float(film.crop_x + pixel % width) + (float(i % pilot_side) + 0.5f) / pilot_side,
+                          float(film.crop_y + pixel / width) + (float(i / pilot_side) + 0.5f) / pilot_side};
+        });
         for (std::size_t pixel = begin; pixel < end; ++pixel) {
             const rgb *first = &light[(pixel - begin) * pilots];
             seen[pixel] = *first;
@@ -148,19 +154,17 @@ std::vector<DirectPixel> sample_direct_edges(const SceneTables &tables, const Fi
     std::vector<DirectPixel> found;
     for (std::size_t begin = 0; begin < edges.size();) {
         const std::size_t end = std::min(edges.size(), begin + std::max<std::size_t>(batch / count, 1));
-        for (std::size_t e = begin; e < end; ++e) {
-            const std::uint32_t x = film.crop_x + static_cast<std::uint32_t>(edges[e] % film.crop_width);
-            const std::uint32_t y = film.crop_y + static_cast<std::uint32_t>(edges[e] / film.crop_width);
+        const std::vector<rgb> &light = direct.trace((end - begin) * count, [&](std::size_t ray) {
+            const std::size_t pixel = edges[begin + ray / count];
+            const std::uint32_t x = film.crop_x + static_cast<std::uint32_t>(pixel % film.crop_width);
+            const std::uint32_t y = film.crop_y + static_cast<std::uint32_t>(pixel / film.crop_width);
             // No path has so high a sample number.
             const random_bits start =
                 random_key(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32), y * film.width + x,
                            0, 0xFFFFFFFFu);
-            for (std::uint32_t i = 0; i < count; ++i) {
-                const point2 place = additive_sequence(start.x, start.y, i);
-                direct.add(float(x) + 0.5f + from_center(place.x), float(y) + 0.5f + from_center(place.y));
-            }
-        }
-        const std::vector<rgb> light = direct.trace();
+            const point2 place = additive_sequence(start.x, start.y, static_cast<std::uint32_t>(ray % count));
+            return point2{float(x) + 0.5f + from_center(place.x), float(y) + 0.5f + from_center(place.y)};
+        });
         for (std::size_t e = begin; e < end; ++e) {
             double sum[3] = {};
             for (std::size_t i = (e - begin) * count; i < (e - begin + 1) * count; ++i) {

@@ -89,6 +89,7 @@ std::vector<PathTracer::Wanted> GradientPathTracer::wanted_kernels() {
         {&primary_begin_, variant(primary, "primary begin", "primary_begin", {})},
         {&primary_surface_, variant(primary, "primary surface", "primary_surface", {})},
         {&begin_, request_of("gradient_begin")},
+        {&clear_, variant(request_of("gradient_begin"), "gradient clear", "gradient_clear", {})},
         {&settle_, settle},
         {&close_links_, variant(settle, "close links", "close_links", {})},
         {&combine_, strict(request_of("gradient_combine"))},
@@ -126,8 +127,15 @@ std::vector<PathTracer::Wanted> GradientPathTracer::wanted_kernels() {
                                              at_apart = {{"APART", "1"}, {"JOINED", both}},
                                              at_joined = {{"APART", "0"}, {"JOINED", "1"}};
     const KernelRequest connect = request_of("gradient_connect");
-    wanted.push_back({&connect_apart_, variant(connect, "gradient connect apart", "gradient_connect", at_apart)});
-    wanted.push_back({&connect_joined_, variant(connect, "gradient connect", "gradient_connect", at_joined)});
+    const auto connect_at = [&](Kernel &kernel, const char *name, std::map<std::string, std::string> where,
+                                const char *is_first) {
+        where.emplace("FIRST", is_first);
+        wanted.push_back({&kernel, variant(connect, name, "gradient_connect", where)});
+    };
+    connect_at(connect_first_, "gradient connect first", at_apart, "1");
+    if (keeps_apart())
+        connect_at(connect_apart_, "gradient connect apart", at_apart, "0");
+    connect_at(connect_joined_, "gradient connect", at_joined, "0");
     for (std::size_t k = 0; k < kinds.size(); ++k) {
         GradientKernels &kernels = gradient_kinds_[k];
         const std::string &kind = kinds[k];
@@ -203,8 +211,8 @@ void GradientPathTracer::bind_kernels() {
         bind_film_place(*kernel);
         kernel->set("chunks_at_most", chunks_of(tables_->capacity));
         kernel->set_real("shift_distance", shift_distance);
-        for (const char *number :
-             {"link_first", "link_stride", "offset_first", "offset_stride", "to", "escaped", "shifting", "fresh"})
+        for (const char *number : {"link_first", "link_stride", "offset_first", "offset_stride", "to", "escaped",
+                                   "shifting", "fresh", "frames"})
             kernel->set(number, 0);
     }
 }
@@ -293,14 +301,19 @@ GradientPathTracer::Shiftings GradientPathTracer::shift(const Vertices &vertices
 void GradientPathTracer::connect(const Vertices &vertices, const Buffer &vertex) {
     if (vertices.count == 0)
         return;
-    for (Kernel *kernel : {&connect_apart_, &connect_joined_, &connect_})
-        kernel->bind("vertex", vertex);
-    connect_apart_.set("link_stride", vertices.shifting());
+    for (Kernel *kernel : {&connect_first_, &connect_apart_, &connect_joined_, &connect_})
+        if (kernel->valid()) {
+            kernel->bind("vertex", vertex);
+            kernel->set("link_stride", vertices.shifting());
+        }
     for (std::size_t k = 0; k < kinds_.size(); ++k)
         if (gradient_kinds_[k].light_first.valid()) {
-            for (const Phase phase : {first, apart})
-                run(connect_apart_, vertices.kinds[phase][k].first, vertices.kinds[phase][k].count);
-            run(connect_joined_, vertices.kinds[joined][k].first, vertices.kinds[joined][k].count);
+            const auto run_on = [&](Kernel &kernel, Phase phase) {
+                run(kernel, vertices.kinds[phase][k].first, vertices.kinds[phase][k].count);
+            };
+            run_on(connect_first_, first);
+            run_on(connect_apart_, apart);
+            run_on(connect_joined_, joined);
         }
     run(connect_, vertices.rows[later].first, vertices.rows[later].count);
 }
@@ -426,6 +439,10 @@ bool GradientPathTracer::render_batch() {
             run(offset_surface_, next.rows[apart].first, next.rows[apart].count);
         }
         emit(next, shiftings);
+        run(clear_, next.escaped[first].first, next.escaped[first].count);
+        for (std::size_t k = 0; k < kinds_.size(); ++k)
+            if (!gradient_kinds_[k].light_first.valid())
+                run(clear_, next.escaped_count + next.kinds[first][k].first, next.kinds[first][k].count);
         run(surface_, next.escaped_count, next.count);
         for (const Phase phase : {apart, joined}) {
             settle_.set("link_first", shiftings.surface[phase].link_first);
@@ -440,8 +457,10 @@ bool GradientPathTracer::render_batch() {
     }
     run(combine_, 0, paths);
     film_->accumulate(paths, 0);
-    for (std::uint32_t slot = 0; slot < paths; slot += film_->pixels()) {
-        gradient_accumulate_.set("first_slot", slot);
+    const std::uint32_t frames = paths / film_->pixels();
+    for (std::uint32_t frame = 0; frame < frames; frame += accumulated_frames) {
+        gradient_accumulate_.set("first_slot", frame * film_->pixels());
+        gradient_accumulate_.set("frames", std::min(accumulated_frames, frames - frame));
         run(gradient_accumulate_, 0, film_->pixels());
     }
     return end_pass(paths, start);

@@ -79,7 +79,7 @@ class GradientPathTracer final : public PathTracer {
     bool keeps_distance() const { return traits_.at("TRAIT_SHIFT_DISTANCE") != 0; }
 
     Kernel primary_begin_, primary_surface_, begin_, settle_, close_links_, offset_begin_, offset_surface_;
-    Kernel connect_apart_, connect_joined_, combine_, gradient_accumulate_, count_;
+    Kernel clear_, connect_first_, connect_apart_, connect_joined_, combine_, gradient_accumulate_, count_;
     Kernel shift_[2], shift_escaped_[2], offset_emission_[2],
         offset_escape_[2]; ///< [1]: where offset paths may be apart
     std::vector<GradientKernels> gradient_kinds_;

@@ -196,14 +196,12 @@ std::vector<Kernel *> PathTracer::all_kernels() {
     return kernels;
 }
 
-/// Some implementations compile at the first launch, and PoCL once more for large grids: do that now, on no rows, and
-/// say what it took.
+/// Some implementations compile at the first launch: do that now, on no rows, and say what it took.
 void PathTracer::warm(std::vector<Kernel *> kernels) {
     for (std::size_t i = 0; i < kernels.size(); ++i) {
         const auto start = std::chrono::steady_clock::now();
         kernels[i]->set("count", 0);
         kernels[i]->launch(1);
-        kernels[i]->launch(tables_->capacity);
         finish(device_);
         kernels[i]->reset_usage();
         const double total = statistics_.compile_seconds[kernels[i]->name()] += seconds_since(start);

@@ -27,8 +27,10 @@ const std::vector<std::uint32_t> &PartitionStage::run(std::uint32_t count) {
     }
     count_.launch(chunks);
     scan_.launch(1);
+    // The host plans with the ranges while the rows are scattered.
+    Buffer::Reading reading = range_buffer_.start_read(range_.data(), range_.size() * sizeof(std::uint32_t));
     scatter_.launch(chunks);
-    range_buffer_.read(range_.data(), range_.size() * sizeof(std::uint32_t));
+    reading.wait();
     return range_;
 }
 

@@ -21,9 +21,10 @@ struct SegmentPlaces {
 /// double table are copied, for Embree traces in float, and the answers go back when this ends.
 class Segments {
   public:
+    /// With Wait::later, others made after this one are what is waited for.
     Segments(const Buffer &table, std::size_t capacity, std::size_t rows, const SegmentPlaces &places,
-             Precision precision)
-        : view_(table.map(Access::read_write)), rows_(rows) {
+             Precision precision, Wait wait)
+        : view_(table.map(Access::read_write, precision == Precision::double_ ? Wait::now : wait)), rows_(rows) {
         if (precision != Precision::double_) {
             float *reals = view_.as<float>();
             for (int axis = 0; axis < 3; ++axis) {
@@ -79,9 +80,11 @@ TraceCounts trace(Tracer &tracer, const RayColumns &rays, std::size_t ray_count,
 TraceCounts run_trace_stage(Tracer &tracer, const BatchTables &tables, std::uint32_t rays, std::uint32_t shadows,
                             double &trace_seconds) {
     const Segments ray(tables.ray, tables.capacity, rays, {ray_origin_x, ray_direction_x, ray_primitive},
-                       tables.precision);
+                       tables.precision, shadows > 0 ? Wait::later : Wait::now);
+    if (shadows == 0)
+        return trace(tracer, {ray.columns, ray.answer}, rays, ShadowColumns{}, 0, trace_seconds);
     const Segments shadow(tables.shadow, tables.capacity, shadows, {shadow_origin_x, shadow_direction_x, shadow_open},
-                          tables.precision);
+                          tables.precision, Wait::now);
     return trace(tracer, {ray.columns, ray.answer}, rays, {shadow.columns, shadow.answer}, shadows, trace_seconds);
 }
 
@@ -89,15 +92,16 @@ std::uint64_t run_offset_stage(Tracer &tracer, const Buffer &link, std::uint32_t
                                std::uint32_t rays, std::uint32_t capacity, Precision precision, double &trace_seconds) {
     if (links == 0 && rays == 0)
         return 0;
-    const Segments link_view(link, 8 * std::size_t(capacity), links, {link_origin_x, link_direction_x, link_open},
-                             precision);
     std::optional<Segments> ray_view;
     RayColumns ray{};
     if (rays > 0) {
         ray_view.emplace(*offset_ray, 4 * std::size_t(capacity), rays,
-                         SegmentPlaces{offset_ray_origin_x, offset_ray_direction_x, offset_ray_primitive}, precision);
+                         SegmentPlaces{offset_ray_origin_x, offset_ray_direction_x, offset_ray_primitive}, precision,
+                         Wait::later);
         ray = {ray_view->columns, ray_view->answer};
     }
+    const Segments link_view(link, 8 * std::size_t(capacity), links, {link_origin_x, link_direction_x, link_open},
+                             precision, Wait::now);
     const TraceCounts counts = trace(tracer, ray, rays, {link_view.columns, link_view.answer}, links, trace_seconds);
     return counts.extension + counts.shadow;
 }

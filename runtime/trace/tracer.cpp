@@ -206,19 +206,28 @@ void prepare(Ray &ray) {
     }
 }
 
-GRADUS_CLONES void gather(const float *column, const std::uint32_t *rows, float *lanes) {
+/// Where the columns of a packet's origins and directions are.
+struct SegmentLanes {
+    float *origin[3], *direction[3];
+};
+
+/// One column. Nothing overlaps, which the compiler must know to gather whole vectors: Embree then reads back what was
+/// written in one piece, and need not wait for it.
+__attribute__((always_inline)) inline void gather(const float *__restrict column, const std::uint32_t *__restrict rows, float *__restrict lanes) {
     for (int lane = 0; lane < width; ++lane)
         lanes[lane] = column[rows[lane]];
 }
 
+GRADUS_CLONES void gather_segments(const SegmentColumns &rays, const std::uint32_t *rows, const SegmentLanes &lanes) {
+    for (int axis = 0; axis < 3; ++axis) {
+        gather(rays.origin[axis], rows, lanes.origin[axis]);
+        gather(rays.direction[axis], rows, lanes.direction[axis]);
+    }
+}
+
 template <class Ray>
 void fill(Ray &ray, const SegmentColumns &rays, const std::uint32_t *rows, float far) {
-    gather(rays.origin[0], rows, ray.org_x);
-    gather(rays.origin[1], rows, ray.org_y);
-    gather(rays.origin[2], rows, ray.org_z);
-    gather(rays.direction[0], rows, ray.dir_x);
-    gather(rays.direction[1], rows, ray.dir_y);
-    gather(rays.direction[2], rows, ray.dir_z);
+    gather_segments(rays, rows, {{ray.org_x, ray.org_y, ray.org_z}, {ray.dir_x, ray.dir_y, ray.dir_z}});
     for (int lane = 0; lane < width; ++lane)
         ray.tfar[lane] = far;
 }
@@ -332,6 +341,18 @@ TraceCounts Tracer::trace(const RayColumns &ray, std::size_t rays, const ShadowC
     if (keep)
         im.recorded.push_back(std::move(kept));
     return {extension_count, shadow_count};
+}
+
+void Tracer::in_parallel(std::size_t count, const std::function<void(std::size_t, std::size_t)> &work) {
+    implementation_->arena.execute([&] {
+        tbb::parallel_for(
+            std::size_t(0), (count + chunk - 1) / chunk,
+            [&](std::size_t task) {
+                flush_denormals();
+                work(task * chunk, std::min(count, (task + 1) * chunk));
+            },
+            tbb::simple_partitioner());
+    });
 }
 
 void Tracer::record(std::size_t interval) {

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -47,6 +48,9 @@ class Tracer {
     /// Traces rows [0, rays) and [0, shadows), on all threads; returns how many were really traced. Which hit a ray
     /// gets depends on the ray alone.
     TraceCounts trace(const RayColumns &ray, std::size_t rays, const ShadowColumns &shadow, std::size_t shadows);
+
+    /// Runs `work` on the parts [begin, end) of [0, count), on the threads that trace.
+    void in_parallel(std::size_t count, const std::function<void(std::size_t begin, std::size_t end)> &work);
 
     void set_order(RayOrder extension, RayOrder shadow);
 

@@ -2,8 +2,11 @@
 #include "runtime/error.h"
 #include "tests/methods/reference_scene.h"
 #include "tests/support/render.h"
+#include "tests/support/small_scenes.h"
 #include "tests/support/stability.h"
 #include "tests/support/test_name.h"
+
+#include <algorithm>
 
 namespace gradus::testing {
 namespace {
@@ -41,6 +44,22 @@ TEST_P(GradientInvariance, ToTheThreadsThatTrace) {
 
 INSTANTIATE_TEST_SUITE_P(Methods, GradientInvariance, ::testing::Values("cornell-box", "materials", "plates"),
                          name_of_scene);
+
+/// Paths that meet nothing, or a mirror, gather nothing at their first vertices: what earlier passes left must be gone.
+TEST(GradientEdges, BeginAnewWithEachPass) {
+    SceneMaker maker(40, 4);
+    maker.look({0, 1, 5}, {0, 0, 0}, 40);
+    maker.floor(-1, 1, 1, maker.material(diffuse(0.5f)));
+    maker.sphere({0, 0.5f, 0}, 0.4f, maker.material(mirror()));
+    maker.point_light({5, 5, 5}, {1, 3, 2});
+    RenderOptions options;
+    const Image at_once = render(maker.scene, options, "gpt").image;
+    options.batch_size = 64; // a pass for each sample
+    EXPECT_TRUE(equal_bits(at_once, render(maker.scene, options, "gpt").image));
+    const std::vector<float> &primal = at_once.find("primal.G")->values;
+    EXPECT_EQ(primal.front(), 0);
+    EXPECT_GT(*std::max_element(primal.begin(), primal.end()), 0);
+}
 
 /// Films without neighbours to one side or at all, no depth, black lights.
 TEST(GradientEdges, HaveFiniteImages) {
