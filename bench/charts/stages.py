@@ -9,7 +9,7 @@ PARTS = [
     ("gradient_scatter", "scattering"), ("scatter", "scattering"),
     ("surface", "surface"),
     ("shift", "shifts"), ("settle", "shifts"), ("close links", "shifts"), ("offset", "shifts"),
-    ("gradient_begin", "shifts"), ("gradient connect", "shifts"),
+    ("gradient_begin", "shifts"), ("gradient connect", "shifts"), ("gradient clear", "shifts"),
     ("accumulate", "film"), ("gradient_accumulate", "film"), ("gradient_combine", "film"),
 ]
 COLOURS = {

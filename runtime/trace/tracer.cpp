@@ -211,9 +211,9 @@ struct SegmentLanes {
     float *origin[3], *direction[3];
 };
 
-/// One column. Nothing overlaps, which the compiler must know to gather whole vectors: Embree then reads back what was
-/// written in one piece, and need not wait for it.
-__attribute__((always_inline)) inline void gather(const float *__restrict column, const std::uint32_t *__restrict rows, float *__restrict lanes) {
+/// One column. Nothing overlaps, which the compiler must know to store the lanes as one vector.
+__attribute__((always_inline)) inline void gather(const float *__restrict column, const std::uint32_t *__restrict rows,
+                                                  float *__restrict lanes) {
     for (int lane = 0; lane < width; ++lane)
         lanes[lane] = column[rows[lane]];
 }

@@ -113,10 +113,11 @@ TEST_F(Oclgrind, EveryMaterialAndLight) {
 // The same by gradient-domain path tracing; the reconstruction's kernels have a test of their own.
 TEST_F(Oclgrind, GradientsOfEveryMaterialAndLight) {
     std::vector<std::string> expected = {
-        "primary begin",    "primary surface", "gradient_begin",   "shift",
-        "settle",           "close links",     "gradient connect", "gradient connect apart",
-        "gradient_combine", "shift escaped",   "gradient escape",  "gradient_accumulate",
-        "shift apart",      "offset begin",    "offset surface",   "gradient emission apart"};
+        "primary begin",    "primary surface",       "gradient_begin",   "shift",
+        "settle",           "close links",           "gradient connect", "gradient connect apart",
+        "gradient_combine", "shift escaped",         "gradient escape",  "gradient_accumulate",
+        "shift apart",      "offset begin",          "offset surface",   "gradient emission apart",
+        "gradient clear",   "gradient connect first"};
     for (const std::string kind : {"diffuse", "roughconductor_ggx", "conductor", "dielectric"})
         expected.push_back("gradient_scatter apart " + kind);
     EXPECT_THAT(render("materials.xml", {"--method", "gpt", "--norm", "L2", "--size", "8x8", "--batch-size", "64"}),
