@@ -8,6 +8,7 @@
 #include "kernels/lib/camera_ray.h"
 #include "kernels/lib/light_found.h"
 #include "kernels/shared/tables.h"
+#include "runtime/methods/lit_rectangle.h"
 
 #include <algorithm>
 #include <cmath>
@@ -94,39 +95,41 @@ class DirectRays {
 
 bool differ(rgb a, rgb b) { return a.r != b.r || a.g != b.g || a.b != b.b; }
 
-/// Pixels of the crop near which the pilot rays see different light.
-std::vector<std::size_t> edge_pixels(const FilmSettings &film, DirectRays &rays, int reach) {
-    const std::uint32_t width = film.crop_width, height = film.crop_height;
-    // Of each pixel its first light, and whether its rays saw another.
+/// Pixels of the crop near which the pilot rays see different light. Beyond the `lit` ones all would see none.
+std::vector<std::size_t> edge_pixels(const FilmSettings &film, const PixelRectangle &lit, DirectRays &rays, int reach) {
+    // Of each lit pixel its first light, and whether its rays saw another.
     constexpr std::size_t pilots = pilot_side * pilot_side;
-    std::vector<rgb> seen(std::size_t(width) * height);
+    std::vector<rgb> seen(std::size_t(lit.width()) * lit.height());
     std::vector<char> mixed(seen.size(), 0);
     for (std::size_t begin = 0; begin < seen.size();) {
         const std::size_t end = std::min(seen.size(), begin + batch / pilots);
         const std::vector<rgb> &light = rays.trace(pilots * (end - begin), [&](std::size_t ray) {
-            const std::size_t pixel = begin + ray / pilots, i = ray % pilots;
-            return point2{float(film.crop_x + pixel % width) + (float(i % pilot_side) + 0.5f) / pilot_side,
-                          float(film.crop_y + pixel / width) + (float(i / pilot_side) + 0.5f) / pilot_side};
+            const std::size_t number = begin + ray / pilots, i = ray % pilots;
+            const std::size_t x = film.crop_x + lit.left + number % lit.width();
+            const std::size_t y = film.crop_y + lit.top + number / lit.width();
+            return point2{float(x) + (float(i % pilot_side) + 0.5f) / pilot_side,
+                          float(y) + (float(i / pilot_side) + 0.5f) / pilot_side};
         });
-        for (std::size_t pixel = begin; pixel < end; ++pixel) {
-            const rgb *first = &light[(pixel - begin) * pilots];
-            seen[pixel] = *first;
-            mixed[pixel] = std::any_of(first + 1, first + pilots, [&](rgb other) { return differ(other, *first); });
+        for (std::size_t number = begin; number < end; ++number) {
+            const rgb *first = &light[(number - begin) * pilots];
+            seen[number] = *first;
+            mixed[number] = std::any_of(first + 1, first + pilots, [&](rgb other) { return differ(other, *first); });
         }
         begin = end;
     }
+    const auto number_of = [&](int x, int y) { return std::size_t(y - int(lit.top)) * lit.width() + x - lit.left; };
+    const auto seen_at = [&](int x, int y) { return lit.contains(x, y) ? seen[number_of(x, y)] : rgb_gray(0); };
+    const auto mixed_at = [&](int x, int y) { return lit.contains(x, y) && mixed[number_of(x, y)]; };
+    const int width = int(film.crop_width), height = int(film.crop_height);
     std::vector<std::size_t> found;
-    for (int y = 0; y < int(height); ++y)
-        for (int x = 0; x < int(width); ++x) {
-            const std::size_t pixel = std::size_t(y) * width + x;
+    for (int y = std::max(int(lit.top) - reach, 0); y < std::min(int(lit.bottom) + reach, height); ++y)
+        for (int x = std::max(int(lit.left) - reach, 0); x < std::min(int(lit.right) + reach, width); ++x) {
             bool is_edge = false;
-            for (int near_y = std::max(y - reach, 0); near_y <= std::min(y + reach, int(height) - 1); ++near_y)
-                for (int near_x = std::max(x - reach, 0); near_x <= std::min(x + reach, int(width) - 1); ++near_x) {
-                    const std::size_t near_pixel = std::size_t(near_y) * width + near_x;
-                    is_edge = is_edge || mixed[near_pixel] || differ(seen[near_pixel], seen[pixel]);
-                }
+            for (int near_y = std::max(y - reach, 0); near_y <= std::min(y + reach, height - 1); ++near_y)
+                for (int near_x = std::max(x - reach, 0); near_x <= std::min(x + reach, width - 1); ++near_x)
+                    is_edge = is_edge || mixed_at(near_x, near_y) || differ(seen_at(near_x, near_y), seen_at(x, y));
             if (is_edge)
-                found.push_back(pixel);
+                found.push_back(std::size_t(y) * film.crop_width + x);
         }
     return found;
 }
@@ -143,8 +146,7 @@ std::vector<DirectPixel> sample_direct_edges(const SceneTables &tables, const Fi
     };
     DirectRays direct(tables, tracer, rays);
     const int reach = film.filter == FilmSettings::Filter::box ? 1 : std::max(1, int(std::ceil(radius)));
-    const std::vector<std::size_t> edges = edge_pixels(film, direct, reach);
-
+    const std::vector<std::size_t> edges = edge_pixels(film, lit_rectangle(tables, film), direct, reach);
     if (edges.empty())
         return {};
     const double budget = rays_a_sample * samples * film.crop_width * film.crop_height / double(edges.size());

@@ -1,9 +1,13 @@
 // The light that the camera sees at pixels which a lamp's edge crosses.
 #include "runtime/methods/direct_light.h"
+#include "runtime/methods/lit_rectangle.h"
 #include "tests/support/render.h"
 #include "tests/support/small_scenes.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <array>
 
 namespace gradus::testing {
 namespace {
@@ -54,6 +58,67 @@ TEST(DirectEdges, IsUnbiasedOverSeeds) {
     const double mean = sum / seeds, error = std::sqrt(std::max(squares / seeds - mean * mean, 1e-12) / (seeds - 1));
     EXPECT_NEAR(mean, 0.7 * 0.991, 4 * error);
     EXPECT_LT(error, 0.002);
+}
+
+PixelRectangle rectangle_of(const Scene &scene) {
+    FilmSettings film = scene.film;
+    if (film.crop_width == 0) {
+        film.crop_width = film.width;
+        film.crop_height = film.height;
+    }
+    return lit_rectangle(make_scene_tables(scene, scene_traits(scene)), film);
+}
+
+TEST(LitRectangle, HoldsALampAndLittleMore) {
+    Scene scene = lamp(33.3, 45.009, 61.85, 59.5);
+    const auto expect = [&](std::uint32_t left, std::uint32_t top, std::uint32_t right, std::uint32_t bottom) {
+        const PixelRectangle lit = rectangle_of(scene);
+        EXPECT_THAT((std::array{lit.left, lit.top, lit.right, lit.bottom}),
+                    ::testing::ElementsAre(left, top, right, bottom));
+    };
+    expect(32, 44, 63, 61);
+    scene.film.crop_x = 40;
+    scene.film.crop_y = 50;
+    scene.film.crop_width = scene.film.crop_height = 20;
+    expect(0, 0, 20, 11);
+    scene.film.crop_x = 80;
+    expect(0, 0, 0, 0);
+}
+
+/// No camera ray through another pixel may find the light: all are tried.
+TEST(LitRectangle, MissesNoPixelThatSeesASphere) {
+    SceneMaker maker(size, 1);
+    maker.look({0, 0, -4}, {0, 0, 0}, 60);
+    maker.sphere({1.1f, 0.7f, -1.5f}, 0.5f, maker.material(diffuse(0.5)),
+                 maker.emitter(Emitter::Kind::area, {1, 1, 1}));
+    maker.scene.settings.max_depth = 1;
+    const PixelRectangle lit = rectangle_of(maker.scene);
+    const Image image = render(maker.scene, {}, "gpt").image;
+    std::size_t inside = 0;
+    for (std::uint32_t y = 0; y < size; ++y)
+        for (std::uint32_t x = 0; x < size; ++x) {
+            const bool is_lit = pixel(image, x, y, "direct.G") > 0;
+            EXPECT_TRUE(!is_lit || lit.contains(x, y)) << x << ", " << y;
+            inside += is_lit;
+        }
+    EXPECT_GT(inside, 100u);
+    EXPECT_LT(lit.width() * lit.height(), 3 * inside);
+}
+
+TEST(LitRectangle, IsAllWhereALightMayBeAnywhere) {
+    const auto expect_all = [](const Scene &scene) {
+        const PixelRectangle lit = rectangle_of(scene);
+        EXPECT_EQ(lit.width(), size);
+        EXPECT_EQ(lit.height(), size);
+    };
+    SceneMaker around(size, 1);
+    around.look({0, 0, -4}, {0, 0, 0}, 60);
+    around.environment(1);
+    expect_all(around.scene);
+    SceneMaker behind(size, 1); // the camera looks along a lamp that begins behind it
+    behind.look({0, 0, 0}, {0, 0, 1}, 60);
+    behind.lamp({0, 1, 0}, 1, 10, 1, behind.material(diffuse(0.5)));
+    expect_all(behind.scene);
 }
 
 } // namespace
