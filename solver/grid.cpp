@@ -38,7 +38,6 @@ void Grid::launch(Kernel &kernel, Planes planes, std::uint32_t rows) const {
     kernel.set("row", row);
     kernel.set("plane", plane);
     kernel.set("first_channel", planes.first);
-    kernel.set("channel_count", planes.count);
     launch_groups(kernel, std::size_t(tiles(width)) * planes.count, rows > 0 ? rows : height);
 }
 

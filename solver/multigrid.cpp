@@ -45,7 +45,6 @@ void launch_transfer(Kernel &kernel, const Grid &fine, const Grid &coarse, std::
     kernel.set("coarse_row", coarse.row);
     kernel.set("coarse_plane", coarse.plane);
     kernel.set("first_channel", planes.first);
-    kernel.set("channel_count", planes.count);
     const std::size_t tiles = (coarse.width - 1) / SOLVER_TILE + 1;
     launch_groups(kernel, tiles * planes.count, (rows - 1) / 8 + 1);
 }

@@ -7,7 +7,7 @@
 
 #define MEASURE_ARGUMENTS uint count, __global const real *in, __global real *out
 #define MEASURE_ITEM                                                                                                   \
-    const size_t i = work_item();                                                                                 \
+    const size_t i = work_item();                                                                                      \
     if (i >= count)                                                                                                    \
         return;
 

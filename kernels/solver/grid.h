@@ -27,7 +27,7 @@
 #define SOLVE __attribute__((reqd_work_group_size(WORK_GROUP_SIZE, 1, 1))) __kernel void
 
 /* A grid as kernel arguments, and where a pixel of it lies. */
-#define GRID uint width, uint height, uint row, uint plane, uint first_channel, uint channel_count
+#define GRID uint width, uint height, uint row, uint plane, uint first_channel
 #define GRID_AT(channel, x, y) ((channel)*plane + ((y) + 1) * row + SOLVER_MARGIN + (x))
 
 /* Defines the channel and the pixel of a work-item: channels first_channel and on take turns row by row. */
@@ -55,7 +55,7 @@
  */
 #define SOLVER_PARTIAL(sum) (((sum)*SOLVER_CHANNELS + channel) * partials + tile * SOLVER_TILE + item)
 
-/* Kernels that do all channels of a pixel in one item are launched with a channel_count of 1. */
+/* Kernels that do all channels of a pixel in one item are launched on one plane. */
 #define SOLVER_PLACE_OF_ALL_CHANNELS                                                                                   \
     const uint group = (uint)get_group_id(0);                                                                          \
     const uint tiles = (width + SOLVER_TILE - 1) / SOLVER_TILE;                                                        \

@@ -5,8 +5,8 @@
 /* The first step of <a, b> and, with SECOND_PRODUCT, of <a, c>: `reduced` as by `reduce`, from the planes as they
  * lie in memory, borders and all, for those are zero; the
  * size of a plane is a multiple of SOLVER_REDUCTION * SOLVER_TILE. */
-SOLVE reduce_products(uint plane, uint first_channel, uint channel_count, uint reduced_count,
-                      __global const real *a, __global const real *b, __global const real *c, __global real *reduced) {
+SOLVE reduce_products(uint plane, uint first_channel, uint channel_count, uint reduced_count, __global const real *a,
+                      __global const real *b, __global const real *c, __global real *reduced) {
     const uint channel = (uint)get_group_id(1);
     const size_t i = get_global_id(0);
     const size_t first = (size_t)(first_channel + channel) * plane;
@@ -26,8 +26,8 @@ SOLVE reduce_products(uint plane, uint first_channel, uint channel_count, uint r
 }
 
 /* The same for the sum of a, or of what of it is above zero. */
-SOLVE reduce_plane(uint plane, uint first_channel, uint channel_count, uint reduced_count,
-                   uint positive, __global const real *a, __global real *reduced) {
+SOLVE reduce_plane(uint plane, uint first_channel, uint reduced_count, uint positive, __global const real *a,
+                   __global real *reduced) {
     const uint channel = (uint)get_group_id(1);
     const size_t i = get_global_id(0);
     const size_t first = (size_t)(first_channel + channel) * plane;
@@ -42,8 +42,7 @@ SOLVE reduce_plane(uint plane, uint first_channel, uint channel_count, uint redu
 }
 
 /* reduced[i] = sum over k of partial[i + k * reduced_count], for each of the `planes` blocks of `count` parts. */
-SOLVE reduce(uint count, uint reduced_count, __global const real *partial,
-             __global real *reduced) {
+SOLVE reduce(uint count, uint reduced_count, __global const real *partial, __global real *reduced) {
     const uint plane = (uint)get_group_id(1);
     const size_t i = get_global_id(0);
     real sum = R(0);

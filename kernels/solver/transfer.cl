@@ -5,8 +5,7 @@
  * registers. A work-group takes SOLVER_TILE coarse columns and 8 rows. */
 #include "kernels/solver/grid.h"
 
-#define COARSE                                                                                                         \
-    uint first_channel, uint channel_count, uint coarse_width, uint coarse_height, uint coarse_row, uint coarse_plane
+#define COARSE uint first_channel, uint coarse_width, uint coarse_height, uint coarse_row, uint coarse_plane
 #define COARSE_AT(x, y) (channel * coarse_plane + ((y) + 1) * coarse_row + SOLVER_MARGIN + (x))
 #define SOLVER_VECTOR_PLACE(rows)                                                                                      \
     const uint group = (uint)get_group_id(0), item = (uint)get_local_id(0);                                            \

@@ -1,6 +1,6 @@
-/* gradient_begin: begins one base path a row from what the camera saw: its first ray, already traced. Its sums are begun
- * where its first vertex is lit (gradient_connect with FIRST), or by `gradient_clear` where none is or lights are not
- * sampled. */
+/* gradient_begin: begins one base path a row from what the camera saw: its first ray, already traced. Its sums are
+ * begun where its first vertex is lit (gradient_connect with FIRST), or by `gradient_clear` where none is or lights are
+ * not sampled. */
 #include "kernels/lib/begin_path.h"
 
 STAGE gradient_begin(uint count, uint unit, uint capacity, uint slots, __global real *ray, __global real *vertex,

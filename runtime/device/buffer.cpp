@@ -76,16 +76,13 @@ void Buffer::clear() {
     std::memset(map(Access::write).as<char>(), 0, bytes_);
 }
 
-void Buffer::read(void *data, std::size_t bytes) const {
-    opencl_call("reading " + name_,
-                [&] { handle_->device.queue.enqueueReadBuffer(handle_->memory, CL_TRUE, 0, bytes, data); });
-}
+void Buffer::read(void *data, std::size_t bytes) const { start_read(data, bytes).wait(); }
 
-Buffer::Reading::Reading(const Buffer &buffer, void *data, std::size_t bytes)
-    : handle_(buffer.handle_), done_(std::make_shared<Event>()) {
+Buffer::Reading::Reading(const Buffer &buffer, void *data, std::size_t bytes) : done_(std::make_shared<Event>()) {
+    const Handle &handle = *buffer.handle_;
     opencl_call("reading " + buffer.name_, [&] {
-        handle_->device.queue.enqueueReadBuffer(handle_->memory, CL_FALSE, 0, bytes, data, nullptr, &done_->event);
-        handle_->device.queue.flush();
+        handle.device.queue.enqueueReadBuffer(handle.memory, CL_FALSE, 0, bytes, data, nullptr, &done_->event);
+        handle.device.queue.flush();
     });
 }
 

@@ -16,7 +16,6 @@ enum class Wait { now, later };
 
 /// An array in device memory. On a CPU device it is host memory, and mapping it copies nothing.
 class Buffer {
-    struct Handle;
     struct Event;
 
   public:
@@ -50,7 +49,6 @@ class Buffer {
         void wait();
 
       private:
-        std::shared_ptr<Handle> handle_;
         std::shared_ptr<Event> done_;
     };
     /// Work may be queued before Reading::wait(), so that the device need not wait for the host.
@@ -76,6 +74,7 @@ class Buffer {
     Mapping map(Access access, Wait wait = Wait::now) const { return Mapping(*this, access, wait); }
 
   private:
+    struct Handle;
     std::string name_;
     std::size_t bytes_ = 0;
     std::shared_ptr<Handle> handle_;

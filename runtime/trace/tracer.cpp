@@ -94,6 +94,19 @@ struct Tracer::Implementation {
     void add_spheres(const Scene &s);
     std::uint64_t trace_extension(const RayColumns &ray, std::size_t begin, std::size_t end, RecordedRays *record);
     std::uint64_t trace_shadow(const ShadowColumns &shadow, std::size_t begin, std::size_t end, RecordedRays *record);
+    /// Runs task(0) to task(count - 1) on the threads that trace.
+    template <class Task>
+    void run(std::size_t count, const Task &task) {
+        arena.execute([&] {
+            tbb::parallel_for(
+                std::size_t(0), count,
+                [&](std::size_t number) {
+                    flush_denormals();
+                    task(number);
+                },
+                tbb::simple_partitioner());
+        });
+    }
     bool beams(RayOrder order) const { return coherent && order != RayOrder::none; }
     std::uint32_t primitive_of(unsigned geometry, unsigned primitive) const {
         return geometry == RTC_INVALID_GEOMETRY_ID ? ray_escaped : geometry == 0 ? primitive : triangles + primitive;
@@ -322,21 +335,14 @@ TraceCounts Tracer::trace(const RayColumns &ray, std::size_t rays, const ShadowC
     const std::size_t tasks = extension_tasks + (shadows + chunk - 1) / chunk;
     std::vector<RecordedRays> kept(keep ? tasks : 0);
     std::atomic<std::uint64_t> extension_count{0}, shadow_count{0};
-    im.arena.execute([&] {
-        tbb::parallel_for(
-            std::size_t(0), tasks,
-            [&](std::size_t task) {
-                flush_denormals();
-                RecordedRays *record = keep ? &kept[task] : nullptr;
-                if (task < extension_tasks) {
-                    extension_count +=
-                        im.trace_extension(ray, task * chunk, std::min(rays, (task + 1) * chunk), record);
-                } else {
-                    const std::size_t begin = (task - extension_tasks) * chunk;
-                    shadow_count += im.trace_shadow(shadow, begin, std::min(shadows, begin + chunk), record);
-                }
-            },
-            tbb::simple_partitioner());
+    im.run(tasks, [&](std::size_t task) {
+        RecordedRays *record = keep ? &kept[task] : nullptr;
+        if (task < extension_tasks) {
+            extension_count += im.trace_extension(ray, task * chunk, std::min(rays, (task + 1) * chunk), record);
+        } else {
+            const std::size_t begin = (task - extension_tasks) * chunk;
+            shadow_count += im.trace_shadow(shadow, begin, std::min(shadows, begin + chunk), record);
+        }
     });
     if (keep)
         im.recorded.push_back(std::move(kept));
@@ -344,15 +350,8 @@ TraceCounts Tracer::trace(const RayColumns &ray, std::size_t rays, const ShadowC
 }
 
 void Tracer::in_parallel(std::size_t count, const std::function<void(std::size_t, std::size_t)> &work) {
-    implementation_->arena.execute([&] {
-        tbb::parallel_for(
-            std::size_t(0), (count + chunk - 1) / chunk,
-            [&](std::size_t task) {
-                flush_denormals();
-                work(task * chunk, std::min(count, (task + 1) * chunk));
-            },
-            tbb::simple_partitioner());
-    });
+    implementation_->run((count + chunk - 1) / chunk,
+                         [&](std::size_t task) { work(task * chunk, std::min(count, (task + 1) * chunk)); });
 }
 
 void Tracer::record(std::size_t interval) {
@@ -419,14 +418,8 @@ Replayed Tracer::replay(ReplayedAs as) {
             for (const std::vector<int> *lanes : {&rays.extension_lanes, &rays.shadow_lanes})
                 result.rays += std::accumulate(lanes->begin(), lanes->end(), std::uint64_t(0));
         const double start = now();
-        im.arena.execute([&] {
-            tbb::parallel_for(
-                std::size_t(0), call.size(),
-                [&](std::size_t task) {
-                    flush_denormals();
-                    trace_again(im.scene, call[task], extension_beams, shadow_beams, as == ReplayedAs::single);
-                },
-                tbb::simple_partitioner());
+        im.run(call.size(), [&](std::size_t task) {
+            trace_again(im.scene, call[task], extension_beams, shadow_beams, as == ReplayedAs::single);
         });
         result.seconds += now() - start;
     }
