@@ -3,6 +3,8 @@
 #include "runtime/io/image_io.h"
 #include "tests/driver/child_process.h"
 
+#include <fmt/format.h>
+
 #include <cstring>
 
 namespace gradus {
@@ -13,7 +15,7 @@ class Threads : public ProgramTest, public ::testing::WithParamInterface<std::pa
   protected:
     Image render(const std::string &scene, const std::vector<std::string> &settings, const std::string &output,
                  const std::string &threads, const std::string &batch_size) const {
-        std::vector<std::string> arguments = {"render",  std::string(GRADUS_ROOT) + "/scenes/" + scene + ".xml",
+        std::vector<std::string> arguments = {"render",  fmt::format("{}/scenes/{}.xml", GRADUS_ROOT, scene),
                                               "-o",      output,
                                               "--seed",  "11",
                                               "--quiet", "--nthreads",

@@ -6,6 +6,7 @@
 #include "tests/support/render.h"
 #include "tests/support/test_name.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +27,7 @@ class SecondDevice : public ::testing::TestWithParam<const char *> {
         return device;
     }
     static Scene scene(std::uint64_t samples_per_pixel) {
-        Scene scene = load_scene(std::string(GRADUS_SCENES) + "/" + GetParam() + ".xml").scene;
+        Scene scene = load_scene(fmt::format("{}/{}.xml", GRADUS_SCENES, GetParam())).scene;
         scene.film.width = 128;
         scene.film.height = 96;
         scene.film.crop_width = scene.film.crop_height = 0;
