@@ -64,11 +64,12 @@ void PathTracer::prepare(const Additions &additions) {
     total_ = pixels * settings_.samples_per_pixel;
     const std::uint32_t bins = static_cast<std::uint32_t>(additions.phases * (1 + 2 * scene_tables_.kinds.size()));
     const std::uint32_t capacity = choose_batch_size(device_, options_.batch_size, total_, traits_, options_.precision);
-    std::uint64_t slots =
+    std::uint64_t pass =
         std::min<std::uint64_t>(batches_a_pass * std::uint64_t(capacity), std::max<std::uint64_t>(total_, 1));
     if (additions.whole_frames)
-        slots = std::max<std::uint64_t>(slots / pixels, 1) * pixels;
-    tables_.emplace(device_, capacity, static_cast<std::uint32_t>(slots), bins, traits_, options_.precision);
+        pass = std::max<std::uint64_t>(pass / pixels, 1) * pixels;
+    pass_ = static_cast<std::uint32_t>(pass);
+    tables_.emplace(device_, capacity, pass_, bins, traits_, options_.precision);
     scene_buffers_.emplace(device_, scene_tables_, options_.precision);
     build_kernels(scene_tables_.kinds, additions);
     film_.emplace(device_, accumulate_, *tables_, film_settings_.crop_width, film_settings_.crop_height, traits_,
@@ -241,7 +242,7 @@ std::uint32_t PathTracer::begin_pass() {
     camera_.set("first_pixel", static_cast<std::uint32_t>(done_ % film_->pixels()));
     camera_.set("first_sample_low", static_cast<std::uint32_t>(first_sample));
     camera_.set("first_sample_high", static_cast<std::uint32_t>(first_sample >> 32));
-    return static_cast<std::uint32_t>(std::min<std::uint64_t>(tables_->slots, total_ - done_));
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(pass_, total_ - done_));
 }
 
 bool PathTracer::end_pass(std::uint32_t paths, std::chrono::steady_clock::time_point start) {

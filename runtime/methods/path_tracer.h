@@ -85,6 +85,7 @@ class PathTracer : public Method {
     SceneTables scene_tables_;
     Tracer tracer_;
     std::uint64_t total_ = 0, done_ = 0, first_sample_ = 0;
+    std::uint32_t pass_ = 0; ///< paths of a pass, but for the last
     std::optional<BatchTables> tables_;
     std::optional<SceneBuffers> scene_buffers_;
     std::optional<FilmStage> film_;

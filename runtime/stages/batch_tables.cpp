@@ -23,11 +23,18 @@ std::uint32_t vertex_column_count(const TraitMap &traits) {
     return static_cast<std::uint32_t>(traits.at("TRAIT_SHADING_NORMALS") ? int(vertex_eta) : int(vertex_shading_x));
 }
 
+/// Kernels write many columns of these tables at once, at rows that are not quite in order. Columns that were a power
+/// of two apart would share the same few lines of the caches. So they are an odd number of lines apart.
+std::uint32_t slot_rows(std::uint32_t paths) {
+    constexpr std::uint32_t line = 64 / sizeof(float);
+    return ((paths + line - 1) / line | 1u) * line;
+}
+
 } // namespace
 
-BatchTables::BatchTables(Device &device, std::uint32_t rows, std::uint32_t slot_count, std::uint32_t bins,
+BatchTables::BatchTables(Device &device, std::uint32_t rows, std::uint32_t paths, std::uint32_t bins,
                          const TraitMap &traits, Precision real_precision)
-    : capacity(rows), slots(slot_count), precision(real_precision) {
+    : capacity(rows), slots(slot_rows(paths)), precision(real_precision) {
     const std::size_t column = real_bytes(precision) * capacity, slot_column = real_bytes(precision) * slots;
     const std::size_t chunks = (capacity + partition_chunk - 1) / partition_chunk;
     ray = Buffer(device, "ray", column * ray_columns);

@@ -19,12 +19,13 @@ constexpr std::uint32_t batches_a_pass = 4;
 constexpr std::uint32_t partition_chunk = 256;
 
 struct BatchTables {
-    /// `bins` of the partition, the escaped included. Allocates only what the traits ask for.
-    BatchTables(Device &device, std::uint32_t capacity, std::uint32_t slots, std::uint32_t bins, const TraitMap &traits,
+    /// For passes of so many paths, with `bins` of the partition, the escaped included. Allocates only what the traits
+    /// ask for.
+    BatchTables(Device &device, std::uint32_t capacity, std::uint32_t paths, std::uint32_t bins, const TraitMap &traits,
                 Precision precision);
 
     std::uint32_t capacity; ///< paths in flight
-    std::uint32_t slots;    ///< paths of a pass
+    std::uint32_t slots;    ///< rows of the tables that have one for each path of a pass; a few more than those
     Precision precision;    ///< of the columns that are real
     Buffer ray, shadow, radiance, feature, tangent;
     Buffer vertex[2]; ///< surface reads one and writes the other

@@ -60,6 +60,17 @@ TEST(DirectEdges, IsUnbiasedOverSeeds) {
     EXPECT_LT(error, 0.002);
 }
 
+/// Beyond some hundred rays a pixel the error is not seen, and time is: half a ray a sample would be two million.
+TEST(DirectEdges, TakeNoMoreRaysThanTheyNeed) {
+    Scene scene = lamp(33.3, 45.009, 61.85, 59.5);
+    scene.film.width = scene.film.height = 4 * size;
+    const std::uint64_t rays = render(scene, {}, "gpt").statistics.rays.at("edge");
+    const std::uint64_t lit = 115 * 59, border = 119 * 63 - 109 * 53; // pixels that an edge is in or beside
+    std::printf("%llu rays\n", static_cast<unsigned long long>(rays));
+    EXPECT_GT(rays, 300 * border / 2);
+    EXPECT_LE(rays, 4 * lit + (256 + 32 * 16) * border);
+}
+
 PixelRectangle rectangle_of(const Scene &scene) {
     FilmSettings film = scene.film;
     if (film.crop_width == 0) {
