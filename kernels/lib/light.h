@@ -88,5 +88,49 @@ GRADUS_FN light_choice light_from_sphere(rgb radiance, vec3 center, real radius,
     return light_from_surface(radiance, pdf, place, point, normal);
 }
 
+/* A point: its intensity over the squared distance arrives. */
+GRADUS_FN light_choice light_from_point(rgb intensity, vec3 point, vec3 place) {
+    light_choice s;
+    s.connection = v3_sub(point, place);
+    const real inverse_squared = R(1) / r_max(v3_dot(s.connection, s.connection), R(1e-36));
+    s.direction = v3_scale(s.connection, r_sqrt(inverse_squared));
+    s.normal = v3(R(0), R(0), R(0));
+    s.value = rgb_scale(intensity, inverse_squared);
+    s.pdf = R(0);
+    return s;
+}
+
+/* Parallel light, which comes from the direction `towards`. `beyond`: longer than the scene. */
+GRADUS_FN light_choice light_from_direction(rgb irradiance, vec3 towards, real beyond) {
+    light_choice s;
+    s.direction = towards;
+    s.connection = v3_scale(towards, beyond);
+    s.normal = v3(R(0), R(0), R(0));
+    s.value = irradiance;
+    s.pdf = R(0);
+    return s;
+}
+
+/* The constant environment, uniform over the sphere. */
+GRADUS_FN light_choice light_from_constant(rgb radiance, real beyond, real u1, real u2) {
+    light_choice s;
+    s.direction = warp_uniform_sphere(u1, u2);
+    s.connection = v3_scale(s.direction, beyond);
+    s.normal = v3(R(0), R(0), R(0));
+    s.value = rgb_scale(radiance, R(4) * GRADUS_PI);
+    s.pdf = R(0.25) * GRADUS_INV_PI;
+    return s;
+}
+
+GRADUS_FN light_choice light_choice_select(int first, light_choice a, light_choice b) {
+    light_choice s;
+    s.direction = v3_select(first, a.direction, b.direction);
+    s.connection = v3_select(first, a.connection, b.connection);
+    s.normal = v3_select(first, a.normal, b.normal);
+    s.value = rgb_select(first, a.value, b.value);
+    s.pdf = first ? a.pdf : b.pdf;
+    return s;
+}
+
 GRADUS_LIB_END
 #endif

@@ -8,10 +8,10 @@
 #define LIGHT_KINDS                                                                                                    \
     (TRAIT_LIGHT_TRIANGLE + TRAIT_LIGHT_SPHERE + TRAIT_LIGHT_POINT + TRAIT_LIGHT_DIRECTIONAL + TRAIT_LIGHT_CONSTANT)
 #if LIGHT_KINDS > 1
-#define IF_LIGHT(name) if (kind == light_kind_##name)
+#define IS_LIGHT_KIND(name) (kind == light_kind_##name)
 #define IS_LIGHT(chosen, name, trait) ((trait) && (chosen).kind == light_kind_##name)
 #else
-#define IF_LIGHT(name)
+#define IS_LIGHT_KIND(name) 1
 #define IS_LIGHT(chosen, name, trait) (trait)
 #endif
 
@@ -51,6 +51,8 @@ GRADUS_FN chosen_light light_sampling(GRADUS_GLOBAL const real *lights, GRADUS_G
     kind = light_kinds[light];
 #endif
 
+    /* Every kind that the scene has is computed, and the one chosen is kept: loads behind conditions, and conditions
+     * around so much, keep PoCL from vectorising. */
     light_choice s;
     s.direction = v3(R(0), R(0), R(1));
     s.connection = s.direction;
@@ -58,35 +60,21 @@ GRADUS_FN chosen_light light_sampling(GRADUS_GLOBAL const real *lights, GRADUS_G
     s.value = rgb_gray(R(0));
     s.pdf = R(0);
 #if TRAIT_LIGHT_TRIANGLE
-    IF_LIGHT(triangle)
     s = light_from_triangle(value, p, e1, FIELD_V3(light, lights, light, e2), position, u.c, u.d);
 #endif
 #if TRAIT_LIGHT_SPHERE
-    IF_LIGHT(sphere)
-    s = light_from_sphere(value, p, e1.x, e1.y, FIELD_OF(light, lights, light, inverse_area), position, u.c, u.d);
+    s = light_choice_select(
+        IS_LIGHT_KIND(sphere),
+        light_from_sphere(value, p, e1.x, e1.y, FIELD_OF(light, lights, light, inverse_area), position, u.c, u.d), s);
 #endif
 #if TRAIT_LIGHT_POINT
-    IF_LIGHT(point) {
-        s.connection = v3_sub(p, position);
-        const real inverse_squared = R(1) / r_max(v3_dot(s.connection, s.connection), R(1e-36));
-        s.direction = v3_scale(s.connection, r_sqrt(inverse_squared));
-        s.value = rgb_scale(value, inverse_squared);
-    }
+    s = light_choice_select(IS_LIGHT_KIND(point), light_from_point(value, p, position), s);
 #endif
 #if TRAIT_LIGHT_DIRECTIONAL
-    IF_LIGHT(directional) {
-        s.direction = p;
-        s.connection = v3_scale(p, scene_diameter);
-        s.value = value;
-    }
+    s = light_choice_select(IS_LIGHT_KIND(directional), light_from_direction(value, p, scene_diameter), s);
 #endif
 #if TRAIT_LIGHT_CONSTANT
-    IF_LIGHT(constant) {
-        s.direction = warp_uniform_sphere(u.c, u.d);
-        s.connection = v3_scale(s.direction, scene_diameter);
-        s.pdf = R(0.25) * GRADUS_INV_PI;
-        s.value = rgb_scale(value, R(4) * GRADUS_PI);
-    }
+    s = light_choice_select(IS_LIGHT_KIND(constant), light_from_constant(value, scene_diameter, u.c, u.d), s);
 #endif
 
     chosen_light chosen;

@@ -6,32 +6,38 @@
 
 GRADUS_LIB_BEGIN
 
-/* The hit of a ray with the primitive that the tracer named. Independent ifs, not if and else: PoCL vectorises those.
- */
+/* Where the scene has triangles and spheres, a primitive's number as one of either; 0 where it is of the other. */
+#define TRIANGLE_OF(primitive) (TRAIT_SPHERES ? ((primitive) < triangle_count ? (primitive) : 0u) : (primitive))
+#define SPHERE_OF(primitive) ((primitive) < triangle_count ? 0u : (primitive)-triangle_count)
+
+/* The hit of a ray with the primitive that the tracer named. Both kinds are computed where both occur: loads behind a
+ * condition keep PoCL from vectorising (surface: 47 ns a row, 8 without). */
 GRADUS_FN primitive_hit primitive_hit_of(GRADUS_GLOBAL const real *triangles, GRADUS_GLOBAL const real *spheres,
                                          uint unit, uint triangle_count, uint primitive, vec3 origin, vec3 direction) {
     primitive_hit hit;
+    (void)triangles, (void)spheres, (void)triangle_count;
+#if TRAIT_TRIANGLES
+    const uint triangle = TRIANGLE_OF(primitive);
+    hit = triangle_hit(FIELD_V3(triangle, triangles, triangle, p0), FIELD_V3(triangle, triangles, triangle, e1),
+                       FIELD_V3(triangle, triangles, triangle, e2), origin, direction);
+#endif
+#if TRAIT_SPHERES
+    const uint sphere = SPHERE_OF(primitive);
+    const primitive_hit on_sphere =
+        sphere_hit(FIELD_V3(sphere, spheres, sphere, center), FIELD_OF(sphere, spheres, sphere, radius),
+                   FIELD_OF(sphere, spheres, sphere, facing), origin, direction);
+#endif
+#if TRAIT_TRIANGLES && TRAIT_SPHERES
+    const int is_triangle = primitive < triangle_count;
+    hit.position = v3_select(is_triangle, hit.position, on_sphere.position);
+    hit.normal = v3_select(is_triangle, hit.normal, on_sphere.normal);
+#elif TRAIT_SPHERES
+    hit = on_sphere;
+#elif !TRAIT_TRIANGLES
     hit.u = R(0);
     hit.v = R(0);
     hit.position = origin;
     hit.normal = direction;
-    (void)triangles, (void)spheres, (void)triangle_count;
-#if TRAIT_TRIANGLES && TRAIT_SPHERES
-    if (primitive < triangle_count)
-#endif
-#if TRAIT_TRIANGLES
-        hit = triangle_hit(FIELD_V3(triangle, triangles, primitive, p0), FIELD_V3(triangle, triangles, primitive, e1),
-                           FIELD_V3(triangle, triangles, primitive, e2), origin, direction);
-#endif
-#if TRAIT_TRIANGLES && TRAIT_SPHERES
-    if (primitive >= triangle_count)
-#endif
-#if TRAIT_SPHERES
-    {
-        const uint sphere = primitive - triangle_count;
-        hit = sphere_hit(FIELD_V3(sphere, spheres, sphere, center), FIELD_OF(sphere, spheres, sphere, radius),
-                         FIELD_OF(sphere, spheres, sphere, facing), origin, direction);
-    }
 #endif
     return hit;
 }
@@ -41,17 +47,12 @@ GRADUS_FN real primitive_offset(GRADUS_GLOBAL const real *triangles, GRADUS_GLOB
                                 uint triangle_count, uint primitive) {
     real offset = R(0);
     (void)triangles, (void)spheres, (void)triangle_count;
-#if TRAIT_TRIANGLES && TRAIT_SPHERES
-    if (primitive < triangle_count)
-#endif
 #if TRAIT_TRIANGLES
-        offset = FIELD_OF(triangle, triangles, primitive, offset);
-#endif
-#if TRAIT_TRIANGLES && TRAIT_SPHERES
-    if (primitive >= triangle_count)
+    offset = FIELD_OF(triangle, triangles, TRIANGLE_OF(primitive), offset);
 #endif
 #if TRAIT_SPHERES
-        offset = FIELD_OF(sphere, spheres, primitive - triangle_count, offset);
+    const real of_sphere = FIELD_OF(sphere, spheres, SPHERE_OF(primitive), offset);
+    offset = TRAIT_TRIANGLES && primitive < triangle_count ? offset : of_sphere;
 #endif
     return offset;
 }

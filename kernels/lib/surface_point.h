@@ -26,13 +26,12 @@ GRADUS_FN surface_point surface_point_of(GRADUS_GLOBAL const real *triangles,
     const primitive_hit hit = primitive_hit_of(triangles, spheres, unit, triangle_count, primitive, origin, direction);
     vec3 shading = hit.normal;
 #if TRAIT_SHADING_NORMALS
-#if TRAIT_SPHERES
-    if (primitive < triangle_count)
-#endif
-        shading = v3_normalize(
-            v3_mad(v3_mad(v3_scale(FIELD_V3(normals, triangle_normals, primitive, n0), R(1) - hit.u - hit.v), hit.u,
-                          FIELD_V3(normals, triangle_normals, primitive, n1)),
-                   hit.v, FIELD_V3(normals, triangle_normals, primitive, n2)));
+    const uint smooth = TRIANGLE_OF(primitive);
+    const vec3 interpolated = v3_normalize(
+        v3_mad(v3_mad(v3_scale(FIELD_V3(normals, triangle_normals, smooth, n0), R(1) - hit.u - hit.v), hit.u,
+                      FIELD_V3(normals, triangle_normals, smooth, n1)),
+               hit.v, FIELD_V3(normals, triangle_normals, smooth, n2)));
+    shading = v3_select(!TRAIT_SPHERES || primitive < triangle_count, interpolated, shading);
 #endif
     const uint sided_material = primitive_material[primitive];
     uint material_index = material_record(sided_material);
@@ -52,10 +51,8 @@ GRADUS_FN surface_point surface_point_of(GRADUS_GLOBAL const real *triangles,
 #endif
     point.along = v3(-hit.normal.y, hit.normal.x, R(0)); /* spheres: around the z axis */
 #if TRAIT_ANISOTROPIC
-#if TRAIT_SPHERES
-    if (primitive < triangle_count)
-#endif
-        point.along = FIELD_V3(triangle_tangent, triangle_tangents, primitive, along);
+    const vec3 of_triangle = FIELD_V3(triangle_tangent, triangle_tangents, TRIANGLE_OF(primitive), along);
+    point.along = v3_select(!TRAIT_SPHERES || primitive < triangle_count, of_triangle, point.along);
 #endif
     point.position = hit.position;
     point.geometric = geometric;

@@ -36,6 +36,11 @@ GRADUS_FN vec3 v3_cross(vec3 a, vec3 b) {
 GRADUS_FN real v3_length_squared(vec3 a) { return v3_dot(a, a); }
 GRADUS_FN vec3 v3_normalize(vec3 a) { return v3_scale(a, R(1) / r_sqrt(v3_dot(a, a))); }
 
+/* a where `first`, else b: a choice that needs no branch. */
+GRADUS_FN vec3 v3_select(int first, vec3 a, vec3 b) {
+    return v3(first ? a.x : b.x, first ? a.y : b.y, first ? a.z : b.z);
+}
+
 GRADUS_FN rgb rgb3(real r, real g, real b) {
     rgb c;
     c.r = r;
@@ -48,6 +53,9 @@ GRADUS_FN rgb rgb_sub(rgb a, rgb b) { return rgb3(a.r - b.r, a.g - b.g, a.b - b.
 GRADUS_FN rgb rgb_add(rgb a, rgb b) { return rgb3(a.r + b.r, a.g + b.g, a.b + b.b); }
 GRADUS_FN rgb rgb_mul(rgb a, rgb b) { return rgb3(a.r * b.r, a.g * b.g, a.b * b.b); }
 GRADUS_FN rgb rgb_scale(rgb a, real s) { return rgb3(a.r * s, a.g * s, a.b * s); }
+GRADUS_FN rgb rgb_select(int first, rgb a, rgb b) {
+    return rgb3(first ? a.r : b.r, first ? a.g : b.g, first ? a.b : b.b);
+}
 GRADUS_FN real rgb_max(rgb a) { return r_max(a.r, r_max(a.g, a.b)); }
 
 GRADUS_LIB_END
