@@ -265,6 +265,11 @@ SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits) {
     lights.finish();
     add_materials(scene, tables);
     tables.camera = make_camera_record(scene.camera, scene.film);
+    // Kernels compiled for both kinds of primitives read a record of each, whichever they then take.
+    if (tables.triangles.empty())
+        tables.triangles.resize(triangle_stride, 0.0f);
+    if (tables.spheres.empty())
+        tables.spheres.resize(sphere_stride, 0.0f);
     return tables;
 }
 
