@@ -41,7 +41,7 @@ nlohmann::json statistics_to_json(const RenderRecord &record, const Statistics &
     const auto rate = [seconds](double count) { return seconds > 0 ? count / seconds : 0.0; };
 
     json stages = json::array();
-    for (const Statistics::Stage &stage : statistics.stages)
+    for (const StageTime &stage : statistics.stages)
         stages.push_back({{"name", stage.name},
                           {"seconds", stage.seconds},
                           {"share", seconds > 0 ? stage.seconds / seconds : 0.0},

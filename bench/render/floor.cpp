@@ -45,7 +45,7 @@ struct Row {
 
 std::vector<Row> profile(const Render &render, double floor_seconds) {
     std::vector<Row> rows;
-    for (const Statistics::Stage &stage : render.statistics.stages)
+    for (const StageTime &stage : render.statistics.stages)
         if (stage.name == "trace") {
             rows.push_back({"Embree (replay)", floor_seconds / render.seconds()});
             rows.push_back({"trace beside Embree", (stage.seconds - floor_seconds) / render.seconds()});

@@ -48,14 +48,14 @@ std::uint64_t Render::rays() const {
 
 double Render::kernel_seconds() const {
     double sum = 0;
-    for (const Statistics::Stage &stage : statistics.stages)
+    for (const StageTime &stage : statistics.stages)
         if (stage.name != "trace" && stage.name != "launch and wait")
             sum += stage.seconds;
     return sum;
 }
 
 double Render::stage_seconds(const std::string &name) const {
-    for (const Statistics::Stage &stage : statistics.stages)
+    for (const StageTime &stage : statistics.stages)
         if (stage.name == name)
             return stage.seconds;
     return 0;

@@ -4,19 +4,19 @@
 //! traits: TRAIT_REFRACTION
 #include "kernels/shared/stage.h"
 
-/* A path that has not met anything yet: its row of `vertex`. */
+/* A path that has not met anything yet: its row of `path`. */
 #if TRAIT_REFRACTION
-#define BEGIN_ETA(row) AT(vertex, eta, row) = R(1);
+#define BEGIN_ETA(row) AT(path, eta, row) = R(1);
 #else
 #define BEGIN_ETA(row)
 #endif
 #define BEGIN_PATH(row, path_slot, word_0, word_1)                                                                     \
-    AT_UINT(vertex, slot, row) = path_slot;                                                                            \
-    AT_UINT(vertex, key_0, row) = word_0;                                                                              \
-    AT_UINT(vertex, key_1, row) = word_1;                                                                              \
-    AT_UINT(vertex, depth, row) = 0u;                                                                                  \
-    SET_RGB(vertex, throughput, row, rgb_gray(R(1)));                                                                  \
-    AT(vertex, pdf, row) = R(0);                                                                                       \
+    AT_UINT(path, slot, row) = path_slot;                                                                              \
+    AT_UINT(path, key_0, row) = word_0;                                                                                \
+    AT_UINT(path, key_1, row) = word_1;                                                                                \
+    AT_UINT(path, depth, row) = 0u;                                                                                    \
+    SET_RGB(path, throughput, row, rgb_gray(R(1)));                                                                    \
+    AT(path, pdf, row) = R(0);                                                                                         \
     BEGIN_ETA(row)
 
 #endif

@@ -1,34 +1,37 @@
-/* Offset paths of gradient-domain path tracing: which neighbour they go through, and where they are until they
- * reconnect. */
+/* Offset paths of gradient-domain path tracing: which neighbour they go through, and where they stand while they are
+ * not connected with their base path. */
 #ifndef GRADUS_LIB_GRADIENT_H
 #define GRADUS_LIB_GRADIENT_H
-//! traits: TRAIT_ANISOTROPIC TRAIT_SHADING_NORMALS TRAIT_APART
+//! traits: TRAIT_APART
 #include "kernels/lib/division.h"
 #include "kernels/lib/vertex_frame.h"
 #include "kernels/shared/stage.h"
 
-/* The film as kernel arguments: slots follow the pixels, frame after frame. */
-#define FILM_PLACE                                                                                                     \
-    uint pixels, uint pixels_multiplier, uint pixels_shift, uint width_multiplier, uint width_shift, uint crop_width,  \
-        uint crop_height
+/* The part of the film that a pass covers, as kernel arguments: a strip of whole rows of one frame, or (strip_rows that
+ * of the crop) several frames, one after the other. Slots follow the pixels. */
+#define STRIP_PLACE                                                                                                    \
+    uint strip_pixels, uint strip_multiplier, uint strip_shift, uint strip_first, uint width_multiplier,               \
+        uint width_shift, uint crop_width, uint crop_height
 
 typedef struct {
-    uint x, y;
+    uint x, y; /* of the crop */
     GRADUS_NOT_IN_REGISTERS
 } film_pixel;
 
 #define PIXEL_OF(slot)                                                                                                 \
-    pixel_of(slot, pixels, pixels_multiplier, pixels_shift, width_multiplier, width_shift, crop_width)
-GRADUS_FN film_pixel pixel_of(uint slot, uint pixels, uint pixels_multiplier, uint pixels_shift, uint width_multiplier,
-                              uint width_shift, uint crop_width) {
-    const uint number = slot - divide(slot, pixels_multiplier, pixels_shift) * pixels;
+    pixel_of(slot, strip_pixels, strip_multiplier, strip_shift, strip_first, width_multiplier, width_shift, crop_width)
+GRADUS_FN film_pixel pixel_of(uint slot, uint strip_pixels, uint strip_multiplier, uint strip_shift, uint strip_first,
+                              uint width_multiplier, uint width_shift, uint crop_width) {
+    const uint number = slot - divide(slot, strip_multiplier, strip_shift) * strip_pixels;
+    const uint row = divide(number, width_multiplier, width_shift);
     film_pixel pixel;
-    pixel.y = divide(number, width_multiplier, width_shift);
-    pixel.x = number - pixel.y * crop_width;
+    pixel.x = number - row * crop_width;
+    pixel.y = row + strip_first;
     return pixel;
 }
 
-/* The slot of neighbour j: right, left, below, above; `slot` itself where there is none. */
+/* The slot of neighbour j: right, left, below, above; `slot` itself where there is none. Above the first row of a strip
+ * it is below 0, and below the last beyond the strip: only `primary`, whose slots begin a row earlier, has it. */
 GRADUS_FN uint gradient_neighbour(uint slot, uint j, film_pixel pixel, uint width, uint height) {
     return j == 0u   ? (pixel.x + 1u < width ? slot + 1u : slot)
            : j == 1u ? (pixel.x > 0u ? slot - 1u : slot)
@@ -36,24 +39,54 @@ GRADUS_FN uint gradient_neighbour(uint slot, uint j, film_pixel pixel, uint widt
                      : (pixel.y > 0u ? slot - width : slot);
 }
 
-/* The vertices of offset paths that have not reconnected: a table, and its row for offset j of a base path. Where all
- * reconnect at the first chance these are what the neighbours' own paths see. */
+/* Vertices of offset paths that are not connected: `own_vertex`, whose columns are `own_rows` apart. Of first vertices
+ * (`at_first`) it is `primary_vertex`, what the neighbours' own paths see, in rows by slot, `primary_shift` further on;
+ * of later ones `offset_vertex`. */
+#define OWN_VERTEX __global const real *own_vertex, uint own_rows, uint at_first, uint primary_shift
+
+typedef struct {
+    uint row;     /* of own_vertex */
+    int is_there; /* there is an offset path that has not failed */
+    int is_own;   /* and it is not connected */
+    real ratio;   /* as in `offset` */
+    rgb value;    /* as in `offset` */
+    GRADUS_NOT_IN_REGISTERS
+} own_vertex_state;
+
+/* Offset j of the base path in `base_row`. */
 #if TRAIT_APART
-#define LONE offset_vertex
-#define LONE_ROW(j, row, neighbour) ((size_t)(j)*capacity + (row))
+#define OWN_STATE(j, base_row, base_slot, pixel)                                                                       \
+    own_state(j, (uint)(base_row), base_slot, pixel, own_vertex, own_rows, at_first, primary_shift, crop_width,        \
+              crop_height, capacity, offset)
 #else
-#define LONE primary
-#define LONE_ROW(j, row, neighbour) (neighbour)
+#define OWN_STATE(j, base_row, base_slot, pixel)                                                                       \
+    own_state(j, (uint)(base_row), base_slot, pixel, own_vertex, own_rows, 1u, primary_shift, crop_width, crop_height, \
+              capacity, offset)
 #endif
-#if TRAIT_SHADING_NORMALS
-#define LONE_NORMAL(at) AT_V3(LONE, shading, at)
-#else
-#define LONE_NORMAL(at) AT_V3(LONE, geometric, at)
+GRADUS_FN own_vertex_state own_state(uint j, uint base_row, uint slot, film_pixel pixel,
+                                     GRADUS_GLOBAL const real *own_vertex, uint own_rows, uint at_first,
+                                     uint primary_shift, uint crop_width, uint crop_height, uint capacity,
+                                     GRADUS_GLOBAL const real *offset) {
+    own_vertex_state state;
+    const uint neighbour = gradient_neighbour(slot, j, pixel, crop_width, crop_height);
+    const uint later = j * capacity + base_row;
+    state.row = at_first ? neighbour + primary_shift : later;
+    const uint kind = AT_UINT(own_vertex, kind, state.row);
+    const real at_first_ratio = neighbour == slot   ? shift_absent
+                                : kind == kind_none ? shift_failed(outcome_failed_at_once)
+                                                    : R(1);
+    state.ratio = at_first_ratio;
+    state.value = rgb_gray(R(1));
+    state.is_own = state.ratio >= R(0);
+#if TRAIT_APART
+    const real ratio = AT(offset, ratio, later);
+    const uint connection = AT_UINT(offset, state, later);
+    state.ratio = at_first ? at_first_ratio : ratio;
+    state.value = rgb_select(at_first != 0u, state.value, AT_RGB(offset, value, later));
+    state.is_own = (state.ratio >= R(0)) & (at_first || connection < connection_recent);
 #endif
-#if TRAIT_ANISOTROPIC
-#define LONE_FRAME(at, m) frame_from_tangent(LONE_NORMAL(at), AT_V3(LONE, along, at), (m).alpha_u != (m).alpha_v)
-#else
-#define LONE_FRAME(at, m) frame_from_normal(LONE_NORMAL(at))
-#endif
+    state.is_there = state.ratio >= R(0);
+    return state;
+}
 
 #endif

@@ -15,17 +15,6 @@
 #define IS_LIGHT(chosen, name, trait) (trait)
 #endif
 
-/* Leaves the segment from a vertex at `position` to the chosen light point in `shadow`. */
-#define CONNECT_TO_LIGHT(row, position, chosen)                                                                        \
-    {                                                                                                                  \
-        const vec3 start =                                                                                             \
-            ray_origin(position, AT_V3(vertex, geometric, row), AT(vertex, offset, row), (chosen).choice.direction);   \
-        const vec3 end = v3_mad(v3_add(position, (chosen).choice.connection),                                          \
-                                FIELD_OF(light, lights, (chosen).light, offset), (chosen).choice.normal);              \
-        SET_V3(shadow, origin, row, start);                                                                            \
-        SET_V3(shadow, direction, row, v3_sub(end, start));                                                            \
-    }
-
 GRADUS_LIB_BEGIN
 
 typedef struct {

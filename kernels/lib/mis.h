@@ -9,6 +9,9 @@
 #define STRATEGY_LIGHT 1
 #define STRATEGY_BSDF 2
 
+/* 0 where BSDF sampling is not to find what light sampling can. */
+#define LIGHT_CAN_BE_FOUND (STRATEGY != STRATEGY_LIGHT)
+
 GRADUS_LIB_BEGIN
 
 /* Weight of a light that light sampling chose with density pdf_light; pdf_bsdf is what BSDF sampling would have. */

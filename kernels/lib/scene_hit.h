@@ -8,7 +8,7 @@ GRADUS_LIB_BEGIN
 
 /* Where the scene has triangles and spheres, a primitive's number as one of either; 0 where it is of the other. */
 #define TRIANGLE_OF(primitive) (TRAIT_SPHERES ? ((primitive) < triangle_count ? (primitive) : 0u) : (primitive))
-#define SPHERE_OF(primitive) ((primitive) < triangle_count ? 0u : (primitive)-triangle_count)
+#define SPHERE_OF(primitive) r_not_negative((primitive)-triangle_count)
 
 /* The hit of a ray with the primitive that the tracer named. Both kinds are computed where both occur: loads behind a
  * condition keep PoCL from vectorising (surface: 47 ns a row, 8 without). */

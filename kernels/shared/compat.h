@@ -90,6 +90,13 @@ static inline __attribute__((unused)) float as_float(uint bits) {
 #define r_min(a, b) ((a) < (b) ? (a) : (b))
 #define r_max(a, b) ((a) > (b) ? (a) : (b))
 #define r_clamp(x, low, high) r_min(r_max(x, low), high)
+/* A difference of uints below 2^31, or 0 where it is negative. A choice would become an operation (saturating
+ * subtraction) that not every OpenCL implementation knows. */
+#ifdef __OPENCL_VERSION__
+#define r_not_negative(x) ((uint)max((int)(x), 0))
+#else
+#define r_not_negative(x) ((int)(x) < 0 ? 0u : (uint)(x))
+#endif
 #define r_copysign1(x) ((x) < R(0) ? R(-1) : R(1))
 
 #define GRADUS_PI R(3.14159265358979323846)

@@ -33,38 +33,39 @@
     REAL(shadow, value_b, "")                                                                                          \
     UINT(shadow, open, "before tracing: 1 asks for a trace, 0 does not; after: 1 if the light is seen")
 
-/* The newest vertex of each path. Two of these tables alternate: `surface` reads the old one and writes the new. */
-#define GRADUS_VERTEX_COLUMNS(REAL, UINT)                                                                              \
-    UINT(vertex, slot, "the path's place in its pass: its row in `radiance`")                                          \
-    UINT(vertex, key_0, "random numbers: hash of seed, pixel and sample")                                              \
-    UINT(vertex, key_1, "")                                                                                            \
-    UINT(vertex, depth, "edges of the path before this vertex, less one: 0 at what the camera sees")                   \
-    REAL(vertex, throughput_r, "contribution over density of the path so far")                                         \
-    REAL(vertex, throughput_g, "")                                                                                     \
-    REAL(vertex, throughput_b, "")                                                                                     \
-    REAL(vertex, pdf, "solid-angle density of the direction sent out; 0 for a Dirac one (light sampling cannot)")      \
-    REAL(vertex, position_x, "")                                                                                       \
-    REAL(vertex, position_y, "")                                                                                       \
-    REAL(vertex, position_z, "")                                                                                       \
-    REAL(vertex, offset, "how far a new ray starts off the surface, along the geometric normal")                       \
-    REAL(vertex, wi_x, "unit vector to the vertex before, world frame")                                                \
-    REAL(vertex, wi_y, "")                                                                                             \
-    REAL(vertex, wi_z, "")                                                                                             \
-    REAL(vertex, geometric_x, "geometric normal, unit, on the side that the material calls front")                     \
-    REAL(vertex, geometric_y, "")                                                                                      \
-    REAL(vertex, geometric_z, "")                                                                                      \
-    UINT(vertex, material, "record of the material on this side")                                                      \
-    REAL(vertex, shading_x,                                                                                            \
-         "from here only with TRAIT_SHADING_NORMALS: shading normal, unit, on the side of geometric")                  \
-    REAL(vertex, shading_y, "")                                                                                        \
-    REAL(vertex, shading_z, "")                                                                                        \
-    REAL(vertex, eta, "from here only with TRAIT_REFRACTION: product of index ratios so far, for Russian roulette")
+/* The state of each path. Two of these tables and two of `ray` alternate: `shade` reads the old row of a path and writes
+ * the new one. */
+#define GRADUS_PATH_COLUMNS(REAL, UINT)                                                                                \
+    UINT(path, slot, "its place in its pass: its row in `radiance`")                                                   \
+    UINT(path, key_0, "random numbers: hash of seed, pixel and sample")                                                \
+    UINT(path, key_1, "")                                                                                              \
+    UINT(path, depth, "edges so far, the one in `ray` not counted: 0 for the camera's own ray")                        \
+    REAL(path, throughput_r, "contribution over density, the direction in `ray` included")                             \
+    REAL(path, throughput_g, "")                                                                                       \
+    REAL(path, throughput_b, "")                                                                                       \
+    REAL(path, pdf, "solid-angle density of the direction in `ray`; 0 for a specular one (light sampling cannot)")     \
+    REAL(path, eta, "only with TRAIT_REFRACTION: product of index ratios so far, for Russian roulette")
 
-/* The direction in which a rough surface's alpha_u is measured, only with TRAIT_ANISOTROPIC. */
-#define GRADUS_TANGENT_COLUMNS(REAL, UINT)                                                                             \
-    REAL(tangent, along_x, "dp/du, world frame, any length")                                                           \
-    REAL(tangent, along_y, "")                                                                                         \
-    REAL(tangent, along_z, "")
+/* A surface as a path meets it, whichever path: what the columns of any table of vertices are. */
+#define GRADUS_SURFACE_VERTEX_COLUMNS(table, REAL, UINT)                                                               \
+    UINT(table, kind, "its BSDF kind with kind_is_rough, kind_is_dirac; kind_none where nothing was hit")              \
+    UINT(table, material, "record of the material on this side")                                                       \
+    REAL(table, position_x, "")                                                                                        \
+    REAL(table, position_y, "")                                                                                        \
+    REAL(table, position_z, "")                                                                                        \
+    REAL(table, offset, "how far a new ray starts off the surface, along the geometric normal")                        \
+    REAL(table, wi_x, "unit vector to the vertex before, world frame")                                                 \
+    REAL(table, wi_y, "")                                                                                              \
+    REAL(table, wi_z, "")                                                                                              \
+    REAL(table, geometric_x, "geometric normal, unit, on the side that the material calls front")                      \
+    REAL(table, geometric_y, "")                                                                                       \
+    REAL(table, geometric_z, "")                                                                                       \
+    REAL(table, shading_x, "only with TRAIT_SHADING_NORMALS or TRAIT_ANISOTROPIC: unit, on the side of geometric")     \
+    REAL(table, shading_y, "")                                                                                         \
+    REAL(table, shading_z, "")                                                                                         \
+    REAL(table, along_x, "only with TRAIT_ANISOTROPIC: dp/du, any length, where a rough surface's alpha_u is measured") \
+    REAL(table, along_y, "")                                                                                           \
+    REAL(table, along_z, "")
 
 /* What each path of a pass has gathered, by slot. A pass has more paths than rows: new ones begin where others end. */
 #define GRADUS_RADIANCE_COLUMNS(REAL, UINT)                                                                            \
@@ -110,40 +111,45 @@
     REAL(feature_film, depth, "")
 
 /* Gradient-domain path tracing only, from here on. A base path has four offset paths, j = 0 to 3: through the pixel to
- * the right, left, below and above (gradient_neighbour in kernels/lib/gradient.h). */
+ * the right, left, below and above (gradient_neighbour in kernels/lib/gradient.h). Tables of offset paths have the
+ * offset j of row r at row j * capacity + r. */
 
-/* A vertex from which an offset path goes on by itself. */
-#define GRADUS_LONE_VERTEX_COLUMNS(table, REAL, UINT)                                                                  \
-    UINT(table, kind, "its BSDF kind with kind_is_rough, kind_is_dirac; kind_none where nothing was hit")              \
-    UINT(table, material, "record of the material on this side")                                                       \
-    REAL(table, position_x, "")                                                                                        \
-    REAL(table, position_y, "")                                                                                        \
-    REAL(table, position_z, "")                                                                                        \
-    REAL(table, offset, "how far a new ray starts off the surface, along the geometric normal")                        \
-    REAL(table, wi_x, "unit vector to the vertex before, world frame; of `primary` also where nothing was hit")        \
-    REAL(table, wi_y, "")                                                                                              \
-    REAL(table, wi_z, "")                                                                                              \
-    REAL(table, geometric_x, "as in `vertex`")                                                                         \
-    REAL(table, geometric_y, "")                                                                                       \
-    REAL(table, geometric_z, "")                                                                                       \
-    REAL(table, shading_x, "only with TRAIT_SHADING_NORMALS, or the next")                                             \
-    REAL(table, shading_y, "")                                                                                         \
-    REAL(table, shading_z, "")                                                                                         \
-    REAL(table, along_x, "as in `tangent`, only with TRAIT_ANISOTROPIC")                                               \
-    REAL(table, along_y, "")                                                                                           \
-    REAL(table, along_z, "")
-
-/* What the camera sees through each pixel, by slot: where the offset paths of the neighbours begin. */
+/* What the camera sees through each pixel of a strip and of the rows beside it: where base and offset paths begin. */
 #define GRADUS_PRIMARY_COLUMNS(REAL, UINT)                                                                             \
     UINT(primary, key_0, "random numbers of the pixel's path")                                                         \
     UINT(primary, key_1, "")                                                                                           \
     UINT(primary, primitive, "the primitive, or ray_escaped")                                                          \
-    GRADUS_LONE_VERTEX_COLUMNS(primary, REAL, UINT)
+    REAL(primary, direction_x, "of the camera's ray, unit vector")                                                     \
+    REAL(primary, direction_y, "")                                                                                     \
+    REAL(primary, direction_z, "")
+#define GRADUS_PRIMARY_VERTEX_COLUMNS(REAL, UINT) GRADUS_SURFACE_VERTEX_COLUMNS(primary_vertex, REAL, UINT)
 
-/* With TRAIT_APART, the newest vertices of offset paths that have not reconnected: rows as in `shifted`. */
-#define GRADUS_OFFSET_VERTEX_COLUMNS(REAL, UINT) GRADUS_LONE_VERTEX_COLUMNS(offset_vertex, REAL, UINT)
+/* The newest vertex of a base path while it has offset paths of its own. */
+#define GRADUS_VERTEX_COLUMNS(REAL, UINT) GRADUS_SURFACE_VERTEX_COLUMNS(vertex, REAL, UINT)
 
-/* With TRAIT_APART, the rays by which they go on: as in `ray`, offset by offset. */
+/* What the base path did there, for its offset paths to do alike. */
+#define GRADUS_EVENT_COLUMNS(REAL, UINT)                                                                               \
+    REAL(event, pdf, "of the direction sampled: by solid angle, or the probability of a specular one")                 \
+    REAL(event, weight_r, "f |cos| over that density")                                                                 \
+    REAL(event, weight_g, "")                                                                                          \
+    REAL(event, weight_b, "")                                                                                          \
+    REAL(event, to_light_x, "unit vector to the light point sampled")                                                  \
+    REAL(event, to_light_y, "")                                                                                        \
+    REAL(event, to_light_z, "")                                                                                        \
+    REAL(event, arriving_r, "what arrives from there over the light's density")                                        \
+    REAL(event, arriving_g, "")                                                                                        \
+    REAL(event, arriving_b, "")                                                                                        \
+    REAL(event, inverse_light_pdf, "1 over that density by solid angle; 0 where BSDF sampling cannot find the light")  \
+    REAL(event, base_bsdf, "density with which BSDF sampling finds the light point, over light sampling's")
+
+/* With TRAIT_APART, the vertices of offset paths that are not connected, beyond the first. */
+#define GRADUS_OFFSET_VERTEX_COLUMNS(REAL, UINT) GRADUS_SURFACE_VERTEX_COLUMNS(offset_vertex, REAL, UINT)
+
+/* Either of both, as an argument: a vertex of an offset path's own. */
+#define GRADUS_OWN_VERTEX_COLUMNS(REAL, UINT) GRADUS_SURFACE_VERTEX_COLUMNS(own_vertex, REAL, UINT)
+
+/* With TRAIT_APART, the rays by which they go on: as in `ray`, row j * stride + r, stride being the rows with offset
+ * paths of their own. */
 #define GRADUS_OFFSET_RAY_COLUMNS(REAL, UINT)                                                                          \
     REAL(offset_ray, origin_x, "")                                                                                     \
     REAL(offset_ray, origin_y, "")                                                                                     \
@@ -153,31 +159,34 @@
     REAL(offset_ray, direction_z, "")                                                                                  \
     UINT(offset_ray, primitive, "")
 
-/* The offset paths of a path's newest vertex: offset j of row r is row j * capacity + r. All values are over the
- * density of the base path. */
-#define GRADUS_SHIFTED_COLUMNS(REAL, UINT)                                                                             \
-    REAL(shifted, value_r, "the offset path's contribution so far, times the Jacobian of the shift")                   \
-    REAL(shifted, value_g, "")                                                                                         \
-    REAL(shifted, value_b, "")                                                                                         \
-    REAL(shifted, ratio, "its density times the Jacobian over the base's; shift_failed or shift_absent")               \
-    REAL(shifted, wi_x, "unit vector from the base's vertex to the offset's vertex before, world frame")               \
-    REAL(shifted, wi_y, "")                                                                                            \
-    REAL(shifted, wi_z, "")                                                                                            \
-    UINT(shifted, state, "from here only with TRAIT_APART: one of shift_state")                                        \
-    REAL(shifted, pdf, "where it is apart: density of the direction it took last, by solid angle; 0 for a Dirac one")
+/* The state of offset paths. All values are over the density of the base path. Two of these tables alternate. */
+#define GRADUS_OFFSET_COLUMNS(REAL, UINT)                                                                              \
+    REAL(offset, value_r, "contribution so far, times the Jacobian of the shift")                                      \
+    REAL(offset, value_g, "")                                                                                          \
+    REAL(offset, value_b, "")                                                                                          \
+    REAL(offset, ratio, "density times the Jacobian over the base's; shift_failed or shift_absent")                    \
+    REAL(offset, wi_x, "unit vector from the newest vertex to the offset path's vertex before, world frame")           \
+    REAL(offset, wi_y, "")                                                                                             \
+    REAL(offset, wi_z, "")                                                                                             \
+    UINT(offset, state, "from here only with TRAIT_APART: one of connection_state")                                    \
+    REAL(offset, pdf, "where it is not connected: density of its last direction, by solid angle; 0 for a specular one")
 
-/* Light samples of base and offset paths before it is known which of them see the light: rows as in `shifted`.
- * Densities are over that with which light sampling finds the light from the base path. */
-#define GRADUS_GAIN_COLUMNS(REAL, UINT)                                                                                \
-    REAL(gain, value_r, "what the offset path gains, times the Jacobian")                                              \
-    REAL(gain, value_g, "")                                                                                            \
-    REAL(gain, value_b, "")                                                                                            \
-    REAL(gain, base_bsdf, "of offset 0 alone: density of BSDF sampling, base path")                                    \
-    REAL(gain, offset_light, "density of light sampling, offset path; or shift_failed, shift_absent")                  \
-    REAL(gain, offset_bsdf, "density of BSDF sampling, offset path; or gain_split")
+/* How offset paths that are not connected go on, until it is known what their rays and segments meet. */
+#define GRADUS_SHIFT_COLUMNS(REAL, UINT)                                                                               \
+    REAL(shift, light_jacobian, "of the connection to the light point, by solid angle at both vertices")               \
+    REAL(shift, light_density, "of light sampling there, times the Jacobian, over the base path's; then offset_ratio before the step")     \
+    REAL(shift, jacobian, "of the step to the next vertex; 0 where it cannot be made")                                 \
+    UINT(shift, outcome, "one of GRADUS_SHIFT_OUTCOMES: which step it is, or why there is none")
 
-/* Segments that offset paths ask about, from origin along direction to distance 1. With TRAIT_SHIFT_DISTANCE, where one
- * copies and asks nothing, its vertex is the origin. */
+/* Requests to the BSDF service `evaluate`, and its answers in their place. Row line * capacity + r: lines 0 to 3 are
+ * the light connections of offset paths, 4 to 7 their steps. */
+#define GRADUS_EVALUATION_COLUMNS(REAL, UINT)                                                                          \
+    REAL(evaluation, value_r, "wo.x, world frame, unit; then f |cos| (of a specular event the factor times its pdf)")  \
+    REAL(evaluation, value_g, "wo.y; as r")                                                                            \
+    REAL(evaluation, value_b, "wo.z; as r")                                                                            \
+    REAL(evaluation, pdf, "density of wo by solid angle, or the probability of a specular event")
+
+/* Segments that offset paths ask about, from origin along direction to distance 1: row line * stride + r. */
 #define GRADUS_LINK_COLUMNS(REAL, UINT)                                                                                \
     REAL(link, origin_x, "")                                                                                           \
     REAL(link, origin_y, "")                                                                                           \
@@ -204,7 +213,13 @@
     REAL(difference, throughput_r, "of the offset path where they merged, over the base's density")                    \
     REAL(difference, throughput_g, "")                                                                                 \
     REAL(difference, throughput_b, "")                                                                                 \
-    REAL(difference, ratio, "as in `shifted`")
+    REAL(difference, ratio, "as in `offset`")
+
+/* Differences of offset 2 in the last row of a strip, which the next strip finishes: by column of the image. */
+#define GRADUS_CARRY_COLUMNS(REAL, UINT)                                                                               \
+    REAL(carry, value_r, "")                                                                                           \
+    REAL(carry, value_g, "")                                                                                           \
+    REAL(carry, value_b, "")
 
 /* Sums over the samples of each pixel, compensated as in `film`, and sums of squares for the variances. */
 #define GRADUS_GRADIENT_FILM_COLUMNS(REAL, UINT)                                                                       \
@@ -241,22 +256,31 @@ GRADUS_LIB_BEGIN
 #define GRADUS_COLUMN_INDEX(table, column, text) table##_##column,
 enum ray_column { GRADUS_RAY_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) ray_columns };
 enum shadow_column { GRADUS_SHADOW_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) shadow_columns };
-enum vertex_column { GRADUS_VERTEX_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) vertex_columns };
-enum tangent_column { GRADUS_TANGENT_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) tangent_columns };
+enum path_column { GRADUS_PATH_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) path_columns };
 enum radiance_column { GRADUS_RADIANCE_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) radiance_columns };
 enum feature_column { GRADUS_FEATURE_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) feature_columns };
 enum film_column { GRADUS_FILM_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) film_columns };
 enum feature_film_column { GRADUS_FEATURE_FILM_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) feature_film_columns };
 enum primary_column { GRADUS_PRIMARY_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) primary_columns };
+enum primary_vertex_column {
+    GRADUS_PRIMARY_VERTEX_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) primary_vertex_columns
+};
+enum vertex_column { GRADUS_VERTEX_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) vertex_columns };
+enum event_column { GRADUS_EVENT_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) event_columns };
 enum offset_vertex_column {
     GRADUS_OFFSET_VERTEX_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) offset_vertex_columns
 };
+enum own_vertex_column {
+    GRADUS_OWN_VERTEX_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) own_vertex_columns
+};
 enum offset_ray_column { GRADUS_OFFSET_RAY_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) offset_ray_columns };
-enum shifted_column { GRADUS_SHIFTED_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) shifted_columns };
-enum gain_column { GRADUS_GAIN_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) gain_columns };
+enum offset_column { GRADUS_OFFSET_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) offset_columns };
+enum shift_column { GRADUS_SHIFT_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) shift_columns };
+enum evaluation_column { GRADUS_EVALUATION_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) evaluation_columns };
 enum link_column { GRADUS_LINK_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) link_columns };
 enum prefix_column { GRADUS_PREFIX_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) prefix_columns };
 enum difference_column { GRADUS_DIFFERENCE_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) difference_columns };
+enum carry_column { GRADUS_CARRY_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) carry_columns };
 enum gradient_film_column {
     GRADUS_GRADIENT_FILM_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) gradient_film_columns
 };
@@ -280,19 +304,19 @@ enum gradient_film_column {
 #define kind_is_dirac 0x200u
 #define kind_none 0u /* nothing was hit; diffuse is the kind of number 0, and it is rough */
 
-/* shifted_state: how an offset path came to its newest vertex. */
-#define shift_apart 0u /* by itself: by the half vector */
-#define shift_apart_rough                                                                                              \
+/* offset_state: how an offset path stands to its base path at its newest vertex. */
+#define connection_none 0u /* not connected: at a vertex of its own, to which it came by the half vector */
+#define connection_none_rough                                                                                          \
     1u /* the same, from a rough vertex as the base path: it may not end where it could reconnect */
-#define shift_reconnected 2u /* by reconnection with the base path */
-#define shift_merged 3u      /* with the base path */
+#define connection_recent 2u /* recently connected: at the base path's vertex, which it comes to from another side */
+#define connection_full 3u   /* connected: the same vertex from the same side; all that follows is shared */
 
-/* offset_state, of a base path's vertex, by row: what will become of those of its offset paths that are apart. */
-#define offset_none 0u  /* none is */
-#define offset_rough 1u /* all reconnect, if the next vertex lets them and is not too near */
-#define offset_mixed 2u /* not all do */
+/* offsets_state, of a base path's row: where its offset paths will be at its next vertex. */
+#define offsets_connected 0u /* all at its own, or they failed */
+#define offsets_alike 1u     /* some at vertices of their own, all of the base's BSDF kind */
+#define offsets_mixed 2u     /* some of other kinds */
 
-/* gain_offset_bsdf where each sampler is an integrand of its own. */
+/* Of `evaluation` where each sampler is an integrand of its own: instead of the density of BSDF sampling. */
 #define gain_split R(-1)
 
 /* Ratios below zero: the offset path failed, so that the base path counts for itself; or there is no neighbour. */
@@ -301,6 +325,10 @@ enum gradient_film_column {
 /* From which on it is shift_failed, from which on shift_absent. */
 #define shift_first_failed R(0)
 #define shift_first_absent R(-1.75)
+
+/* shift_outcome holds this beside the outcome where base and offset vertex are rough. */
+#define shift_both_rough 0x100u
+#define shift_outcome_of(outcome) ((outcome)&0xFFu)
 
 /* What became of an attempt to take an offset path further. OUTCOME(name, what is said of it); the failures come after
  * outcome_half_vector, and are the reasons of shift_failed. */
@@ -316,36 +344,41 @@ enum gradient_film_column {
     OUTCOME(failed_back, "the shift back would reconnect")
 
 #define GRADUS_OUTCOME_INDEX(name, text) outcome_##name,
-enum shift_outcome { GRADUS_SHIFT_OUTCOMES(GRADUS_OUTCOME_INDEX) shift_outcomes };
+enum shift_outcome_number { GRADUS_SHIFT_OUTCOMES(GRADUS_OUTCOME_INDEX) shift_outcomes };
 #undef GRADUS_OUTCOME_INDEX
 
 GRADUS_LIB_END
 
 /* Rows of each table: the name of the kernel argument that says so. */
-#define CAPACITY_OF_ray capacity
-#define CAPACITY_OF_shadow capacity
-#define CAPACITY_OF_vertex capacity
-#define CAPACITY_OF_tangent capacity
-#define CAPACITY_OF_radiance slots
-#define CAPACITY_OF_feature slots
-#define CAPACITY_OF_film pixels
-#define CAPACITY_OF_feature_film pixels
-#define CAPACITY_OF_primary slots
-#define CAPACITY_OF_offset_vertex (4u * capacity)
-#define CAPACITY_OF_offset_ray (4u * capacity)
-#define CAPACITY_OF_shifted (4u * capacity)
-#define CAPACITY_OF_gain (4u * capacity)
-#define CAPACITY_OF_link (8u * capacity)
-#define CAPACITY_OF_prefix slots
-#define CAPACITY_OF_difference (4u * slots)
-#define CAPACITY_OF_gradient_film pixels
+#define ROWS_OF_ray capacity
+#define ROWS_OF_shadow capacity
+#define ROWS_OF_path capacity
+#define ROWS_OF_radiance slots
+#define ROWS_OF_feature slots
+#define ROWS_OF_film pixels
+#define ROWS_OF_feature_film pixels
+#define ROWS_OF_primary slots
+#define ROWS_OF_primary_vertex slots
+#define ROWS_OF_vertex capacity
+#define ROWS_OF_event capacity
+#define ROWS_OF_offset_vertex (4u * capacity)
+#define ROWS_OF_own_vertex own_rows
+#define ROWS_OF_offset_ray (4u * capacity)
+#define ROWS_OF_offset (4u * capacity)
+#define ROWS_OF_shift (4u * capacity)
+#define ROWS_OF_evaluation (8u * capacity)
+#define ROWS_OF_link (8u * capacity)
+#define ROWS_OF_prefix slots
+#define ROWS_OF_difference (4u * slots)
+#define ROWS_OF_carry crop_width
+#define ROWS_OF_gradient_film pixels
 
 /* Element access: AT(ray, origin_x, row) is a real, AT_UINT(ray, primitive, row) a uint. The table's pointer has the
  * table's name; AT_IN and AT_UINT_IN are for a second table of the same columns: AT_IN(vertex_old, vertex, pdf, row).
  */
-#define AT_IN(pointer, table, column, row) (((pointer) + (size_t)(table##_##column) * (size_t)CAPACITY_OF_##table)[row])
+#define AT_IN(pointer, table, column, row) (((pointer) + (size_t)(table##_##column) * (size_t)ROWS_OF_##table)[row])
 #define AT_UINT_IN(pointer, table, column, row)                                                                        \
-    (*(GRADUS_GLOBAL uint *)((pointer) + (size_t)(table##_##column) * (size_t)CAPACITY_OF_##table + (row)))
+    (*(GRADUS_GLOBAL uint *)((pointer) + (size_t)(table##_##column) * (size_t)ROWS_OF_##table + (row)))
 #define AT(table, column, row) AT_IN(table, table, column, row)
 #define AT_UINT(table, column, row) AT_UINT_IN(table, table, column, row)
 

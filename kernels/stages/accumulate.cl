@@ -16,7 +16,12 @@
     }
 
 STAGE accumulate(uint count, uint slots, uint pixels, uint first_slot, uint first_pixel, __global const real *radiance,
-                 __global const real *feature, __global real *film, __global real *feature_film) {
+                 __global real *film
+#if TRAIT_AOV
+                 ,
+                 __global const real *feature, __global real *feature_film
+#endif
+) {
     const size_t i = work_item();
     if (i >= count)
         return;

@@ -20,11 +20,16 @@ GRADUS_FN real filter_offset(__global const real *camera, uint unit, real u) {
 #endif
 }
 
-STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ray, __global real *vertex,
-             __global real *radiance, __global real *feature, __global const real *camera, uint first_row,
-             uint first_slot, uint first_pixel, uint first_sample_low, uint first_sample_high, uint pixels,
-             uint pixels_multiplier, uint pixels_shift, uint width_multiplier, uint width_shift, uint crop_x,
-             uint crop_y, uint crop_width, uint film_width, uint seed_low, uint seed_high) {
+STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ray, __global real *path,
+             __global real *radiance, __global const real *camera, uint first_row, uint first_slot, uint first_pixel,
+             uint first_sample_low, uint first_sample_high, uint pixels, uint pixels_multiplier, uint pixels_shift,
+             uint width_multiplier, uint width_shift, uint crop_x, uint crop_y, uint crop_width, uint film_width,
+             uint seed_low, uint seed_high
+#if TRAIT_AOV
+             ,
+             __global real *feature
+#endif
+) {
     const size_t i = work_item();
     if (i >= count)
         return;

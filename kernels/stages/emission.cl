@@ -1,30 +1,30 @@
 /* emission: adds the light that a path finds at an emitting surface, weighted against light sampling: rows
- * index[first] on. Runs before `surface`, on the old vertices. */
+ * index[first] on. Runs before `shade`. */
 //! traits: TRAIT_HIDE_EMITTERS
 #include "kernels/lib/light_found.h"
 #include "kernels/lib/mis.h"
 #include "kernels/shared/stage.h"
 
 STAGE emission(uint count, uint unit, uint first, uint capacity, uint slots, __global const uint *index,
-               __global const real *ray, __global const real *vertex_old, __global real *radiance,
+               __global const real *ray, __global const real *path, __global real *radiance,
                __global const real *triangles, __global const real *spheres, uint triangle_count,
                __global const uint *primitive_light, __global const real *lights, uint light_count) {
     const size_t i = work_item();
     if (i >= count)
         return;
     const uint row = index[first + i];
-    const uint slot = AT_UINT_IN(vertex_old, vertex, slot, row);
+    const uint slot = AT_UINT(path, slot, row);
     const uint primitive = AT_UINT(ray, primitive, row);
     const vec3 origin = AT_V3(ray, origin, row);
     const vec3 direction = AT_V3(ray, direction, row);
     const primitive_hit hit = primitive_hit_of(triangles, spheres, unit, triangle_count, primitive, origin, direction);
     const light_found found =
         light_found_at(primitive_light, lights, light_count, unit, triangle_count, primitive, hit, origin, direction);
-    real weight = mis_weight_bsdf(AT_IN(vertex_old, vertex, pdf, row), found.pdf);
+    real weight = mis_weight_bsdf(AT(path, pdf, row), found.pdf);
 #if TRAIT_HIDE_EMITTERS
-    weight = AT_UINT_IN(vertex_old, vertex, depth, row) > 0u ? weight : R(0);
+    weight = AT_UINT(path, depth, row) > 0u ? weight : R(0);
 #endif
-    const rgb throughput = AT_RGB_IN(vertex_old, vertex, throughput, row);
+    const rgb throughput = AT_RGB(path, throughput, row);
     const rgb gained = rgb_mul(rgb_scale(found.radiance, weight), throughput);
     ADD_RGB(radiance, value, slot, gained);
 }

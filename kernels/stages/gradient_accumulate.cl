@@ -1,49 +1,66 @@
-/* gradient_accumulate: adds the primal samples and gradients of `frames` frames to the film, frame after frame: slots
- * `first_slot` on, at most accumulated_frames of them. The gradient between two pixels is what the one's offset path to
- * the other gives, less what the other's to the one gives (Kettunen et al. 2015). */
+/* gradient_accumulate: adds the primal samples and gradients of a strip to the film: slots `first_slot` on, those of
+ * `frames` frames, at most accumulated_frames of them, one after the other. The gradient between two pixels is what the
+ * one's offset path to the other gives, less what the other's to the one gives (Kettunen et al. 2015).
+ *
+ * The gradient to the pixel below belongs to the row above: so the first row of a strip finishes that of the strip
+ * before, which has left its part in `carry_old`, and the last leaves its own in `carry`. */
 #include "kernels/lib/compensated.h"
 #include "kernels/lib/gradient.h"
 
-/* `sample` is that of slot `at`. */
-#define ADD(number, sample)                                                                                            \
+/* `sample` is that of slot `at`, for pixel `to` of the film. Only the stores are behind a condition. */
+#define ADD(number, to, is_wanted, sample)                                                                             \
     {                                                                                                                  \
         compensated s;                                                                                                 \
-        s.sum = FILM(gradient_film_primal_r + number);                                                                 \
-        s.correction = FILM(gradient_film_correction_first + number);                                                  \
-        real square = FILM(gradient_film_square_first + number);                                                       \
+        s.sum = FILM(gradient_film_primal_r + number, to);                                                             \
+        s.correction = FILM(gradient_film_correction_first + number, to);                                              \
+        real square = FILM(gradient_film_square_first + number, to);                                                   \
         _Pragma("unroll") for (uint frame = 0; frame < accumulated_frames; ++frame) {                                  \
             const int is_there = frame < frames;                                                                       \
-            const uint at = slot + (is_there ? frame * pixels : 0u);                                                   \
+            const uint at = slot + (is_there ? frame * strip_pixels : 0u);                                             \
             const real value = sample;                                                                                 \
             const compensated added = compensated_add(s, value);                                                       \
             s.sum = is_there ? added.sum : s.sum;                                                                      \
             s.correction = is_there ? added.correction : s.correction;                                                 \
             square += is_there ? value * value : R(0);                                                                 \
         }                                                                                                              \
-        FILM(gradient_film_primal_r + number) = s.sum;                                                                 \
-        FILM(gradient_film_correction_first + number) = s.correction;                                                  \
-        FILM(gradient_film_square_first + number) = square;                                                            \
+        if (is_wanted) {                                                                                               \
+            FILM(gradient_film_primal_r + number, to) = s.sum;                                                         \
+            FILM(gradient_film_correction_first + number, to) = s.correction;                                          \
+            FILM(gradient_film_square_first + number, to) = square;                                                    \
+        }                                                                                                              \
     }
-#define FILM(column) gradient_film[(size_t)(column)*pixels + pixel]
+#define FILM(column, to) gradient_film[(size_t)(column)*pixels + (to)]
 #define DIFFERENCE(j, channel, of) AT(difference, value_##channel, (size_t)(j)*slots + (of))
+/* Of the pixel above slot `at`, to below. */
+#define FROM_ABOVE(channel)                                                                                            \
+    (is_carried ? AT_IN(carry_old, carry, value_##channel, place.x) : DIFFERENCE(2, channel, above + (at - slot)))
 
-STAGE gradient_accumulate(uint count, uint slots, uint first_slot, uint frames, __global const real *prefix,
-                          __global const real *difference, __global real *gradient_film, FILM_PLACE) {
-    const size_t pixel = work_item();
-    if (pixel >= count)
+STAGE gradient_accumulate(uint count, uint slots, uint pixels, uint first_slot, uint frames,
+                          __global const real *prefix, __global const real *difference, __global real *gradient_film,
+                          __global const real *carry_old, __global real *carry, STRIP_PLACE) {
+    const size_t i = work_item();
+    if (i >= count)
         return;
-    const uint slot = first_slot + (uint)pixel;
+    const uint slot = first_slot + (uint)i;
     const film_pixel place = PIXEL_OF(slot);
-    const uint to_right = gradient_neighbour(slot, 0u, place, crop_width, crop_height) - slot;
-    const uint to_below = gradient_neighbour(slot, 2u, place, crop_width, crop_height) - slot;
-    const int has_right = to_right != 0u, has_below = to_below != 0u;
-    ADD(0, AT(prefix, value_r, at))
-    ADD(1, AT(prefix, value_g, at))
-    ADD(2, AT(prefix, value_b, at))
-    ADD(3, has_right ? DIFFERENCE(0, r, at) - DIFFERENCE(1, r, at + to_right) : R(0))
-    ADD(4, has_right ? DIFFERENCE(0, g, at) - DIFFERENCE(1, g, at + to_right) : R(0))
-    ADD(5, has_right ? DIFFERENCE(0, b, at) - DIFFERENCE(1, b, at + to_right) : R(0))
-    ADD(6, has_below ? DIFFERENCE(2, r, at) - DIFFERENCE(3, r, at + to_below) : R(0))
-    ADD(7, has_below ? DIFFERENCE(2, g, at) - DIFFERENCE(3, g, at + to_below) : R(0))
-    ADD(8, has_below ? DIFFERENCE(2, b, at) - DIFFERENCE(3, b, at + to_below) : R(0))
+    const uint pixel = place.y * crop_width + place.x;
+    const int has_right = place.x + 1u < crop_width, has_above = place.y > 0u;
+    const int is_carried = place.y == strip_first;
+    const uint above = is_carried ? slot : slot - crop_width;
+    const uint right = has_right ? 1u : 0u;
+    ADD(0, pixel, 1, AT(prefix, value_r, at))
+    ADD(1, pixel, 1, AT(prefix, value_g, at))
+    ADD(2, pixel, 1, AT(prefix, value_b, at))
+    ADD(3, pixel, 1, has_right ? DIFFERENCE(0, r, at) - DIFFERENCE(1, r, at + right) : R(0))
+    ADD(4, pixel, 1, has_right ? DIFFERENCE(0, g, at) - DIFFERENCE(1, g, at + right) : R(0))
+    ADD(5, pixel, 1, has_right ? DIFFERENCE(0, b, at) - DIFFERENCE(1, b, at + right) : R(0))
+    const uint pixel_above = has_above ? pixel - crop_width : pixel;
+    ADD(6, pixel_above, has_above, FROM_ABOVE(r) - DIFFERENCE(3, r, at))
+    ADD(7, pixel_above, has_above, FROM_ABOVE(g) - DIFFERENCE(3, g, at))
+    ADD(8, pixel_above, has_above, FROM_ABOVE(b) - DIFFERENCE(3, b, at))
+    if (i + crop_width >= count) {
+        AT(carry, value_r, place.x) = DIFFERENCE(2, r, slot);
+        AT(carry, value_g, place.x) = DIFFERENCE(2, g, slot);
+        AT(carry, value_b, place.x) = DIFFERENCE(2, b, slot);
+    }
 }

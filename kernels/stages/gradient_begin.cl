@@ -1,41 +1,36 @@
 /* gradient_begin: begins one base path a row from what the camera saw: its first ray, already traced. Its sums are
- * begun where its first vertex is lit (gradient_connect with FIRST), or by `gradient_clear` where none is or lights are
- * not sampled. */
+ * begun where its first vertex is lit (`weigh`), or here where there is none. */
 #include "kernels/lib/begin_path.h"
 
-STAGE gradient_begin(uint count, uint unit, uint capacity, uint slots, __global real *ray, __global real *vertex,
+STAGE gradient_begin(uint count, uint unit, uint capacity, uint slots, __global real *ray, __global real *path,
                      __global real *radiance, __global real *direct, __global real *prefix, __global real *difference,
-                     __global const real *primary, __global const real *camera, uint first_row, uint first_slot) {
+                     __global const real *primary, __global const real *camera, uint first_row, uint first_slot,
+                     uint primary_shift) {
     const size_t i = work_item();
     if (i >= count)
         return;
     const size_t row = first_row + i;
     const uint slot = first_slot + (uint)i;
+    const size_t seen = (size_t)slot + primary_shift;
     const vec3 origin = FIELD_V3(camera, camera, 0, origin);
-    const vec3 direction = v3_neg(AT_V3(primary, wi, slot));
+    const vec3 direction = AT_V3(primary, direction, seen);
+    const uint primitive = AT_UINT(primary, primitive, seen);
     SET_V3(ray, origin, row, origin);
     SET_V3(ray, direction, row, direction);
-    AT_UINT(ray, primitive, row) = AT_UINT(primary, primitive, slot);
-    BEGIN_PATH(row, slot, AT_UINT(primary, key_0, slot), AT_UINT(primary, key_1, slot))
+    AT_UINT(ray, primitive, row) = primitive;
+    BEGIN_PATH(row, slot, AT_UINT(primary, key_0, seen), AT_UINT(primary, key_1, seen))
     SET_RGB(radiance, value, slot, rgb_gray(R(0)));
     SET_RGB_IN(direct, radiance, value, slot, rgb_gray(R(0)));
     SET_RGB(prefix, throughput, slot, rgb_gray(R(0)));
 #pragma unroll
     for (uint j = 0; j < 4; ++j)
         AT(difference, ratio, (size_t)j * slots + slot) = shift_absent;
-}
-
-/* Paths of rows index[first] on have gathered nothing. */
-STAGE gradient_clear(uint count, uint first, uint capacity, uint slots, __global const uint *index,
-                     __global const real *vertex_old, __global real *prefix, __global real *difference) {
-    const size_t i = work_item();
-    if (i >= count)
-        return;
-    const uint slot = AT_UINT_IN(vertex_old, vertex, slot, index[first + i]);
-    SET_RGB(prefix, value, slot, rgb_gray(R(0)));
+    if (primitive == ray_escaped) {
+        SET_RGB(prefix, value, slot, rgb_gray(R(0)));
 #pragma unroll
-    for (uint j = 0; j < 4; ++j) {
-        const size_t at = (size_t)j * slots + slot;
-        SET_RGB(difference, value, at, rgb_gray(R(0)));
+        for (uint j = 0; j < 4; ++j) {
+            const size_t at = (size_t)j * slots + slot;
+            SET_RGB(difference, value, at, rgb_gray(R(0)));
+        }
     }
 }

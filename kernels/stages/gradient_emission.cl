@@ -1,37 +1,39 @@
 /* gradient_emission: adds the light that a base path finds, at an emitting surface or (ESCAPED) the environment, to the
- * path and its differences: rows index[first] on, offset paths from `to` on. Offset paths that reconnected end in the
- * same point.
+ * path and its differences, where offset paths have stepped with it: rows index[first] on. Offset paths that
+ * reconnected end in the same point.
  *
- * APART: others may be elsewhere and find a light where the base path does not. Then light sampling would shift these
- * paths in another way, so each sampler is an integrand of its own, weighted by its share within each path. */
+ * TRAIT_APART: others may be elsewhere and find a light where the base path does not. Then light sampling would shift
+ * these paths in another way, so each sampler is an integrand of its own, weighted by its share within each path. */
 //! traits: TRAIT_LIGHT_TRIANGLE TRAIT_LIGHT_SPHERE TRAIT_APART
 #include "kernels/lib/light_found.h"
 #include "kernels/lib/mis.h"
 #include "kernels/lib/weighted_difference.h"
 #include "kernels/shared/stage.h"
 
-STAGE gradient_emission(uint count, uint unit, uint first, uint to, uint capacity, uint slots,
-                        __global const uint *index, __global const real *ray, __global const real *vertex_old,
-                        __global const real *shifted, __global const real *link, uint link_first, uint link_stride,
-                        __global real *prefix, __global real *difference, __global const real *triangles,
-                        __global const real *spheres, uint triangle_count, __global const uint *primitive_light,
-                        __global const real *lights, uint light_count, uint environment_light
+STAGE gradient_emission(uint count, uint unit, uint first, uint stride, uint capacity, uint slots,
+                        __global const uint *index, __global const real *path, __global const real *offset,
+                        __global const real *link, __global real *prefix, __global real *difference,
+                        __global const real *lights
+#if ESCAPED
+                        ,
+                        uint environment_light
+#else
+                        ,
+                        __global const real *ray, __global const real *triangles, __global const real *spheres,
+                        uint triangle_count, __global const uint *primitive_light, uint light_count
+#endif
 #if TRAIT_APART
                         ,
-                        __global const real *shifted_old
-#endif
-#if APART
-                        ,
-                        __global const real *offset_ray, uint offset_first, uint offset_stride
+                        __global const real *shift, __global const real *offset_ray
 #endif
 ) {
     const size_t i = work_item();
     if (i >= count)
         return;
     const uint row = index[first + i];
-    const uint slot = AT_UINT_IN(vertex_old, vertex, slot, row);
-    const real bsdf_pdf = AT_IN(vertex_old, vertex, pdf, row);
-    const rgb throughput = AT_RGB_IN(vertex_old, vertex, throughput, row);
+    const uint slot = AT_UINT(path, slot, row);
+    const real bsdf_pdf = AT(path, pdf, row);
+    const rgb throughput = AT_RGB(path, throughput, row);
 #if ESCAPED
     light_found found;
     found.radiance = FIELD_RGB(light, lights, environment_light, value);
@@ -63,10 +65,10 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint to, uint capacit
 #endif
 #pragma unroll
     for (uint j = 0; j < 4; ++j) {
-        const size_t at = (size_t)j * capacity + to + i, to_slot = (size_t)j * slots + slot;
-        const size_t segment = link_first + (size_t)j * link_stride + i;
-        const real ratio = AT(shifted, ratio, at);
-        const rgb so_far = AT_RGB(shifted, value, at);
+        const size_t at = (size_t)j * capacity + row, to_slot = (size_t)j * slots + slot;
+        const size_t segment = (size_t)(4u + j) * stride + row;
+        const real ratio = AT(offset, ratio, at);
+        const rgb so_far = AT_RGB(offset, value, at);
         int is_open = AT_UINT(link, open, segment) != 0u;
         /* The same point by area: the Jacobian turns one density by solid angle into the other. */
         real offset_light = base_light;
@@ -83,20 +85,20 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint to, uint capacit
         offset_light = base_light > R(0) ? jacobian * from_offset.pdf / bsdf_pdf : R(0);
 #endif
 #if TRAIT_APART
-        const uint state = AT_UINT(shifted, state, at);
-        const int is_merged = state == shift_merged;
-        is_open |= is_merged;
-        offset_light = is_merged ? base_light : offset_light;
-        offset_light *= r_max(AT_IN(shifted_old, shifted, ratio, (size_t)j * capacity + row), R(0));
+        const uint state = AT_UINT(offset, state, at);
+        const int is_full = state == connection_full;
+        is_open |= is_full;
+        offset_light = is_full ? base_light : offset_light;
+        offset_light *= r_max(AT(shift, light_density, at), R(0));
 #endif
         const real open = is_open ? R(1) : R(0);
-        rgb offset = rgb_scale(rgb_mul(so_far, radiance), open);
+        rgb found_there = rgb_scale(rgb_mul(so_far, radiance), open);
         rgb mine = base;
         real mine_other = base_light, density = offset_light + open * ratio, marker = ratio;
-#if APART
-        const int is_apart = state < shift_reconnected;
-        const real offset_pdf = AT(shifted, pdf, at);
-        const size_t sent = offset_first + (size_t)j * offset_stride + i;
+#if TRAIT_APART
+        const int is_apart = state < connection_recent;
+        const real own_pdf = AT(offset, pdf, at);
+        const size_t sent = (size_t)j * stride + row;
         const uint offset_primitive = AT_UINT(offset_ray, primitive, sent);
 #if ESCAPED
         const light_found own = found;
@@ -110,23 +112,22 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint to, uint capacit
             primitive_hit_of(triangles, spheres, unit, triangle_count, present, own_origin, own_direction), own_origin,
             own_direction);
 #endif
-        real own_light = offset_pdf > R(0) ? own.pdf / offset_pdf : R(0);
+        real own_light = own_pdf > R(0) ? own.pdf / own_pdf : R(0);
         real own_share = R(1);
 #if STRATEGY == STRATEGY_BSDF
         own_light = R(0);
 #endif
 #if STRATEGY == STRATEGY_LIGHT
         own_light = R(0);
-        own_share = offset_pdf > R(0) ? R(0) : R(1);
+        own_share = own_pdf > R(0) ? R(0) : R(1);
 #endif
         const rgb own_value = rgb_scale(rgb_mul(so_far, own.radiance), own_share / (R(1) + own_light));
-        offset = rgb3(is_apart ? own_value.r : offset.r, is_apart ? own_value.g : offset.g,
-                      is_apart ? own_value.b : offset.b);
-        mine = rgb3(is_apart ? alone.r : base.r, is_apart ? alone.g : base.g, is_apart ? alone.b : base.b);
+        found_there = rgb_select(is_apart, own_value, found_there);
+        mine = rgb_select(is_apart, alone, base);
         mine_other = is_apart ? R(0) : base_light;
         density = is_apart ? ratio : density;
 #endif
-        const rgb change = weighted_difference(mine, offset, mine_other, density, marker);
+        const rgb change = weighted_difference(mine, found_there, mine_other, density, marker);
         ADD_RGB(difference, value, to_slot, change);
     }
 }

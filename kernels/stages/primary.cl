@@ -1,45 +1,28 @@
-/* primary: keeps what the camera sees through each pixel, by slot, before the paths begin: their own first vertices,
- * and those of their neighbours' offset paths. */
-//! traits: TRAIT_SHADING_NORMALS TRAIT_ANISOTROPIC
+/* primary: keeps what the camera sees through each pixel of a strip and of the rows beside it, by slot, before the
+ * paths begin: the first vertices of their own, and those of their neighbours' offset paths. Rows are those of
+ * `camera`, after tracing. */
+#include "kernels/lib/surface_point.h"
+#include "kernels/lib/vertex_frame.h"
 #include "kernels/shared/stage.h"
 
-/* Rows of `camera`, before tracing. */
-STAGE primary_begin(uint count, uint capacity, uint slots, __global const real *ray, __global const real *vertex,
-                    __global real *primary) {
+STAGE primary(uint count, uint unit, uint capacity, uint slots, __global const real *ray, __global const real *path,
+              __global real *primary, __global real *primary_vertex, __global const real *triangles,
+              __global const real *triangle_normals, __global const real *triangle_tangents,
+              __global const real *spheres, uint triangle_count, __global const uint *primitive_material,
+              __global const uint *material_back, __global const uint *material_kind) {
     const size_t row = work_item();
     if (row >= count)
         return;
-    const uint slot = AT_UINT(vertex, slot, row);
-    AT_UINT(primary, key_0, slot) = AT_UINT(vertex, key_0, row);
-    AT_UINT(primary, key_1, slot) = AT_UINT(vertex, key_1, row);
-    AT_UINT(primary, primitive, slot) = ray_escaped;
-    AT_UINT(primary, kind, slot) = kind_none;
+    const uint slot = AT_UINT(path, slot, row);
+    const uint primitive = AT_UINT(ray, primitive, row);
     const vec3 direction = AT_V3(ray, direction, row);
-    SET_V3(primary, wi, slot, v3_neg(direction));
-}
-
-/* Their vertices. */
-STAGE primary_surface(uint count, uint escaped, uint capacity, uint slots, __global const uint *index,
-                      __global const real *ray, __global const real *vertex, __global const real *tangent,
-                      __global const uint *material_kind, __global real *primary) {
-    const size_t row = work_item();
-    if (row >= count)
-        return;
-    const uint slot = AT_UINT(vertex, slot, row);
-    const uint material_index = AT_UINT(vertex, material, row);
-    AT_UINT(primary, primitive, slot) = AT_UINT(ray, primitive, index[escaped + row]);
-    AT_UINT(primary, kind, slot) = material_kind[material_index];
-    AT_UINT(primary, material, slot) = material_index;
-    AT(primary, offset, slot) = AT(vertex, offset, row);
-    const vec3 position = AT_V3(vertex, position, row), geometric = AT_V3(vertex, geometric, row);
-    SET_V3(primary, position, slot, position);
-    SET_V3(primary, geometric, slot, geometric);
-#if TRAIT_SHADING_NORMALS
-    const vec3 shading = AT_V3(vertex, shading, row);
-    SET_V3(primary, shading, slot, shading);
-#endif
-#if TRAIT_ANISOTROPIC
-    const vec3 along = AT_V3(tangent, along, row);
-    SET_V3(primary, along, slot, along);
-#endif
+    const int is_hit = primitive < ray_first_special;
+    const surface_point point = surface_point_of(triangles, triangle_normals, triangle_tangents, spheres, unit,
+                                                 triangle_count, primitive_material, material_back,
+                                                 is_hit ? primitive : 0u, AT_V3(ray, origin, row), direction);
+    AT_UINT(primary, key_0, slot) = AT_UINT(path, key_0, row);
+    AT_UINT(primary, key_1, slot) = AT_UINT(path, key_1, row);
+    AT_UINT(primary, primitive, slot) = primitive;
+    SET_V3(primary, direction, slot, direction);
+    SET_SURFACE_VERTEX(primary_vertex, slot, is_hit ? material_kind[point.material] : kind_none, point, direction)
 }

@@ -1,199 +1,229 @@
-/* shift: takes the offset paths of a base path one vertex further: rows index[first] on. Those that may reconnect to
- * the base's new vertex, or where that is at infinity (ESCAPED) go in the same direction, and ask whether the way is
- * free (`link`). Leaves them in `shifted`, rows `to` on. Runs before `surface`, on the old vertices.
+/* shift: how offset paths that are not connected go on from their vertices (rows `first` on): with their base path's
+ * light sample, and with its direction (Kettunen et al. 2015). Leaves both in `shift`, asks the BSDF service for their
+ * values (`evaluation`), and the tracer whether the ways are free (`link`) and what their own rays meet (`offset_ray`).
+ * `weigh` goes on once all have answered.
  *
- * APART: others copy the half vector and send out a ray of their own (`offset_ray`). Where that is not compiled, all
- * that are apart may reconnect. Which of both is done is a matter of the two vertices and the base's next one, so that
- * the shift back does the same; `offset_surface` makes sure of the fourth.
+ * The light sample goes to the same light point. The direction: where base and offset vertex are rough and the base's
+ * next vertex is reconnectable, the offset path reconnects to it (shift_reconnection.h), or where the base path left
+ * the scene, goes in the same direction; else it copies the half vector (shift_half_vector.h, shift_specular.h) and
+ * sends out a ray of its own. Which of both is a matter of the two vertices and the base's next one, so that the shift
+ * back does the same; `weigh` makes sure of the fourth.
  *
- * The shift fails where the neighbour saw nothing, where the new vertex would be seen from its other side, between a
- * Dirac kind and one that is none, and where the half-vector copy does (kernels/lib/shift_half_vector.h,
- * shift_specular.h). */
-//! traits: TRAIT_SHIFT_DISTANCE
-#include "kernels/lib/bsdf_any.h"
+ * The step fails where the next vertex would be seen from its other side, between a specular kind and one that is none,
+ * and where the half-vector copy does.
+ *
+ * BSDF: where the scene has one kind, it is inlined, and what would be asked is answered at once. */
+//! traits: TRAIT_SHIFT_DISTANCE TRAIT_ENVIRONMENT SAMPLES_LIGHTS
+#include "kernels/lib/bsdf_evaluate.h"
 #include "kernels/lib/gradient.h"
+#include "kernels/lib/light_sampling.h"
 #include "kernels/lib/reconnectable.h"
 #include "kernels/lib/scene_hit.h"
 #include "kernels/lib/shift_reconnection.h"
 #include "kernels/lib/shift_specular.h"
 
-STAGE shift(uint count, uint unit, uint first, uint to, uint capacity, uint slots, __global const uint *index,
-            __global const real *ray, __global const real *vertex, __global real *shifted, __global real *link,
-            uint link_first, uint link_stride, __global const real *LONE, __global const real *materials,
-            __global const real *triangles, __global const real *spheres, uint triangle_count, real scene_diameter
+STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint slots, __global const real *path,
+            __global const real *ray, __global const real *vertex, __global const real *event, OWN_VERTEX, STRIP_PLACE,
+            __global real *offset, __global real *shift, __global real *evaluation, __global real *link,
+            __global const real *materials, __global const real *triangles, __global const real *spheres,
+            uint triangle_count, __global const uint *primitive_material, __global const uint *primitive_light,
+            __global const uint *material_back, __global const uint *material_kind, real scene_diameter
+#if SAMPLES_LIGHTS
+            ,
+            __global const real *lights, __global const uint *light_kinds, __global const uint *light_alias,
+            uint light_count
+#endif
 #if TRAIT_APART
             ,
-            __global const real *shifted_old
-#else
-            ,
-            FILM_PLACE
+            __global real *offset_ray
 #endif
-#if APART
-            ,
-            __global const real *tangent, __global const uint *primitive_material, __global const uint *primitive_light,
-            __global const uint *material_back, __global const uint *material_kind, __global real *offset_ray,
-            uint offset_first, uint offset_stride
 #if TRAIT_SHIFT_DISTANCE
             ,
             real shift_distance
-#endif
 #endif
 ) {
     const size_t i = work_item();
     if (i >= count)
         return;
-    const uint row = index[first + i];
-    const real pdf = AT(vertex, pdf, row);
+    const uint row = first + (uint)i;
+    const uint slot = AT_UINT(path, slot, row);
+    const film_pixel pixel = PIXEL_OF(slot);
     const vec3 base = AT_V3(vertex, position, row);
-    const vec3 base_direction = AT_V3(ray, direction, row);
-#if !ESCAPED
+    const uint base_kind = AT_UINT(vertex, kind, row);
+
+    /* Where the base path goes. */
     const uint primitive = AT_UINT(ray, primitive, row);
+    const vec3 base_direction = AT_V3(ray, direction, row);
+    const int is_hit = primitive < ray_first_special;
+    const int is_escaped = TRAIT_ENVIRONMENT && primitive == ray_escaped;
+    const uint present = is_hit ? primitive : 0u;
     const primitive_hit hit =
-        primitive_hit_of(triangles, spheres, unit, triangle_count, primitive, AT_V3(ray, origin, row), base_direction);
+        primitive_hit_of(triangles, spheres, unit, triangle_count, present, AT_V3(ray, origin, row), base_direction);
     const real base_side = v3_dot(hit.normal, v3_sub(base, hit.position));
-    const real offset = primitive_offset(triangles, spheres, unit, triangle_count, primitive);
-    const vec3 end = v3_mad(hit.position, offset * r_copysign1(base_side), hit.normal);
-#endif
-#if APART
-    const uint base_material_index = AT_UINT(vertex, material, row);
-    const uint base_kind = material_kind[base_material_index];
+    const real end_offset = primitive_offset(triangles, spheres, unit, triangle_count, present);
+    const vec3 end = v3_mad(hit.position, end_offset * r_copysign1(base_side), hit.normal);
+    const real pdf = AT(event, pdf, row);
+    const int goes_on = (is_hit | is_escaped) & (pdf > R(0));
+#if TRAIT_APART
     const int base_is_rough = (base_kind & kind_is_rough) != 0u, base_is_dirac = (base_kind & kind_is_dirac) != 0u;
-    const material base_material = material_load(materials, base_material_index, unit);
-    const frame base_axes = VERTEX_FRAME(row, base_material);
+    const material base_material = material_load(materials, AT_UINT(vertex, material, row), unit);
+    const frame base_axes = VERTEX_FRAME(vertex, row, base_material);
     const vec3 base_wi = frame_to_local(base_axes, AT_V3(vertex, wi, row));
     const vec3 base_wo = frame_to_local(base_axes, base_direction);
-    const int is_reflected = base_wi.z * base_wo.z > R(0);
-    const real probability = bsdf_any_dirac(base_kind, base_material, base_wi, is_reflected).pdf;
-    const real base_pdf = base_is_dirac ? probability : pdf;
-#if ESCAPED
-    const int reconnectable = 1;
-#else
+    const uint next_light = primitive_light[present];
     const uint next_kind =
-        kind_of_primitive(primitive_material, material_back, material_kind, primitive, base_side < R(0));
-    const int reconnectable = is_reconnectable(next_kind, primitive_light[primitive]);
+        kind_of_primitive(primitive_material, material_back, material_kind, present, base_side < R(0));
+    const int reconnectable = is_escaped | is_reconnectable(next_kind, next_light);
 #endif
-#else
-    const real base_pdf = pdf;
-#endif
-    const real inverse_pdf = base_pdf > R(0) ? R(1) / base_pdf : R(0);
-#if !TRAIT_APART
-    const uint slot = AT_UINT(vertex, slot, row);
-    const film_pixel pixel = PIXEL_OF(slot);
+
+#if SAMPLES_LIGHTS
+    /* The base path's light sample, made again. */
+    const random4 u = random_draw(AT_UINT(path, key_0, row), AT_UINT(path, key_1, row),
+                                  random_dimension_light(AT_UINT(path, depth, row) - 1u));
+    const chosen_light chosen =
+        light_sampling(lights, light_kinds, light_alias, light_count, scene_diameter, unit, base, u);
+    const light_choice s = chosen.choice;
+    const vec3 light_point = v3_add(base, s.connection);
+    const int is_surface =
+        IS_LIGHT(chosen, triangle, TRAIT_LIGHT_TRIANGLE) | IS_LIGHT(chosen, sphere, TRAIT_LIGHT_SPHERE);
+    const int is_point = IS_LIGHT(chosen, point, TRAIT_LIGHT_POINT);
+    const int is_finite_light = is_surface | is_point;
+    const real base_distance_squared = v3_dot(s.connection, s.connection);
+    const real base_cosine = -v3_dot(s.normal, s.direction);
+    const real end_gap = FIELD_OF(light, lights, chosen.light, offset);
+    const int arrives = rgb_max(AT_RGB(event, arriving, row)) > R(0);
 #endif
 #pragma unroll
     for (uint j = 0; j < 4; ++j) {
-        const size_t at = (size_t)j * capacity + to + i;
+        const size_t at = (size_t)j * capacity + row;
+        const own_vertex_state own = OWN_STATE(j, row, slot, pixel);
+        const uint kind = AT_UINT(own_vertex, kind, own.row);
+        const vec3 from = AT_V3(own_vertex, position, own.row);
+        const vec3 geometric = AT_V3(own_vertex, geometric, own.row);
+        const real from_offset = AT(own_vertex, offset, own.row);
+        const int is_dirac = (kind & kind_is_dirac) != 0u;
+#if TRAIT_APART || defined(BSDF)
+        const material m = material_load(materials, AT_UINT(own_vertex, material, own.row), unit);
+        const frame axes = VERTEX_FRAME(own_vertex, own.row, m);
+        const vec3 wi = frame_to_local(axes, AT_V3(own_vertex, wi, own.row));
+#endif
+
+        /* The light sample. */
+        int asks_light = 0;
+#if SAMPLES_LIGHTS
+        const vec3 to_point = v3_sub(light_point, from);
+        const real point_distance_squared = r_max(v3_dot(to_point, to_point), R(1e-36));
+        const vec3 to_point_unit = v3_scale(to_point, R(1) / r_sqrt(point_distance_squared));
+        const vec3 to_light = v3_select(is_finite_light, to_point_unit, s.direction);
+        const real cosine = -v3_dot(s.normal, to_light);
+        const real nearer = base_distance_squared / point_distance_squared;
+        /* The Jacobian by solid angle; for a point light, which has none, the ratio of what arrives. */
+        real light_jacobian = is_point ? nearer : R(1);
+        light_jacobian =
+            is_surface ? (cosine > R(0) && base_cosine > R(0) ? nearer * cosine / base_cosine : R(0)) : light_jacobian;
+        /* The same point of the same light, chosen with the same density by area. Spheres are sampled by cones. */
+        real light_density = light_jacobian > R(0) ? R(1) : R(0);
+#if TRAIT_LIGHT_SPHERE
+        const vec3 to_center = v3_sub(FIELD_V3(light, lights, chosen.light, p), from);
+        const real sphere_pdf =
+            light_sphere_pdf(FIELD_OF(light, lights, chosen.light, e1_x), FIELD_OF(light, lights, chosen.light, e1_y),
+                             FIELD_OF(light, lights, chosen.light, inverse_area), v3_dot(to_center, to_center),
+                             point_distance_squared, cosine);
+        const real by_cone = s.pdf > R(0) ? light_jacobian * sphere_pdf / s.pdf : R(0);
+        light_density = IS_LIGHT(chosen, sphere, 1) ? by_cone : light_density;
+#endif
+        AT(shift, light_jacobian, at) = light_jacobian;
+        asks_light = own.is_own & !is_dirac & arrives & (light_jacobian > R(0));
 #if TRAIT_APART
-        const size_t from_row = LONE_ROW(j, row, 0u);
-        const real ratio_before = AT_IN(shifted_old, shifted, ratio, from_row);
-        const rgb value_before = AT_RGB_IN(shifted_old, shifted, value, from_row);
-        const int is_there = ratio_before >= R(0);
-        const int is_apart = is_there & (AT_UINT_IN(shifted_old, shifted, state, from_row) < shift_reconnected);
-#else
-        const uint neighbour = gradient_neighbour(slot, j, pixel, crop_width, crop_height);
-        const uint from_row = LONE_ROW(j, row, neighbour);
-        const real ratio_before = neighbour == slot ? shift_absent : R(1);
-        const rgb value_before = rgb_gray(R(1));
-        const int is_there = neighbour != slot, is_apart = is_there;
+        if (own.is_own) /* others keep what `join` left there */
 #endif
-        const uint kind = AT_UINT(LONE, kind, from_row);
-        const int is_rough = (kind & kind_is_rough) != 0u;
-        const vec3 from = AT_V3(LONE, position, from_row);
-#if ESCAPED
-        const vec3 to_next = base_direction;
-        const real reconnection = R(1);
-        const int same_side = 1;
+        {
+            AT(shift, light_density, at) = light_density;
+#ifdef BSDF
+            const bsdf_value of_light = bsdf_evaluate(m, wi, frame_to_local(axes, to_light));
+            asks_light &= rgb_max(of_light.value) > R(0);
+            SET_RGB(evaluation, value, at, of_light.value);
+            AT(evaluation, pdf, at) = of_light.pdf;
 #else
+            AT(evaluation, value_r, at) = to_light.x;
+            AT(evaluation, value_g, at) = to_light.y;
+            AT(evaluation, value_b, at) = to_light.z;
+#endif
+        }
+        const vec3 light_origin = ray_origin(from, geometric, from_offset, to_light);
+        const vec3 light_end = v3_select(is_finite_light, light_point, v3_add(from, s.connection));
+        const size_t light_link = (size_t)j * stride + row;
+        SET_V3(link, origin, light_link, light_origin);
+        SET_V3(link, direction, light_link, v3_sub(v3_mad(light_end, end_gap, s.normal), light_origin));
+#endif
+        AT_UINT(link, open, (size_t)j * stride + row) = asks_light ? 1u : 0u;
+
+        /* The step to the next vertex. */
         const vec3 connection = v3_sub(hit.position, from);
-        const vec3 to_next = v3_normalize(connection);
-        const real reconnection = reconnection_jacobian(base, from, hit.position, hit.normal);
-        const int same_side = -v3_dot(hit.normal, connection) * base_side > R(0);
-#endif
-        const material m = material_load(materials, AT_UINT(LONE, material, from_row), unit);
-        const frame axes = LONE_FRAME(from_row, m);
-        const vec3 wi = frame_to_local(axes, AT_V3(LONE, wi, from_row));
-#if APART
-        const int both_rough = base_is_rough & is_rough;
-#if TRAIT_SHIFT_DISTANCE && !ESCAPED
-        const int is_long = is_far(base, from, hit.position, primitive_light[primitive], shift_distance);
+        const vec3 to_next = v3_select(is_escaped, base_direction, v3_normalize(connection));
+        const real reconnection = is_escaped ? R(1) : reconnection_jacobian(base, from, hit.position, hit.normal);
+        const int same_side = is_escaped | (-v3_dot(hit.normal, connection) * base_side > R(0));
+#if TRAIT_APART
+        const int both_rough = base_is_rough & ((kind & kind_is_rough) != 0u);
+#if TRAIT_SHIFT_DISTANCE
+        const int is_long = is_escaped | is_far(base, from, hit.position, next_light, shift_distance);
 #else
         const int is_long = 1;
 #endif
         const int reconnects = both_rough & reconnectable & is_long;
-        const int is_dirac = (kind & kind_is_dirac) != 0u;
         const int alike = (kind != kind_none) & (is_dirac == base_is_dirac);
         const real ior = kind_number(kind) == bsdf_kind_null ? R(1) : m.ior;
         const shifted_direction mirrored = shift_specular(base_wi, base_wo, wi, ior);
         const shifted_direction copied = shift_half_vector(base_wi, base_wo, base_material.ior, wi, ior);
-        const vec3 wo_copied = v3(is_dirac ? mirrored.wo.x : copied.wo.x, is_dirac ? mirrored.wo.y : copied.wo.y,
-                                  is_dirac ? mirrored.wo.z : copied.wo.z);
-        const int copy_is_valid = alike & (is_dirac ? mirrored.is_valid : copied.is_valid);
+        const vec3 wo_copied = v3_select(is_dirac, mirrored.wo, copied.wo);
+        const int copies = alike & (is_dirac ? mirrored.is_valid : copied.is_valid);
         const real copy_jacobian = is_dirac ? mirrored.jacobian : copied.jacobian;
-        const vec3 own = frame_to_world(axes, wo_copied);
-        const vec3 own_unit = v3_scale(own, R(1) / r_max(r_sqrt(v3_dot(own, own)), R(1e-15)));
-        const vec3 direction = v3(reconnects ? to_next.x : own_unit.x, reconnects ? to_next.y : own_unit.y,
-                                  reconnects ? to_next.z : own_unit.z);
-        const real jacobian = reconnects ? reconnection : copy_jacobian;
-        const bsdf_value rough = bsdf_any(kind, m, wi, frame_to_local(axes, direction));
-        const bsdf_value dirac = bsdf_any_dirac(kind, m, wi, is_reflected);
-        const rgb f = rgb3(is_dirac ? dirac.value.r : rough.value.r, is_dirac ? dirac.value.g : rough.value.g,
-                           is_dirac ? dirac.value.b : rough.value.b);
-        const real offset_pdf = is_dirac ? dirac.pdf : rough.pdf;
-        const int copies = copy_is_valid & (offset_pdf > R(0));
-        const int works = (base_pdf > R(0)) & (reconnects ? same_side & (reconnection > R(0)) : copies);
+        const vec3 own_direction = frame_to_world(axes, wo_copied);
+        const vec3 own_unit =
+            v3_scale(own_direction, R(1) / r_max(r_sqrt(v3_dot(own_direction, own_direction)), R(1e-15)));
+        const vec3 direction = v3_select(reconnects, to_next, own_unit);
+        const real step_jacobian = reconnects ? reconnection : copy_jacobian;
+        int works = goes_on & (reconnects ? same_side & (reconnection > R(0)) : copies);
+        const uint reason = reconnects ? outcome_failed_side : alike ? outcome_failed_copy : outcome_failed_kinds;
+        const uint way =
+            (reconnects ? outcome_reconnected : outcome_half_vector) | (both_rough ? shift_both_rough : 0u);
 #else
         const int reconnects = 1;
         const vec3 direction = to_next;
-        const real jacobian = reconnection;
-        const bsdf_value f_rough = bsdf_any(kind, m, wi, frame_to_local(axes, direction));
-        const rgb f = f_rough.value;
-        const real offset_pdf = f_rough.pdf;
-        const int works = (base_pdf > R(0)) & is_rough & same_side & (reconnection > R(0));
-#endif
-#if APART
-        const uint reason = reconnects ? outcome_failed_side : alike ? outcome_failed_copy : outcome_failed_kinds;
-#else
+        const real step_jacobian = reconnection;
+        int works = goes_on & same_side & (reconnection > R(0));
         const uint reason = kind == kind_none ? outcome_failed_at_once : outcome_failed_side;
+        const uint way = outcome_reconnected;
 #endif
-        const real factor = works ? jacobian * inverse_pdf : R(0);
-        const rgb value = rgb_mul(value_before, rgb_scale(f, factor));
-        const real ratio = works ? ratio_before * offset_pdf * factor : shift_failed(reason);
-        /* Others stay what they are. A direction that could not be copied may have no value: selected, not scaled. */
-        SET_RGB(shifted, value, at,
-                rgb3(is_apart ? (works ? value.r : R(0)) : value_before.r,
-                     is_apart ? (works ? value.g : R(0)) : value_before.g,
-                     is_apart ? (works ? value.b : R(0)) : value_before.b));
-        AT(shifted, ratio, at) = is_apart ? ratio : ratio_before;
-        const vec3 last = v3(is_apart ? direction.x : base_direction.x, is_apart ? direction.y : base_direction.y,
-                             is_apart ? direction.z : base_direction.z);
-        SET_V3(shifted, wi, at, v3_neg(last));
+        const size_t step = (size_t)(4u + j) * capacity + row;
+#ifdef BSDF
+        const bsdf_value of_step = bsdf_evaluate(m, wi, frame_to_local(axes, direction));
+        const int has_density = of_step.pdf > R(0);
+        works &= reconnects | has_density;
+        SET_RGB(evaluation, value, step, of_step.value);
+        AT(evaluation, pdf, step) = of_step.pdf;
+#else
+        const int has_density = 1; /* `evaluate` will know */
+        AT(evaluation, value_r, step) = direction.x;
+        AT(evaluation, value_g, step) = direction.y;
+        AT(evaluation, value_b, step) = direction.z;
+#endif
+        AT(shift, jacobian, at) = works ? step_jacobian : R(0);
+        AT_UINT(shift, outcome, at) = works ? way : reason;
+        const vec3 last = v3_select(own.is_own, direction, base_direction);
+        SET_V3(offset, wi, at, v3_neg(last));
 
-        const vec3 origin = ray_origin(from, AT_V3(LONE, geometric, from_row), AT(LONE, offset, from_row), direction);
-        const size_t segment = link_first + (size_t)j * link_stride + i;
-#if APART && TRAIT_SHIFT_DISTANCE
-        /* Where nothing is asked, `offset_surface` asks which vertex this was. */
-        SET_V3(link, origin, segment,
-               v3(reconnects ? origin.x : from.x, reconnects ? origin.y : from.y, reconnects ? origin.z : from.z));
-#else
-        SET_V3(link, origin, segment, origin);
-#endif
-#if ESCAPED
-        SET_V3(link, direction, segment, v3_scale(direction, scene_diameter));
-#else
-        SET_V3(link, direction, segment, v3_sub(end, origin));
-#endif
-        AT_UINT(link, open, segment) = (is_apart & reconnects & works & (offset_pdf > R(0))) ? 1u : 0u;
+        const vec3 origin = ray_origin(from, geometric, from_offset, direction);
+        const size_t step_link = (size_t)(4u + j) * stride + row;
+        SET_V3(link, origin, step_link, origin);
+        const vec3 way_out = v3_select(is_escaped, v3_scale(direction, scene_diameter), v3_sub(end, origin));
+        SET_V3(link, direction, step_link, way_out);
+        AT_UINT(link, open, step_link) = (own.is_own & reconnects & works & has_density) ? 1u : 0u;
 #if TRAIT_APART
-        uint state = is_apart ? shift_reconnected : shift_merged;
-#if APART
-        state = (is_apart & !reconnects) ? (both_rough ? shift_apart_rough : shift_apart) : state;
-        AT(shifted, pdf, at) = is_dirac ? R(0) : offset_pdf;
-        const size_t sent = offset_first + (size_t)j * offset_stride + i;
+        const size_t sent = (size_t)j * stride + row;
         SET_V3(offset_ray, origin, sent, origin);
         SET_V3(offset_ray, direction, sent, direction);
-        AT_UINT(offset_ray, primitive, sent) = (is_apart & !reconnects & works) ? ray_pending : ray_none;
-#endif
-        AT_UINT(shifted, state, at) = state;
+        AT_UINT(offset_ray, primitive, sent) = (own.is_own & !reconnects & works) ? ray_pending : ray_none;
 #endif
     }
 }

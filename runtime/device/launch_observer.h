@@ -20,7 +20,8 @@ struct Launch {
     const TraitValues &traits;
     const std::map<std::string, Argument> &arguments; ///< by name
     std::size_t items;
-    std::size_t lines; ///< of so many items each; 0: Kernel::launch(items) makes them
+    std::size_t lines;  ///< of so many items each; 0: Kernel::launch(items) makes them
+    std::size_t planes; ///< of Kernel::launch_planes(); else 1
 };
 
 using LaunchObserver = std::function<void(const Launch &)>;

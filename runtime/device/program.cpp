@@ -55,16 +55,16 @@ struct Kernel::Handle {
     }
 
     /// Tells the device's observer, which is not told of what it launches itself.
-    void observe(std::size_t items, std::size_t lines) {
+    void observe(std::size_t items, std::size_t lines, std::size_t planes) {
         if (!is_observed || !device->observer)
             return;
         const LaunchObserver observer = std::exchange(device->observer, nullptr);
-        observer({request, traits, values, items, lines});
+        observer({request, traits, values, items, lines, planes});
         device->observer = observer;
     }
 
-    /// Enqueues `lines` times `groups` work-groups, for `items` work-items in all.
-    void enqueue(std::size_t groups, std::size_t lines, std::size_t items);
+    /// Enqueues `planes` times `lines` times `groups` work-groups, for `items` work-items in all.
+    void enqueue(std::size_t groups, std::size_t lines, std::size_t planes, std::size_t items);
 };
 
 namespace {
@@ -76,6 +76,13 @@ constexpr std::size_t widest_line = 1u << 15;
 } // namespace
 
 const std::string &Kernel::name() const { return handle_->request.name; }
+
+std::vector<std::string> Kernel::argument_names() const {
+    std::vector<std::string> names;
+    for (const auto &[name, index] : handle_->arguments)
+        names.push_back(name);
+    return names;
+}
 
 void Kernel::bind(const std::string &argument, const Buffer &buffer) {
     handle_->set(argument, sizeof(cl_mem), buffer.argument(), buffer);
@@ -93,32 +100,34 @@ void Kernel::set_real(const std::string &argument, double value) {
         handle_->set(argument, sizeof single, &single, value);
 }
 
-void Kernel::launch(std::size_t items) {
-    if (items == 0)
+void Kernel::launch(std::size_t items) { launch_planes(items, 1); }
+
+void Kernel::launch_planes(std::size_t items, std::size_t planes) {
+    if (items == 0 || planes == 0)
         return;
     const std::size_t group = handle_->work_group_size, groups = (items + group - 1) / group;
     const std::size_t lines = (groups * group + widest_line - 1) / widest_line;
-    handle_->observe(items, 0);
-    handle_->enqueue((groups + lines - 1) / lines, lines, items);
+    handle_->observe(items, 0, planes);
+    handle_->enqueue((groups + lines - 1) / lines, lines, planes, items * planes);
 }
 
 void Kernel::launch(std::size_t items, std::size_t lines) {
     if (items == 0 || lines == 0)
         return;
     const std::size_t group = handle_->work_group_size;
-    handle_->observe(items, lines);
-    handle_->enqueue((items + group - 1) / group, lines, items * lines);
+    handle_->observe(items, lines, 1);
+    handle_->enqueue((items + group - 1) / group, lines, 1, items * lines);
 }
 
-void Kernel::Handle::enqueue(std::size_t groups, std::size_t lines, std::size_t items) {
+void Kernel::Handle::enqueue(std::size_t groups, std::size_t lines, std::size_t planes, std::size_t items) {
     for (const auto &[argument, index] : arguments)
         if (!is_set[index])
             throw std::logic_error("kernel " + request.name + ": argument " + argument + " was not set");
     const bool profiles = device->profiles;
     opencl_call("launching " + request.name, [&] {
         cl::Event event;
-        device->queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(groups * work_group_size, lines),
-                                           cl::NDRange(work_group_size, 1), nullptr, profiles ? &event : nullptr);
+        device->queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(groups * work_group_size, lines, planes),
+                                           cl::NDRange(work_group_size, 1, 1), nullptr, profiles ? &event : nullptr);
         if (profiles)
             pending.push_back(std::move(event));
     });

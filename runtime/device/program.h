@@ -33,6 +33,9 @@ class Kernel {
     bool valid() const { return handle_ != nullptr; }
     const std::string &name() const;
 
+    /// The names of its arguments.
+    std::vector<std::string> argument_names() const;
+
     /// Gives every argument whose name is the buffer's name that buffer. Arguments of other names stay as they are.
     void bind(const Buffer &buffer) { bind(buffer.name(), buffer); }
     void bind(const std::string &argument, const Buffer &buffer);
@@ -47,6 +50,8 @@ class Kernel {
     /// Enqueues `lines` times `items` work-items: get_group_id(1) is the line, and each has `items` or, for groups to
     /// be whole, a few more.
     void launch(std::size_t items, std::size_t lines);
+    /// Enqueues `items` work-items, numbered as by launch(items), for each of `planes`: get_global_id(2) is the plane.
+    void launch_planes(std::size_t items, std::size_t planes);
 
     /// What all launches so far took on the device. Waits for them, where the queue times them; else seconds are 0.
     struct Usage {

@@ -4,7 +4,7 @@
 #include "runtime/film/image.h"
 #include "runtime/methods/direct_light.h"
 #include "runtime/methods/method.h"
-#include "runtime/stages/host_table.h"
+#include "runtime/wavefront/host_table.h"
 #include "solver/poisson_solver.h"
 
 #include <cstdint>

@@ -2,94 +2,96 @@
 // neighbours, and an image reconstructed from colours and differences.
 //
 // All pixels of a sample share their place within the pixel, so an offset path begins where the neighbour's own path
-// does. Where it and the base path are at rough vertices it reconnects to the base path's next one, and merges with it
-// there: from the vertex after that on both are the same, and what they differ by is kept by slot. So the base path's
-// later stages are the path tracer's. Until then an offset path copies the base path's half vectors and has vertices of
-// its own; scenes in which all surfaces are rough do without.
+// does. Where it and the base path are at rough vertices it reconnects to the base path's next one (the reconnection
+// vertex): there it is recently connected, and from the vertex after that on connected: both are the same, and what
+// they differ by is kept by slot. So the base path's later stages are the path tracer's. Until then an offset path is
+// not connected: it copies the base path's half vectors and has vertices of its own; scenes in which all surfaces are
+// rough do without.
+//
+// A pass is some samples of the whole image, or a strip of its rows where the image is larger than that.
 #pragma once
 
 #include "runtime/methods/direct_light.h"
-#include "runtime/methods/path_tracer.h"
+#include "runtime/methods/method.h"
+#include "runtime/wavefront/film.h"
+#include "runtime/wavefront/wavefront.h"
 #include "solver/poisson_solver.h"
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace gradus {
 
-class GradientPathTracer final : public PathTracer {
+class GradientPathTracer final : public Method {
   public:
     GradientPathTracer(Device &device, const Scene &scene, const RenderOptions &options);
 
+    std::uint64_t total_samples() const override { return total_; }
+    std::uint64_t done_samples() const override { return done_; }
     bool render_batch() override;
     /// R, G, B reconstructed, then layers primal, dx, dy, direct; with aov also their variances and the path tracer's
     /// layers.
     Image image() override;
-    void restart(std::uint64_t first_sample, std::uint64_t samples_per_pixel) override;
     Statistics statistics() const override;
 
+    /// Forgets all samples; the next ones are of numbers [first_sample, first_sample + samples_per_pixel) of each
+    /// pixel. Other numbers are other random paths of the same seed. A new method is at number 0.
+    void restart(std::uint64_t first_sample, std::uint64_t samples_per_pixel);
+
+    /// For measuring: the tracer records and replays the rays of a render.
+    Tracer &tracer() { return session_.tracer; }
+
   private:
-    /// What becomes of offset paths at a vertex: at the first, all are apart; then some are; then the last reconnect;
-    /// later all are merged.
-    enum Phase { first, apart, joined, later, phases };
-
-    struct GradientKernels {
-        Kernel light_first, light_apart, light_joined, scatter_apart, scatter_joined;
+    /// Where the offset paths of a vertex are: at the first vertices, not connected; at later ones some not connected;
+    /// joined: all recently connected, or failed; later: connected. `mixed`: some are at vertices of other BSDF kinds
+    /// than the base path's. Phases that a scene does not need have no bins: they are the number of those that it has.
+    struct Phases {
+        std::uint32_t first, first_mixed, apart, apart_mixed, joined, later, count;
     };
-    struct Range {
-        std::uint32_t first = 0, count = 0;
-        std::uint32_t end() const { return first + count; }
-    };
-    /// Where the partition put paths. Rows are those of the vertices that `surface` makes; a row's place in the index
-    /// is `escaped_count` further on.
-    struct Vertices {
-        std::uint32_t count = 0, escaped_count = 0;
-        Range escaped[phases]; ///< places in the index
-        Range rows[phases];
-        std::vector<Range> kinds[phases];    ///< rows by kind
-        std::vector<Range> emitting[phases]; ///< those of them on surfaces that emit
-        /// Rows with offset paths that are apart: they come first.
-        std::uint32_t shifting() const { return rows[apart].end(); }
-    };
-    /// Offset paths on their way from one vertex to the next: what they ask the tracer, and where `shift` put them.
-    struct Shifting {
-        Range index;
-        std::uint32_t to = 0;           ///< first row of `shifted`
-        std::uint32_t link_first = 0;   ///< first row of `link`, offset by offset
-        std::uint32_t offset_first = 0; ///< the same of `offset_ray`
-    };
-    struct Shiftings {
-        Shifting surface[phases], escaped[phases];
-        std::uint32_t links = 0, offset_rays = 0;
+    /// Of paths that left the scene.
+    enum Escaped : std::uint32_t { escaped_first, escaped_shifting, escaped_later, escaped_bins };
+    /// The rows of a frame that a pass takes, and how many frames.
+    struct Strip {
+        std::uint32_t first = 0, rows = 0, frames = 1;
     };
 
-    std::vector<Wanted> wanted_kernels();
+    static Phases phases_of(const Session &session);
+    std::map<std::string, std::string> classify_definitions() const;
+    TableList tables() const;
     void allocate();
-    void bind_kernels();
-    void trace_primaries(std::uint32_t paths);
-    /// Classifies and sorts the rays of `vertices` and `fresh` new ones.
-    Vertices partition(const Vertices &vertices, std::uint32_t fresh, const Buffer &vertex);
-    Shiftings shift(const Vertices &vertices, const Vertices &next);
-    void connect(const Vertices &vertices, const Buffer &vertex);
-    void emit(const Vertices &next, const Shiftings &shiftings);
-    void scatter(const Vertices &vertices, const Buffer &vertex);
 
+    Strip next_strip() const;
+    void begin_pass(const Strip &strip);
+    void trace_primaries(const Strip &strip);
+    /// The rows with offset paths that are not connected; they come first.
+    std::uint32_t shifting() const { return newest_.phases(0, phases_.joined).count; }
+    void step_offset_paths();
+    void evaluate(std::uint32_t phase, bool mixed, bool at_first);
+    void find_emission(const Hits &next);
+    void shade(const Hits &next);
+    void follow(const Hits &next, std::uint32_t stride);
     void count_outcomes(Range rows);
-    bool keeps_apart() const { return traits_.at("TRAIT_APART") != 0; }
-    bool keeps_distance() const { return traits_.at("TRAIT_SHIFT_DISTANCE") != 0; }
+    void add_to_film(const Strip &strip);
 
-    Kernel primary_begin_, primary_surface_, begin_, settle_, close_links_, offset_begin_, offset_surface_;
-    Kernel clear_, connect_first_, connect_apart_, connect_joined_, combine_, gradient_accumulate_, count_;
-    Kernel shift_[2], shift_escaped_[2], offset_emission_[2],
-        offset_escape_[2]; ///< [1]: where offset paths may be apart
-    std::vector<GradientKernels> gradient_kinds_;
+    RenderOptions options_;
+    Session session_;
+    Phases phases_;
+    Stages stages_;
+    Stage &camera_, &primary_, &begin_, &connect_, &gradient_connect_, &shift_, &evaluate_, &weigh_;
+    Wavefront paths_;
+    Stage &escape_, &emission_, &gradient_escape_, &gradient_emission_, &shade_, &advance_, &advance_apart_, &join_,
+        &count_, &combine_;
+    Film film_;
+    Stage &accumulate_;
+    std::optional<Tables> tables_;
+    Hits newest_; ///< of the newest vertices
+    std::uint64_t total_ = 0, done_ = 0, first_sample_ = 0;
+    std::uint32_t strip_rows_ = 0, strip_frames_ = 1; ///< of a pass, but for the last
+    Statistics statistics_;
     std::optional<std::vector<DirectPixel>> direct_edges_; ///< once sampled: a restart needs no others
     std::uint64_t edge_rays_ = 0;
     std::unique_ptr<PoissonSolver> solver_;
-    Buffer material_kind_, primary_, gain_, link_, prefix_, difference_, direct_, gradient_film_;
-    Buffer shifted_[2]; ///< as BatchTables::vertex; the same where none stay apart
-    Buffer offset_vertex_, offset_ray_, offset_state_, offset_reach_;
-    Buffer outcome_;
 };
 
 } // namespace gradus

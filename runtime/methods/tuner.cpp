@@ -4,7 +4,7 @@
 #include "runtime/error.h"
 #include "runtime/film/metrics.h"
 #include "runtime/seconds_since.h"
-#include "runtime/stages/batch_tables.h"
+#include "runtime/wavefront/table.h"
 
 #include <algorithm>
 #include <chrono>

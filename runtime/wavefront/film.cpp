@@ -1,7 +1,7 @@
-#include "runtime/stages/film_stage.h"
+#include "runtime/wavefront/film.h"
 
 #include "kernels/shared/tables.h"
-#include "runtime/stages/host_table.h"
+#include "runtime/wavefront/host_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,43 +10,43 @@ namespace gradus {
 
 using namespace lib_float;
 
-KernelRequest FilmStage::request() { return {"accumulate", "kernels/stages/accumulate.cl", "accumulate", {}, true}; }
+Film::Film(Session &session, Stages &stages)
+    : session_(session),
+      accumulate_(stages.add({.name = "accumulate", .strict = true, .numbers = {"first_slot", "first_pixel"}})) {}
 
-FilmStage::FilmStage(Device &device, Kernel kernel, const BatchTables &tables, std::uint32_t width,
-                     std::uint32_t height, const TraitMap &traits, Precision precision)
-    : kernel_(kernel), width_(width), height_(height), aov_(traits.at("TRAIT_AOV") != 0), precision_(precision) {
-    const std::size_t column = real_bytes(precision) * width * height;
-    film_ = Buffer(device, "film", column * film_columns);
-    feature_film_ = Buffer(device, "feature_film", aov_ ? column * feature_film_columns : 0);
+TableList Film::tables() const {
+    const bool aov = session_.has("TRAIT_AOV");
+    const auto with_aov = [&](int columns) { return aov ? std::uint32_t(columns) : 0u; };
+    return {{.name = "radiance", .rows = RowsOf::slot, .columns = radiance_columns},
+            {.name = "feature", .rows = RowsOf::slot, .columns = with_aov(feature_columns)},
+            {.name = "film", .rows = RowsOf::pixel, .columns = film_columns},
+            {.name = "feature_film", .rows = RowsOf::pixel, .columns = with_aov(feature_film_columns)}};
+}
+
+void Film::attach(Tables &tables) {
+    tables_ = &tables;
     clear();
-    for (const Buffer &buffer : {tables.radiance, tables.feature, film_, feature_film_})
-        kernel_.bind(buffer);
-    kernel_.set("slots", tables.slots);
-    kernel_.set("pixels", width * height);
 }
 
-void FilmStage::clear() {
-    film_.clear();
-    feature_film_.clear();
+void Film::clear() {
+    for (const char *name : {"film", "feature_film"})
+        if (tables_->has(name))
+            (*tables_)[name].clear();
 }
 
-void FilmStage::accumulate(std::uint32_t count, std::uint32_t first_pixel) {
+void Film::add(std::uint32_t count, std::uint32_t first_pixel) {
     // One launch a sample of each pixel: within a launch no pixel occurs twice.
-    for (std::uint32_t slot = 0; slot < count; slot += pixels()) {
-        const std::uint32_t part = std::min(pixels(), count - slot);
-        kernel_.set("count", part);
-        kernel_.set("first_slot", slot);
-        kernel_.set("first_pixel", first_pixel);
-        kernel_.launch(part);
-    }
+    const std::uint32_t pixels = session_.pixels();
+    for (std::uint32_t slot = 0; slot < count; slot += pixels)
+        accumulate_.run(std::min(pixels, count - slot), {{"first_slot", slot}, {"first_pixel", first_pixel}});
 }
 
-Image FilmStage::image(std::uint64_t samples, std::uint64_t &non_finite) const {
-    const std::size_t count = pixels();
-    const HostTable film(film_, count, precision_);
+Image Film::image(std::uint64_t samples, std::uint64_t &non_finite) const {
+    const std::size_t count = session_.pixels();
+    const HostTable film((*tables_)["film"], count, tables_->precision());
     Image image;
-    image.width = width_;
-    image.height = height_;
+    image.width = session_.film.crop_width;
+    image.height = session_.film.crop_height;
     std::vector<double> taken(count);
     for (std::size_t pixel = 0; pixel < count; ++pixel) {
         const std::uint32_t rejected = film.uint(film_rejected, pixel);
@@ -65,10 +65,10 @@ Image FilmStage::image(std::uint64_t samples, std::uint64_t &non_finite) const {
     const char *const colors[3] = {"R", "G", "B"};
     for (int c = 0; c < 3; ++c)
         add(colors[c], [&](std::size_t pixel) { return mean_color(c, pixel); });
-    if (!aov_)
+    if (!session_.has("TRAIT_AOV"))
         return image;
 
-    const HostTable features(feature_film_, count, precision_);
+    const HostTable features((*tables_)["feature_film"], count, tables_->precision());
     const char *const axes[3] = {"X", "Y", "Z"};
     const auto mean_feature = [&](int column, std::size_t pixel) {
         return features.real(column, pixel) / taken[pixel];

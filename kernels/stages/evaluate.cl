@@ -1,0 +1,44 @@
+/* evaluate: the BSDF service. Answers the requests of `shift` that concern vertices of one BSDF kind: base paths in
+ * rows `first` on, plane by plane the lines of `evaluation` from `first_line` on: 0 to 3 light connections of offset
+ * paths, 4 to 7 their steps. Requests at vertices of other kinds are left alone.
+ *
+ * What has no value asks the tracer nothing. */
+#include "kernels/lib/bsdf_evaluate.h"
+#include "kernels/lib/gradient.h"
+
+STAGE evaluate(uint count, uint unit, uint first, uint first_line, uint stride, uint capacity, uint slots,
+               __global const real *path, OWN_VERTEX, STRIP_PLACE, __global const real *offset,
+               __global real *evaluation, __global real *link, __global const real *materials
+#if TRAIT_APART
+               ,
+               __global real *offset_ray
+#endif
+) {
+    const size_t i = work_item();
+    if (i >= count)
+        return;
+    const uint row = first + (uint)i;
+    const uint line = first_line + (uint)get_global_id(2), j = line & 3u;
+    const uint slot = AT_UINT(path, slot, row);
+    const film_pixel pixel = PIXEL_OF(slot);
+    const own_vertex_state own = OWN_STATE(j, row, slot, pixel);
+    const int is_asked = own.is_own & (kind_number(AT_UINT(own_vertex, kind, own.row)) == PASTE(bsdf_kind_, BSDF));
+    const material m = material_load(materials, AT_UINT(own_vertex, material, own.row), unit);
+    const frame axes = VERTEX_FRAME(own_vertex, own.row, m);
+    const size_t at = (size_t)line * capacity + row;
+    const vec3 wo = v3(AT(evaluation, value_r, at), AT(evaluation, value_g, at), AT(evaluation, value_b, at));
+    const bsdf_value v =
+        bsdf_evaluate(m, frame_to_local(axes, AT_V3(own_vertex, wi, own.row)), frame_to_local(axes, wo));
+    const int is_light = line < 4u;
+    const int is_nothing = is_light ? !(rgb_max(v.value) > R(0)) : !(v.pdf > R(0));
+    if (is_asked) {
+        SET_RGB(evaluation, value, at, v.value);
+        AT(evaluation, pdf, at) = v.pdf;
+    }
+    if (is_asked && is_nothing)
+        AT_UINT(link, open, (size_t)line * stride + row) = 0u;
+#if TRAIT_APART
+    if (is_asked && is_nothing && !is_light)
+        AT_UINT(offset_ray, primitive, (size_t)j * stride + row) = ray_none;
+#endif
+}

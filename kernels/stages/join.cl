@@ -1,0 +1,135 @@
+/* join: what offset paths gain and become that stand at the base path's vertex, one of kind BSDF (rows `first` on),
+ * since they have just connected or did so before. Runs after `shade`, before the light is known to be seen:
+ * `evaluation` keeps what they would gain, for `gradient_connect` or `weigh`.
+ *
+ * They take the base path's direction, and all that follows is the same for both. Where that is so of all, what came
+ * before is kept by slot, and the base path goes on with a throughput of its own: later stages are the path tracer's
+ * and know nothing of offset paths. TRAIT_APART, `keeps`: some are at vertices of their own, so all stay in `offset`.
+ *
+ * Russian roulette goes by the brightest of them all. */
+//! traits: TRAIT_REFRACTION TRAIT_APART SAMPLES_LIGHTS
+#include "kernels/lib/bsdf.h"
+#include "kernels/lib/random.h"
+#include "kernels/lib/vertex_frame.h"
+#include "kernels/shared/stage.h"
+
+STAGE join(uint count, uint unit, uint first, uint capacity, uint slots, uint roulette_depth,
+           __global const real *vertex, __global const real *event, __global real *path, __global real *ray,
+           __global real *shadow, __global real *offset, __global real *shift, __global real *evaluation,
+           __global real *prefix, __global real *difference, __global const real *materials
+#if TRAIT_APART
+           ,
+           uint keeps
+#endif
+) {
+    const size_t i = work_item();
+    if (i >= count)
+        return;
+    const size_t row = first + i;
+    const uint slot = AT_UINT(path, slot, row), depth = AT_UINT(path, depth, row);
+#if !BSDF_IS_DIRAC
+    const material m = material_load(materials, AT_UINT(vertex, material, row), unit);
+    const frame axes = VERTEX_FRAME(vertex, row, m);
+    const vec3 wo = frame_to_local(axes, AT_V3(ray, direction, row));
+    const real pdf = AT(event, pdf, row);
+    const real inverse_pdf = pdf > R(0) ? R(1) / pdf : R(0);
+#if SAMPLES_LIGHTS
+    const vec3 to_light = frame_to_local(axes, AT_V3(event, to_light, row));
+    const rgb arriving = AT_RGB(event, arriving, row);
+    const real inverse_light_pdf = AT(event, inverse_light_pdf, row);
+    int asks = 0;
+#endif
+#else
+    const rgb weight = AT_RGB(event, weight, row);
+#endif
+    const rgb throughput = AT_RGB(path, throughput, row);
+    real brightest = rgb_max(throughput);
+#pragma unroll
+    for (uint j = 0; j < 4; ++j) {
+        const size_t at = (size_t)j * capacity + row;
+        const real ratio = AT(offset, ratio, at);
+        const rgb so_far = AT_RGB(offset, value, at);
+        /* Selected, not scaled: where there is no offset path, its direction is anything. */
+        const int is_there = ratio >= R(0);
+        int is_own = 0;
+#if TRAIT_APART
+        is_own = is_there & (AT_UINT(offset, state, at) < connection_recent);
+#endif
+#if BSDF_IS_DIRAC
+        /* Only those that are fully connected come to a Dirac vertex. */
+        const real change = R(1);
+#else
+        const vec3 wi = frame_to_local(axes, AT_V3(offset, wi, at));
+#if SAMPLES_LIGHTS
+        const rgb f_light = PASTE(BSDF, _eval)(m, wi, to_light);
+        const rgb gain = rgb_select(is_there, rgb_mul(rgb_mul(so_far, arriving), f_light), rgb_gray(R(0)));
+        const real gain_bsdf = is_there ? ratio * PASTE(BSDF, _pdf)(m, wi, to_light) * inverse_light_pdf : R(0);
+        SET_RGB(evaluation, value, at, gain);
+        AT(evaluation, pdf, at) = gain_bsdf;
+        AT(shift, light_density, at) = ratio;
+        asks |= !is_own & (rgb_max(gain) > R(0));
+#endif
+        const rgb weight = rgb_scale(PASTE(BSDF, _eval)(m, wi, wo), inverse_pdf);
+        const real change = PASTE(BSDF, _pdf)(m, wi, wo) * inverse_pdf;
+#endif
+        const rgb merged = rgb_select(is_there, rgb_mul(so_far, weight), rgb_gray(R(0)));
+        const real merged_ratio = is_there ? ratio * change : ratio;
+        const rgb value = rgb_select(is_own, so_far, merged);
+        brightest = r_max(brightest, rgb_max(value));
+#if TRAIT_APART
+        if (keeps) {
+            SET_RGB(offset, value, at, value);
+            AT(offset, ratio, at) = is_own ? ratio : merged_ratio;
+        }
+#endif
+        const size_t to = (size_t)j * slots + slot;
+#if TRAIT_APART
+        if (!keeps)
+#endif
+        {
+            SET_RGB(difference, throughput, to, merged);
+            AT(difference, ratio, to) = merged_ratio;
+        }
+    }
+#if SAMPLES_LIGHTS && !BSDF_IS_DIRAC
+    if (asks)
+        AT_UINT(shadow, open, row) = 1u;
+#endif
+
+    const random4 u =
+        random_draw(AT_UINT(path, key_0, row), AT_UINT(path, key_1, row), random_dimension_scatter(depth - 1u));
+    real eta = R(1);
+#if TRAIT_REFRACTION
+    eta = AT(path, eta, row);
+#endif
+    const real survival = depth >= roulette_depth ? r_min(brightest * eta * eta, R(0.95)) : R(1);
+    const int alive = AT_UINT(ray, primitive, row) == ray_pending && brightest > R(0) && u.d < survival;
+    AT_UINT(ray, primitive, row) = alive ? ray_pending : ray_none;
+    /* Divided by the chance of surviving, all of them: it is a factor of each path, and of no density that weighs
+     * them. */
+    const real inverse_survival = R(1) / (alive ? survival : R(1));
+    /* Where all are connected, the row's throughput counts from 1 from here on, but for its size, which roulette goes
+     * by; the slot has the rest. */
+    const real inverse = R(1) / (alive ? brightest : R(1));
+    rgb left = rgb_gray(alive ? brightest / survival : R(0));
+#if TRAIT_APART
+    left = rgb_select(keeps != 0u, rgb_scale(throughput, inverse_survival), left);
+    if (keeps) {
+#pragma unroll
+        for (uint j = 0; j < 4; ++j) {
+            const size_t at = (size_t)j * capacity + row;
+            SCALE_RGB(offset, value, at, inverse_survival);
+        }
+    }
+    if (!keeps)
+#endif
+    {
+        SET_RGB(prefix, throughput, slot, rgb_scale(throughput, inverse));
+#pragma unroll
+        for (uint j = 0; j < 4; ++j) {
+            const size_t to = (size_t)j * slots + slot;
+            SCALE_RGB(difference, throughput, to, inverse);
+        }
+    }
+    SET_RGB(path, throughput, row, left);
+}

@@ -1,0 +1,151 @@
+/* shade: the surface that each path met, of one BSDF kind: next-event estimation, and the direction in which the path
+ * goes on. Paths at places `first` on of `index` take rows `to` on of `path`, `ray` and `shadow`.
+ *
+ * The partition has brought the rows of a kind together, so the BSDF is inlined: its value towards the light point and
+ * its sample cost no queue. Whoever stands elsewhere asks the service, `evaluate`.
+ *
+ * A path ends where the sample fails, its throughput is zero, it is as long as it may be, or Russian roulette says so.
+ *
+ * TRAIT_GRADIENT, `with_offsets`: the path has offset paths that have not merged with it. Then the light sample is not
+ * weighted yet, no roulette is played, black paths go on since their offset paths may not be black, and what these need
+ * to know of the vertex is left in `vertex` and `event`. */
+//! traits: TRAIT_REFRACTION TRAIT_AOV TRAIT_GRADIENT SAMPLES_LIGHTS
+#include "kernels/lib/bsdf.h"
+#include "kernels/lib/light_sampling.h"
+#include "kernels/lib/mis.h"
+#include "kernels/lib/surface_point.h"
+#include "kernels/lib/vertex_frame.h"
+#include "kernels/shared/stage.h"
+
+STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_depth, uint roulette_depth,
+            __global const uint *index, __global const real *path_old, __global real *path,
+            __global const real *ray_old, __global real *ray, __global real *shadow, __global const real *triangles,
+            __global const real *triangle_normals, __global const real *triangle_tangents, __global const real *spheres,
+            uint triangle_count, __global const uint *primitive_material, __global const uint *material_back,
+            __global const real *materials, __global const real *lights, __global const uint *light_kinds,
+            __global const uint *light_alias, uint light_count, real scene_diameter
+#if TRAIT_AOV
+            ,
+            __global real *feature, uint slots
+#endif
+#if TRAIT_GRADIENT
+            ,
+            uint with_offsets, __global real *vertex, __global real *event, __global const uint *material_kind
+#endif
+) {
+    const size_t i = work_item();
+    if (i >= count)
+        return;
+    const uint old = index[first + i];
+    const size_t row = to + i;
+    const vec3 from = AT_V3_IN(ray_old, ray, origin, old), direction = AT_V3_IN(ray_old, ray, direction, old);
+    const uint key_0 = AT_UINT_IN(path_old, path, key_0, old), key_1 = AT_UINT_IN(path_old, path, key_1, old);
+    const uint depth = AT_UINT_IN(path_old, path, depth, old), slot = AT_UINT_IN(path_old, path, slot, old);
+    const rgb throughput = AT_RGB_IN(path_old, path, throughput, old);
+#if TRAIT_REFRACTION
+    const real eta_before = AT_IN(path_old, path, eta, old);
+#endif
+    const surface_point point =
+        surface_point_of(triangles, triangle_normals, triangle_tangents, spheres, unit, triangle_count,
+                         primitive_material, material_back, AT_UINT_IN(ray_old, ray, primitive, old), from, direction);
+    const material m = material_load(materials, point.material, unit);
+    const frame axes = surface_frame(point.shading, point.along, m);
+    const vec3 wi = frame_to_local(axes, v3_neg(direction));
+    const int goes_on = depth + 1u < max_depth;
+
+#if TRAIT_AOV
+    /* What the camera sees: vertices further along leave it alone. */
+    if (depth == 0u) {
+        const rgb albedo = PASTE(BSDF, _albedo)(m);
+        SET_RGB(feature, albedo, slot, albedo);
+        SET_V3(feature, normal, slot, point.shading);
+        AT(feature, depth, slot) = r_sqrt(v3_length_squared(v3_sub(point.position, from)));
+    }
+#endif
+#if TRAIT_GRADIENT
+    if (with_offsets) {
+        SET_SURFACE_VERTEX(vertex, row, material_kind[point.material], point, direction)
+    }
+#endif
+
+#if SAMPLES_LIGHTS && !BSDF_IS_DIRAC
+    const random4 l = random_draw(key_0, key_1, random_dimension_light(depth));
+    const chosen_light chosen =
+        light_sampling(lights, light_kinds, light_alias, light_count, scene_diameter, unit, point.position, l);
+    const light_choice light = chosen.choice;
+    const vec3 to_light = frame_to_local(axes, light.direction);
+    const rgb reflected = PASTE(BSDF, _eval)(m, wi, to_light);
+    const real pdf_bsdf = PASTE(BSDF, _pdf)(m, wi, to_light);
+    const rgb unweighted = rgb_mul(rgb_mul(throughput, light.value), reflected);
+    const real weight = mis_weight_light(light.pdf * chosen.probability, pdf_bsdf) / chosen.probability;
+    rgb gain = rgb_scale(unweighted, weight);
+    int asks = goes_on && rgb_max(gain) > R(0);
+#if TRAIT_GRADIENT
+    const rgb arriving = rgb_scale(light.value, goes_on ? R(1) / chosen.probability : R(0));
+    const real light_pdf = light.pdf * chosen.probability;
+    /* Point lights and directions have no density that BSDF sampling could match. */
+    const real inverse_light_pdf = LIGHT_CAN_BE_FOUND && light_pdf > R(0) ? R(1) / light_pdf : R(0);
+    const real base_bsdf = pdf_bsdf * inverse_light_pdf;
+    gain = rgb_select(with_offsets != 0u, rgb_mul(rgb_mul(throughput, arriving), reflected), gain);
+    /* Who sees the light weighs the offset paths, whatever the base path gains. */
+    asks = with_offsets ? goes_on && (rgb_max(gain) > R(0) || rgb_max(arriving) * pdf_bsdf > R(0)) : asks;
+    if (with_offsets) {
+        SET_V3(event, to_light, row, light.direction);
+        SET_RGB(event, arriving, row, arriving);
+        AT(event, inverse_light_pdf, row) = inverse_light_pdf;
+        AT(event, base_bsdf, row) = base_bsdf;
+    }
+#endif
+    const vec3 start = ray_origin(point.position, point.geometric, point.offset, light.direction);
+    const vec3 end =
+        v3_mad(v3_add(point.position, light.connection), FIELD_OF(light, lights, chosen.light, offset), light.normal);
+    SET_V3(shadow, origin, row, start);
+    SET_V3(shadow, direction, row, v3_sub(end, start));
+    SET_RGB(shadow, value, row, gain);
+    AT_UINT(shadow, open, row) = asks ? 1u : 0u;
+#else
+    AT_UINT(shadow, open, row) = 0u;
+#if TRAIT_GRADIENT
+    if (with_offsets) {
+        SET_RGB(event, arriving, row, rgb_gray(R(0)));
+        AT(event, inverse_light_pdf, row) = R(0);
+        AT(event, base_bsdf, row) = R(0);
+    }
+#endif
+#endif
+
+    const random4 u = random_draw(key_0, key_1, random_dimension_scatter(depth));
+    const bsdf_sample s = PASTE(BSDF, _sample)(m, wi, u.a, u.b, u.c);
+    const rgb scattered = rgb_mul(throughput, s.weight);
+    real eta = R(1);
+#if TRAIT_REFRACTION
+    eta = eta_before * s.eta;
+    AT(path, eta, row) = eta;
+#endif
+    /* Mitsuba's rule: survive with the largest throughput, freed of the radiance scaling by eta^2, at most 0.95. */
+    const real survival = depth + 1u >= roulette_depth ? r_min(rgb_max(scattered) * eta * eta, R(0.95)) : R(1);
+    int alive = goes_on && s.pdf > R(0);
+    int survives = rgb_max(scattered) > R(0) && u.d < survival;
+    real inverse_survival = R(1) / (alive && survives ? survival : R(1));
+#if TRAIT_GRADIENT
+    survives = survives || with_offsets;
+    inverse_survival = with_offsets ? R(1) : inverse_survival;
+    if (with_offsets) {
+        AT(event, pdf, row) = s.pdf;
+        SET_RGB(event, weight, row, s.weight);
+    }
+#endif
+    alive = alive && survives;
+
+    const vec3 next = v3_normalize(frame_to_world(axes, s.wo));
+    const vec3 origin = ray_origin(point.position, point.geometric, point.offset, next);
+    AT_UINT(path, slot, row) = slot;
+    AT_UINT(path, key_0, row) = key_0;
+    AT_UINT(path, key_1, row) = key_1;
+    AT_UINT(path, depth, row) = depth + 1u;
+    SET_RGB(path, throughput, row, rgb_scale(scattered, inverse_survival));
+    AT(path, pdf, row) = BSDF_IS_DIRAC ? R(0) : s.pdf;
+    SET_V3(ray, origin, row, origin);
+    SET_V3(ray, direction, row, next);
+    AT_UINT(ray, primitive, row) = alive ? ray_pending : ray_none;
+}

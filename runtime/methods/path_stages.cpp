@@ -1,0 +1,76 @@
+#include "runtime/methods/path_stages.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+
+namespace gradus {
+
+StageDeclaration camera_stage() {
+    return {.name = "camera",
+            .numbers = {"first_row", "first_slot", "first_pixel", "first_sample_low", "first_sample_high"}};
+}
+
+StageDeclaration connect_stage() { return {.name = "connect", .numbers = {"first"}}; }
+
+StageDeclaration escape_stage(const Session &session) {
+    return {.name = "escape", .is_wanted = session.has("TRAIT_ENVIRONMENT"), .numbers = {"first"}};
+}
+
+StageDeclaration emission_stage(const Session &session) {
+    return {.name = "emission", .is_wanted = session.has_emission(), .numbers = {"first"}};
+}
+
+StageDeclaration shade_stage(const std::vector<std::string> &more) {
+    StageDeclaration stage = {.name = "shade", .kinds = StageDeclaration::Kinds::all, .numbers = {"first", "to"}};
+    stage.numbers.insert(stage.numbers.end(), more.begin(), more.end());
+    return stage;
+}
+
+TableList joined(TableList a, const TableList &b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+}
+
+TableRows table_rows(const Session &session, std::uint32_t batch, std::uint32_t slots) {
+    return {batch, slot_rows(slots), session.pixels(), session.film.crop_width, chunks_of(batch)};
+}
+
+void begin_camera_paths(Stage &camera, Wavefront &paths, std::uint32_t first_pixel, std::uint64_t first_sample) {
+    std::uint32_t slot;
+    const Range fresh = paths.refill(slot);
+    camera.run(fresh.count, {{"first_row", fresh.first},
+                             {"first_slot", slot},
+                             {"first_pixel", first_pixel},
+                             {"first_sample_low", static_cast<std::uint32_t>(first_sample)},
+                             {"first_sample_high", static_cast<std::uint32_t>(first_sample >> 32)}});
+}
+
+void run_on_places(Stage &stage, const Hits &hits, Range rows) {
+    stage.run(rows.count, {{"first", hits.place(rows.first)}});
+}
+
+void run_shade(Stage &shade, const Hits &hits, Range rows, std::size_t kind) {
+    shade.run_kind(kind, rows.count, {{"first", hits.place(rows.first)}, {"to", rows.first}});
+}
+
+Statistics collected(Statistics s, const Session &session, const Stages &stages) {
+    s.rays = session.rays;
+    s.compile_seconds = session.compile_seconds;
+    std::uint64_t traced = 0;
+    for (const auto &[kind, count] : s.rays)
+        traced += count;
+    s.stages = stages.times();
+    s.stages.insert(s.stages.begin() + (s.stages.empty() ? 0 : 1), {"trace", session.trace_seconds, traced, 0});
+    double known = 0;
+    for (const StageTime &row : s.stages)
+        known += row.seconds;
+    s.stages.push_back({"launch and wait", std::max(0.0, s.render_seconds - known), 0, 0});
+    s.device_bytes = peak_device_bytes(session.device);
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    s.peak_host_bytes = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+    return s;
+}
+
+} // namespace gradus

@@ -1,0 +1,32 @@
+// What methods that trace paths from the camera share: the stages of the path tracer and how they are launched.
+#pragma once
+
+#include "runtime/wavefront/wavefront.h"
+
+#include <cstdint>
+
+namespace gradus {
+
+StageDeclaration camera_stage();
+StageDeclaration connect_stage();
+StageDeclaration escape_stage(const Session &session);
+StageDeclaration emission_stage(const Session &session);
+/// `more`: numbers that launches pass beside `first` and `to`.
+StageDeclaration shade_stage(const std::vector<std::string> &more = {});
+
+/// The lists, one after the other.
+TableList joined(TableList a, const TableList &b);
+TableRows table_rows(const Session &session, std::uint32_t batch, std::uint32_t slots);
+
+/// Begins what paths of the pass there is room for: those of the pixels from `first_pixel` on, which is in sample
+/// `first_sample` of the image.
+void begin_camera_paths(Stage &camera, Wavefront &paths, std::uint32_t first_pixel, std::uint64_t first_sample);
+/// Runs a stage that reads the rows of before by the index, on those that take the new rows of the range.
+void run_on_places(Stage &stage, const Hits &hits, Range rows);
+/// The new vertices of one BSDF kind.
+void run_shade(Stage &shade, const Hits &hits, Range rows, std::size_t kind);
+
+/// `counted` with what session and stages know: rays, seconds by stage and of compiling, memory.
+Statistics collected(Statistics counted, const Session &session, const Stages &stages);
+
+} // namespace gradus

@@ -1,0 +1,38 @@
+// The film: sums over the samples of each pixel, on the device.
+#pragma once
+
+#include "runtime/film/image.h"
+#include "runtime/wavefront/session.h"
+#include "runtime/wavefront/stage.h"
+#include "runtime/wavefront/table.h"
+
+#include <cstdint>
+
+namespace gradus {
+
+class Film {
+  public:
+    /// Declares the stage `accumulate`.
+    Film(Session &session, Stages &stages);
+
+    TableList tables() const;
+    /// To be called once they are allocated; all is zero.
+    void attach(Tables &tables);
+
+    /// Adds the samples of slots [0, count), which belong to the pixels from `first_pixel` on, cyclically.
+    void add(std::uint32_t count, std::uint32_t first_pixel);
+
+    /// The means after `samples` samples: the first `samples` modulo pixels have one more than the rest. Adds the
+    /// samples that were left out to `non_finite`.
+    Image image(std::uint64_t samples, std::uint64_t &non_finite) const;
+
+    /// All zero again.
+    void clear();
+
+  private:
+    Session &session_;
+    Stage &accumulate_;
+    Tables *tables_ = nullptr;
+};
+
+} // namespace gradus

@@ -1,0 +1,114 @@
+#include "runtime/wavefront/session.h"
+
+#include "runtime/error.h"
+#include "runtime/wavefront/invariant_division.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+namespace gradus {
+
+namespace {
+
+constexpr std::uint32_t deepest = 1u << 16; // where a file asks for paths without end
+
+TraitMap traits_for(const Scene &scene, const SessionOptions &options, const TraitMap &of_method) {
+    TraitMap traits = scene_traits(scene);
+    traits["TRAIT_AOV"] = options.aov;
+    if (options.all_traits)
+        traits = with_all_traits(traits);
+    // Settings of a method, which no scene has.
+    traits["TRAIT_SHARED_JITTER"] = 0;
+    traits["TRAIT_GRADIENT"] = 0;
+    traits["STRATEGY"] = static_cast<int>(options.strategy);
+    for (const auto &[name, value] : of_method)
+        traits[name] = value;
+    return traits;
+}
+
+FilmSettings with_crop(FilmSettings film) {
+    if (film.crop_width == 0 || film.crop_height == 0) {
+        film.crop_x = film.crop_y = 0;
+        film.crop_width = film.width;
+        film.crop_height = film.height;
+    }
+    if (film.width == 0 || film.height == 0 || film.crop_x + film.crop_width > film.width ||
+        film.crop_y + film.crop_height > film.height)
+        throw Error(ExitCode::usage,
+                    fmt::format("the crop {}x{} at {},{} does not lie in the film of {}x{}", film.crop_width,
+                                film.crop_height, film.crop_x, film.crop_y, film.width, film.height));
+    if (std::uint64_t(film.width) * film.height >= std::numeric_limits<std::int32_t>::max())
+        throw Error(ExitCode::usage, fmt::format("a film of {}x{} has too many pixels", film.width, film.height));
+    return film;
+}
+
+std::vector<Buffer> make_scene_buffers(Device &device, const SceneTables &t, Precision precision) {
+    std::vector<Buffer> buffers;
+    const auto reals = [&](const char *name, const std::vector<float> &values) {
+        if (precision == Precision::double_) {
+            const std::vector<double> wide(values.begin(), values.end());
+            buffers.emplace_back(device, name, wide.data(), wide.size() * sizeof(double));
+        } else {
+            buffers.emplace_back(device, name, values.data(), values.size() * sizeof(float));
+        }
+    };
+    const auto numbers = [&](const char *name, const std::vector<std::uint32_t> &values) {
+        buffers.emplace_back(device, name, values.data(), values.size() * sizeof(std::uint32_t));
+    };
+    reals("triangles", t.triangles);
+    reals("triangle_normals", t.triangle_normals);
+    reals("triangle_tangents", t.triangle_tangents);
+    reals("spheres", t.spheres);
+    reals("materials", t.materials);
+    reals("lights", t.lights);
+    reals("camera", t.camera);
+    numbers("primitive_material", t.primitive_material);
+    numbers("primitive_light", t.primitive_light);
+    numbers("primitive_bin", t.primitive_bin);
+    numbers("primitive_back_bin", t.primitive_back_bin);
+    numbers("material_back", t.material_back);
+    numbers("light_kinds", t.light_kinds);
+    numbers("light_alias", t.light_alias);
+    return buffers;
+}
+
+} // namespace
+
+Session::Session(Device &session_device, const Scene &s, const SessionOptions &session_options,
+                 const TraitMap &method_traits)
+    : device(session_device), options(session_options), settings(s.settings), film(with_crop(s.film)),
+      traits(traits_for(s, session_options, method_traits)), scene(make_scene_tables(s, traits)),
+      scene_buffers(make_scene_buffers(session_device, scene, session_options.precision)),
+      tracer(s, session_options.threads) {
+    traits["SAMPLES_LIGHTS"] = scene.light_count > 0 && options.strategy != SessionOptions::Strategy::bsdf;
+    numbers = {{"unit", 1},
+               {"triangle_count", scene.triangle_count},
+               {"light_count", scene.light_count},
+               {"environment_light", scene.environment_light},
+               {"max_depth", max_depth()},
+               // Mitsuba's rr_depth; a negative one means none.
+               {"roulette_depth", settings.rr_depth < 0 ? 0xFFFFFFFFu : std::uint32_t(settings.rr_depth)},
+               {"crop_x", film.crop_x},
+               {"crop_y", film.crop_y},
+               {"crop_height", film.crop_height},
+               {"film_width", film.width},
+               {"seed_low", static_cast<std::uint32_t>(options.seed)},
+               {"seed_high", static_cast<std::uint32_t>(options.seed >> 32)}};
+    set_divisor(*this, "pixels", "pixels", pixels());
+    set_divisor(*this, "width", "crop_width", film.crop_width);
+    reals["scene_diameter"] = scene.scene_diameter;
+}
+
+std::uint32_t Session::max_depth() const {
+    return settings.max_depth < 0 ? deepest : static_cast<std::uint32_t>(settings.max_depth);
+}
+
+void set_divisor(Session &session, const std::string &name, const std::string &number, std::uint32_t divisor) {
+    const InvariantDivision division = invariant_division(divisor);
+    session.numbers[number] = divisor;
+    session.numbers[name + "_multiplier"] = division.multiplier;
+    session.numbers[name + "_shift"] = division.shift;
+}
+
+} // namespace gradus

@@ -1,0 +1,52 @@
+// What everything that renders one scene on one device shares: the scene laid out for kernels, the tracer, what the
+// kernels are compiled for, and what was counted.
+#pragma once
+
+#include "runtime/device/buffer.h"
+#include "runtime/device/program.h"
+#include "runtime/scene/scene_tables.h"
+#include "runtime/scene/traits.h"
+#include "runtime/trace/tracer.h"
+#include "runtime/wavefront/session_options.h"
+#include "runtime/wavefront/statistics.h"
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace gradus {
+
+struct Session {
+    /// `method_traits` are added to the scene's, or replace them. Throws Error for a crop or a film that cannot be.
+    Session(Device &device, const Scene &scene, const SessionOptions &options, const TraitMap &method_traits);
+
+    Device &device;
+    SessionOptions options;
+    RenderSettings settings;
+    FilmSettings film; ///< with its crop set
+    TraitMap traits;
+    SceneTables scene;
+    std::vector<Buffer> scene_buffers; ///< by the names of kernels' arguments
+    Tracer tracer;
+
+    /// What kernels may ask for by name, the same for all launches.
+    std::map<std::string, std::uint32_t> numbers;
+    std::map<std::string, double> reals;
+
+    std::map<std::string, double> compile_seconds; ///< by kernel
+    std::map<std::string, std::uint64_t> rays;     ///< traced, by kind
+    double trace_seconds = 0;
+
+    bool has(const char *trait) const { return traits.at(trait) != 0; }
+    std::uint32_t pixels() const { return film.crop_width * film.crop_height; }
+    std::uint32_t max_depth() const;
+    /// Whether surfaces emit, and whether light is sampled at vertices.
+    bool has_emission() const { return has("TRAIT_LIGHT_TRIANGLE") || has("TRAIT_LIGHT_SPHERE"); }
+    bool samples_lights() const { return traits.at("SAMPLES_LIGHTS") != 0; }
+};
+
+/// Sets `<name>`, `<name>_multiplier` and `<name>_shift`, by which kernels divide by it (kernels/lib/division.h).
+void set_divisor(Session &session, const std::string &name, const std::string &number, std::uint32_t divisor);
+
+} // namespace gradus

@@ -1,0 +1,28 @@
+// What the caller asks of a render beside what the scene file says, whatever the method.
+#pragma once
+
+#include "runtime/device/precision.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace gradus {
+
+struct SessionOptions {
+    std::uint64_t seed = 0;
+    int threads = 0;                         ///< host threads that trace; 0: all
+    std::uint32_t batch_size = 0;            ///< paths in flight; 0: the device's default
+    std::uint32_t work_group_size = 0;       ///< of the renderer's kernels; 0: the default
+    Precision precision = Precision::single; ///< of the kernels; rays are always traced in float
+    bool aov = false;                        ///< also albedo, normal, depth, variance
+    bool all_traits = false; ///< for measuring: compile the kernels for everything, as if the scene had it
+    enum class Strategy { mis, light, bsdf };
+    Strategy strategy = Strategy::mis; ///< for tests: light sampling alone or BSDF sampling alone
+    std::string dump_kernels;          ///< folder for the source of each kernel as it was compiled; empty: none
+    /// Called when a kernel has been compiled: its name, how many are ready, of how many, and its seconds.
+    std::function<void(const std::string &, std::size_t, std::size_t, double)> on_compiled;
+};
+
+} // namespace gradus

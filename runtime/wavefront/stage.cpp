@@ -1,0 +1,185 @@
+#include "runtime/wavefront/stage.h"
+
+#include "runtime/seconds_since.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+
+namespace gradus {
+
+namespace {
+
+KernelRequest request_of(const StageDeclaration &declaration) {
+    const std::string file = declaration.file.empty() ? declaration.name : declaration.file;
+    KernelRequest request;
+    request.name = declaration.name;
+    request.file = "kernels/stages/" + file + ".cl";
+    request.entry = declaration.entry.empty() ? file : declaration.entry;
+    request.definitions = declaration.definitions;
+    request.strict = declaration.strict;
+    return request;
+}
+
+/// Sets what is the same for all launches, and lists the arguments that are alternating tables.
+std::vector<std::string> bind_arguments(Kernel &kernel, const StageDeclaration &declaration, const Session &session,
+                                        const Tables &tables) {
+    std::vector<std::string> provided = declaration.numbers, alternating;
+    provided.push_back("count");
+    for (const std::string &number : provided)
+        kernel.set(number, 0);
+    const std::vector<std::string> arguments = kernel.argument_names();
+    const auto asks_for = [&](const std::string &name) {
+        return std::find(arguments.begin(), arguments.end(), name) != arguments.end();
+    };
+    tables.for_each([&](const std::string &name, const Buffer &buffer, bool alternates) {
+        if (!asks_for(name))
+            return;
+        kernel.bind(name, buffer);
+        provided.push_back(name);
+        if (alternates)
+            alternating.push_back(name);
+    });
+    for (const auto &[argument, table] : declaration.tables) {
+        kernel.bind(argument, tables[table]);
+        provided.push_back(argument);
+    }
+    for (const Buffer &buffer : session.scene_buffers) {
+        kernel.bind(buffer);
+        provided.push_back(buffer.name());
+    }
+    for (const auto &[name, value] : session.numbers) {
+        kernel.set(name, value);
+        provided.push_back(name);
+    }
+    for (const auto &[name, value] : session.reals) {
+        kernel.set_real(name, value);
+        provided.push_back(name);
+    }
+    for (const std::string &argument : arguments)
+        if (std::find(provided.begin(), provided.end(), argument) == provided.end())
+            throw std::logic_error(fmt::format("stage {}: nobody provides the argument {}", kernel.name(), argument));
+    return alternating;
+}
+
+} // namespace
+
+void Stage::bind(const std::string &argument, const Buffer &buffer) {
+    for (Kernel &kernel : kernels_)
+        kernel.bind(argument, buffer);
+}
+
+void Stage::launch(std::size_t number, std::uint32_t count, std::uint32_t planes, LaunchNumbers numbers) {
+    if (count == 0 || kernels_.empty() || !kernels_[number].valid())
+        return;
+    Kernel &kernel = kernels_[number];
+    if (bound_[number] != tables_->newest()) {
+        tables_->for_each([&](const std::string &name, const Buffer &buffer, bool) {
+            if (std::find(alternating_[number].begin(), alternating_[number].end(), name) != alternating_[number].end())
+                kernel.bind(name, buffer);
+        });
+        bound_[number] = tables_->newest();
+    }
+    kernel.set("count", count);
+    for (const auto &[name, value] : numbers)
+        kernel.set(name, value);
+    kernel.launch_planes(count, planes);
+}
+
+Stage &Stages::add(StageDeclaration declaration) {
+    stages_.emplace_back().declaration_ = std::move(declaration);
+    return stages_.back();
+}
+
+void Stages::build(Session &session, const Tables &tables) {
+    const std::vector<std::string> &kinds = session.scene.kinds;
+    std::vector<KernelRequest> requests;
+    std::vector<Kernel *> places;
+    for (Stage &stage : stages_) {
+        const StageDeclaration &declaration = stage.declaration_;
+        if (!declaration.is_wanted)
+            continue;
+        stage.tables_ = &tables;
+        const bool by_kind = declaration.kinds != StageDeclaration::Kinds::none;
+        stage.kernels_.resize(by_kind ? kinds.size() : 1);
+        for (std::size_t k = 0; k < stage.kernels_.size(); ++k) {
+            KernelRequest request = request_of(declaration);
+            if (by_kind) {
+                const bool is_dirac = bsdf_kind_is_dirac(kinds[k]);
+                if (is_dirac && declaration.kinds == StageDeclaration::Kinds::rough)
+                    continue;
+                request.name = fmt::format("{} {}", request.name, kinds[k]);
+                request.definitions["BSDF"] = kinds[k];
+                request.definitions["BSDF_IS_DIRAC"] = is_dirac ? "1" : "0";
+            }
+            requests.push_back(request);
+            places.push_back(&stage.kernels_[k]);
+        }
+    }
+    KernelLibrary library(session.device, session.traits, session.options.precision, session.options.work_group_size);
+    const std::vector<Kernel> built = library.build(
+        requests,
+        [&](const std::string &name, std::size_t, std::size_t, double seconds) {
+            session.compile_seconds[name] += seconds;
+        },
+        session.options.dump_kernels);
+    for (std::size_t i = 0; i < built.size(); ++i)
+        *places[i] = built[i];
+    for (Stage &stage : stages_) {
+        stage.bound_.assign(stage.kernels_.size(), tables.newest());
+        for (Kernel &kernel : stage.kernels_)
+            stage.alternating_.push_back(kernel.valid() ? bind_arguments(kernel, stage.declaration_, session, tables)
+                                                        : std::vector<std::string>());
+    }
+    warm(session);
+}
+
+/// Some implementations compile at the first launch: do that now, on no rows, and say what it took.
+void Stages::warm(Session &session) {
+    std::vector<Kernel *> kernels;
+    for (Stage &stage : stages_)
+        for (Kernel &kernel : stage.kernels_)
+            if (kernel.valid())
+                kernels.push_back(&kernel);
+    for (std::size_t i = 0; i < kernels.size(); ++i) {
+        const auto start = std::chrono::steady_clock::now();
+        kernels[i]->set("count", 0);
+        kernels[i]->launch(1);
+        finish(session.device);
+        kernels[i]->reset_usage();
+        const double total = session.compile_seconds[kernels[i]->name()] += seconds_since(start);
+        if (session.options.on_compiled)
+            session.options.on_compiled(kernels[i]->name(), i + 1, kernels.size(), total);
+    }
+}
+
+void Stages::set(const std::string &number, std::uint32_t value) {
+    for (Stage &stage : stages_)
+        for (Kernel &kernel : stage.kernels_)
+            if (kernel.valid())
+                kernel.set(number, value);
+}
+
+std::vector<StageTime> Stages::times() const {
+    std::vector<StageTime> times;
+    for (const Stage &stage : stages_)
+        for (const Kernel &kernel : stage.kernels_) {
+            if (!kernel.valid())
+                continue;
+            const Kernel::Usage usage = kernel.usage();
+            if (usage.items > 0)
+                times.push_back({kernel.name(), usage.seconds, usage.items, usage.launches});
+        }
+    return times;
+}
+
+void Stages::reset_times() {
+    for (Stage &stage : stages_)
+        for (Kernel &kernel : stage.kernels_)
+            if (kernel.valid())
+                kernel.reset_usage();
+}
+
+} // namespace gradus

@@ -1,0 +1,87 @@
+// A step of a method: one kernel, or one for each BSDF kind of the scene, declared in one place.
+#pragma once
+
+#include "runtime/device/program.h"
+#include "runtime/wavefront/session.h"
+#include "runtime/wavefront/table.h"
+
+#include <cstdint>
+#include <deque>
+#include <initializer_list>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace gradus {
+
+/// Which kernels a stage has.
+struct StageDeclaration {
+    std::string name = {};  ///< its row in the profile; kernels by kind add theirs
+    std::string file = {};  ///< kernels/stages/<file>.cl; empty: as the name
+    std::string entry = {}; ///< the kernel in that file; empty: as the file
+    std::map<std::string, std::string> definitions = {};
+    /// One kernel for each of these BSDF kinds, compiled with BSDF and BSDF_IS_DIRAC; none: one kernel.
+    enum class Kinds { none, all, rough } kinds = Kinds::none;
+    bool is_wanted = true; ///< false: nothing is built, and launches do nothing
+    bool strict = false;   ///< never relaxed: what counts on rounding or on NaN
+    /// The arguments that each launch passes, `count` apart.
+    std::vector<std::string> numbers = {};
+    /// Arguments that are bound to tables of other names: argument, table at first.
+    std::vector<std::pair<std::string, std::string>> tables = {};
+};
+
+/// Numbers that a launch passes, by the names of the kernel's arguments.
+using LaunchNumbers = std::initializer_list<std::pair<const char *, std::uint32_t>>;
+
+class Stage {
+  public:
+    /// False where the scene or the method does without it.
+    bool is_wanted() const { return !kernels_.empty(); }
+    /// Launches the kernel on `count` work-items; on none, nothing happens.
+    void run(std::uint32_t count, LaunchNumbers numbers = {}) { launch(0, count, 1, numbers); }
+    /// The kernel of BSDF kind `kind`, a place in SceneTables::kinds.
+    void run_kind(std::size_t kind, std::uint32_t count, LaunchNumbers numbers = {}) {
+        launch(kind, count, 1, numbers);
+    }
+    /// The same for each of `planes`: the kernel's get_global_id(2) says which.
+    void run_planes(std::size_t kind, std::uint32_t count, std::uint32_t planes, LaunchNumbers numbers = {}) {
+        launch(kind, count, planes, numbers);
+    }
+    /// Gives an argument another table than the one of its name, until it is bound again.
+    void bind(const std::string &argument, const Buffer &buffer);
+
+    const StageDeclaration &declaration() const { return declaration_; }
+
+  private:
+    friend class Stages;
+    void launch(std::size_t kind, std::uint32_t count, std::uint32_t planes, LaunchNumbers numbers);
+
+    StageDeclaration declaration_;
+    const Tables *tables_ = nullptr;
+    std::vector<Kernel> kernels_; ///< by kind; without kinds, one
+    std::vector<int> bound_;      ///< by kernel: Tables::newest() when alternating tables were bound last
+    std::vector<std::vector<std::string>> alternating_; ///< by kernel: its arguments that are alternating tables
+};
+
+/// All stages of a method: what builds them, warms them up and reads their times.
+class Stages {
+  public:
+    Stage &add(StageDeclaration declaration);
+
+    /// Compiles what is wanted and sets all arguments but those that launches pass. Throws Error where a kernel does
+    /// not compile, std::logic_error where nobody provides an argument.
+    void build(Session &session, const Tables &tables);
+
+    /// Gives all kernels that ask for it another value of a number of the session.
+    void set(const std::string &number, std::uint32_t value);
+
+    /// What the kernels took so far, stage by stage in the order of their declaration.
+    std::vector<StageTime> times() const;
+    void reset_times();
+
+  private:
+    void warm(Session &session);
+    std::deque<Stage> stages_;
+};
+
+} // namespace gradus

@@ -1,0 +1,48 @@
+// What a render did, and what it took.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace gradus {
+
+/// Which method `auto` picked, and why.
+struct MethodChoice {
+    std::string method;
+    std::string reason;              ///< a sentence
+    std::uint64_t pilot_samples = 0; ///< a pixel, of the pilot render; 0: there was none
+    double pilot_seconds = 0;        ///< kernels compiled
+    struct Estimate {
+        double relative_mse = 0; ///< of an image of one sample a pixel; falls with the number of samples
+        double cost = 0;         ///< of a sample, in rays; counted, so that it is the same on each run
+    };
+    std::map<std::string, Estimate> estimates; ///< by method; empty without a pilot
+    double gain = 0;                           ///< relMSE of pt over gpt's at equal cost; 0 where it is not known
+};
+
+/// What a stage took.
+struct StageTime {
+    std::string name;
+    double seconds = 0;      ///< wall time
+    std::uint64_t items = 0; ///< rows or rays it worked on
+    std::uint64_t launches = 0;
+};
+
+/// What a render did. Written as JSON beside the image.
+struct Statistics {
+    std::vector<StageTime> stages;                 ///< in the order in which a path meets them
+    std::map<std::string, std::uint64_t> rays;     ///< by kind: "extension", "shadow"
+    std::map<std::string, std::uint64_t> shifts;   ///< by what became of them, gradient-domain methods
+    std::map<std::string, double> compile_seconds; ///< by kernel; empty where all came from a cache
+    std::uint64_t samples = 0;                     ///< paths begun
+    std::uint64_t non_finite = 0;                  ///< samples left out because they were NaN or infinite
+    double render_seconds = 0;                     ///< spent in render_batch()
+    std::uint64_t device_bytes = 0;                ///< allocated on the device
+    std::uint64_t peak_host_bytes = 0;             ///< the process at its peak
+    std::optional<MethodChoice> choice;            ///< of the method `auto`
+};
+
+} // namespace gradus

@@ -1,0 +1,108 @@
+#include "runtime/wavefront/table.h"
+
+#include "runtime/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace gradus {
+
+namespace {
+
+// On a CPU a batch should stay near the last-level cache; a GPU wants many rows to hide its latencies.
+constexpr std::uint32_t default_batch_cpu = 1u << 17, default_batch_other = 1u << 20;
+constexpr std::uint32_t least_batch = 64, largest_batch = 1u << 24;
+
+std::size_t element_bytes(const TableDeclaration &table, Precision precision) {
+    return table.is_uint ? sizeof(std::uint32_t) : real_bytes(precision);
+}
+
+} // namespace
+
+std::uint64_t TableRows::of(RowsOf kind) const {
+    switch (kind) {
+    case RowsOf::path:
+        return paths;
+    case RowsOf::slot:
+        return slots;
+    case RowsOf::pixel:
+        return pixels;
+    case RowsOf::image_row:
+        return width;
+    case RowsOf::chunk:
+        return chunks;
+    case RowsOf::one:
+        return 1;
+    }
+    return 0;
+}
+
+std::uint64_t table_bytes(const TableDeclaration &table, const TableRows &rows, Precision precision) {
+    return rows.of(table.rows) * table.multiple * table.columns * element_bytes(table, precision);
+}
+
+Tables::Tables(Device &device, const TableList &list, const TableRows &rows, Precision precision)
+    : rows_(rows), precision_(precision) {
+    for (const TableDeclaration &table : list) {
+        if (table.columns == 0)
+            continue;
+        Entry &entry = tables_[table.name];
+        entry.alternates = table.alternates;
+        for (int i = 0; i <= int(table.alternates); ++i) {
+            entry.buffer[i] = Buffer(device, table.name, table_bytes(table, rows, precision));
+            if (table.is_cleared)
+                entry.buffer[i].clear();
+        }
+    }
+}
+
+const Tables::Entry &Tables::entry(const std::string &name) const {
+    const auto found = tables_.find(name);
+    if (found == tables_.end())
+        throw std::logic_error("there is no table " + name);
+    return found->second;
+}
+
+const Buffer &Tables::operator[](const std::string &name) const {
+    const Entry &found = entry(name);
+    return found.buffer[found.alternates ? newest_ : 0];
+}
+
+Buffer &Tables::operator[](const std::string &name) {
+    return const_cast<Buffer &>(static_cast<const Tables &>(*this)[name]);
+}
+
+std::uint32_t slot_rows(std::uint32_t paths) {
+    constexpr std::uint32_t line = 64 / sizeof(float);
+    return ((paths + line - 1) / line | 1u) * line;
+}
+
+std::uint32_t default_batch_size(const Device &device) {
+    return device.description().type == "cpu" ? default_batch_cpu : default_batch_other;
+}
+
+std::uint32_t choose_batch_size(Device &device, std::uint32_t requested, std::uint64_t samples, const TableList &list,
+                                Precision precision) {
+    const DeviceDescription &d = device.description();
+    // By a batch of one path: what does not grow with the batch is small, or is the film, which must fit anyway.
+    const TableRows one = {1, batches_a_pass, 0, 0, 0};
+    std::uint64_t of_path = 0, largest_table = 1;
+    for (const TableDeclaration &table : list) {
+        const std::uint64_t bytes = table_bytes(table, one, precision);
+        of_path += bytes * (table.alternates ? 2 : 1);
+        largest_table = std::max(largest_table, bytes);
+    }
+    // Half the memory is for the scene and for others; one table may not pass the largest allocation.
+    const std::uint64_t fits = std::min<std::uint64_t>(d.memory_bytes / 2 / std::max<std::uint64_t>(of_path, 1),
+                                                       d.allocation_bytes / largest_table);
+    if (fits < least_batch)
+        throw Error(ExitCode::device, fmt::format("{} has not enough memory for {} paths", d.name, least_batch));
+    std::uint64_t size = requested ? requested : default_batch_size(device);
+    size = std::min<std::uint64_t>({size, largest_batch, std::max<std::uint64_t>(samples, 1)});
+    const std::uint64_t rounded_up = (size + least_batch - 1) / least_batch * least_batch;
+    return static_cast<std::uint32_t>(std::min(rounded_up, fits / least_batch * least_batch));
+}
+
+} // namespace gradus

@@ -1,0 +1,106 @@
+// What a render allocates on the device: one list, from which sizes, the bound of a batch, the statistics and the
+// layouts of tests and benchmarks come.
+#pragma once
+
+#include "runtime/device/buffer.h"
+#include "runtime/device/precision.h"
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace gradus {
+
+/// What a table has rows for. A batch is the paths that are in flight at once; a pass is more paths than that, and each
+/// has a slot: when some end, others begin in their rows.
+enum class RowsOf { path, slot, pixel, image_row, chunk, one };
+
+/// A structure of arrays (kernels/shared/tables.h): `columns` columns of `multiple` rows for each path, slot, pixel...
+/// A table of no columns is not allocated.
+struct TableDeclaration {
+    std::string name = {}; ///< as kernels' arguments have it
+    RowsOf rows = RowsOf::path;
+    std::uint32_t multiple = 1;
+    std::uint32_t columns = 1;
+    bool is_uint = false;    ///< all columns are uint; else elements are `real`, and a uint lies in a real's place
+    bool alternates = false; ///< there are two: `name` is the newest, `name`_old the one before
+    bool is_cleared = false; ///< kernels may read rows that nobody wrote
+};
+
+using TableList = std::vector<TableDeclaration>;
+
+/// The numbers that sizes depend on.
+struct TableRows {
+    std::uint32_t paths = 0;  ///< in flight: a batch
+    std::uint32_t slots = 0;  ///< of a pass, those beside it counted in
+    std::uint32_t pixels = 0; ///< of the crop
+    std::uint32_t width = 0;  ///< of the crop
+    std::uint32_t chunks = 0; ///< of the partition
+
+    std::uint64_t of(RowsOf rows) const;
+};
+
+/// Rows that each work-item of the partition counts.
+constexpr std::uint32_t partition_chunk = 256;
+constexpr std::uint32_t chunks_of(std::uint32_t rows) { return (rows + partition_chunk - 1) / partition_chunk; }
+
+/// Bytes of one table of a declaration.
+std::uint64_t table_bytes(const TableDeclaration &table, const TableRows &rows, Precision precision);
+
+/// The tables of a list, allocated. Throws Error where there is no memory.
+class Tables {
+  public:
+    Tables(Device &device, const TableList &list, const TableRows &rows, Precision precision);
+
+    const TableRows &rows() const { return rows_; }
+    Precision precision() const { return precision_; }
+    bool has(const std::string &name) const { return tables_.contains(name); }
+    /// The table of that name; the newest of two. Throws std::logic_error where there is none.
+    Buffer &operator[](const std::string &name);
+    const Buffer &operator[](const std::string &name) const;
+
+    /// Of those that alternate, the newest becomes the old one.
+    void exchange() { newest_ = 1 - newest_; }
+    int newest() const { return newest_; }
+
+    /// Calls visit(argument, buffer, alternates) for what kernels may name, as it is now.
+    template <class Visit>
+    void for_each(Visit visit) const {
+        for (const auto &[name, table] : tables_) {
+            visit(name, table.buffer[table.alternates ? newest_ : 0], table.alternates);
+            if (table.alternates)
+                visit(name + "_old", table.buffer[1 - newest_], true);
+        }
+    }
+
+  private:
+    struct Entry {
+        Buffer buffer[2];
+        bool alternates = false;
+    };
+    const Entry &entry(const std::string &name) const;
+    std::map<std::string, Entry> tables_;
+    TableRows rows_;
+    Precision precision_;
+    int newest_ = 0;
+};
+
+/// Slots of a pass of so many paths, a few more than those. Kernels write many columns of these tables at once, at rows
+/// that are not quite in order: columns a power of two apart would share the same few lines of the caches, so they are
+/// an odd number of lines apart.
+std::uint32_t slot_rows(std::uint32_t paths);
+
+/// Passes are this many batches long.
+constexpr std::uint32_t batches_a_pass = 4;
+
+/// Paths in flight where nobody asks for another number.
+std::uint32_t default_batch_size(const Device &device);
+
+/// The batch size for a request (0: the device's default): bounded by half of the device's memory and by its largest
+/// allocation, for the tables of the list with a pass of batches_a_pass batches, and by the samples that there are.
+/// Throws Error where not even a small batch fits.
+std::uint32_t choose_batch_size(Device &device, std::uint32_t requested, std::uint64_t samples, const TableList &list,
+                                Precision precision);
+
+} // namespace gradus

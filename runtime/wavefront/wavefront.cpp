@@ -1,0 +1,99 @@
+#include "runtime/wavefront/wavefront.h"
+
+#include "kernels/shared/tables.h"
+#include "runtime/wavefront/segments.h"
+
+#include <algorithm>
+
+namespace gradus {
+
+using namespace lib_float;
+
+namespace {
+
+StageDeclaration partition_stage(const char *entry, const char *name, std::vector<std::string> numbers) {
+    StageDeclaration stage;
+    stage.name = name;
+    stage.file = "partition";
+    stage.entry = entry;
+    stage.definitions = {{"PARTITION_CHUNK", std::to_string(partition_chunk)}};
+    stage.numbers = std::move(numbers);
+    return stage;
+}
+
+StageDeclaration classify_stage(const std::map<std::string, std::string> &definitions,
+                                const std::vector<std::string> &numbers) {
+    StageDeclaration stage;
+    stage.name = "classify";
+    stage.definitions = definitions;
+    stage.numbers = numbers;
+    return stage;
+}
+
+} // namespace
+
+Wavefront::Wavefront(Session &session, Stages &stages, const BinLayout &layout,
+                     const std::map<std::string, std::string> &definitions, const std::vector<std::string> &numbers)
+    : session_(session), layout_(layout), classify_(stages.add(classify_stage(definitions, numbers))),
+      count_(stages.add(partition_stage("partition_count", "partition count", {"bins", "rows"}))),
+      scan_(stages.add(partition_stage("partition_scan", "partition scan", {"bins", "chunks"}))),
+      scatter_(stages.add(partition_stage("partition_scatter", "partition scatter", {"bins", "rows"}))) {}
+
+TableList Wavefront::tables() const {
+    const std::uint32_t path_columns_used = session_.has("TRAIT_REFRACTION") ? path_columns : path_eta;
+    const std::uint32_t bins = layout_.bins();
+    return {{.name = "ray", .columns = ray_columns, .alternates = true},
+            {.name = "path", .columns = path_columns_used, .alternates = true},
+            {.name = "shadow", .columns = shadow_columns},
+            {.name = "bin", .is_uint = true},
+            {.name = "index", .is_uint = true},
+            {.name = "chunk_offset", .rows = RowsOf::chunk, .columns = bins, .is_uint = true},
+            {.name = "range", .rows = RowsOf::one, .columns = bins + 1, .is_uint = true}};
+}
+
+void Wavefront::attach(Tables &tables) { tables_ = &tables; }
+
+void Wavefront::begin_pass(std::uint32_t paths) {
+    paths_ = paths;
+    begun_ = vertices_ = fresh_ = 0;
+}
+
+Range Wavefront::refill(std::uint32_t &slot) {
+    slot = begun_;
+    fresh_ = std::min(tables_->rows().paths - vertices_, paths_ - begun_);
+    begun_ += fresh_;
+    return {vertices_, fresh_};
+}
+
+void Wavefront::trace() {
+    const std::size_t rows = tables_->rows().paths;
+    const TraceCounts counts =
+        trace_segments(session_.tracer, tables_->precision(),
+                       {&(*tables_)["ray"], rows, rays(), ray_origin_x, ray_direction_x, ray_primitive},
+                       {&(*tables_)["shadow"], rows, vertices_, shadow_origin_x, shadow_direction_x, shadow_open},
+                       session_.trace_seconds);
+    session_.rays["extension"] += counts.extension;
+    session_.rays["shadow"] += counts.shadow;
+}
+
+const Hits &Wavefront::partition(LaunchNumbers numbers) {
+    const std::uint32_t bins = layout_.bins(), chunks = chunks_of(rays());
+    classify_.run(rays(), numbers);
+    count_.run(chunks, {{"bins", bins}, {"rows", rays()}});
+    scan_.run(1, {{"bins", bins}, {"chunks", chunks}});
+    // The host plans with the ranges while the rows are scattered.
+    std::vector<std::uint32_t> ranges(bins + 1);
+    Buffer::Reading reading = (*tables_)["range"].start_read(ranges.data(), ranges.size() * sizeof(std::uint32_t));
+    scatter_.run(chunks, {{"bins", bins}, {"rows", rays()}});
+    reading.wait();
+    hits_ = Hits(layout_, std::move(ranges));
+    return hits_;
+}
+
+void Wavefront::advance() {
+    vertices_ = hits_.count();
+    fresh_ = 0;
+    tables_->exchange();
+}
+
+} // namespace gradus
