@@ -77,6 +77,17 @@ class Install(unittest.TestCase):
             self.assertEqual(self.install()[0], ["skipped: Mitsuba 3: no libllvm19: no network"])
 
 
+class Programs(unittest.TestCase):
+    def test_none_of_them_is_an_error_that_names_it(self):
+        for program in (["report", "--quick"], ["run"]):
+            with tempfile.TemporaryDirectory() as folder:
+                command = [sys.executable, ROOT / "bench" / program[0], *program[1:], "--no-install", "--no-build",
+                           "--build", folder]
+                result = subprocess.run(command, capture_output=True, text=True)
+            self.assertNotEqual(result.returncode, 0)
+            self.assertIn(f"{folder}/gradus: no such program", result.stderr)
+
+
 class FindPython(unittest.TestCase):
     def find(self, modules, **options):
         return pythons.find_python(modules, "GRADUS_SOME_PYTHON", **options)
