@@ -67,6 +67,7 @@ def install_llvm(build):
 def install(build):
     """Gets what is missing, and names in the environment what is in another build folder than build/. Returns what
     could not be had, as lines of text."""
+    build = build.absolute()
     python, skipped = bench_python(build), []
     for title, modules, packages, variable, others in PARTS:
         if os.environ.get(variable):
