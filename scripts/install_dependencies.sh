@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that building, testing and running Gradus takes; only those that are missing.
 #
-#   scripts/install_dependencies.sh [--list]
+#   scripts/install_dependencies.sh [--bench] [--list]
 #
-# --list prints the packages, one a line, and installs nothing. Needs root or sudo only where something is missing.
+# --bench adds what bench/report takes. --list prints the packages, one a line, and installs nothing. Needs root or sudo
+# only where something is missing.
 set -euo pipefail
 
 packages=(
@@ -20,6 +21,10 @@ packages=(
     libgtest-dev libgmock-dev oclgrind libfftw3-dev libbenchmark-dev
 )
 
+if [ "${1:-}" = --bench ]; then
+    packages+=(python3-venv) # the virtual environment of the rivals
+    shift
+fi
 if [ "${1:-}" = --list ]; then
     printf '%s\n' "${packages[@]}"
     exit 0

@@ -3,7 +3,7 @@
 
     python3 bench/charts/draw.py build/bench [--output build/bench/report]
 
-What is not there is left out, with a note. Needs matplotlib (Debian: python3-matplotlib); without it the page has its
+What is not there is left out, with a note. Needs matplotlib (bench/peers/install.py gets it); without it the page has its
 tables only.
 """
 

@@ -6,8 +6,15 @@ readers and on both. Markers differ, too.
 """
 
 import os
+import pathlib
 import re
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "peers"))
+from pythons import find_python  # noqa: E402
+
+PYTHON_VARIABLE = "GRADUS_CHART_PYTHON"
+OTHER_PYTHONS = ["/usr/bin/python3"]  # Debian's package is for Debian's Python
 
 INK, PAPER, GRID = "#000000", "#ffffff", "#dddddd"
 BLUE, SKY, GREEN, ORANGE, VERMILLION, PURPLE, YELLOW, GREY = (
@@ -38,18 +45,22 @@ def method_styles(methods):
             **{name: OTHERS[i % len(OTHERS)] for i, name in enumerate(unknown)}}
 
 
+def find_chart_python():
+    return find_python(["matplotlib"], PYTHON_VARIABLE, others=OTHER_PYTHONS)
+
+
 def pyplot():
-    """matplotlib.pyplot, set up; None where it is missing. Debian's package is for Debian's Python, which may not be
-    the one that runs this: then the whole program starts again with that one."""
+    """matplotlib.pyplot, set up; None where it is missing. The Python that has it may not be the one that runs this:
+    then the whole program starts again with that one."""
     try:
         import matplotlib
     except ImportError:
-        system = "/usr/bin/python3"
-        if os.path.exists(system) and "GRADUS_CHART_AGAIN" not in os.environ:
+        python = None if "GRADUS_CHART_AGAIN" in os.environ else find_chart_python()
+        if python:
             os.environ["GRADUS_CHART_AGAIN"] = "1"
             sys.stdout.flush()
-            os.execv(system, [system, *sys.argv])
-        print("skipped: no matplotlib (Debian: python3-matplotlib)")
+            os.execv(python, [python, *sys.argv])
+        print("skipped: no matplotlib (python3 bench/peers/install.py gets it)")
         return None
     matplotlib.use("Agg")
     matplotlib.rcParams["svg.hashsalt"] = "gradus"  # equal figures give equal files

@@ -3,6 +3,6 @@
 PYTHON_VARIABLE = "GRADUS_DENOISER_PYTHON"
 MODULES = ["pyoidn", "OpenEXR"]
 
-HOW_TO_GET = """Open Image Denoise is not at hand for this Python. To get it, in a virtual environment:
-    python3 -m venv denoiser-venv && denoiser-venv/bin/pip install pyoidn OpenEXR
-Then run this script with that Python, or name it in GRADUS_DENOISER_PYTHON."""
+HOW_TO_GET = """Open Image Denoise is not at hand for this Python. To get it into the build folder:
+    python3 bench/peers/install.py
+Or run this script with a Python that has pyoidn and OpenEXR, or name it in GRADUS_DENOISER_PYTHON."""

@@ -6,18 +6,20 @@ import pathlib
 import re
 import sys
 
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 PYTHON_VARIABLE = "GRADUS_MITSUBA_PYTHON"
 
-HOW_TO_GET = """Mitsuba 3 is not at hand for this Python. To get it, in a virtual environment:
-    python3 -m venv mitsuba-venv && mitsuba-venv/bin/pip install mitsuba
-and LLVM 19 or later for its llvm variants (Debian: apt install libllvm19, from backports where need be).
-Then run this script with that Python, or name it in GRADUS_MITSUBA_PYTHON or with --python."""
+HOW_TO_GET = """Mitsuba 3 is not at hand for this Python. To get it into the build folder:
+    python3 bench/peers/install.py
+Or name a Python that has it in GRADUS_MITSUBA_PYTHON or with --python; its llvm variants need LLVM 19 or later."""
 
 
-def find_llvm():
-    """The path of the newest libLLVM of version 19 or later, or None. Older ones fail on machines with AVX-512."""
+def find_llvm(own=ROOT / "build" / "bench" / "llvm"):
+    """The path of the newest libLLVM of version 19 or later, or None. Older ones fail on machines with AVX-512. The
+    folder is where install.py unpacks Debian's."""
     candidates = []
-    for pattern in ("/usr/lib/*/libLLVM*.so*", "/usr/lib/llvm-*/lib/libLLVM*.so*", "/usr/local/lib/libLLVM*.so*"):
+    for pattern in (f"{own}/usr/lib/*/libLLVM*.so*", "/usr/lib/*/libLLVM*.so*", "/usr/lib/llvm-*/lib/libLLVM*.so*",
+                    "/usr/local/lib/libLLVM*.so*"):
         for path in glob.glob(pattern):
             version = re.search(r"libLLVM(?:-|\.so\.)(\d+)", os.path.basename(path))
             if version and int(version.group(1)) >= 19:

@@ -5,8 +5,8 @@
 
 gpt renders with --spp samples; pt renders as many as take the same time, the reconstruction counted. The reference is
 path tracing with --reference-spp samples at the size of the picture, made once and kept in build/bench/cache. Error
-maps are those of `gradus compare --error-image`: red too bright, blue too dark, white equal. Needs matplotlib (Debian:
-python3-matplotlib); without it, says so and draws nothing.
+maps are those of `gradus compare --error-image`: red too bright, blue too dark, white equal. Needs matplotlib
+(bench/peers/install.py gets it); without it, says so and draws nothing.
 """
 
 import argparse

@@ -27,7 +27,8 @@ def render(arguments, scene, folder, cache):
     image, record = pathlib.Path(folder) / "image.exr", pathlib.Path(folder) / "statistics.json"
     command = [arguments.gradus, "render", scene, "--method", "pt", "-o", image, "--stats", record, "--quiet"]
     command += ["--size", "128x128", "--spp", 1, *(["--device", arguments.device] if arguments.device else [])]
-    environment = {**os.environ, "POCL_CACHE_DIR": cache}
+    # PoCL's cache, and ours of compiled programs.
+    environment = {**os.environ, "POCL_CACHE_DIR": cache, "GRADUS_CACHE_DIR": f"{cache}/programs"}
     started = time.perf_counter()
     renders.run(*command, environment=environment)
     return time.perf_counter() - started, json.loads(record.read_text())

@@ -5,7 +5,7 @@
 
 Above, L2: relative difference to the solution by a discrete cosine transform in double precision. Below, L1: how far
 the objective is above the least that any point of the same size reached (that point itself is not drawn). Needs
-matplotlib (Debian: python3-matplotlib); without it, says so and draws nothing.
+matplotlib (bench/peers/install.py gets it); without it, says so and draws nothing.
 """
 
 import argparse

@@ -96,7 +96,7 @@ class DrawOnly(unittest.TestCase):
         result = subprocess.run([str(part) for part in command], capture_output=True, text=True)
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
         if "skipped: no matplotlib" in result.stdout:
-            print("skipped: no matplotlib (Debian: python3-matplotlib)")
+            print("skipped: no matplotlib")
             self.skipTest("no matplotlib")
         return result.stdout, (self.folder / "report" / "index.html").read_text()
 

@@ -1,0 +1,94 @@
+#!/usr/bin/env python3
+"""./check with programs that only say how they were called: what fails it, and the summary of --full."""
+
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+
+# Stands for all programs. ctest writes the results of two tests, of which B is skipped.
+STUB = f"""#!/bin/sh
+case "$1" in *check_skips.py) exec '{sys.executable}' "$@" ;; esac
+call="$(basename "$0") $*"
+echo "[$call]"
+case "$call" in
+ctest*)
+    echo '<testsuite><testcase name="A" status="run"/><testcase name="B" status="notrun"><skipped message="no B"/>
+        </testcase></testsuite>' >"$2/check.xml" ;;
+*devices.py*) echo "skipped: no second OpenCL implementation" ;;
+*convergence.py*) echo "mitsuba: skipped, no Mitsuba" ;;
+esac
+case "$call" in $FAILS) exit 8 ;; esac
+"""
+
+
+class Check(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        for name in ("scripts", "programs", "tests", "build", "build-asan"):
+            (self.folder / name).mkdir()
+        for name in ("check", "scripts/check_skips.py"):
+            shutil.copy(ROOT / name, self.folder / name)
+        for name in ("demo", "scripts/build.sh", "scripts/install_dependencies.sh", *(
+                f"programs/{program}" for program in ("cmake", "ctest", "python3"))):
+            (self.folder / name).write_text(STUB)
+            (self.folder / name).chmod(0o755)
+
+    def check(self, *arguments, expected="always: B\n", fails="nothing"):
+        (self.folder / "tests" / "expected_skips.txt").write_text(expected)
+        path = f"{self.folder / 'programs'}:{os.environ['PATH']}"
+        return subprocess.run([self.folder / "check", *arguments], capture_output=True, text=True,
+                              env={**os.environ, "PATH": path, "FAILS": fails})
+
+    def test_passes_and_prints_what_was_skipped(self):
+        result = self.check()
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        self.assertIn("[install_dependencies.sh ]", result.stdout)
+        self.assertIn("--label-exclude ^full$]", result.stdout)
+        self.assertTrue(result.stdout.endswith("1 cases ran, 1 were skipped:\n  B: no B\n"), result.stdout)
+
+    def test_fails_with_any_part(self):
+        for fails in ("install*", "build.sh*", "demo*", "ctest*"):
+            self.assertNotEqual(self.check(fails=fails).returncode, 0, fails)
+        self.assertNotEqual(self.check(expected="").returncode, 0)
+        self.assertNotEqual(self.check(expected="always: B\nalways: A\n").returncode, 0)
+        self.assertEqual(self.check("--unknown").returncode, 2)
+
+    def test_installs_nothing_where_it_is_told(self):
+        self.assertEqual(self.check("--no-install", fails="install*").returncode, 0)
+
+    def summary(self, **options):
+        result = self.check("--full", expected="full: B\nno full: B\n", **options)
+        lines = result.stdout.split("== Summary\n")[1].splitlines()
+        return result.returncode, dict(line.split("s  ", 1)[1].split(": ", 1) for line in lines)
+
+    def test_full_runs_all_and_says_what_it_skipped(self):
+        code, summary = self.summary()
+        self.assertEqual(code, 0)
+        self.assertEqual(summary, {
+            "all tests, slow ones too": "SKIPPED: 1 were skipped",
+            "tests under the sanitizers": "SKIPPED: 1 were skipped",
+            "tests under the sanitizers that open a device": "SKIPPED: 1 were skipped",
+            "the demo with empty caches": "passed",
+            "a second OpenCL implementation": "SKIPPED: no second OpenCL implementation",
+            "Mitsuba 3": "passed",
+            "error against time, with rivals": "SKIPPED: no Mitsuba"})
+        self.assertEqual(list(self.folder.glob("build/empty-caches*")), [])
+
+    def test_full_goes_on_after_a_failure(self):
+        for fails, part in (("cmake --build*", "tests under the sanitizers"), ("*compare.py*", "Mitsuba 3"),
+                            ("ctest*Stability*", "tests under the sanitizers that open a device")):
+            code, summary = self.summary(fails=fails)
+            self.assertEqual(code, 1)
+            self.assertEqual([title for title, outcome in summary.items() if outcome == "FAILED"], [part])
+
+
+if __name__ == "__main__":
+    unittest.main()
