@@ -17,7 +17,7 @@ void Fill::run(Buffer &image, const Buffer &valid) {
     const Buffer *from = &valid;
     double left = -1;
     for (;;) {
-        sums.bind(ring);
+        sums.bind_parts(ring, 1);
         ring.bind("image", image);
         ring.bind("valid", *from);
         ring.bind("filled_image", other_image_);

@@ -45,6 +45,11 @@ Buffer PlaneMaker::planes(const std::string &name, const Grid &grid, std::uint32
     return reals(name, std::size_t(grid.plane) * count);
 }
 
+Buffer PlaneMaker::some(const Buffer &all, const Grid &grid, Planes planes) const {
+    const std::size_t plane = grid.plane * real_bytes(precision_);
+    return planes.count * plane == all.bytes() ? all : all.part(planes.first * plane, planes.count * plane);
+}
+
 Buffer PlaneMaker::reals(const std::string &name, std::size_t count) const {
     Buffer buffer(device_, name, count * real_bytes(precision_));
     buffer.clear();

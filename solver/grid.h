@@ -36,6 +36,8 @@ class PlaneMaker {
   public:
     PlaneMaker(Device &device, Precision precision) : device_(device), precision_(precision) {}
     Buffer planes(const std::string &name, const Grid &grid, std::uint32_t count) const;
+    /// Some planes of a buffer of several.
+    Buffer some(const Buffer &all, const Grid &grid, Planes planes) const;
     Buffer reals(const std::string &name, std::size_t count) const;
     Buffer reals(const std::string &name, const std::vector<double> &values) const;
     Precision precision() const { return precision_; }

@@ -44,7 +44,6 @@ void launch_transfer(Kernel &kernel, const Grid &fine, const Grid &coarse, std::
     kernel.set("coarse_height", coarse.height);
     kernel.set("coarse_row", coarse.row);
     kernel.set("coarse_plane", coarse.plane);
-    kernel.set("first_channel", planes.first);
     const std::size_t tiles = (coarse.width - 1) / SOLVER_TILE + 1;
     launch_groups(kernel, tiles * planes.count, (rows - 1) / 8 + 1);
 }
@@ -64,8 +63,8 @@ void System::bind(Kernel &kernel) const {
     }
 }
 
-Multigrid::Multigrid(const PlaneMaker &make, std::uint32_t width, std::uint32_t height, std::uint32_t channels)
-    : make_(make) {
+Multigrid::Multigrid(const PlaneMaker &make, std::uint32_t width, std::uint32_t height, std::uint32_t together)
+    : make_(make), together_(together) {
     double pitch = 1;
     for (std::uint32_t w = width, h = height;; w = (w + 1) / 2, h = (h + 1) / 2, pitch *= 2) {
         Level level;
@@ -80,13 +79,19 @@ Multigrid::Multigrid(const PlaneMaker &make, std::uint32_t width, std::uint32_t 
         system.row_up = make.reals("row_up", rows.before);
         system.row_down = make.reals("row_down", rows.after);
         system.row_size = make.reals("row_size", rows.size);
-        system.inverse_diagonal = make.planes("inverse_diagonal", system.grid, 1);
-        level.right_side = make.planes("right_side", system.grid, channels);
-        level.smoothed = make.planes("smoothed", system.grid, channels);
-        level.other = make.planes("smoothed", system.grid, channels);
         levels_.push_back(std::move(level));
         if (w == 1 && h == 1 && levels_.size() > 1)
             break;
+    }
+}
+
+void Multigrid::allocate() {
+    for (Level &level : levels_) {
+        if (level.right_side.valid())
+            return;
+        level.right_side = make_.planes("right_side", level.system.grid, together_);
+        level.smoothed = make_.planes("smoothed", level.system.grid, together_);
+        level.other = make_.planes("smoothed", level.system.grid, together_);
     }
 }
 
@@ -98,9 +103,12 @@ void Multigrid::invert_diagonal(Kernels &kernels, System &system) {
 void Multigrid::invert_finest_diagonal(Kernels &kernels) { invert_diagonal(kernels, system()); }
 
 void Multigrid::set_uniform(Kernels &kernels, double data) {
+    allocate();
     used_ = 0;
     for (Level &level : levels_) {
         level.system.data = data;
+        if (!level.system.inverse_diagonal.valid())
+            level.system.inverse_diagonal = make_.planes("inverse_diagonal", level.system.grid, 1);
         invert_diagonal(kernels, level.system);
         ++used_;
         if (data > dominant_data_weight && used_ > 1)
@@ -113,6 +121,7 @@ void Multigrid::set_uniform(Kernels &kernels, double data) {
 }
 
 void Multigrid::allocate_weights(std::uint32_t planes) {
+    allocate();
     for (Level &level : levels_) {
         System &system = level.system;
         const std::uint32_t plane = planes > 1 ? system.grid.plane : 0;

@@ -30,7 +30,8 @@ struct System {
 
 class Multigrid {
   public:
-    Multigrid(const PlaneMaker &make, std::uint32_t width, std::uint32_t height, std::uint32_t channels);
+    /// For `together` channels at a time. Planes are made with the first weights.
+    Multigrid(const PlaneMaker &make, std::uint32_t width, std::uint32_t height, std::uint32_t together);
 
     /// The finest system.
     System &system() { return levels_.front().system; }
@@ -47,7 +48,8 @@ class Multigrid {
     /// Makes the inverse diagonal of the finest system alone, for methods that need no hierarchy.
     void invert_finest_diagonal(Kernels &kernels);
 
-    /// Writes an approximate solution of A z = right_side() to solution(), for some channels.
+    /// Writes an approximate solution of A z = right_side() to solution(), for a group of channels, which all buffers
+    /// hold alone.
     void cycle(Kernels &kernels, Planes channels) { run_cycle(kernels, channels, nullptr); }
     const Buffer &solution() const { return levels_.front().smoothed; }
     /// Adds it to `u` instead.
@@ -62,7 +64,10 @@ class Multigrid {
     void invert_diagonal(Kernels &kernels, System &system);
     void run_cycle(Kernels &kernels, Planes channels, const Buffer *onto);
 
+    void allocate();
+
     const PlaneMaker make_;
+    const std::uint32_t together_;
     std::vector<Level> levels_;
     std::size_t used_ = 0; ///< levels that the current weights need
 };

@@ -26,6 +26,7 @@ struct RenderOptions {
     std::uint32_t work_group_size = 0;       ///< of the renderer's kernels; 0: the default
     Precision precision = Precision::single; ///< of the kernels; rays are always traced in float
     bool aov = false;                        ///< also albedo, normal, depth, variance
+    bool layers = false;                     ///< also what the image was reconstructed from, gradient-domain methods
     bool all_traits = false; ///< for measuring: compile the kernels for everything, as if the scene had it
     enum class Strategy { mis, light, bsdf };
     Strategy strategy = Strategy::mis;  ///< for tests: light sampling alone or BSDF sampling alone
@@ -86,9 +87,13 @@ class Method {
     /// Renders the next batch. Returns false once all samples are done. The image depends neither on the batch
     /// size nor on the number of threads.
     virtual bool render_batch() = 0;
-    /// The image of the samples done so far: R, G, B and, with aov, albedo, normal, depth and variance layers.
-    /// Each pixel is divided by its own count; a pixel without a sample is 0. Metadata is the driver's.
+    /// The image of the samples done so far: R, G, B and, with aov, albedo, normal, depth and variance layers; with
+    /// layers, those that a reconstruction is made from. Each pixel is divided by its own count; a pixel without a
+    /// sample is 0. Metadata is the driver's.
     virtual Image image() = 0;
+    /// The same for the last time: the method may let go of the memory that it renders to. Only statistics() may be
+    /// called after it.
+    virtual Image last_image() { return image(); }
     virtual Statistics statistics() const = 0;
 };
 
