@@ -77,8 +77,7 @@ struct PoissonSolver::Implementation {
     Implementation(Device &device, std::uint32_t width, std::uint32_t height, std::uint32_t channels,
                    Precision precision, std::uint32_t together)
         : device(device), width(width), height(height), channels(channels),
-          workspace(device, width, height, channels, precision, together), problem(workspace), reweighting(workspace) {
-    }
+          workspace(device, width, height, channels, precision, together), problem(workspace), reweighting(workspace) {}
 
     using Call = std::function<void()>;
     /// Where the result goes is asked at the end: it may be memory that the solve needs until then.
@@ -103,8 +102,7 @@ struct PoissonSolver::Implementation {
 };
 
 Kernels &PoissonSolver::Implementation::kernels_for(const PoissonOptions &options) {
-    const bool uniform =
-        options.norm == PoissonNorm::l2 && !problem.anything_missing() && !options.weigh_by_variance;
+    const bool uniform = options.norm == PoissonNorm::l2 && !problem.anything_missing() && !options.weigh_by_variance;
     return workspace.kernels(uniform                  ? Weights::uniform
                              : options.joint_channels ? Weights::joint
                                                       : Weights::per_channel);
@@ -222,8 +220,8 @@ namespace {
 /// Images of one kind from those of another, image by image.
 template <class To, class From, class Convert>
 PoissonImages<To> converted(const PoissonImages<From> &images, Convert convert) {
-    return {convert(images.primal),      convert(images.dx),    convert(images.dy),
-            convert(images.direct),      convert(images.start), convert(images.primal_variance),
+    return {convert(images.primal),      convert(images.dx),         convert(images.dy),
+            convert(images.direct),      convert(images.start),      convert(images.primal_variance),
             convert(images.dx_variance), convert(images.dy_variance)};
 }
 
@@ -257,7 +255,8 @@ PoissonReport PoissonSolver::solve(const ImageSources &images, const PoissonOpti
         return source ? Input([&i, &source]() -> const Buffer & { return i.staged(source); }) : Input();
     });
     // compose() may write where it reads the direct image.
-    PoissonReport report = i.solve(inputs, options, [&i]() -> Buffer & { return i.problem.spare(); }, all_read);
+    PoissonReport report = i.solve(
+        inputs, options, [&i]() -> Buffer & { return i.problem.spare(); }, all_read);
     const auto mapping = i.problem.spare().map(Access::read);
     for (std::uint32_t c = 0; c < i.channels; ++c)
         result(c, mapping.as<float>() + c * i.pixels());

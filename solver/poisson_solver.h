@@ -122,8 +122,8 @@ class PoissonSolver {
     /// go before most of the solver's memory is needed.
     PoissonReport solve(const ImageSources &images, const PoissonOptions &options, const PlaneSink &result,
                         const std::function<void()> &all_read = {});
-    /// The same in device memory; `result` may be one of the inputs. Throws Error(ExitCode::device) where the device has
-    /// no room.
+    /// The same in device memory; `result` may be one of the inputs. Throws Error(ExitCode::device) where the device
+    /// has no room.
     PoissonReport solve(const DeviceImages &images, const PoissonOptions &options, Buffer &result);
 
     std::uint32_t width() const;

@@ -18,8 +18,8 @@ class Reweighting {
   public:
     explicit Reweighting(Workspace &workspace) : workspace_(workspace) {}
     /// Leaves the solution in problem.u().
-    void run(Kernels &kernels, Problem &problem, double alpha, const Inputs &images,
-             const PoissonOptions &options, PoissonReport &report);
+    void run(Kernels &kernels, Problem &problem, double alpha, const Inputs &images, const PoissonOptions &options,
+             PoissonReport &report);
 
   private:
     struct Norm {

@@ -16,10 +16,12 @@ std::uint32_t quotient_up(std::uint32_t a, std::uint32_t b) { return (a + b - 1)
 } // namespace
 
 Sums::Sums(const PlaneMaker &make, const Grid &grid, std::uint32_t channels)
-    : make_(make), channels_(channels), partials_(grid.partials()), plane_(grid.plane),
-      reduced_{
-          make.reals("reduced", std::size_t(quotient_up(plane_, SOLVER_REDUCTION)) * channels * 2),
-          make.reals("reduced", std::size_t(quotient_up(plane_, SOLVER_REDUCTION * SOLVER_REDUCTION)) * channels * 2)},
+    : make_(make), channels_(channels), partials_(grid.partials()),
+      plane_(grid.plane), reduced_{make.reals("reduced",
+                                              std::size_t(quotient_up(plane_, SOLVER_REDUCTION)) * channels * 2),
+                                   make.reals("reduced",
+                                              std::size_t(quotient_up(plane_, SOLVER_REDUCTION * SOLVER_REDUCTION)) *
+                                                  channels * 2)},
       scalars_(make.reals("scalars", std::size_t(channels) * SOLVER_SCALAR_SLOTS)) {}
 
 void Sums::bind_parts(Kernel &kernel, std::uint32_t planes) {

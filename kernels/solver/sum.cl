@@ -26,8 +26,7 @@ SOLVE reduce_products(uint plane, uint channel_count, uint reduced_count, __glob
 }
 
 /* The same for the sum of a, or of what of it is above zero. */
-SOLVE reduce_plane(uint plane, uint reduced_count, uint positive, __global const real *a,
-                   __global real *reduced) {
+SOLVE reduce_plane(uint plane, uint reduced_count, uint positive, __global const real *a, __global real *reduced) {
     const uint channel = (uint)get_group_id(1);
     const size_t i = get_global_id(0);
     const size_t first = (size_t)channel * plane;

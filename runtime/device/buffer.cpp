@@ -20,7 +20,7 @@ struct Buffer::Handle {
 
     Device::Implementation &device;
     cl::Buffer memory;
-    std::size_t bytes; ///< that we allocated: 0 for a caller's and for a part
+    std::size_t bytes;             ///< that we allocated: 0 for a caller's and for a part
     std::shared_ptr<Handle> whole; ///< of a part
     std::size_t first = 0;         ///< byte of the whole
 };
@@ -80,8 +80,8 @@ Buffer Buffer::part(std::size_t first, std::size_t bytes) const {
         const std::shared_ptr<Handle> &whole = handle_->whole ? handle_->whole : handle_;
         const cl_buffer_region region{handle_->first + first, bytes};
         part.handle_ = std::make_shared<Handle>(
-            handle_->device,
-            whole->memory.createSubBuffer(CL_MEM_READ_WRITE, CL_BUFFER_CREATE_TYPE_REGION, &region), 0);
+            handle_->device, whole->memory.createSubBuffer(CL_MEM_READ_WRITE, CL_BUFFER_CREATE_TYPE_REGION, &region),
+            0);
         part.handle_->whole = whole;
         part.handle_->first = region.origin;
     });

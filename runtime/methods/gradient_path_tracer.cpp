@@ -472,15 +472,34 @@ void GradientPathTracer::restart(std::uint64_t first_sample, std::uint64_t sampl
     outcome_.clear();
 }
 
-Image GradientPathTracer::image() {
+Image GradientPathTracer::make_image(bool layers, bool last) {
+    if (last)
+        release_batch();
     statistics_.non_finite = 0;
-    const Image whole = film_->image(done_, statistics_.non_finite);
+    const std::uint32_t pixels = film_->pixels();
+    Image whole = film_->image(done_, statistics_.non_finite);
+    if (last)
+        film_->release();
     if (!solver_)
         solver_ = std::make_unique<PoissonSolver>(device_, film_settings_.crop_width, film_settings_.crop_height, 3);
-    return reconstruct(*solver_, whole,
-                       read_gradient_film(HostTable(gradient_film_, film_->pixels(), options_.precision),
-                                          film_->pixels(), done_ / film_->pixels()),
-                       direct_edges_.value_or(std::vector<DirectPixel>()), options_);
+    Image image =
+        reconstruct(*solver_, std::move(whole),
+                    std::make_unique<GradientFilm>(gradient_film_, pixels, options_.precision, done_ / pixels),
+                    direct_edges_.value_or(std::vector<DirectPixel>()), options_, layers, [&] {
+                        if (last)
+                            gradient_film_ = Buffer();
+                    });
+    if (last)
+        solver_.reset();
+    return image;
+}
+
+/// What a pass needs and the films do not.
+void GradientPathTracer::release_batch() {
+    tables_.reset();
+    for (Buffer *buffer : {&primary_, &gain_, &link_, &prefix_, &difference_, &direct_, &shifted_[0], &shifted_[1],
+                           &offset_vertex_, &offset_ray_, &offset_state_, &offset_reach_})
+        *buffer = Buffer();
 }
 
 void GradientPathTracer::count_outcomes(Range rows) {

@@ -22,9 +22,11 @@ class GradientPathTracer final : public PathTracer {
     GradientPathTracer(Device &device, const Scene &scene, const RenderOptions &options);
 
     bool render_batch() override;
-    /// R, G, B reconstructed, then layers primal, dx, dy, direct; with aov also their variances and the path tracer's
-    /// layers.
-    Image image() override;
+    /// R, G, B reconstructed; with `layers` then direct, primal, dx, dy, and with aov also their variances; with aov
+    /// the path tracer's layers.
+    Image image() override { return make_image(options_.layers, false); }
+    Image last_image() override { return make_image(options_.layers, true); }
+    Image image_with_layers() { return make_image(true, false); }
     void restart(std::uint64_t first_sample, std::uint64_t samples_per_pixel) override;
     Statistics statistics() const override;
 
@@ -73,6 +75,10 @@ class GradientPathTracer final : public PathTracer {
     void connect(const Vertices &vertices, const Buffer &vertex);
     void emit(const Vertices &next, const Shiftings &shiftings);
     void scatter(const Vertices &vertices, const Buffer &vertex);
+
+    /// `last`: lets go of batches and films as soon as they have been read.
+    Image make_image(bool layers, bool last);
+    void release_batch();
 
     void count_outcomes(Range rows);
     bool keeps_apart() const { return traits_.at("TRAIT_APART") != 0; }

@@ -23,6 +23,9 @@ class FilmStage {
     /// samples that were left out to `non_finite`.
     Image image(std::uint64_t samples, std::uint64_t &non_finite) const;
 
+    /// Lets go of the memory; nothing may be asked of it afterwards.
+    void release() { film_ = feature_film_ = Buffer(); }
+
     /// All zero again.
     void clear();
 
