@@ -12,7 +12,7 @@ void Fill::run(Buffer &image, const Buffer &valid) {
         valid_ = workspace_.make.planes("filled_valid", grid, 1);
         other_valid_ = workspace_.make.planes("filled_valid", grid, 1);
     }
-    Kernels &kernels = workspace_.kernels(Weights::uniform);
+    Kernels &kernels = workspace_.any_kernels();
     Kernel &ring = kernels.fill_ring;
     const Buffer *from = &valid;
     double left = -1;

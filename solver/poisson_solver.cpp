@@ -23,6 +23,12 @@ namespace {
 constexpr double default_tolerance = 1e-5;
 constexpr std::uint32_t most_channels = 8;
 
+/// The weights of a problem in which something may be missing.
+Weights weights_for(const PoissonOptions &options, bool missing) {
+    const bool uniform = options.norm == PoissonNorm::l2 && !missing && !options.weigh_by_variance;
+    return uniform ? Weights::uniform : options.joint_channels ? Weights::joint : Weights::per_channel;
+}
+
 /// Enough to reach the default tolerance at alpha 0.02 where the method can.
 int default_iterations(LinearMethod method) {
     switch (method) {
@@ -86,7 +92,9 @@ struct PoissonSolver::Implementation {
     void least_squares(const Inputs &images, const PoissonOptions &options, double alpha, PoissonReport &report);
     void absolute_values(const Inputs &images, const PoissonOptions &options, double alpha, PoissonReport &report);
     /// Those for the weights that the problem and the options ask for.
-    Kernels &kernels_for(const PoissonOptions &options);
+    Kernels &kernels_for(const PoissonOptions &options) {
+        return workspace.kernels(weights_for(options, problem.anything_missing()));
+    }
     /// The problem's memory to spare, filled by a source.
     const Buffer &staged(const PlaneSource &source);
 
@@ -100,13 +108,6 @@ struct PoissonSolver::Implementation {
     Reweighting reweighting;
     std::unique_ptr<MeanCorrection> mean_correction;
 };
-
-Kernels &PoissonSolver::Implementation::kernels_for(const PoissonOptions &options) {
-    const bool uniform = options.norm == PoissonNorm::l2 && !problem.anything_missing() && !options.weigh_by_variance;
-    return workspace.kernels(uniform                  ? Weights::uniform
-                             : options.joint_channels ? Weights::joint
-                                                      : Weights::per_channel);
-}
 
 void PoissonSolver::Implementation::least_squares(const Inputs &images, const PoissonOptions &options, double alpha,
                                                   PoissonReport &report) {
@@ -160,6 +161,7 @@ PoissonReport PoissonSolver::Implementation::solve(const Inputs &images, const P
         for (Kernel *kernel : kernels->all())
             kernel->reset_usage();
     PoissonReport report;
+    workspace.set_any_kernels(weights_for(options, false));
     problem.import(images, report);
     if (options.alpha_from_variances || options.weigh_by_variance)
         problem.import_variances(images, options.weigh_by_variance);
@@ -279,9 +281,7 @@ PoissonReport PoissonSolver::solve(const HostImages &images, const PoissonOption
 void PoissonSolver::compile(Device &device, const PoissonOptions &options, std::uint32_t channels,
                             Precision precision) {
     // The device keeps the programs, which is what takes the time.
-    Kernels(device, precision, channels, Weights::uniform);
-    if (options.norm == PoissonNorm::l1 || options.weigh_by_variance)
-        Kernels(device, precision, channels, options.joint_channels ? Weights::joint : Weights::per_channel);
+    Kernels(device, precision, channels, weights_for(options, false));
 }
 
 } // namespace gradus

@@ -23,7 +23,7 @@ void Problem::allocate() {
 
 double Problem::import_plane(const Buffer &packed, const Buffer &imported, const Buffer &valid, std::uint32_t columns,
                              std::uint32_t rows, double missing_value) {
-    Kernels &kernels = workspace_.kernels(Weights::uniform);
+    Kernels &kernels = workspace_.any_kernels();
     Kernel &kernel = kernels.import_plane;
     kernel.set_real("missing_value", missing_value);
     workspace_.sums.bind_parts(kernel, 1);
@@ -51,7 +51,7 @@ void Problem::import(const Inputs &images, PoissonReport &report) {
     anything_missing_ = missing + missing_x + missing_y > 0;
     if (missing > 0)
         fill_.run(base_, valid_primal_);
-    Kernel &kernel = workspace_.kernels(Weights::uniform).gradient_residual;
+    Kernel &kernel = workspace_.any_kernels().gradient_residual;
     kernel.bind("base", base_);
     kernel.bind("dx", gradient_x_);
     kernel.bind("dy", gradient_y_);
@@ -67,7 +67,7 @@ double Problem::mean_variance(const Buffer &packed, const Buffer &variance, Buff
     if (columns == 0 || rows == 0)
         return 0;
     import_plane(packed, variance, valid, columns, rows, -1);
-    workspace_.sums.sum_of(workspace_.kernels(Weights::uniform), variance, slot_sum, true);
+    workspace_.sums.sum_of(workspace_.any_kernels(), variance, slot_sum, true);
     return workspace_.sums.read_total(slot_sum) / (double(columns) * rows * workspace_.channels);
 }
 
@@ -171,7 +171,7 @@ const Buffer &Problem::make_right_side(Kernels &kernels, Planes group) {
 }
 
 void Problem::start(const Inputs &images) {
-    Kernel &kernel = workspace_.kernels(Weights::uniform).start;
+    Kernel &kernel = workspace_.any_kernels().start;
     kernel.set("has_start", bool(images.start));
     kernel.bind("base", base_);
     kernel.bind("packed", images.start ? images.start() : base_);
@@ -240,10 +240,10 @@ void Problem::find_held(Kernels &kernels) {
 double Problem::norm_of_right_side(Kernels &kernels) {
     for (const Planes group : workspace_.groups()) {
         const Buffer &right_side = make_right_side(kernels, group);
-        workspace_.sums.product(workspace_.kernels(Weights::uniform), group, right_side, right_side, slot_sum);
+        workspace_.sums.product(workspace_.any_kernels(), group, right_side, right_side, slot_sum);
     }
     const double right_side = workspace_.sums.read_total(slot_sum);
-    workspace_.sums.product(workspace_.kernels(Weights::uniform), {0, workspace_.channels}, base_, base_, slot_sum);
+    workspace_.sums.product(workspace_.any_kernels(), {0, workspace_.channels}, base_, base_, slot_sum);
     return std::sqrt(std::max(right_side, 1e-12 * workspace_.sums.read_total(slot_sum)));
 }
 

@@ -38,11 +38,15 @@ struct Workspace {
 
     /// Compiles them when they are first asked for.
     Kernels &kernels(Weights weights);
+    /// For what does not depend on weights, kernels that the solve needs anyway: each set takes a while to load.
+    Kernels &any_kernels() { return kernels(any_); }
+    void set_any_kernels(Weights weights) { any_ = weights; }
     /// All that were asked for so far.
     std::map<Weights, std::unique_ptr<Kernels>> &all_kernels() { return kernels_; }
 
   private:
     std::map<Weights, std::unique_ptr<Kernels>> kernels_;
+    Weights any_ = Weights::uniform;
 };
 
 } // namespace gradus::solver

@@ -382,6 +382,10 @@ bool GradientPathTracer::render_batch() {
     if (done_ >= total_)
         return false;
     const auto start = std::chrono::steady_clock::now();
+    if (!solver_ && !solver_compiled_.valid())
+        solver_compiled_ = std::async(std::launch::async, [this] {
+            PoissonSolver::compile(device_, poisson_options(options_, settings_.samples_per_pixel));
+        });
     if (!direct_edges_ && settings_.max_depth != 0 && !settings_.hide_emitters)
         direct_edges_ = sample_direct_edges(scene_tables_, film_settings_, tracer_, options_.seed,
                                             static_cast<std::uint32_t>(settings_.samples_per_pixel), edge_rays_);
@@ -480,6 +484,8 @@ Image GradientPathTracer::make_image(bool layers, bool last) {
     Image whole = film_->image(done_, statistics_.non_finite);
     if (last)
         film_->release();
+    if (solver_compiled_.valid())
+        solver_compiled_.get();
     if (!solver_)
         solver_ = std::make_unique<PoissonSolver>(device_, film_settings_.crop_width, film_settings_.crop_height, 3);
     Image image =

@@ -12,6 +12,7 @@
 #include "runtime/methods/path_tracer.h"
 #include "solver/poisson_solver.h"
 
+#include <future>
 #include <memory>
 #include <optional>
 
@@ -92,6 +93,7 @@ class GradientPathTracer final : public PathTracer {
     std::optional<std::vector<DirectPixel>> direct_edges_; ///< once sampled: a restart needs no others
     std::uint64_t edge_rays_ = 0;
     std::unique_ptr<PoissonSolver> solver_;
+    std::future<void> solver_compiled_; ///< while the first samples render
     Buffer material_kind_, primary_, gain_, link_, prefix_, difference_, direct_, gradient_film_;
     Buffer shifted_[2]; ///< as BatchTables::vertex; the same where none stay apart
     Buffer offset_vertex_, offset_ray_, offset_state_, offset_reach_;
