@@ -32,12 +32,13 @@ Grid::Grid(std::uint32_t width, std::uint32_t height) : width(width), height(hei
 
 std::uint32_t Grid::partials() const { return tiles(width) * SOLVER_TILE * height; }
 
-void Grid::launch(Kernel &kernel, Planes planes, std::uint32_t rows) const {
+void Grid::launch(Kernel &kernel, Planes planes, std::uint32_t rows, std::uint32_t first_row) const {
     kernel.set("width", width);
     kernel.set("height", height);
     kernel.set("row", row);
     kernel.set("plane", plane);
     kernel.set("first_channel", planes.first);
+    kernel.set("first_row", first_row);
     launch_groups(kernel, std::size_t(tiles(width)) * planes.count, rows > 0 ? rows : height);
 }
 

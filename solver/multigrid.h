@@ -62,12 +62,15 @@ class Multigrid {
         Buffer smoothed, other;
     };
     void invert_diagonal(Kernels &kernels, System &system);
+    /// Rows that the kernels on the way down do one after the other before they go on to the next; even.
+    std::uint32_t rows_of_band(const Grid &grid, std::uint32_t channels) const;
     void run_cycle(Kernels &kernels, Planes channels, const Buffer *onto);
 
     void allocate();
 
     const PlaneMaker make_;
     const std::uint32_t together_;
+    const bool in_bands_; ///< goes down through large grids in bands
     std::vector<Level> levels_;
     std::size_t used_ = 0; ///< levels that the current weights need
 };

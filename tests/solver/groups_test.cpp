@@ -10,8 +10,8 @@ namespace gradus::testing {
 namespace {
 
 /// Channel 1 has nothing to solve, so it is finished long before the others.
-PoissonProblem unequal_channels() {
-    PoissonProblem problem = make_poisson_problem(129, 65, 3, 1);
+PoissonProblem unequal_channels(std::uint32_t width, std::uint32_t height) {
+    PoissonProblem problem = make_poisson_problem(width, height, 3, 1);
     for (std::uint32_t y = 0; y < problem.height; ++y)
         for (std::uint32_t x = 0; x < problem.width; ++x) {
             const auto primal = [&](std::uint32_t i, std::uint32_t j) { return problem.primal[problem.at(1, i, j)]; };
@@ -27,12 +27,11 @@ PoissonProblem unequal_channels() {
 
 class Groups : public ::testing::TestWithParam<PoissonOptions> {};
 
-TEST_P(Groups, DoNotChangeABit) {
-    const PoissonProblem problem = unequal_channels();
+void expect_equal_bits(const PoissonProblem &problem, const PoissonOptions &options) {
     std::vector<Solution> solutions;
     for (const std::uint32_t together : {1u, 2u, 3u}) {
         PoissonSolver solver(test_device(), problem.width, problem.height, 3, Precision::single, together);
-        solutions.push_back(solve(solver, problem.images_with_variances(), GetParam()));
+        solutions.push_back(solve(solver, problem.images_with_variances(), options));
     }
     for (const Solution &other : {solutions[1], solutions[2]}) {
         EXPECT_EQ(other.image, solutions[0].image);
@@ -42,6 +41,18 @@ TEST_P(Groups, DoNotChangeABit) {
         EXPECT_EQ(other.report.objectives, solutions[0].report.objectives);
         EXPECT_EQ(other.report.correction, solutions[0].report.correction);
     }
+}
+
+TEST_P(Groups, DoNotChangeABit) { expect_equal_bits(unequal_channels(129, 65), GetParam()); }
+
+/// Large grids are gone through in bands (solver/multigrid.cpp), which are the narrower the more channels go together:
+/// of 144, 64 and 48 rows here.
+TEST(Bands, DoNotChangeABit) {
+    const PoissonProblem problem = unequal_channels(1000, 611);
+    PoissonOptions l1;
+    l1.iterations = 3;
+    expect_equal_bits(problem, l1);
+    expect_equal_bits(problem, l2_options(LinearMethod::multigrid));
 }
 
 std::vector<PoissonOptions> all_options() {
