@@ -30,6 +30,11 @@ void add_render_command(CLI::App &app, const Services &services, std::function<i
         ->required()
         ->type_name("FILE.exr")
         ->group(output);
+    command
+        .add_flag("--layers", request->method.options.layers,
+                  "Also write what the image was reconstructed from (gpt), for `gradus solve`: primal, dx, dy, direct; "
+                  "with --aov also their variances")
+        ->group(output);
     command.add_flag("--png", request->outputs.png, "Also write a PNG beside it: sRGB curve, exposure 1, clamped")
         ->group(output);
     command.add_option("--stats", request->outputs.statistics, "Write statistics as JSON; - is stdout")

@@ -113,14 +113,15 @@ class RenderJob {
     /// A partial image that cannot be written is no reason to lose the render: the disk may have room again at the end.
     void write_partial() {
         try {
-            write_image(current_image(true), request_.outputs.image);
+            write_image(current_image(true, false), request_.outputs.image);
         } catch (const Error &error) {
             progress_.message(fmt::format("gradus: warning: {}; the render goes on", error.what()));
         }
     }
 
-    Image current_image(bool partial) {
-        Image image = prepared_.method->image();
+    /// `last`: the method may let go of its film.
+    Image current_image(bool partial, bool last) {
+        Image image = last ? prepared_.method->last_image() : prepared_.method->image();
         const std::uint64_t done = prepared_.method->done_samples();
         const double pixels = double(image.width) * double(image.height);
         record_.samples_per_pixel = pixels > 0 ? double(done) / pixels : 0;
@@ -140,7 +141,7 @@ class RenderJob {
     }
 
     void write_results() {
-        const Image image = current_image(record_.interrupted);
+        const Image image = current_image(record_.interrupted, true);
         write_image(image, request_.outputs.image);
         if (request_.outputs.png)
             write_png(image, png_path(request_.outputs.image));

@@ -52,7 +52,7 @@ nlohmann::json solve_report_json(const SolveRecord &record, const PoissonReport 
             {"filled", report.filled},
             {"correction", report.correction},
             {"kernels", kernels},
-            {"memory", {{"peak_host_bytes", peak_memory_bytes()}}},
+            {"memory", {{"device_bytes", report.device_bytes}, {"peak_host_bytes", peak_memory_bytes()}}},
             {"prepare_seconds", record.prepare_seconds},
             {"seconds", report.seconds},
             {"wall_seconds", record.wall_seconds}};

@@ -12,12 +12,12 @@ void Fill::run(Buffer &image, const Buffer &valid) {
         valid_ = workspace_.make.planes("filled_valid", grid, 1);
         other_valid_ = workspace_.make.planes("filled_valid", grid, 1);
     }
-    Kernels &kernels = workspace_.kernels(Weights::uniform);
+    Kernels &kernels = workspace_.any_kernels();
     Kernel &ring = kernels.fill_ring;
     const Buffer *from = &valid;
     double left = -1;
     for (;;) {
-        sums.bind(ring);
+        sums.bind_parts(ring, 1);
         ring.bind("image", image);
         ring.bind("valid", *from);
         ring.bind("filled_image", other_image_);

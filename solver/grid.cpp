@@ -32,17 +32,23 @@ Grid::Grid(std::uint32_t width, std::uint32_t height) : width(width), height(hei
 
 std::uint32_t Grid::partials() const { return tiles(width) * SOLVER_TILE * height; }
 
-void Grid::launch(Kernel &kernel, Planes planes, std::uint32_t rows) const {
+void Grid::launch(Kernel &kernel, Planes planes, std::uint32_t rows, std::uint32_t first_row) const {
     kernel.set("width", width);
     kernel.set("height", height);
     kernel.set("row", row);
     kernel.set("plane", plane);
     kernel.set("first_channel", planes.first);
+    kernel.set("first_row", first_row);
     launch_groups(kernel, std::size_t(tiles(width)) * planes.count, rows > 0 ? rows : height);
 }
 
 Buffer PlaneMaker::planes(const std::string &name, const Grid &grid, std::uint32_t count) const {
     return reals(name, std::size_t(grid.plane) * count);
+}
+
+Buffer PlaneMaker::some(const Buffer &all, const Grid &grid, Planes planes) const {
+    const std::size_t plane = grid.plane * real_bytes(precision_);
+    return planes.count * plane == all.bytes() ? all : all.part(planes.first * plane, planes.count * plane);
 }
 
 Buffer PlaneMaker::reals(const std::string &name, std::size_t count) const {

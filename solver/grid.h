@@ -27,8 +27,8 @@ struct Grid {
     /// Parts of a sum that a kernel with a work-item for each pixel leaves for each plane.
     std::uint32_t partials() const;
     /// Launches a kernel on all pixels of some planes, after setting width, height, row, plane and the planes. `rows`:
-    /// as many rows of work-items instead of one for each row of pixels.
-    void launch(Kernel &kernel, Planes planes, std::uint32_t rows = 0) const;
+    /// as many rows of work-items, from `first_row` on, instead of one for each row of pixels.
+    void launch(Kernel &kernel, Planes planes, std::uint32_t rows = 0, std::uint32_t first_row = 0) const;
 };
 
 /// Makes buffers of `real`, all zero.
@@ -36,6 +36,8 @@ class PlaneMaker {
   public:
     PlaneMaker(Device &device, Precision precision) : device_(device), precision_(precision) {}
     Buffer planes(const std::string &name, const Grid &grid, std::uint32_t count) const;
+    /// Some planes of a buffer of several.
+    Buffer some(const Buffer &all, const Grid &grid, Planes planes) const;
     Buffer reals(const std::string &name, std::size_t count) const;
     Buffer reals(const std::string &name, const std::vector<double> &values) const;
     Precision precision() const { return precision_; }

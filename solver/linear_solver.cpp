@@ -32,8 +32,7 @@ constexpr int stagnating_cycles = 4;
 
 } // namespace
 
-/// Follows the residuals of the channels that are solved together, and says when to stop. Iteration k leaves its
-/// squared norm in slot(k).
+/// Follows the residuals of a group, and says when to stop. Iteration k leaves its squared norm in slot(k).
 struct LinearSolver::Progress {
     Sums &sums;
     const Request &request;
@@ -41,75 +40,103 @@ struct LinearSolver::Progress {
     double reference_norm;
     double least_tolerance; ///< less is rounding errors alone
     bool host_is_device;
+    /// Keeps a channel, counted within the group, as it is in the buffer.
+    std::function<void(std::uint32_t, const Buffer &)> keep;
     int iterations = 0;
-    bool converged = false;
-    std::vector<std::vector<double>> norms; ///< by channel of `channels`: ||b||, or what stands for it, then residuals
+    struct Channel {
+        std::vector<double> norms; ///< residuals
+        bool finished = false, converged = false, is_kept = false;
+    };
+    std::vector<Channel> of = std::vector<Channel>(channels.count);
 
     static std::uint32_t slot(int iteration) { return SOLVER_HISTORY + std::uint32_t(iteration) % history_slots; }
 
-    /// To be called after iteration `done` (0: the start) left its norm; true where no more is needed.
-    bool finished(int done) {
+    /// To be called after iteration `done` (0: the start) left its norm; true where no more is needed. `u`: the
+    /// solution so far.
+    bool finished(int done, const Buffer &u) {
         iterations = done;
         const bool last = done >= request.iterations;
         if (!request.watch)
             return last;
         if (!last && done % (host_is_device ? 1 : iterations_between_looks) != 0)
             return false;
-        norms.resize(channels.count);
-        bool all_small = true, hopeless = true;
-        for (std::uint32_t c = 0; c < channels.count; ++c) {
-            std::vector<double> &of = norms[c];
-            while (int(of.size()) <= done)
-                of.push_back(std::sqrt(sums.read(slot(int(of.size())), channels.first + c)));
-            // From u = 0, the first residual is b itself.
-            const double norm = reference_norm > 0 ? reference_norm : of.front();
-            all_small = all_small && of.back() <= std::max(request.tolerance, least_tolerance) * norm;
-            hopeless = hopeless && (!std::isfinite(of.back()) || stagnates(of));
-        }
-        converged = all_small;
-        return last || converged || hopeless;
+        for (std::uint32_t c = 0; c < channels.count; ++c)
+            if (!of[c].finished)
+                look(of[c], done, channels.first + c);
+        const bool all =
+            last || std::all_of(of.begin(), of.end(), [](const Channel &channel) { return channel.finished; });
+        // The others go on, and take along what needs no more: it is to stay as it is now.
+        for (std::uint32_t c = 0; c < channels.count && !all; ++c)
+            if (of[c].finished && !of[c].is_kept) {
+                keep(c, u);
+                of[c].is_kept = true;
+            }
+        return all;
+    }
+
+    void look(Channel &channel, int done, std::uint32_t number) {
+        std::vector<double> &norms = channel.norms;
+        while (int(norms.size()) <= done)
+            norms.push_back(std::sqrt(sums.read(slot(int(norms.size())), number)));
+        // From u = 0, the first residual is b itself.
+        const double norm = reference_norm > 0 ? reference_norm : norms.front();
+        channel.converged = norms.back() <= std::max(request.tolerance, least_tolerance) * norm;
+        channel.finished = channel.converged || !std::isfinite(norms.back()) || stagnates(norms);
     }
 
     /// Rounding errors are all that is left: a cycle that works divides the residual by ten.
-    bool stagnates(const std::vector<double> &of) const {
-        return request.method == LinearMethod::multigrid && int(of.size()) > stagnating_cycles &&
-               of.back() > 0.7 * of[of.size() - 1 - stagnating_cycles];
+    bool stagnates(const std::vector<double> &norms) const {
+        return request.method == LinearMethod::multigrid && int(norms.size()) > stagnating_cycles &&
+               norms.back() > 0.7 * norms[norms.size() - 1 - stagnating_cycles];
     }
 };
 
-LinearSolver::LinearSolver(const PlaneMaker &make, Multigrid &multigrid, Sums &sums, std::uint32_t channels)
-    : make_(make), multigrid_(multigrid), sums_(sums), channels_(channels) {}
+LinearSolver::LinearSolver(const PlaneMaker &make, Multigrid &multigrid, Sums &sums, std::uint32_t together)
+    : make_(make), multigrid_(multigrid), sums_(sums), together_(together) {}
 
-LinearReport LinearSolver::solve(Kernels &kernels, const Request &request, const Buffer &b, Buffer &u,
-                                 double reference_norm) {
+void LinearSolver::run(Kernels &kernels, const Buffer &b, const Buffer &u, Progress &progress) {
+    switch (progress.request.method) {
+    case LinearMethod::jacobi:
+        jacobi(kernels, b, u, progress);
+        break;
+    case LinearMethod::cg:
+        conjugate_gradients(kernels, false, b, u, progress);
+        break;
+    case LinearMethod::pcg:
+        conjugate_gradients(kernels, true, b, u, progress);
+        break;
+    case LinearMethod::multigrid:
+    case LinearMethod::automatic:
+        multigrid(kernels, b, u, progress);
+        break;
+    }
+    for (std::uint32_t c = 0; c < progress.channels.count; ++c)
+        if (progress.of[c].is_kept)
+            copy(kernels, kept_, u, {c, 1});
+}
+
+LinearReport LinearSolver::solve(Kernels &kernels, const Request &request, const std::vector<Planes> &groups,
+                                 const RightSide &b, const Buffer &u, double reference_norm) {
     const bool host_is_device = make_.device().description().type == "cpu";
-    const std::uint32_t together = host_is_device ? 1 : channels_;
     const double epsilon = make_.precision() == Precision::double_ ? std::numeric_limits<double>::epsilon()
                                                                    : std::numeric_limits<float>::epsilon();
+    const Grid &grid = multigrid_.system().grid;
+    const auto keep = [&](std::uint32_t channel, const Buffer &now) {
+        if (!kept_.valid())
+            kept_ = make_.planes("u", grid, together_);
+        copy(kernels, now, kept_, {channel, 1});
+    };
     LinearReport report;
-    report.converged = true;
+    report.converged = request.watch;
     std::vector<std::vector<double>> norms;
-    for (std::uint32_t first = 0; first < channels_; first += together) {
-        Progress progress{sums_, request, {first, together}, reference_norm, epsilon / 64, host_is_device, 0,
-                          false, {}};
-        switch (request.method) {
-        case LinearMethod::jacobi:
-            jacobi(kernels, b, u, progress);
-            break;
-        case LinearMethod::cg:
-            conjugate_gradients(kernels, false, b, u, progress);
-            break;
-        case LinearMethod::pcg:
-            conjugate_gradients(kernels, true, b, u, progress);
-            break;
-        case LinearMethod::multigrid:
-        case LinearMethod::automatic:
-            multigrid(kernels, b, u, progress);
-            break;
-        }
+    for (const Planes group : groups) {
+        Progress progress{sums_, request, group, reference_norm, epsilon / 64, host_is_device, keep};
+        run(kernels, b(group), make_.some(u, grid, group), progress);
         report.iterations = std::max(report.iterations, progress.iterations);
-        report.converged = report.converged && progress.converged;
-        norms.insert(norms.end(), progress.norms.begin(), progress.norms.end());
+        for (Progress::Channel &channel : progress.of) {
+            report.converged = report.converged && channel.converged;
+            norms.push_back(std::move(channel.norms));
+        }
     }
     if (!request.watch)
         return report;
@@ -127,6 +154,20 @@ LinearReport LinearSolver::solve(Kernels &kernels, const Request &request, const
     return report;
 }
 
+void LinearSolver::improve(Kernels &kernels, Request request, Planes group, const Buffer &b, const Buffer &u) {
+    request.watch = false;
+    Progress progress{sums_, request, group, 0, 0, true, {}};
+    run(kernels, b, u, progress);
+}
+
+void LinearSolver::copy(Kernels &kernels, const Buffer &from, const Buffer &to, Planes planes) {
+    const Grid &grid = multigrid_.system().grid;
+    // The kernel counts planes from the first of the buffer.
+    kernels.copy.bind("from", make_.some(from, grid, planes));
+    kernels.copy.bind("to", make_.some(to, grid, planes));
+    grid.launch(kernels.copy, planes);
+}
+
 /// The hierarchy's right side = b - A u.
 void LinearSolver::residual(Kernels &kernels, const Buffer &b, const Buffer &u, Planes channels) {
     Kernel &kernel = kernels.residual;
@@ -137,10 +178,10 @@ void LinearSolver::residual(Kernels &kernels, const Buffer &b, const Buffer &u, 
     multigrid_.system().grid.launch(kernel, channels);
 }
 
-void LinearSolver::jacobi(Kernels &kernels, const Buffer &b, Buffer &u, Progress &progress) {
+void LinearSolver::jacobi(Kernels &kernels, const Buffer &b, const Buffer &u, Progress &progress) {
     const Grid &grid = multigrid_.system().grid;
     if (!other_.valid())
-        other_ = make_.planes("u", grid, channels_);
+        other_ = make_.planes("u", grid, together_);
     Kernel &kernel = kernels.smooth;
     const Buffer *from = &u, *to = &other_;
     for (int done = 0;; ++done, std::swap(from, to)) {
@@ -149,7 +190,7 @@ void LinearSolver::jacobi(Kernels &kernels, const Buffer &b, Buffer &u, Progress
             residual(kernels, b, *from, progress.channels);
             sums_.product(kernels, progress.channels, r, r, Progress::slot(done));
         }
-        if (progress.finished(done))
+        if (progress.finished(done, *from))
             break;
         multigrid_.system().bind(kernel);
         kernel.set_real("step_size", progress.request.damping);
@@ -158,35 +199,31 @@ void LinearSolver::jacobi(Kernels &kernels, const Buffer &b, Buffer &u, Progress
         kernel.bind("smoothed", *to);
         grid.launch(kernel, progress.channels);
     }
-    if (from == &u)
-        return;
-    Kernel &copy = kernels.copy;
-    copy.bind("from", other_);
-    copy.bind("to", u);
-    grid.launch(copy, progress.channels);
+    if (from != &u)
+        copy(kernels, other_, u, {0, progress.channels.count});
 }
 
-void LinearSolver::multigrid(Kernels &kernels, const Buffer &b, Buffer &u, Progress &progress) {
+void LinearSolver::multigrid(Kernels &kernels, const Buffer &b, const Buffer &u, Progress &progress) {
     const Buffer &r = multigrid_.right_side();
     for (int done = 0;; ++done) {
         if (progress.request.watch || done < progress.request.iterations)
             residual(kernels, b, u, progress.channels);
         if (progress.request.watch)
             sums_.product(kernels, progress.channels, r, r, Progress::slot(done));
-        if (progress.finished(done))
+        if (progress.finished(done, u))
             return;
         multigrid_.cycle_onto(kernels, progress.channels, u);
     }
 }
 
-void LinearSolver::conjugate_gradients(Kernels &kernels, bool preconditioned, const Buffer &b, Buffer &u,
+void LinearSolver::conjugate_gradients(Kernels &kernels, bool preconditioned, const Buffer &b, const Buffer &u,
                                        Progress &progress) {
     const Grid &grid = multigrid_.system().grid;
     const Planes channels = progress.channels;
     if (!image_.valid()) {
         for (Buffer &direction : directions_)
-            direction = make_.planes("direction", grid, channels_);
-        image_ = make_.planes("image", grid, channels_);
+            direction = make_.planes("direction", grid, together_);
+        image_ = make_.planes("image", grid, together_);
     }
     const Buffer &r = multigrid_.right_side(); // which is what a cycle is given
     const double bound = preconditioned ? largest_preconditioned_ratio : std::numeric_limits<float>::max();
@@ -197,7 +234,7 @@ void LinearSolver::conjugate_gradients(Kernels &kernels, bool preconditioned, co
             residual(kernels, b, u, channels);
         if (norms)
             sums_.product(kernels, channels, r, r, Progress::slot(done));
-        if (progress.finished(done))
+        if (progress.finished(done, u))
             return;
         std::uint32_t numerator = Progress::slot(done), divisor = Progress::slot(std::max(done - 1, 0));
         if (preconditioned) {
@@ -211,7 +248,7 @@ void LinearSolver::conjugate_gradients(Kernels &kernels, bool preconditioned, co
         }
         Kernel &direction = kernels.direction;
         multigrid_.system().bind(direction);
-        sums_.bind(direction);
+        sums_.bind_scalars(direction);
         direction.set_real("factor", done % steps_between_fresh_directions == 0 ? 0 : preconditioned ? -1 : 1);
         direction.set_real("bound", bound);
         direction.set("numerator", numerator);
@@ -224,7 +261,7 @@ void LinearSolver::conjugate_gradients(Kernels &kernels, bool preconditioned, co
         sums_.product(kernels, channels, directions_[done % 2], image_, slot_direction_product);
 
         Kernel &advance = kernels.advance;
-        sums_.bind(advance);
+        sums_.bind_scalars(advance);
         advance.set_real("bound", bound);
         advance.set("numerator", preconditioned ? std::uint32_t(slot_residual_product) : Progress::slot(done));
         advance.set("divisor", slot_direction_product);

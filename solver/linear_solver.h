@@ -1,14 +1,12 @@
-// Solves A u = b for one set of weights: Jacobi, conjugate gradients, multigrid cycles.
-//
-// On a CPU the channels are solved one after the other: what an iteration touches of one channel of a common image
-// stays in the last-level cache, where that of three would come from memory anew for each kernel. Elsewhere all go
-// together, which fills the device.
+// Solves A u = b for one set of weights: Jacobi, conjugate gradients, multigrid cycles. A group of channels at a time
+// (solver/workspace.h); each channel stops where it would stop by itself, so groups do not change a bit.
 #pragma once
 
 #include "solver/multigrid.h"
 #include "solver/poisson_solver.h"
 #include "solver/sums.h"
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -25,7 +23,7 @@ struct LinearReport {
 
 class LinearSolver {
   public:
-    LinearSolver(const PlaneMaker &make, Multigrid &multigrid, Sums &sums, std::uint32_t channels);
+    LinearSolver(const PlaneMaker &make, Multigrid &multigrid, Sums &sums, std::uint32_t together);
 
     struct Request {
         LinearMethod method = LinearMethod::multigrid;
@@ -35,24 +33,34 @@ class LinearSolver {
         bool watch = true;    ///< false: does all iterations, reads nothing back, and reports no residuals
     };
 
-    /// Improves `u`; the weights are those of the hierarchy's finest system (with coarse ones where the method needs
-    /// them). `b` must not be the hierarchy's right side. `reference_norm`: a lower bound to the ||b|| that residuals
-    /// are relative to, for right sides that are rounding errors alone.
-    LinearReport solve(Kernels &kernels, const Request &request, const Buffer &b, Buffer &u, double reference_norm = 0);
+    /// The right side of a group, in a buffer of its own.
+    using RightSide = std::function<const Buffer &(Planes group)>;
+    /// Improves `u`, which has all channels, group by group; the weights are those of the hierarchy's finest system
+    /// (with coarse ones where the method needs them). `b` must not be the hierarchy's right side. `reference_norm`: a
+    /// lower bound to the ||b|| that residuals are relative to, for right sides that are rounding errors alone.
+    LinearReport solve(Kernels &kernels, const Request &request, const std::vector<Planes> &groups, const RightSide &b,
+                       const Buffer &u, double reference_norm = 0);
+    /// The same for one group, whose channels alone `b` and `u` have. Does all iterations and reports nothing.
+    void improve(Kernels &kernels, Request request, Planes group, const Buffer &b, const Buffer &u);
 
   private:
     struct Progress;
+    void run(Kernels &kernels, const Buffer &b, const Buffer &u, Progress &progress);
     void residual(Kernels &kernels, const Buffer &b, const Buffer &u, Planes channels);
-    void jacobi(Kernels &kernels, const Buffer &b, Buffer &u, Progress &progress);
-    void multigrid(Kernels &kernels, const Buffer &b, Buffer &u, Progress &progress);
-    void conjugate_gradients(Kernels &kernels, bool preconditioned, const Buffer &b, Buffer &u, Progress &progress);
+    void jacobi(Kernels &kernels, const Buffer &b, const Buffer &u, Progress &progress);
+    void multigrid(Kernels &kernels, const Buffer &b, const Buffer &u, Progress &progress);
+    void conjugate_gradients(Kernels &kernels, bool preconditioned, const Buffer &b, const Buffer &u,
+                             Progress &progress);
+    /// Copies some planes, counted within the group.
+    void copy(Kernels &kernels, const Buffer &from, const Buffer &to, Planes planes);
 
     const PlaneMaker make_;
     Multigrid &multigrid_;
     Sums &sums_;
-    std::uint32_t channels_;
-    /// Made when a method first asks for them. Conjugate gradients use the hierarchy's right side as their residual.
-    Buffer directions_[2], image_, other_;
+    std::uint32_t together_;
+    /// Made when a method first asks for them, for one group. Conjugate gradients use the hierarchy's right side as
+    /// their residual. `kept_`: channels that are finished before others of their group.
+    Buffer directions_[2], image_, other_, kept_;
 };
 
 } // namespace gradus::solver

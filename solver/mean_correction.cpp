@@ -25,11 +25,7 @@ MeanCorrection::MeanCorrection(Workspace &workspace)
       blocks_y_((workspace.grid().height - 1) / SOLVER_BLOCK + 1),
       columns_((workspace.grid().width - 1) / SOLVER_TILE * SOLVER_TILE + SOLVER_TILE),
       largest_(workspace.make.reals("largest", std::size_t(3) * columns_ * blocks_y_)),
-      bound_(workspace.make.reals("bound", std::size_t(blocks_x_) * blocks_y_)),
-      right_side_(workspace.make.planes("right_side", workspace.grid(), workspace.channels)),
-      passed_(workspace.make.planes("passed", workspace.grid(), workspace.channels)),
-      correction_(workspace.make.planes("correction", workspace.grid(), workspace.channels)),
-      corrected_(workspace.make.planes("corrected", workspace.grid(), workspace.channels)) {}
+      bound_(workspace.make.reals("bound", std::size_t(blocks_x_) * blocks_y_)) {}
 
 std::vector<double> MeanCorrection::add(Kernels &kernels, Problem &problem) {
     const Grid &grid = workspace_.grid();
@@ -42,6 +38,8 @@ std::vector<double> MeanCorrection::add(Kernels &kernels, Problem &problem) {
     if (mean == 0)
         return std::vector<double>(workspace_.channels, 0);
     const double least = least_brightness * mean;
+    const Buffer &all_right_sides = problem.gradient_x(), &correction = problem.gradient_y();
+    Buffer &corrected = problem.spare();
 
     Kernel &columns = kernels.largest_of_columns;
     columns.set("columns", columns_);
@@ -64,7 +62,7 @@ std::vector<double> MeanCorrection::add(Kernels &kernels, Problem &problem) {
     right_side.bind("u", problem.u());
     right_side.bind("valid", problem.valid_primal());
     right_side.bind(bound_);
-    right_side.bind(right_side_);
+    right_side.bind("right_side", all_right_sides);
     grid.launch(right_side, {0, 1});
 
     Kernel &weights = kernels.correction_weights;
@@ -79,29 +77,32 @@ std::vector<double> MeanCorrection::add(Kernels &kernels, Problem &problem) {
     LinearSolver::Request request;
     request.method = LinearMethod::pcg;
     request.iterations = steps;
-    request.watch = false;
-    correction_.clear();
+    problem.gradient_y().clear();
+    Buffer passed = problem.right_side(); // of a group, and not needed as such any more
     Kernel &pass = kernels.correction_pass;
     workspace_.system().bind(pass);
-    pass.bind("passed", passed_);
-    pass.bind("correction", correction_);
-    pass.bind("right_side", right_side_);
-    for (const double share : shares) {
-        passed_.clear();
-        workspace_.linear.solve(kernels, request, right_side_, passed_);
-        pass.set_real("share", share);
-        grid.launch(pass, {0, workspace_.channels});
+    pass.bind("passed", passed);
+    pass.bind("correction", correction);
+    pass.bind("right_side", all_right_sides);
+    for (const Planes group : workspace_.groups()) {
+        const Buffer of_group = workspace_.of_group(all_right_sides, group);
+        for (const double share : shares) {
+            passed.clear();
+            workspace_.linear.improve(kernels, request, group, of_group, passed);
+            pass.set_real("share", share);
+            grid.launch(pass, group);
+        }
     }
 
     Kernel &add = kernels.add_correction;
     add.set_real("least", least);
     add.bind("base", problem.base());
     add.bind("u", problem.u());
-    add.bind("correction", correction_);
-    add.bind("corrected", corrected_);
+    add.bind("correction", correction);
+    add.bind("corrected", corrected);
     grid.launch(add, {0, workspace_.channels});
-    sums.sum_of(kernels, correction_, slot_sum);
-    std::swap(problem.u(), corrected_);
+    sums.sum_of(kernels, correction, slot_sum);
+    std::swap(problem.u(), corrected);
     std::vector<double> means = sums.read(slot_sum);
     for (double &value : means)
         value /= pixels;

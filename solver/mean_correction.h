@@ -24,13 +24,14 @@ namespace gradus::solver {
 class MeanCorrection {
   public:
     explicit MeanCorrection(Workspace &workspace);
-    /// Adds the correction to problem.u(). Returns its mean by channel. Replaces the weights of the hierarchy.
+    /// Adds the correction to problem.u(). Returns its mean by channel. Replaces the weights of the hierarchy and uses
+    /// the memory of the gradients, and the problem's to spare.
     std::vector<double> add(Kernels &kernels, Problem &problem);
 
   private:
     Workspace &workspace_;
     std::uint32_t blocks_x_, blocks_y_, columns_;
-    Buffer largest_, bound_, right_side_, passed_, correction_, corrected_;
+    Buffer largest_, bound_;
 };
 
 } // namespace gradus::solver

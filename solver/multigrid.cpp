@@ -13,6 +13,11 @@ namespace {
 /// With uniform weights, a grid whose data term outweighs its edges so far is solved by smoothing alone.
 constexpr double dominant_data_weight = 64;
 
+/// Of memory that kernels which follow each other go through, so that the next finds it in the last-level cache.
+constexpr std::size_t band_bytes = std::size_t(4) << 20;
+/// What the way down touches of each pixel: right side, inverse diagonal, three weights, the smoothed image, residual.
+constexpr std::size_t values_by_pixel = 7;
+
 /// Steps that damp the upper three quarters of the spectrum most: the inverse roots of the Chebyshev polynomial of
 /// degree `steps` on [1/2, 2].
 double chebyshev_step(int i, int steps) {
@@ -35,8 +40,10 @@ struct Line {
     }
 };
 
-/// A kernel of transfer.cl: an item for 8 coarse columns of each of `rows` rows.
-void launch_transfer(Kernel &kernel, const Grid &fine, const Grid &coarse, std::uint32_t rows, Planes planes) {
+/// A kernel of transfer.cl: an item for 8 coarse columns of each of `rows` rows from `first_row` on, a multiple of 8.
+void launch_transfer(Kernel &kernel, const Grid &fine, const Grid &coarse, std::uint32_t rows, Planes planes,
+                     std::uint32_t first_row = 0) {
+    kernel.set("first_row", first_row);
     kernel.set("height", fine.height);
     kernel.set("row", fine.row);
     kernel.set("plane", fine.plane);
@@ -44,7 +51,6 @@ void launch_transfer(Kernel &kernel, const Grid &fine, const Grid &coarse, std::
     kernel.set("coarse_height", coarse.height);
     kernel.set("coarse_row", coarse.row);
     kernel.set("coarse_plane", coarse.plane);
-    kernel.set("first_channel", planes.first);
     const std::size_t tiles = (coarse.width - 1) / SOLVER_TILE + 1;
     launch_groups(kernel, tiles * planes.count, (rows - 1) / 8 + 1);
 }
@@ -64,8 +70,8 @@ void System::bind(Kernel &kernel) const {
     }
 }
 
-Multigrid::Multigrid(const PlaneMaker &make, std::uint32_t width, std::uint32_t height, std::uint32_t channels)
-    : make_(make) {
+Multigrid::Multigrid(const PlaneMaker &make, std::uint32_t width, std::uint32_t height, std::uint32_t together)
+    : make_(make), together_(together), in_bands_(make.device().description().type == "cpu") {
     double pitch = 1;
     for (std::uint32_t w = width, h = height;; w = (w + 1) / 2, h = (h + 1) / 2, pitch *= 2) {
         Level level;
@@ -80,13 +86,19 @@ Multigrid::Multigrid(const PlaneMaker &make, std::uint32_t width, std::uint32_t 
         system.row_up = make.reals("row_up", rows.before);
         system.row_down = make.reals("row_down", rows.after);
         system.row_size = make.reals("row_size", rows.size);
-        system.inverse_diagonal = make.planes("inverse_diagonal", system.grid, 1);
-        level.right_side = make.planes("right_side", system.grid, channels);
-        level.smoothed = make.planes("smoothed", system.grid, channels);
-        level.other = make.planes("smoothed", system.grid, channels);
         levels_.push_back(std::move(level));
         if (w == 1 && h == 1 && levels_.size() > 1)
             break;
+    }
+}
+
+void Multigrid::allocate() {
+    for (Level &level : levels_) {
+        if (level.right_side.valid())
+            return;
+        level.right_side = make_.planes("right_side", level.system.grid, together_);
+        level.smoothed = make_.planes("smoothed", level.system.grid, together_);
+        level.other = make_.planes("smoothed", level.system.grid, together_);
     }
 }
 
@@ -98,9 +110,12 @@ void Multigrid::invert_diagonal(Kernels &kernels, System &system) {
 void Multigrid::invert_finest_diagonal(Kernels &kernels) { invert_diagonal(kernels, system()); }
 
 void Multigrid::set_uniform(Kernels &kernels, double data) {
+    allocate();
     used_ = 0;
     for (Level &level : levels_) {
         level.system.data = data;
+        if (!level.system.inverse_diagonal.valid())
+            level.system.inverse_diagonal = make_.planes("inverse_diagonal", level.system.grid, 1);
         invert_diagonal(kernels, level.system);
         ++used_;
         if (data > dominant_data_weight && used_ > 1)
@@ -113,6 +128,7 @@ void Multigrid::set_uniform(Kernels &kernels, double data) {
 }
 
 void Multigrid::allocate_weights(std::uint32_t planes) {
+    allocate();
     for (Level &level : levels_) {
         System &system = level.system;
         const std::uint32_t plane = planes > 1 ? system.grid.plane : 0;
@@ -143,44 +159,64 @@ void Multigrid::coarsen_weights(Kernels &kernels) {
     }
 }
 
+std::uint32_t Multigrid::rows_of_band(const Grid &grid, std::uint32_t channels) const {
+    const std::size_t row = values_by_pixel * grid.row * channels * real_bytes(make_.precision());
+    const std::size_t rows = std::max<std::size_t>(band_bytes / row / 16 * 16, 16);
+    // Elsewhere a launch is to fill the device; and a little more than a band is not worth two.
+    return in_bands_ && grid.height > 2 * rows ? static_cast<std::uint32_t>(rows) : grid.height + grid.height % 2;
+}
+
 void Multigrid::run_cycle(Kernels &kernels, Planes channels, const Buffer *onto) {
     // With weights that jump, a third step gains less than it costs.
     const bool third_step = kernels.weights == Weights::uniform;
     const int steps = third_step ? 3 : 2;
     for (std::size_t i = 0; i < used_; ++i) {
         Level &level = levels_[i];
+        Level *next = i + 1 < used_ ? &levels_[i + 1] : nullptr;
         const Grid &grid = level.system.grid;
+        // A single pixel is solved exactly by one plain step.
+        const bool single = grid.width == 1 && grid.height == 1;
         Kernel &twice = kernels.smooth_twice_from_zero;
         level.system.bind(twice);
         twice.bind(level.right_side);
         twice.bind("smoothed", third_step ? level.other : level.smoothed);
-        // A single pixel is solved exactly by one plain step.
-        const bool single = grid.width == 1 && grid.height == 1;
         twice.set_real("step_0", single ? 1 : chebyshev_step(0, steps));
         twice.set_real("step_1", single ? 0 : chebyshev_step(1, steps));
-        grid.launch(twice, channels);
+        Kernel &smooth = kernels.smooth;
         if (third_step) {
-            Kernel &smooth = kernels.smooth;
             level.system.bind(smooth);
             smooth.bind("u", level.other);
             smooth.bind(level.right_side);
             smooth.bind("smoothed", level.smoothed);
             smooth.set_real("step_size", single ? 0 : chebyshev_step(2, 3));
-            grid.launch(smooth, channels);
         }
-        if (i + 1 == used_)
-            break;
-        Kernel &residual = kernels.residual;
-        level.system.bind(residual);
-        residual.bind("u", level.smoothed);
-        residual.bind(level.right_side);
-        residual.bind("residual", level.other);
-        grid.launch(residual, channels);
-        Level &next = levels_[i + 1];
-        Kernel &restrict_sum = kernels.restrict_sum;
-        restrict_sum.bind("fine", level.other);
-        restrict_sum.bind("coarse", next.right_side);
-        launch_transfer(restrict_sum, grid, next.system.grid, next.system.grid.height, channels);
+        Kernel &residual = kernels.residual, &restrict_sum = kernels.restrict_sum;
+        if (next) {
+            level.system.bind(residual);
+            residual.bind("u", level.smoothed);
+            residual.bind(level.right_side);
+            residual.bind("residual", level.other);
+            restrict_sum.bind("fine", level.other);
+            restrict_sum.bind("coarse", next->right_side);
+        }
+        // Each of these reads a row more than it writes, so those before it are a row ahead.
+        const std::uint32_t band = rows_of_band(grid, channels.count);
+        for (std::uint32_t begin = 0; begin < grid.height; begin += band) {
+            const auto launch = [&](Kernel &kernel, std::uint32_t ahead) {
+                const std::uint32_t first = begin == 0 ? 0 : std::min(begin + ahead, grid.height);
+                const std::uint32_t end = std::min(begin + band + ahead, grid.height);
+                if (end > first)
+                    grid.launch(kernel, channels, end - first, first);
+            };
+            launch(twice, third_step ? 2 : 1);
+            if (third_step)
+                launch(smooth, 1);
+            if (!next)
+                continue;
+            launch(residual, 0);
+            const std::uint32_t coarse = begin / 2, rows = next->system.grid.height - coarse;
+            launch_transfer(restrict_sum, grid, next->system.grid, std::min(rows, band / 2), channels, coarse);
+        }
     }
     for (std::size_t i = used_ - 1; i-- > 0;) {
         Level &level = levels_[i];

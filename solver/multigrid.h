@@ -30,7 +30,8 @@ struct System {
 
 class Multigrid {
   public:
-    Multigrid(const PlaneMaker &make, std::uint32_t width, std::uint32_t height, std::uint32_t channels);
+    /// For `together` channels at a time. Planes are made with the first weights.
+    Multigrid(const PlaneMaker &make, std::uint32_t width, std::uint32_t height, std::uint32_t together);
 
     /// The finest system.
     System &system() { return levels_.front().system; }
@@ -47,7 +48,8 @@ class Multigrid {
     /// Makes the inverse diagonal of the finest system alone, for methods that need no hierarchy.
     void invert_finest_diagonal(Kernels &kernels);
 
-    /// Writes an approximate solution of A z = right_side() to solution(), for some channels.
+    /// Writes an approximate solution of A z = right_side() to solution(), for a group of channels, which all buffers
+    /// hold alone.
     void cycle(Kernels &kernels, Planes channels) { run_cycle(kernels, channels, nullptr); }
     const Buffer &solution() const { return levels_.front().smoothed; }
     /// Adds it to `u` instead.
@@ -60,9 +62,15 @@ class Multigrid {
         Buffer smoothed, other;
     };
     void invert_diagonal(Kernels &kernels, System &system);
+    /// Rows that the kernels on the way down do one after the other before they go on to the next; even.
+    std::uint32_t rows_of_band(const Grid &grid, std::uint32_t channels) const;
     void run_cycle(Kernels &kernels, Planes channels, const Buffer *onto);
 
+    void allocate();
+
     const PlaneMaker make_;
+    const std::uint32_t together_;
+    const bool in_bands_; ///< goes down through large grids in bands
     std::vector<Level> levels_;
     std::size_t used_ = 0; ///< levels that the current weights need
 };

@@ -11,7 +11,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
-#include <initializer_list>
+#include <functional>
 #include <memory>
 
 namespace gradus {
@@ -22,6 +22,12 @@ namespace {
 
 constexpr double default_tolerance = 1e-5;
 constexpr std::uint32_t most_channels = 8;
+
+/// The weights of a problem in which something may be missing.
+Weights weights_for(const PoissonOptions &options, bool missing) {
+    const bool uniform = options.norm == PoissonNorm::l2 && !missing && !options.weigh_by_variance;
+    return uniform ? Weights::uniform : options.joint_channels ? Weights::joint : Weights::per_channel;
+}
 
 /// Enough to reach the default tolerance at alpha 0.02 where the method can.
 int default_iterations(LinearMethod method) {
@@ -75,19 +81,25 @@ const char *method_name(LinearMethod method) {
 
 struct PoissonSolver::Implementation {
     Implementation(Device &device, std::uint32_t width, std::uint32_t height, std::uint32_t channels,
-                   Precision precision)
+                   Precision precision, std::uint32_t together)
         : device(device), width(width), height(height), channels(channels),
-          workspace(device, width, height, channels, precision), problem(workspace), reweighting(workspace) {}
+          workspace(device, width, height, channels, precision, together), problem(workspace), reweighting(workspace) {}
 
-    PoissonReport solve(const DeviceImages &images, const PoissonOptions &options, Buffer &result);
-    void least_squares(const DeviceImages &images, const PoissonOptions &options, double alpha, Buffer &result,
-                       PoissonReport &report);
-    void absolute_values(const DeviceImages &images, const PoissonOptions &options, double alpha, Buffer &result,
-                         PoissonReport &report);
-    /// A buffer of the caller's floats, kept from solve to solve.
-    const Buffer *upload(const char *name, const float *values);
+    using Call = std::function<void()>;
+    /// Where the result goes is asked at the end: it may be memory that the solve needs until then.
+    PoissonReport solve(const Inputs &images, const PoissonOptions &options, const std::function<Buffer &()> &result,
+                        const Call &all_read);
+    void least_squares(const Inputs &images, const PoissonOptions &options, double alpha, PoissonReport &report);
+    void absolute_values(const Inputs &images, const PoissonOptions &options, double alpha, PoissonReport &report);
+    /// Those for the weights that the problem and the options ask for.
+    Kernels &kernels_for(const PoissonOptions &options) {
+        return workspace.kernels(weights_for(options, problem.anything_missing()));
+    }
+    /// The problem's memory to spare, filled by a source.
+    const Buffer &staged(const PlaneSource &source);
 
-    std::size_t bytes() const { return std::size_t(width) * height * channels * sizeof(float); }
+    std::size_t pixels() const { return std::size_t(width) * height; }
+    std::size_t bytes() const { return pixels() * channels * sizeof(float); }
 
     Device &device;
     const std::uint32_t width, height, channels;
@@ -95,20 +107,15 @@ struct PoissonSolver::Implementation {
     Problem problem;
     Reweighting reweighting;
     std::unique_ptr<MeanCorrection> mean_correction;
-    std::map<std::string, Buffer> uploads;
-    Buffer result;
 };
 
-void PoissonSolver::Implementation::least_squares(const DeviceImages &images, const PoissonOptions &options,
-                                                  double alpha, Buffer &result, PoissonReport &report) {
-    const bool uniform = !problem.anything_missing() && !options.weigh_by_variance;
-    Kernels &kernels = workspace.kernels(uniform                  ? Weights::uniform
-                                         : options.joint_channels ? Weights::joint
-                                                                  : Weights::per_channel);
+void PoissonSolver::Implementation::least_squares(const Inputs &images, const PoissonOptions &options, double alpha,
+                                                  PoissonReport &report) {
+    Kernels &kernels = kernels_for(options);
+    const bool uniform = kernels.weights == Weights::uniform;
     if (!uniform)
         problem.make_base_weights(kernels, options.weigh_by_variance);
     problem.use_least_squares_weights(kernels, alpha);
-    problem.make_right_side(kernels);
 
     LinearSolver::Request request;
     request.method = options.method != LinearMethod::automatic ? options.method
@@ -117,22 +124,23 @@ void PoissonSolver::Implementation::least_squares(const DeviceImages &images, co
     request.tolerance = options.tolerance > 0 ? options.tolerance : default_tolerance;
     request.iterations = options.iterations > 0 ? options.iterations : default_iterations(request.method);
     request.damping = options.damping;
-    const double norm = images.start ? problem.norm_of_right_side() : 0;
+    const double norm = images.start ? problem.norm_of_right_side(kernels) : 0;
     problem.start(images);
     if (uniform && images.start)
         problem.remove_mean(kernels);
-    const LinearReport linear = workspace.linear.solve(kernels, request, problem.right_side(), problem.u(), norm);
+    const auto right_side = [&](Planes group) -> const Buffer & { return problem.make_right_side(kernels, group); };
+    const LinearReport linear =
+        workspace.linear.solve(kernels, request, workspace.groups(), right_side, problem.u(), norm);
     report.method = method_name(request.method);
     report.iterations = linear.iterations;
     report.converged = linear.converged;
     report.residuals = linear.residuals;
     report.objective = problem.squared_norm(kernels);
-    report.filled = problem.compose(kernels, images, uniform, result);
 }
 
-void PoissonSolver::Implementation::absolute_values(const DeviceImages &images, const PoissonOptions &options,
-                                                    double alpha, Buffer &result, PoissonReport &report) {
-    Kernels &kernels = workspace.kernels(options.joint_channels ? Weights::joint : Weights::per_channel);
+void PoissonSolver::Implementation::absolute_values(const Inputs &images, const PoissonOptions &options, double alpha,
+                                                    PoissonReport &report) {
+    Kernels &kernels = kernels_for(options);
     problem.make_base_weights(kernels, false);
     reweighting.run(kernels, problem, alpha, images, options, report);
     report.method = fmt::format(
@@ -144,27 +152,32 @@ void PoissonSolver::Implementation::absolute_values(const DeviceImages &images, 
         problem.find_held(kernels);
         report.correction = mean_correction->add(kernels, problem);
     }
-    // Without a data term, no equation but this one tells the mean.
-    report.filled = problem.compose(kernels, images, alpha == 0 && !problem.anything_missing(), result);
 }
 
-PoissonReport PoissonSolver::Implementation::solve(const DeviceImages &images, const PoissonOptions &options,
-                                                   Buffer &result) {
+PoissonReport PoissonSolver::Implementation::solve(const Inputs &images, const PoissonOptions &options,
+                                                   const std::function<Buffer &()> &result, const Call &all_read) {
     const auto begin = std::chrono::steady_clock::now();
-    check(images, options);
     for (auto &[weights, kernels] : workspace.all_kernels())
         for (Kernel *kernel : kernels->all())
             kernel->reset_usage();
     PoissonReport report;
+    workspace.set_any_kernels(weights_for(options, false));
     problem.import(images, report);
     if (options.alpha_from_variances || options.weigh_by_variance)
-        problem.import_variances(images);
+        problem.import_variances(images, options.weigh_by_variance);
+    if (all_read)
+        all_read();
     report.alpha = options.alpha_from_variances ? problem.alpha_from_variances() : options.alpha;
-    if (options.norm == PoissonNorm::l2)
-        least_squares(images, options, report.alpha, result, report);
+    const bool l2 = options.norm == PoissonNorm::l2;
+    if (l2)
+        least_squares(images, options, report.alpha, report);
     else
-        absolute_values(images, options, report.alpha, result, report);
+        absolute_values(images, options, report.alpha, report);
+    // Uniform weights keep the mean. So does L1 without a data term: no equation but this one tells it.
+    const bool keep_mean = !problem.anything_missing() && (l2 ? !options.weigh_by_variance : report.alpha == 0);
+    report.filled = problem.compose(kernels_for(options), images, keep_mean, result());
     finish(device);
+    report.device_bytes = peak_device_bytes(device);
     report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     std::map<std::string, KernelTime> times;
     for (auto &[weights, kernels] : workspace.all_kernels())
@@ -181,23 +194,21 @@ PoissonReport PoissonSolver::Implementation::solve(const DeviceImages &images, c
     return report;
 }
 
-const Buffer *PoissonSolver::Implementation::upload(const char *name, const float *values) {
-    if (!values)
-        return nullptr;
-    Buffer &buffer = uploads[name];
-    if (!buffer.valid())
-        buffer = Buffer(device, name, bytes());
-    std::memcpy(buffer.map(Access::write).as<float>(), values, bytes());
-    return &buffer;
+const Buffer &PoissonSolver::Implementation::staged(const PlaneSource &source) {
+    const Buffer &buffer = problem.spare();
+    const auto mapping = buffer.map(Access::write);
+    for (std::uint32_t c = 0; c < channels; ++c)
+        source(c, mapping.as<float>() + c * pixels());
+    return buffer;
 }
 
 PoissonSolver::PoissonSolver(Device &device, std::uint32_t width, std::uint32_t height, std::uint32_t channels,
-                             Precision precision) {
+                             Precision precision, std::uint32_t together) {
     if (width == 0 || height == 0)
         throw Error(ExitCode::usage, fmt::format("an image of {} x {} pixels has nothing to solve", width, height));
     if (channels == 0 || channels > most_channels)
         throw Error(ExitCode::usage, fmt::format("{} channels; the solver takes 1 to {}", channels, most_channels));
-    implementation_ = std::make_unique<Implementation>(device, width, height, channels, precision);
+    implementation_ = std::make_unique<Implementation>(device, width, height, channels, precision, together);
 }
 
 PoissonSolver::~PoissonSolver() = default;
@@ -206,37 +217,71 @@ std::uint32_t PoissonSolver::width() const { return implementation_->width; }
 std::uint32_t PoissonSolver::height() const { return implementation_->height; }
 std::uint32_t PoissonSolver::channels() const { return implementation_->channels; }
 
+namespace {
+
+/// Images of one kind from those of another, image by image.
+template <class To, class From, class Convert>
+PoissonImages<To> converted(const PoissonImages<From> &images, Convert convert) {
+    return {convert(images.primal),      convert(images.dx),         convert(images.dy),
+            convert(images.direct),      convert(images.start),      convert(images.primal_variance),
+            convert(images.dx_variance), convert(images.dy_variance)};
+}
+
+} // namespace
+
 PoissonReport PoissonSolver::solve(const DeviceImages &images, const PoissonOptions &options, Buffer &result) {
+    check(images, options);
     const std::size_t bytes = implementation_->bytes();
-    const std::initializer_list<const Buffer *> buffers = {
-        images.primal, images.dx,          images.dy,          images.direct,
-        images.start,  images.dx_variance, images.dy_variance, images.primal_variance,
-        &result};
-    for (const Buffer *buffer : buffers)
-        if (buffer && buffer->bytes() < bytes)
+    const auto check_size = [&](const Buffer &buffer) {
+        if (buffer.bytes() < bytes)
             throw Error(ExitCode::usage,
-                        fmt::format("{} has {} bytes; an image of {} x {} pixels and {} channels has {}",
-                                    buffer->name(), buffer->bytes(), width(), height(), channels(), bytes));
-    return implementation_->solve(images, options, result);
+                        fmt::format("{} has {} bytes; an image of {} x {} pixels and {} channels has {}", buffer.name(),
+                                    buffer.bytes(), width(), height(), channels(), bytes));
+    };
+    check_size(result);
+    using Input = std::function<const Buffer &()>;
+    const auto inputs = converted<Input>(images, [&](const Buffer *buffer) {
+        if (buffer)
+            check_size(*buffer);
+        return buffer ? Input([buffer]() -> const Buffer & { return *buffer; }) : Input();
+    });
+    return implementation_->solve(inputs, options, [&]() -> Buffer & { return result; }, {});
+}
+
+PoissonReport PoissonSolver::solve(const ImageSources &images, const PoissonOptions &options, const PlaneSink &result,
+                                   const std::function<void()> &all_read) {
+    check(images, options);
+    Implementation &i = *implementation_;
+    using Input = std::function<const Buffer &()>;
+    const auto inputs = converted<Input>(images, [&i](const PlaneSource &source) {
+        return source ? Input([&i, &source]() -> const Buffer & { return i.staged(source); }) : Input();
+    });
+    // compose() may write where it reads the direct image.
+    PoissonReport report = i.solve(
+        inputs, options, [&i]() -> Buffer & { return i.problem.spare(); }, all_read);
+    const auto mapping = i.problem.spare().map(Access::read);
+    for (std::uint32_t c = 0; c < i.channels; ++c)
+        result(c, mapping.as<float>() + c * i.pixels());
+    return report;
 }
 
 PoissonReport PoissonSolver::solve(const HostImages &images, const PoissonOptions &options, float *result) {
-    check(images, options);
-    Implementation &i = *implementation_;
-    DeviceImages on_device;
-    on_device.primal = i.upload("primal", images.primal);
-    on_device.dx = i.upload("dx", images.dx);
-    on_device.dy = i.upload("dy", images.dy);
-    on_device.direct = i.upload("direct", images.direct);
-    on_device.start = i.upload("start", images.start);
-    on_device.primal_variance = i.upload("primal_variance", images.primal_variance);
-    on_device.dx_variance = i.upload("dx_variance", images.dx_variance);
-    on_device.dy_variance = i.upload("dy_variance", images.dy_variance);
-    if (!i.result.valid())
-        i.result = Buffer(i.device, "result", i.bytes());
-    PoissonReport report = i.solve(on_device, options, i.result);
-    i.result.read(result, i.bytes());
-    return report;
+    const std::size_t pixels = implementation_->pixels();
+    const auto sources = converted<PlaneSource>(images, [pixels](const float *image) {
+        return image ? PlaneSource([image, pixels](std::uint32_t channel, float *plane) {
+            std::memcpy(plane, image + channel * pixels, pixels * sizeof(float));
+        })
+                     : PlaneSource();
+    });
+    return solve(sources, options, [&](std::uint32_t channel, const float *plane) {
+        std::memcpy(result + channel * pixels, plane, pixels * sizeof(float));
+    });
+}
+
+void PoissonSolver::compile(Device &device, const PoissonOptions &options, std::uint32_t channels,
+                            Precision precision) {
+    // The device keeps the programs, which is what takes the time.
+    Kernels(device, precision, channels, weights_for(options, false));
 }
 
 } // namespace gradus

@@ -7,6 +7,7 @@
 #include "runtime/device/precision.h"
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -40,6 +41,12 @@ struct PoissonImages {
 };
 using HostImages = PoissonImages<const float *>;
 using DeviceImages = PoissonImages<const Buffer *>;
+/// Writes height * width floats: a channel of an image. Is asked for each channel, one after the other.
+using PlaneSource = std::function<void(std::uint32_t channel, float *plane)>;
+/// Images that are made when they are asked for, and are never in memory as a whole.
+using ImageSources = PoissonImages<PlaneSource>;
+/// Takes a channel of the result.
+using PlaneSink = std::function<void(std::uint32_t channel, const float *plane)>;
 
 struct PoissonOptions {
     PoissonNorm norm = PoissonNorm::l1;
@@ -88,6 +95,7 @@ struct PoissonReport {
     std::uint64_t filled = 0;       ///< pixels without any valid input, which took the mean of their neighbours
     std::vector<double> correction; ///< mean of the correction, by channel (L1 with keep_mean)
     double seconds = 0;             ///< wall time
+    std::uint64_t device_bytes = 0; ///< the most that was allocated on the device at one time
     std::vector<KernelTime> kernels;
 };
 
@@ -97,10 +105,11 @@ struct PoissonReport {
 /// of I0. Sums have a fixed order: equal inputs give equal bits on one device.
 class PoissonSolver {
   public:
-    /// Throws Error(ExitCode::usage) for a size or channel count of 0 (or over 8 channels), Error(ExitCode::device)
-    /// where the device has no room.
+    /// Throws Error(ExitCode::usage) for a size or channel count of 0 (or over 8 channels). `together`: how many
+    /// channels the linear systems are solved for at a time; 0: one on a CPU and where memory is short, else all. The
+    /// result is the same; memory is not. Buffers are made in the first solve.
     PoissonSolver(Device &device, std::uint32_t width, std::uint32_t height, std::uint32_t channels = 3,
-                  Precision precision = Precision::single);
+                  Precision precision = Precision::single, std::uint32_t together = 0);
     ~PoissonSolver();
     PoissonSolver(const PoissonSolver &) = delete;
     PoissonSolver &operator=(const PoissonSolver &) = delete;
@@ -108,14 +117,25 @@ class PoissonSolver {
     /// Writes channels * height * width floats to `result`. Throws Error(ExitCode::usage) for options out of their
     /// range, variances that are needed and missing, or images that are missing.
     PoissonReport solve(const HostImages &images, const PoissonOptions &options, float *result);
-    /// The same in device memory; `result` may be one of the inputs.
+    /// The same from images that are made under way: primal, dx, dy, and where options ask for them the variances are
+    /// each read once, then `all_read` is called; start and direct are read after that. So what they are made from may
+    /// go before most of the solver's memory is needed.
+    PoissonReport solve(const ImageSources &images, const PoissonOptions &options, const PlaneSink &result,
+                        const std::function<void()> &all_read = {});
+    /// The same in device memory; `result` may be one of the inputs. Throws Error(ExitCode::device) where the device
+    /// has no room.
     PoissonReport solve(const DeviceImages &images, const PoissonOptions &options, Buffer &result);
 
     std::uint32_t width() const;
     std::uint32_t height() const;
     std::uint32_t channels() const;
 
-    struct Implementation; ///< solver/implementation.h
+    /// Compiles the kernels of a solve, so that the first one finds them. Uses no queue, so another thread may do it
+    /// while this one works on the device.
+    static void compile(Device &device, const PoissonOptions &options, std::uint32_t channels = 3,
+                        Precision precision = Precision::single);
+
+    struct Implementation;
 
   private:
     std::unique_ptr<Implementation> implementation_;

@@ -5,14 +5,17 @@
 
 namespace gradus::solver {
 
-Problem::Problem(Workspace &workspace) : workspace_(workspace), fill_(workspace) {
-    const PlaneMaker &make = workspace.make;
-    const Grid &grid = workspace.grid();
-    base_ = make.planes("base", grid, workspace.channels);
-    gradient_x_ = make.planes("gradient_x", grid, workspace.channels);
-    gradient_y_ = make.planes("gradient_y", grid, workspace.channels);
-    right_side_ = make.planes("right_side", grid, workspace.channels);
-    u_ = make.planes("u", grid, workspace.channels);
+Problem::Problem(Workspace &workspace) : workspace_(workspace), fill_(workspace) {}
+
+void Problem::allocate() {
+    if (base_.valid())
+        return;
+    const PlaneMaker &make = workspace_.make;
+    const Grid &grid = workspace_.grid();
+    base_ = make.planes("base", grid, workspace_.channels);
+    gradient_x_ = make.planes("gradient_x", grid, workspace_.channels);
+    gradient_y_ = make.planes("gradient_y", grid, workspace_.channels);
+    u_ = make.planes("u", grid, workspace_.channels);
     valid_primal_ = make.planes("valid_primal", grid, 1);
     valid_dx_ = make.planes("valid_dx", grid, 1);
     valid_dy_ = make.planes("valid_dy", grid, 1);
@@ -20,10 +23,10 @@ Problem::Problem(Workspace &workspace) : workspace_(workspace), fill_(workspace)
 
 double Problem::import_plane(const Buffer &packed, const Buffer &imported, const Buffer &valid, std::uint32_t columns,
                              std::uint32_t rows, double missing_value) {
-    Kernels &kernels = workspace_.kernels(Weights::uniform);
+    Kernels &kernels = workspace_.any_kernels();
     Kernel &kernel = kernels.import_plane;
     kernel.set_real("missing_value", missing_value);
-    workspace_.sums.bind(kernel);
+    workspace_.sums.bind_parts(kernel, 1);
     kernel.set("edge_columns", columns);
     kernel.set("edge_rows", rows);
     kernel.bind("packed", packed);
@@ -34,12 +37,13 @@ double Problem::import_plane(const Buffer &packed, const Buffer &imported, const
     return workspace_.sums.read(slot_sum)[0];
 }
 
-void Problem::import(const DeviceImages &images, PoissonReport &report) {
+void Problem::import(const Inputs &images, PoissonReport &report) {
+    allocate();
     const Grid &grid = workspace_.grid();
     const std::uint32_t w = grid.width, h = grid.height;
-    const double missing = import_plane(*images.primal, base_, valid_primal_, w, h);
-    const double missing_x = import_plane(*images.dx, gradient_x_, valid_dx_, w - 1, h);
-    const double missing_y = import_plane(*images.dy, gradient_y_, valid_dy_, w, h - 1);
+    const double missing = import_plane(images.primal(), base_, valid_primal_, w, h);
+    const double missing_x = import_plane(images.dx(), gradient_x_, valid_dx_, w - 1, h);
+    const double missing_y = import_plane(images.dy(), gradient_y_, valid_dy_, w, h - 1);
     report.missing_primal = static_cast<std::uint64_t>(missing);
     report.missing_dx = static_cast<std::uint64_t>(missing_x);
     report.missing_dy = static_cast<std::uint64_t>(missing_y);
@@ -47,7 +51,7 @@ void Problem::import(const DeviceImages &images, PoissonReport &report) {
     anything_missing_ = missing + missing_x + missing_y > 0;
     if (missing > 0)
         fill_.run(base_, valid_primal_);
-    Kernel &kernel = workspace_.kernels(Weights::uniform).gradient_residual;
+    Kernel &kernel = workspace_.any_kernels().gradient_residual;
     kernel.bind("base", base_);
     kernel.bind("dx", gradient_x_);
     kernel.bind("dy", gradient_y_);
@@ -58,29 +62,31 @@ void Problem::import(const DeviceImages &images, PoissonReport &report) {
     grid.launch(kernel, {0, workspace_.channels});
 }
 
-double Problem::mean_variance(const Buffer &packed, Buffer &variance, Buffer &valid, std::uint32_t columns,
+double Problem::mean_variance(const Buffer &packed, const Buffer &variance, Buffer &valid, std::uint32_t columns,
                               std::uint32_t rows) {
     if (columns == 0 || rows == 0)
         return 0;
-    if (!variance.valid())
-        variance = workspace_.make.planes("variance", workspace_.grid(), workspace_.channels);
     import_plane(packed, variance, valid, columns, rows, -1);
-    workspace_.sums.sum_of(workspace_.kernels(Weights::uniform), variance, slot_sum, true);
+    workspace_.sums.sum_of(workspace_.any_kernels(), variance, slot_sum, true);
     return workspace_.sums.read_total(slot_sum) / (double(columns) * rows * workspace_.channels);
 }
 
-void Problem::import_variances(const DeviceImages &images) {
+void Problem::import_variances(const Inputs &images, bool keep) {
     const std::uint32_t w = workspace_.grid().width, h = workspace_.grid().height;
+    for (Buffer *variance : {&primal_variance_, &dx_variance_, &dy_variance_})
+        if (!keep)
+            *variance = u_; // which nothing is in yet
+        else if (!variance->valid())
+            *variance = workspace_.make.planes("variance", workspace_.grid(), workspace_.channels);
     // A missing variance reads as -1, which is all that needs to be known of it.
     Buffer valid = workspace_.make.planes("valid", workspace_.grid(), 1);
-    const double x = mean_variance(*images.dx_variance, dx_variance_, valid, w - 1, h);
-    const double y = mean_variance(*images.dy_variance, dy_variance_, valid, w, h - 1);
-    mean_primal_variance_ = mean_variance(*images.primal_variance, primal_variance_, valid, w, h);
+    const double x = mean_variance(images.dx_variance(), dx_variance_, valid, w - 1, h);
+    const double y = mean_variance(images.dy_variance(), dy_variance_, valid, w, h - 1);
+    mean_primal_variance_ = mean_variance(images.primal_variance(), primal_variance_, valid, w, h);
     const double horizontal = double(w - 1) * h, vertical = double(w) * (h - 1);
     gradient_variance_ = (x * horizontal + y * vertical) / std::max(horizontal + vertical, 1.0);
-    for (Buffer *variance : {&dx_variance_, &dy_variance_})
-        if (!variance->valid())
-            *variance = workspace_.make.planes("variance", workspace_.grid(), workspace_.channels);
+    if (!keep)
+        primal_variance_ = dx_variance_ = dy_variance_ = Buffer();
 }
 
 double Problem::alpha_from_variances() const {
@@ -90,13 +96,21 @@ double Problem::alpha_from_variances() const {
 void Problem::make_base_weights(Kernels &kernels, bool by_variance) {
     const Grid &grid = workspace_.grid();
     const std::uint32_t planes = kernels.weight_planes;
-    const auto bytes = grid.plane * planes * real_bytes(workspace_.make.precision());
-    if (!base_x_.valid() || base_x_.bytes() < bytes) {
-        base_x_ = workspace_.make.planes("base_x", grid, planes);
-        base_y_ = workspace_.make.planes("base_y", grid, planes);
-        base_data_ = workspace_.make.planes("base_data", grid, planes);
-    }
     workspace_.multigrid.allocate_weights(planes);
+    if (planes == 1 && !by_variance) {
+        base_x_ = valid_dx_;
+        base_y_ = valid_dy_;
+        base_data_ = valid_primal_;
+        return;
+    }
+    const auto make = [&](Buffer &weights, const char *name, const Buffer &valid) {
+        const std::size_t bytes = std::size_t(grid.plane) * planes * real_bytes(workspace_.make.precision());
+        if (!weights.valid() || weights.argument() == valid.argument() || weights.bytes() < bytes)
+            weights = workspace_.make.planes(name, grid, planes);
+    };
+    make(base_x_, "base_x", valid_dx_);
+    make(base_y_, "base_y", valid_dy_);
+    make(base_data_, "base_data", valid_primal_);
     Kernel &kernel = kernels.base_weights;
     kernel.set("weight_plane", workspace_.system().weight_plane);
     kernel.set("by_variances", by_variance);
@@ -108,9 +122,7 @@ void Problem::make_base_weights(Kernels &kernels, bool by_variance) {
     kernel.bind("primal_variance", by_variance ? primal_variance_ : u_);
     kernel.bind("dx_variance", by_variance ? dx_variance_ : u_);
     kernel.bind("dy_variance", by_variance ? dy_variance_ : u_);
-    kernel.bind(base_x_);
-    kernel.bind(base_y_);
-    kernel.bind(base_data_);
+    bind(kernel);
     grid.launch(kernel, {0, planes});
 }
 
@@ -118,9 +130,9 @@ void Problem::bind(Kernel &kernel) const {
     kernel.bind(gradient_x_);
     kernel.bind(gradient_y_);
     if (base_x_.valid()) {
-        kernel.bind(base_x_);
-        kernel.bind(base_y_);
-        kernel.bind(base_data_);
+        kernel.bind("base_x", base_x_);
+        kernel.bind("base_y", base_y_);
+        kernel.bind("base_data", base_data_);
     }
 }
 
@@ -137,19 +149,32 @@ void Problem::use_least_squares_weights(Kernels &kernels, double alpha) {
     workspace_.multigrid.coarsen_weights(kernels);
 }
 
-void Problem::make_right_side(Kernels &kernels) {
+Buffer &Problem::spare() {
+    if (!spare_.valid())
+        spare_ = workspace_.make.planes("spare", workspace_.grid(), workspace_.channels);
+    return spare_;
+}
+
+const Buffer &Problem::right_side() {
+    if (!right_side_.valid())
+        right_side_ = workspace_.make.planes("right_side", workspace_.grid(), workspace_.together);
+    return right_side_;
+}
+
+const Buffer &Problem::make_right_side(Kernels &kernels, Planes group) {
     Kernel &kernel = kernels.right_side;
     workspace_.system().bind(kernel);
     bind(kernel);
-    kernel.bind(right_side_);
-    workspace_.grid().launch(kernel, {0, workspace_.channels});
+    kernel.bind(right_side());
+    workspace_.grid().launch(kernel, group);
+    return right_side();
 }
 
-void Problem::start(const DeviceImages &images) {
-    Kernel &kernel = workspace_.kernels(Weights::uniform).start;
-    kernel.set("has_start", images.start != nullptr);
+void Problem::start(const Inputs &images) {
+    Kernel &kernel = workspace_.any_kernels().start;
+    kernel.set("has_start", bool(images.start));
     kernel.bind("base", base_);
-    kernel.bind("packed", images.start ? *images.start : *images.primal);
+    kernel.bind("packed", images.start ? images.start() : base_);
     kernel.bind("u", u_);
     workspace_.grid().launch(kernel, {0, workspace_.channels});
 }
@@ -170,7 +195,7 @@ void Problem::remove_mean(Kernels &kernels) {
 
 void Problem::add_to_u(Kernels &kernels, const Buffer &image, double mean_factor) {
     Kernel &add = kernels.add_base;
-    workspace_.sums.bind(add);
+    workspace_.sums.bind_scalars(add);
     add.set("mean_slot", slot_mean);
     add.set_real("mean_factor", mean_factor);
     add.bind("base", image);
@@ -187,7 +212,7 @@ const Buffer &Problem::zero() {
 double Problem::squared_norm(Kernels &kernels) {
     Kernel &kernel = kernels.squared_norm;
     workspace_.system().bind(kernel);
-    workspace_.sums.bind(kernel);
+    workspace_.sums.bind_parts(kernel, workspace_.channels);
     bind(kernel);
     kernel.bind("u", u_);
     workspace_.grid().launch(kernel, {0, workspace_.channels});
@@ -205,22 +230,24 @@ void Problem::find_held(Kernels &kernels) {
         held_ = workspace_.make.planes("valid", grid, 1);
     Kernel &kernel = kernels.mark_held;
     workspace_.system().bind(kernel);
-    workspace_.sums.bind(kernel);
+    workspace_.sums.bind_parts(kernel, 1);
     kernel.bind("valid", held_);
     grid.launch(kernel, {0, 1});
     workspace_.sums.sum(kernels, slot_sum, 1);
     not_held_ = static_cast<std::uint64_t>(workspace_.sums.read(slot_sum)[0]);
 }
 
-double Problem::norm_of_right_side() {
-    Kernels &kernels = workspace_.kernels(Weights::uniform);
-    workspace_.sums.product(kernels, {0, workspace_.channels}, right_side_, right_side_, slot_sum);
+double Problem::norm_of_right_side(Kernels &kernels) {
+    for (const Planes group : workspace_.groups()) {
+        const Buffer &right_side = make_right_side(kernels, group);
+        workspace_.sums.product(workspace_.any_kernels(), group, right_side, right_side, slot_sum);
+    }
     const double right_side = workspace_.sums.read_total(slot_sum);
-    workspace_.sums.product(kernels, {0, workspace_.channels}, base_, base_, slot_sum);
+    workspace_.sums.product(workspace_.any_kernels(), {0, workspace_.channels}, base_, base_, slot_sum);
     return std::sqrt(std::max(right_side, 1e-12 * workspace_.sums.read_total(slot_sum)));
 }
 
-std::uint64_t Problem::compose(Kernels &kernels, const DeviceImages &images, bool keep_mean, Buffer &result) {
+std::uint64_t Problem::compose(Kernels &kernels, const Inputs &images, bool keep_mean, Buffer &result) {
     const Grid &grid = workspace_.grid();
     if (keep_mean)
         workspace_.sums.sum_of(kernels, u_, slot_mean);
@@ -232,13 +259,13 @@ std::uint64_t Problem::compose(Kernels &kernels, const DeviceImages &images, boo
         fill_.run(u_, held_);
     }
     Kernel &compose = kernels.compose;
-    workspace_.sums.bind(compose);
+    workspace_.sums.bind_scalars(compose);
     compose.set("mean_slot", slot_mean);
     compose.set_real("mean_factor", not_held_ > 0 ? 0 : mean_factor);
-    compose.set("has_direct", images.direct != nullptr);
+    compose.set("has_direct", bool(images.direct));
     compose.bind("base", not_held_ > 0 ? zero() : base_);
     compose.bind("u", u_);
-    compose.bind("direct", images.direct ? *images.direct : *images.primal);
+    compose.bind("direct", images.direct ? images.direct() : result);
     compose.bind("packed", result);
     grid.launch(compose, {0, workspace_.channels});
     return not_held_;

@@ -5,17 +5,22 @@
 #include "solver/poisson_solver.h"
 #include "solver/workspace.h"
 
+#include <functional>
+
 namespace gradus::solver {
+
+/// The caller's images, each in device memory from the call on until another is called. `Problem` calls each once.
+using Inputs = PoissonImages<std::function<const Buffer &()>>;
 
 class Problem {
   public:
     explicit Problem(Workspace &workspace);
 
     /// Reads I0, Gx and Gy. What is NaN or infinite is missing: I0 is filled from its neighbours there, and counted.
-    void import(const DeviceImages &images, PoissonReport &report);
-    /// Reads the variances, and their means. A variance that is missing or below zero removes its equation from
-    /// weighted problems.
-    void import_variances(const DeviceImages &images);
+    void import(const Inputs &images, PoissonReport &report);
+    /// Reads the variances for their means, and where weights ask for them keeps them. A variance that is missing or
+    /// below zero removes its equation from weighted problems.
+    void import_variances(const Inputs &images, bool keep);
     /// Kettunen et al. 2015, eq. 12.
     double alpha_from_variances() const;
 
@@ -24,10 +29,10 @@ class Problem {
     void make_base_weights(Kernels &kernels, bool by_variance);
     /// Sets the finest system to the base weights, those of the data term times alpha^2.
     void use_least_squares_weights(Kernels &kernels, double alpha);
-    /// The right side for the weights of the finest system.
-    void make_right_side(Kernels &kernels);
+    /// The right side of a group of channels for the weights of the finest system.
+    const Buffer &make_right_side(Kernels &kernels, Planes group);
     /// u = start - I0, or 0.
-    void start(const DeviceImages &images);
+    void start(const Inputs &images);
     /// u = 0, cut to what the differences give from the neighbours: an outlier of I0 does not stay.
     void start_between_neighbours(Kernels &kernels);
     /// Takes the mean of u off: uniform weights keep that of I0.
@@ -36,36 +41,48 @@ class Problem {
     double squared_norm(Kernels &kernels);
 
     /// ||b||, but at least a millionth of ||I0||: less is the rounding of I0's differences.
-    double norm_of_right_side();
+    double norm_of_right_side(Kernels &kernels);
 
     /// Notes which pixels the weights of the finest system hold. compose() does it where nothing did since import().
     void find_held(Kernels &kernels);
     /// Writes I0 + u (+ direct). With `keep_mean`, u's mean is taken off first. Pixels that no equation holds take the
     /// mean of their neighbours; returns their number.
-    std::uint64_t compose(Kernels &kernels, const DeviceImages &images, bool keep_mean, Buffer &result);
+    std::uint64_t compose(Kernels &kernels, const Inputs &images, bool keep_mean, Buffer &result);
 
     const Buffer &valid_primal() const { return valid_primal_; }
     const Buffer &base() const { return base_; }
-    const Buffer &right_side() const { return right_side_; }
     Buffer &u() { return u_; }
     /// Binds gradient_x, gradient_y and the base weights.
     void bind(Kernel &kernel) const;
 
+    // Memory that is used again, so that a large image fits.
+    /// A plane for each channel that nothing else needs between import and compose, whatever they hold, borders too.
+    Buffer &spare();
+    /// The gradients: no longer needed once find_held() has been called for the L1 norm. Borders are zero.
+    Buffer &gradient_x() { return gradient_x_; }
+    Buffer &gradient_y() { return gradient_y_; }
+    /// Where make_right_side() writes.
+    const Buffer &right_side();
+
   private:
     double import_plane(const Buffer &packed, const Buffer &imported, const Buffer &valid, std::uint32_t columns,
                         std::uint32_t rows, double missing_value = 0);
-    double mean_variance(const Buffer &packed, Buffer &variance, Buffer &valid, std::uint32_t columns,
+    double mean_variance(const Buffer &packed, const Buffer &variance, Buffer &valid, std::uint32_t columns,
                          std::uint32_t rows);
     /// u += image - the sum in slot_mean times mean_factor.
     void add_to_u(Kernels &kernels, const Buffer &image, double mean_factor);
     const Buffer &zero();
 
+    void allocate();
+
     Workspace &workspace_;
     Fill fill_;
-    Buffer base_, gradient_x_, gradient_y_, right_side_, u_;
+    Buffer base_, gradient_x_, gradient_y_, u_, spare_; ///< of all channels
+    Buffer right_side_;                                 ///< of a group
     Buffer valid_primal_, valid_dx_, valid_dy_;
     Buffer primal_variance_, dx_variance_, dy_variance_;
-    Buffer base_x_, base_y_, base_data_, zero_, held_;
+    Buffer base_x_, base_y_, base_data_; ///< those of valid_dx_ and so on where these say it all
+    Buffer zero_, held_;
     bool anything_missing_ = false, held_is_known_ = false;
     std::uint64_t not_held_ = 0;
     double gradient_variance_ = 0, mean_primal_variance_ = 0;

@@ -28,7 +28,7 @@ double total(const std::vector<double> &values, std::uint32_t planes) {
 double Reweighting::scale_of(Kernels &kernels, Problem &problem) {
     Kernel &kernel = kernels.residual_scale;
     workspace_.system().bind(kernel);
-    workspace_.sums.bind(kernel);
+    workspace_.sums.bind_parts(kernel, 2 * kernels.weight_planes);
     problem.bind(kernel);
     kernel.bind("u", problem.u());
     workspace_.grid().launch(kernel, {0, kernels.weight_planes});
@@ -41,7 +41,7 @@ Reweighting::Norm Reweighting::reweight(Kernels &kernels, Problem &problem, doub
                                         double regularisation, double cut) {
     Kernel &kernel = kernels.reweight;
     workspace_.system().bind(kernel);
-    workspace_.sums.bind(kernel);
+    workspace_.sums.bind_parts(kernel, 2 * kernels.weight_planes);
     problem.bind(kernel);
     kernel.set_real("alpha", alpha);
     kernel.set_real("scale", scale);
@@ -54,7 +54,7 @@ Reweighting::Norm Reweighting::reweight(Kernels &kernels, Problem &problem, doub
             total(workspace_.sums.read(slot_second_sum), kernels.weight_planes)};
 }
 
-void Reweighting::start(Kernels &kernels, Problem &problem, double alpha, const DeviceImages &images) {
+void Reweighting::start(Kernels &kernels, Problem &problem, double alpha, const Inputs &images) {
     problem.start_between_neighbours(kernels);
     if (!images.start)
         return;
@@ -66,17 +66,17 @@ void Reweighting::start(Kernels &kernels, Problem &problem, double alpha, const 
         problem.start_between_neighbours(kernels);
 }
 
-void Reweighting::run(Kernels &kernels, Problem &problem, double alpha, const DeviceImages &images,
+void Reweighting::run(Kernels &kernels, Problem &problem, double alpha, const Inputs &images,
                       const PoissonOptions &options, PoissonReport &report) {
     const double tolerance = options.tolerance > 0 ? options.tolerance : 1e-4;
     const int most = options.iterations > 0 ? options.iterations : default_reweightings;
-    if (!previous_.valid())
-        previous_ = workspace_.make.planes("previous", workspace_.grid(), workspace_.channels);
     LinearSolver::Request request;
     request.method = options.method == LinearMethod::automatic ? LinearMethod::pcg : options.method;
     request.damping = options.damping;
 
     start(kernels, problem, alpha, images);
+    Buffer &previous = problem.spare();
+    previous.clear();
     const double scale = scale_of(kernels, problem);
     double regularisation = first_regularisation * scale, before = 0;
     for (int k = 0;; ++k) {
@@ -95,13 +95,14 @@ void Reweighting::run(Kernels &kernels, Problem &problem, double alpha, const De
         Kernel &extrapolate = kernels.extrapolate;
         extrapolate.set_real("factor", k >= first_extrapolated ? extrapolation - 1 : 0);
         extrapolate.bind("u", problem.u());
-        extrapolate.bind(previous_);
+        extrapolate.bind("previous", previous);
         workspace_.grid().launch(extrapolate, {0, workspace_.channels});
-        problem.make_right_side(kernels);
         request.watch = k == 0;
         request.tolerance = first_tolerance;
         request.iterations = k == 0 ? most_first_iterations : options.inner_iterations;
-        report.iterations += workspace_.linear.solve(kernels, request, problem.right_side(), problem.u()).iterations;
+        const auto right_side = [&](Planes group) -> const Buffer & { return problem.make_right_side(kernels, group); };
+        report.iterations +=
+            workspace_.linear.solve(kernels, request, workspace_.groups(), right_side, problem.u()).iterations;
         ++report.reweightings;
         regularisation = std::max(regularisation * regularisation_factor, least_regularisation * scale);
     }

@@ -18,22 +18,21 @@ class Reweighting {
   public:
     explicit Reweighting(Workspace &workspace) : workspace_(workspace) {}
     /// Leaves the solution in problem.u().
-    void run(Kernels &kernels, Problem &problem, double alpha, const DeviceImages &images,
-             const PoissonOptions &options, PoissonReport &report);
+    void run(Kernels &kernels, Problem &problem, double alpha, const Inputs &images, const PoissonOptions &options,
+             PoissonReport &report);
 
   private:
     struct Norm {
         double all = 0, cut = 0;
     };
     /// Sets u to where the iteration starts.
-    void start(Kernels &kernels, Problem &problem, double alpha, const DeviceImages &images);
+    void start(Kernels &kernels, Problem &problem, double alpha, const Inputs &images);
     /// A typical |residual| of an edge at u.
     double scale_of(Kernels &kernels, Problem &problem);
     /// Sets the weights for u and returns the norm of u, and the norm with each term cut at `cut`.
     Norm reweight(Kernels &kernels, Problem &problem, double alpha, double scale, double regularisation, double cut);
 
     Workspace &workspace_;
-    Buffer previous_;
 };
 
 } // namespace gradus::solver

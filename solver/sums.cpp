@@ -16,16 +16,19 @@ std::uint32_t quotient_up(std::uint32_t a, std::uint32_t b) { return (a + b - 1)
 } // namespace
 
 Sums::Sums(const PlaneMaker &make, const Grid &grid, std::uint32_t channels)
-    : precision_(make.precision()), channels_(channels), partials_(grid.partials()), plane_(grid.plane),
-      partial_(make.reals("partial", std::size_t(partials_) * channels * 2)),
-      reduced_{
-          make.reals("reduced", std::size_t(quotient_up(plane_, SOLVER_REDUCTION)) * channels * 2),
-          make.reals("reduced", std::size_t(quotient_up(plane_, SOLVER_REDUCTION * SOLVER_REDUCTION)) * channels * 2)},
+    : make_(make), channels_(channels), partials_(grid.partials()),
+      plane_(grid.plane), reduced_{make.reals("reduced",
+                                              std::size_t(quotient_up(plane_, SOLVER_REDUCTION)) * channels * 2),
+                                   make.reals("reduced",
+                                              std::size_t(quotient_up(plane_, SOLVER_REDUCTION * SOLVER_REDUCTION)) *
+                                                  channels * 2)},
       scalars_(make.reals("scalars", std::size_t(channels) * SOLVER_SCALAR_SLOTS)) {}
 
-void Sums::bind(Kernel &kernel) const {
+void Sums::bind_parts(Kernel &kernel, std::uint32_t planes) {
+    const std::size_t count = std::size_t(partials_) * planes;
+    if (!partial_.valid() || partial_.bytes() < count * real_bytes(make_.precision()))
+        partial_ = make_.reals("partial", count);
     kernel.bind(partial_);
-    kernel.bind(scalars_);
     kernel.set("partials", partials_);
 }
 
@@ -64,7 +67,6 @@ void Sums::run_products(Kernels &kernels, Kernel &kernel, Planes planes, std::ui
     kernel.set("plane", plane_);
     kernel.set("reduced_count", reduced);
     kernel.bind("reduced", reduced_[0]);
-    kernel.set("first_channel", planes.first);
     kernel.set("channel_count", planes.count);
     launch_groups(kernel, groups, planes.count);
     run(kernels, &reduced_[0], reduced, sums, slot, second, planes);
@@ -102,7 +104,7 @@ std::vector<double> Sums::read(std::uint32_t slot) const {
     std::vector<double> values;
     for (std::uint32_t c = 0; c < channels_; ++c) {
         const std::size_t at = std::size_t(c) * SOLVER_SCALAR_SLOTS + slot;
-        values.push_back(precision_ == Precision::double_ ? mapping.as<double>()[at] : mapping.as<float>()[at]);
+        values.push_back(make_.precision() == Precision::double_ ? mapping.as<double>()[at] : mapping.as<float>()[at]);
     }
     return values;
 }

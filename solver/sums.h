@@ -23,16 +23,16 @@ class Sums {
     /// For kernels that leave up to two sums over `grid` for each of `channels` planes.
     Sums(const PlaneMaker &make, const Grid &grid, std::uint32_t channels);
 
-    /// What kernels call `partial`.
-    const Buffer &partial() const { return partial_; }
-    /// Binds `partial`, `partials` and `scalars`.
-    void bind(Kernel &kernel) const;
+    /// Binds `scalars`.
+    void bind_scalars(Kernel &kernel) const { kernel.bind(scalars_); }
+    /// Binds `partial`, with room for `planes` planes of parts, and `partials`.
+    void bind_parts(Kernel &kernel, std::uint32_t planes);
 
     /// Adds the parts that a kernel left. `planes`: how many planes each sum has (channels, or 1: then the result is
     /// that of channel 0).
     void sum(Kernels &kernels, std::uint32_t slot, std::uint32_t planes);
     void sum_two(Kernels &kernels, std::uint32_t slot, std::uint32_t second, std::uint32_t planes);
-    /// <a, b> of planes whose borders are zero; and <a, c>.
+    /// <a, b> of planes whose borders are zero, which hold these channels alone; and <a, c>.
     void product(Kernels &kernels, Planes planes, const Buffer &a, const Buffer &b, std::uint32_t slot);
     void products(Kernels &kernels, Planes planes, const Buffer &a, const Buffer &b, const Buffer &c,
                   std::uint32_t slot, std::uint32_t second);
@@ -51,7 +51,7 @@ class Sums {
     void run_products(Kernels &kernels, Kernel &kernel, Planes planes, std::uint32_t sums, std::uint32_t slot,
                       std::uint32_t second);
 
-    Precision precision_;
+    const PlaneMaker make_;
     std::uint32_t channels_, partials_, plane_;
     Buffer partial_, reduced_[2], scalars_;
 };

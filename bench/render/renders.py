@@ -105,11 +105,12 @@ def box_filter(scene):
 
 
 def render(gradus, scene, method, seed, output, samples=None, seconds=None, aov=False, png=False, options=()):
-    """Renders so many samples a pixel, or so long, to `output` (.exr) and returns the statistics. aov: with the layers
-    albedo, normal, depth and variance; png: a picture beside it, tone-mapped; options: more of `gradus render`."""
+    """Renders so many samples a pixel, or so long, to `output` (.exr) and returns the statistics. The image of `gpt` has
+    the layers that it was reconstructed from. aov: with the layers albedo, normal, depth and variance; png: a picture
+    beside it, tone-mapped; options: more of `gradus render`."""
     record = pathlib.Path(output).with_suffix(".json")
     command = [gradus, "render", scene.file, "-o", output, "--stats", record, "--quiet", "--method", method]
-    command += ["--seed", seed, "--size", f"{scene.width}x{scene.height}"]
+    command += ["--layers", "--seed", seed, "--size", f"{scene.width}x{scene.height}"]
     command += box_filter(scene)
     for name, value in scene.parameters.items():
         command += ["-D", f"{name}={value}"]

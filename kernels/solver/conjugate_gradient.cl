@@ -7,7 +7,7 @@ SOLVE direction(GRID, WEIGHTS_OF_DIAGONAL, real factor, real bound, uint numerat
                 __global const real *scalars, __global const real *z, __global const real *old_direction,
                 __global real *direction, __global real *image) {
     SOLVER_PLACE
-    const size_t at = GRID_AT(channel, x, y);
+    const size_t at = OWN_AT(x, y);
     const real ratio = SCALAR_RATIO(numerator, divisor);
     const real beta = factor * r_clamp(ratio, -bound, bound);
     const cell_weights c = CELL(x, y);
@@ -27,7 +27,7 @@ SOLVE direction(GRID, WEIGHTS_OF_DIAGONAL, real factor, real bound, uint numerat
 SOLVE advance(GRID, real bound, uint numerator, uint divisor, __global const real *scalars,
               __global const real *direction, __global const real *image, __global real *u, __global real *residual) {
     SOLVER_PLACE
-    const size_t at = GRID_AT(channel, x, y);
+    const size_t at = OWN_AT(x, y);
     const real ratio = SCALAR_RATIO(numerator, divisor);
     const real alpha = r_clamp(ratio, -bound, bound);
     u[at] += alpha * direction[at];

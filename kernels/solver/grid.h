@@ -26,16 +26,18 @@
 
 #define SOLVE __attribute__((reqd_work_group_size(WORK_GROUP_SIZE, 1, 1))) __kernel void
 
-/* A grid as kernel arguments, and where a pixel of it lies. */
-#define GRID uint width, uint height, uint row, uint plane, uint first_channel
+/* A grid as kernel arguments, the first channel and row of a launch, and where a pixel lies. */
+#define GRID uint width, uint height, uint row, uint plane, uint first_channel, uint first_row
 #define GRID_AT(channel, x, y) ((channel)*plane + ((y) + 1) * row + SOLVER_MARGIN + (x))
+#define OWN_AT(x, y) GRID_AT(own, x, y)
 
-/* Defines the channel and the pixel of a work-item: channels first_channel and on take turns row by row. */
+/* Defines the channel and the pixel of a work-item: channels first_channel and on take turns row by row. `own` counts
+ * from first_channel: buffers of one group of channels alone (solver/workspace.h) begin there, OWN_AT. */
 #define SOLVER_PLACE                                                                                                   \
     const uint group = (uint)get_group_id(0);                                                                          \
     const uint tiles = (width + SOLVER_TILE - 1) / SOLVER_TILE;                                                        \
-    const size_t y = get_group_id(1);                                                                                  \
-    const size_t channel = first_channel + group / tiles;                                                              \
+    const size_t y = first_row + get_group_id(1);                                                                      \
+    const size_t own = group / tiles, channel = first_channel + own;                                                   \
     const size_t item = get_local_id(0), x = group % tiles * SOLVER_TILE + item;                                       \
     const size_t tile = y * tiles + group % tiles;
 
@@ -60,7 +62,7 @@
     const uint group = (uint)get_group_id(0);                                                                          \
     const uint tiles = (width + SOLVER_TILE - 1) / SOLVER_TILE;                                                        \
     const size_t item = get_local_id(0), x = group * SOLVER_TILE + item;                                               \
-    const size_t y = get_group_id(1), tile = y * tiles + group;
+    const size_t y = first_row + get_group_id(1), tile = y * tiles + group;
 
 /* A scalar that another kernel left, and a quotient of two of them, 0 where the divisor is next to nothing: a sum of
  * squares of which most underflowed. */
@@ -120,6 +122,6 @@ GRADUS_FN real operator_at(cell_weights c, __global const real *u, size_t at, ui
            (c.up * (here - u[at - row]) + c.down * (here - u[at + row]));
 }
 
-#define RESIDUAL(x, y) (right_side[GRID_AT(channel, x, y)] - operator_at(CELL(x, y), u, GRID_AT(channel, x, y), row))
+#define RESIDUAL(x, y) (right_side[OWN_AT(x, y)] - operator_at(CELL(x, y), u, OWN_AT(x, y), row))
 
 #endif

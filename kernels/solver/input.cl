@@ -43,8 +43,8 @@ SOLVE right_side(GRID, WEIGHTS_OF_DIAGONAL, __global const real *gradient_x, __g
     SOLVER_PLACE
     const size_t at = GRID_AT(channel, x, y);
     const cell_weights c = CELL(x, y);
-    right_side[at] = (c.left * gradient_x[at - 1] - c.right * gradient_x[at]) +
-                     (c.up * gradient_y[at - row] - c.down * gradient_y[at]);
+    right_side[OWN_AT(x, y)] = (c.left * gradient_x[at - 1] - c.right * gradient_x[at]) +
+                               (c.up * gradient_y[at - row] - c.down * gradient_y[at]);
 }
 
 /* u = 0, cut to between the second least and the second largest value that the differences give from the neighbours. So

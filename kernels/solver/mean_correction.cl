@@ -94,8 +94,9 @@ SOLVE correction_pass(GRID, uint weight_plane, real share, __global const real *
     SOLVER_PLACE
     const size_t at = GRID_AT(channel, x, y);
     const size_t weight = (SOLVER_WEIGHT_PLANES > 1 ? channel * weight_plane : 0) + GRID_AT(0, x, y);
-    correction[at] += share * passed[at];
-    right_side[at] = weight_data[weight] * passed[at];
+    const real left = passed[OWN_AT(x, y)];
+    correction[at] += share * left;
+    right_side[at] = weight_data[weight] * left;
 }
 
 /* correction = |I| times the relative correction, and corrected = u + correction. */

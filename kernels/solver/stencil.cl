@@ -5,7 +5,7 @@
 SOLVE residual(GRID, WEIGHTS_OF_DIAGONAL, __global const real *u, __global const real *right_side,
                __global real *residual) {
     SOLVER_PLACE
-    residual[GRID_AT(channel, x, y)] = RESIDUAL(x, y);
+    residual[OWN_AT(x, y)] = RESIDUAL(x, y);
 }
 
 /* Two steps of smoothing that start at zero: first = step_0 right_side / D, smoothed = first + step_1 (right_side - A
@@ -13,7 +13,7 @@ SOLVE residual(GRID, WEIGHTS_OF_DIAGONAL, __global const real *u, __global const
 SOLVE smooth_twice_from_zero(GRID, WEIGHTS, real step_0, real step_1, __global const real *right_side,
                              __global real *smoothed) {
     SOLVER_PLACE
-    const size_t at = GRID_AT(channel, x, y), w = WEIGHT_AT(x, y);
+    const size_t at = OWN_AT(x, y), w = WEIGHT_AT(x, y);
     const cell_weights c = CELL(x, y);
     const real b = right_side[at];
     const real here = b * inverse_diagonal[w];
@@ -30,14 +30,14 @@ SOLVE smooth_twice_from_zero(GRID, WEIGHTS, real step_0, real step_1, __global c
 SOLVE smooth(GRID, WEIGHTS, real step_size, __global const real *u, __global const real *right_side,
              __global real *smoothed) {
     SOLVER_PLACE
-    const size_t at = GRID_AT(channel, x, y);
+    const size_t at = OWN_AT(x, y);
     smoothed[at] = u[at] + step_size * inverse_diagonal[WEIGHT_AT(x, y)] * RESIDUAL(x, y);
 }
 
 /* to = from. */
 SOLVE copy(GRID, __global const real *from, __global real *to) {
     SOLVER_PLACE
-    to[GRID_AT(channel, x, y)] = from[GRID_AT(channel, x, y)];
+    to[OWN_AT(x, y)] = from[OWN_AT(x, y)];
 }
 
 /* The inverse of the operator's diagonal; 0 where no weight is left, and in the border. */

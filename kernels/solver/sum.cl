@@ -5,11 +5,11 @@
 /* The first step of <a, b> and, with SECOND_PRODUCT, of <a, c>: `reduced` as by `reduce`, from the planes as they
  * lie in memory, borders and all, for those are zero; the
  * size of a plane is a multiple of SOLVER_REDUCTION * SOLVER_TILE. */
-SOLVE reduce_products(uint plane, uint first_channel, uint channel_count, uint reduced_count, __global const real *a,
+SOLVE reduce_products(uint plane, uint channel_count, uint reduced_count, __global const real *a,
                       __global const real *b, __global const real *c, __global real *reduced) {
     const uint channel = (uint)get_group_id(1);
     const size_t i = get_global_id(0);
-    const size_t first = (size_t)(first_channel + channel) * plane;
+    const size_t first = (size_t)channel * plane;
     real sum = R(0), second = R(0);
 #pragma unroll
     for (uint k = 0; k < SOLVER_REDUCTION; ++k) {
@@ -26,11 +26,10 @@ SOLVE reduce_products(uint plane, uint first_channel, uint channel_count, uint r
 }
 
 /* The same for the sum of a, or of what of it is above zero. */
-SOLVE reduce_plane(uint plane, uint first_channel, uint reduced_count, uint positive, __global const real *a,
-                   __global real *reduced) {
+SOLVE reduce_plane(uint plane, uint reduced_count, uint positive, __global const real *a, __global real *reduced) {
     const uint channel = (uint)get_group_id(1);
     const size_t i = get_global_id(0);
-    const size_t first = (size_t)(first_channel + channel) * plane;
+    const size_t first = (size_t)channel * plane;
     real sum = R(0);
 #pragma unroll
     for (uint k = 0; k < SOLVER_REDUCTION; ++k) {

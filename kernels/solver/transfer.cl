@@ -5,14 +5,14 @@
  * registers. A work-group takes SOLVER_TILE coarse columns and 8 rows. */
 #include "kernels/solver/grid.h"
 
-#define COARSE uint first_channel, uint coarse_width, uint coarse_height, uint coarse_row, uint coarse_plane
+#define COARSE uint first_row, uint coarse_width, uint coarse_height, uint coarse_row, uint coarse_plane
 #define COARSE_AT(x, y) (channel * coarse_plane + ((y) + 1) * coarse_row + SOLVER_MARGIN + (x))
 #define SOLVER_VECTOR_PLACE(rows)                                                                                      \
     const uint group = (uint)get_group_id(0), item = (uint)get_local_id(0);                                            \
     const uint tiles = (coarse_width + SOLVER_TILE - 1) / SOLVER_TILE;                                                 \
-    const uint channel = first_channel + group / tiles;                                                                \
+    const uint channel = group / tiles;                                                                                \
     const uint coarse_x = group % tiles * SOLVER_TILE + item % 8 * 8;                                                  \
-    const uint vector_row = (uint)get_group_id(1) * 8 + item / 8;                                                      \
+    const uint vector_row = first_row + (uint)get_group_id(1) * 8 + item / 8;                                          \
     if (coarse_x >= coarse_width || vector_row >= (rows))                                                              \
         return;
 

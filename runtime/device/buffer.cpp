@@ -20,7 +20,9 @@ struct Buffer::Handle {
 
     Device::Implementation &device;
     cl::Buffer memory;
-    std::size_t bytes; ///< that we allocated: 0 for a caller's
+    std::size_t bytes;             ///< that we allocated: 0 for a caller's and for a part
+    std::shared_ptr<Handle> whole; ///< of a part
+    std::size_t first = 0;         ///< byte of the whole
 };
 
 struct Buffer::Event {
@@ -67,6 +69,23 @@ Buffer Buffer::wrap(Device &device, const std::string &name, _cl_mem *memory) {
         buffer.handle_ = std::make_shared<Handle>(d, object, 0);
     });
     return buffer;
+}
+
+Buffer Buffer::part(std::size_t first, std::size_t bytes) const {
+    Buffer part;
+    part.name_ = name_;
+    part.bytes_ = bytes;
+    opencl_call("taking a part of " + name_, [&] {
+        // OpenCL makes no parts of parts.
+        const std::shared_ptr<Handle> &whole = handle_->whole ? handle_->whole : handle_;
+        const cl_buffer_region region{handle_->first + first, bytes};
+        part.handle_ = std::make_shared<Handle>(
+            handle_->device, whole->memory.createSubBuffer(CL_MEM_READ_WRITE, CL_BUFFER_CREATE_TYPE_REGION, &region),
+            0);
+        part.handle_->whole = whole;
+        part.handle_->first = region.origin;
+    });
+    return part;
 }
 
 const void *Buffer::argument() const { return &handle_->memory(); }

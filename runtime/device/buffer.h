@@ -30,6 +30,10 @@ class Buffer {
     /// throws Error(ExitCode::device) where it is not. Maps and reads need a buffer that the host may access.
     static Buffer wrap(Device &device, const std::string &name, _cl_mem *memory);
 
+    /// Some of its bytes as a buffer of the same name, which keeps the whole alive. `first` must be a multiple of what
+    /// the device aligns memory to (4096 is on all known).
+    Buffer part(std::size_t first, std::size_t bytes) const;
+
     const std::string &name() const { return name_; }
     std::size_t bytes() const { return bytes_; }
     bool valid() const { return handle_ != nullptr; }

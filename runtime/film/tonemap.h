@@ -3,6 +3,7 @@
 
 #include "runtime/film/image.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -17,5 +18,7 @@ float srgb_decode(float encoded);
 /// nearest. No other curve, so that equal pixels mean equal radiance. Infinity becomes 255, NaN 0.
 /// Throws Error(ExitCode::image) where one of the channels is missing.
 std::vector<std::uint8_t> tonemap(const Image &image);
+/// The same for rows [first_row, end_row).
+void tonemap(const Image &image, std::size_t first_row, std::size_t end_row, std::uint8_t *pixels);
 
 } // namespace gradus

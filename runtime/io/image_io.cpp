@@ -16,6 +16,9 @@ namespace {
 
 constexpr const char *metadata_prefix = "gradus:";
 
+/// Rows that are interleaved, coded and decoded at a time: several of OpenEXR's blocks of 16 for each thread.
+constexpr int rows_at_a_time = 128;
+
 /// OpenEXR keeps buffers for every thread; past a few the disk is the limit.
 void set_up_library() {
     static const bool done = [] {
@@ -54,20 +57,31 @@ void read_part(OIIO::ImageInput &input, int part, const std::string &path, Image
                   fmt::format("part {} is {}x{}, the first one {}x{}", part, width, height, image.width, image.height));
     }
     const std::size_t pixels = std::size_t(width) * height, count = static_cast<std::size_t>(spec.nchannels);
-    std::vector<float> interleaved(pixels * count);
-    if (!input.read_image(part, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, interleaved.data()))
-        fail_read(path, input.geterror());
     const std::string part_name(spec.get_string_attribute("oiio:subimagename", std::to_string(part)));
     const std::string prefix = part == 0 ? "" : part_name + ".";
     const bool decode = holds_srgb(spec);
-    for (std::size_t c = 0; c < count; ++c) {
-        Channel channel{prefix + spec.channelnames[c], std::vector<float>(pixels)};
-        const bool linear = !decode || static_cast<int>(c) == spec.alpha_channel;
-        for (std::size_t i = 0; i < pixels; ++i) {
-            const float value = interleaved[i * count + c];
-            channel.values[i] = linear ? value : srgb_decode(value);
+    const std::size_t first_channel = image.channels.size();
+    for (std::size_t c = 0; c < count; ++c)
+        image.channels.push_back({prefix + spec.channelnames[c], std::vector<float>(pixels)});
+    // Tiles lie across rows, and are read as a whole.
+    const std::uint32_t step = spec.tile_width > 0 ? height : std::min(height, std::uint32_t(rows_at_a_time));
+    std::vector<float> rows(std::size_t(step) * width * count);
+    for (std::uint32_t begin = 0; begin < height; begin += step) {
+        const std::uint32_t end = std::min(begin + step, height);
+        const bool done = spec.tile_width > 0
+                              ? input.read_image(part, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, rows.data())
+                              : input.read_scanlines(part, 0, spec.y + int(begin), spec.y + int(end), spec.z, 0,
+                                                     spec.nchannels, OIIO::TypeDesc::FLOAT, rows.data());
+        if (!done)
+            fail_read(path, input.geterror());
+        for (std::size_t c = 0; c < count; ++c) {
+            const bool linear = !decode || static_cast<int>(c) == spec.alpha_channel;
+            float *to = image.channels[first_channel + c].values.data() + std::size_t(begin) * width;
+            for (std::size_t i = 0; i < std::size_t(end - begin) * width; ++i) {
+                const float value = rows[i * count + c];
+                to[i] = linear ? value : srgb_decode(value);
+            }
         }
-        image.channels.push_back(std::move(channel));
     }
     if (part == 0) {
         const std::string lead = metadata_prefix;
@@ -80,15 +94,28 @@ void read_part(OIIO::ImageInput &input, int part, const std::string &path, Image
     }
 }
 
-/// Has OpenImageIO encode into memory, so that every error of the disk is met, and named, in one place.
-std::vector<unsigned char> encode(const char *format, const OIIO::ImageSpec &spec, OIIO::TypeDesc type,
-                                  const void *pixels, const std::string &path) {
+/// Has OpenImageIO encode into memory, so that every error of the disk is met, and named, in one place. `fill` writes
+/// the values of rows [begin, end), interleaved.
+template <class Value, class Fill>
+std::vector<unsigned char> encode(const char *format, const OIIO::ImageSpec &spec, Fill fill, const std::string &path) {
     std::vector<unsigned char> bytes;
+    // As much as there may be: growing would copy what is there, and memory that is not used is not taken.
+    bytes.reserve(std::size_t(spec.image_bytes(true)) + (std::size_t(1) << 16));
     OIIO::Filesystem::IOVecOutput memory(bytes);
     const auto output = OIIO::ImageOutput::create(format, &memory);
     if (!output)
         fail_write(path, OIIO::geterror());
-    if (!output->open(path, spec) || !output->write_image(type, pixels) || !output->close())
+    if (!output->open(path, spec))
+        fail_write(path, output->geterror());
+    std::vector<Value> rows(std::size_t(std::min(rows_at_a_time, spec.height)) * std::size_t(spec.width) *
+                            std::size_t(spec.nchannels));
+    for (int begin = 0; begin < spec.height; begin += rows_at_a_time) {
+        const int end = std::min(begin + rows_at_a_time, spec.height);
+        fill(std::size_t(begin), std::size_t(end), rows.data());
+        if (!output->write_scanlines(begin, end, 0, OIIO::TypeDesc(OIIO::BaseTypeFromC<Value>::value), rows.data()))
+            fail_write(path, output->geterror());
+    }
+    if (!output->close())
         fail_write(path, output->geterror());
     return bytes;
 }
@@ -118,7 +145,7 @@ Image read_image(const std::string &path) {
 void write_image(const Image &image, const std::string &path) {
     set_up_library();
     check_channels(image, path);
-    const std::size_t pixels = std::size_t(image.width) * image.height, count = image.channels.size();
+    const std::size_t width = image.width, count = image.channels.size();
     OIIO::ImageSpec spec(static_cast<int>(image.width), static_cast<int>(image.height), static_cast<int>(count),
                          OIIO::TypeDesc::FLOAT);
     spec.channelnames.clear();
@@ -128,21 +155,24 @@ void write_image(const Image &image, const std::string &path) {
     spec.attribute("DateTime", "1970:01:01 00:00:00");
     for (const auto &[key, value] : image.metadata)
         spec.attribute(metadata_prefix + key, value);
-    std::vector<float> interleaved(pixels * count);
-    for (std::size_t c = 0; c < count; ++c)
-        for (std::size_t i = 0; i < pixels; ++i)
-            interleaved[i * count + c] = image.channels[c].values[i];
-    const std::vector<unsigned char> bytes = encode("exr", spec, OIIO::TypeDesc::FLOAT, interleaved.data(), path);
+    const auto interleave = [&](std::size_t begin, std::size_t end, float *to) {
+        for (std::size_t c = 0; c < count; ++c) {
+            const float *from = image.channels[c].values.data() + begin * width;
+            for (std::size_t i = 0; i < (end - begin) * width; ++i)
+                to[i * count + c] = from[i];
+        }
+    };
+    const std::vector<unsigned char> bytes = encode<float>("exr", spec, interleave, path);
     write_file_atomically(path, bytes.data(), bytes.size());
 }
 
 void write_png(const Image &image, const std::string &path) {
     set_up_library();
     check_channels(image, path);
-    const std::vector<std::uint8_t> pixels = tonemap(image);
     OIIO::ImageSpec spec(static_cast<int>(image.width), static_cast<int>(image.height), 3, OIIO::TypeDesc::UINT8);
     spec.attribute("oiio:ColorSpace", "sRGB");
-    const std::vector<unsigned char> bytes = encode("png", spec, OIIO::TypeDesc::UINT8, pixels.data(), path);
+    const auto fill = [&](std::size_t begin, std::size_t end, std::uint8_t *to) { tonemap(image, begin, end, to); };
+    const std::vector<unsigned char> bytes = encode<std::uint8_t>("png", spec, fill, path);
     write_file_atomically(path, bytes.data(), bytes.size());
 }
 

@@ -21,6 +21,7 @@ class ChosenMethod final : public Method {
     std::uint64_t done_samples() const override { return method_->done_samples(); }
     bool render_batch() override { return method_->render_batch(); }
     Image image() override { return method_->image(); }
+    Image last_image() override { return method_->last_image(); }
     Statistics statistics() const override {
         Statistics statistics = method_->statistics();
         statistics.choice = choice_;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
 
 namespace gradus {
 
@@ -13,88 +15,109 @@ namespace {
 
 const char *const layer_names[] = {"primal", "dx", "dy"}, *const colors[] = {"R", "G", "B"};
 
-/// The three channels of an image, one after the other.
-std::vector<float> planes(const std::vector<Channel> &channels, int image) {
-    std::vector<float> joined;
-    for (int c = 0; c < 3; ++c) {
-        const std::vector<float> &values = channels[3 * image + c].values;
-        joined.insert(joined.end(), values.begin(), values.end());
+/// Makes of the channels of `whole` what they have and the primal has not.
+void take_primal_off(Image &whole, const GradientFilm &film, const std::vector<DirectPixel> &edges) {
+    std::vector<float> primal(film.pixels());
+    for (std::uint32_t c = 0; c < 3; ++c) {
+        std::vector<float> &direct = whole.channels[c].values;
+        film.mean(GradientFilm::primal, c, primal.data());
+        for (std::size_t i = 0; i < direct.size(); ++i) {
+            const float seen = direct[i] - primal[i];
+            // Where no light is seen, the difference is rounding.
+            direct[i] = std::abs(seen) > 1e-6f * std::abs(primal[i]) ? seen : 0.0f;
+        }
+        for (const DirectPixel &edge : edges)
+            direct[edge.pixel] = edge.light[c];
     }
-    return joined;
 }
 
-void add_layer(Image &image, const std::string &prefix, const std::vector<float> &joined) {
-    const std::ptrdiff_t pixels = std::ptrdiff_t(image.width) * image.height;
-    for (int c = 0; c < 3; ++c)
-        image.channels.push_back(
-            {prefix + colors[c], {joined.begin() + c * pixels, joined.begin() + (c + 1) * pixels}});
+/// What `gradus solve` needs to make the image again: from the channels `direct` of an image, and from the film.
+std::vector<Channel> layers_of(const Image &direct, const GradientFilm &film, bool variances) {
+    std::vector<Channel> layers;
+    for (std::uint32_t c = 0; c < 3; ++c)
+        layers.push_back({std::string("direct.") + colors[c], direct.channels[c].values});
+    for (const bool variance : {false, true})
+        for (const auto layer : {GradientFilm::primal, GradientFilm::dx, GradientFilm::dy})
+            for (std::uint32_t c = 0; c < 3 && (variances || !variance); ++c) {
+                Channel channel{std::string(layer_names[layer]) + (variance ? "_variance." : ".") + colors[c],
+                                std::vector<float>(film.pixels())};
+                if (variance)
+                    film.variance(layer, c, channel.values.data());
+                else
+                    film.mean(layer, c, channel.values.data());
+                layers.push_back(std::move(channel));
+            }
+    return layers;
 }
 
 } // namespace
 
-GradientLayers read_gradient_film(const HostTable &film, std::size_t pixels, std::uint64_t frames) {
-    const double n = double(std::max<std::uint64_t>(frames, 1));
-    GradientLayers layers;
-    layers.frames = frames;
-    for (int number = 0; number < 9; ++number) {
-        const std::string layer = layer_names[number / 3], color = colors[number % 3];
-        Channel mean{layer + "." + color, std::vector<float>(pixels)};
-        Channel variance{layer + "_variance." + color, std::vector<float>(pixels)};
-        const auto column = [&](int first, std::size_t pixel) { return film.real(first + number, pixel); };
-        for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-            const double value =
-                (column(gradient_film_primal_r, pixel) + column(gradient_film_correction_first, pixel)) / n;
-            const double square = column(gradient_film_square_first, pixel) / n;
-            mean.values[pixel] = static_cast<float>(value);
-            variance.values[pixel] = n > 1 ? static_cast<float>(std::max(0.0, square - value * value) / (n - 1)) : 0.0f;
-        }
-        layers.means.push_back(std::move(mean));
-        layers.variances.push_back(std::move(variance));
-    }
-    return layers;
+double GradientFilm::mean_at(int number, std::size_t pixel, double frames) const {
+    return (table_.real(gradient_film_primal_r + number, pixel) +
+            table_.real(gradient_film_correction_first + number, pixel)) /
+           frames;
 }
 
-Image reconstruct(PoissonSolver &solver, const Image &whole, const GradientLayers &layers,
-                  const std::vector<DirectPixel> &edges, const RenderOptions &options) {
-    const std::vector<float> primal = planes(layers.means, 0), dx = planes(layers.means, 1),
-                             dy = planes(layers.means, 2);
-    const std::vector<float> primal_variance = planes(layers.variances, 0), dx_variance = planes(layers.variances, 1),
-                             dy_variance = planes(layers.variances, 2);
-    const std::size_t pixels = primal.size() / 3;
-    std::vector<float> direct(primal.size());
-    for (std::size_t i = 0; i < direct.size(); ++i) {
-        const float seen = whole.channels[i / pixels].values[i % pixels] - primal[i];
-        // Where no light is seen, the difference is rounding.
-        direct[i] = std::abs(seen) > 1e-6f * std::abs(primal[i]) ? seen : 0.0f;
+void GradientFilm::mean(Layer layer, std::uint32_t color, float *plane) const {
+    for (std::size_t pixel = 0; pixel < pixels_; ++pixel)
+        plane[pixel] =
+            static_cast<float>(mean_at(3 * layer + int(color), pixel, std::max(count_at(layer, pixel), 1.0)));
+}
+
+void GradientFilm::variance(Layer layer, std::uint32_t color, float *plane) const {
+    const int number = 3 * layer + int(color);
+    for (std::size_t pixel = 0; pixel < pixels_; ++pixel) {
+        const double n = std::max(count_at(layer, pixel), 1.0);
+        const double value = mean_at(number, pixel, n);
+        const double square = table_.real(gradient_film_square_first + number, pixel) / n;
+        plane[pixel] = n > 1 ? static_cast<float>(std::max(0.0, square - value * value) / (n - 1)) : 0.0f;
     }
-    for (const DirectPixel &edge : edges)
-        for (std::size_t c = 0; c < 3; ++c)
-            direct[c * pixels + edge.pixel] = edge.light[c];
-    HostImages images;
-    images.primal = primal.data();
-    images.dx = dx.data();
-    images.dy = dy.data();
-    images.direct = direct.data();
-    images.primal_variance = primal_variance.data();
-    images.dx_variance = dx_variance.data();
-    images.dy_variance = dy_variance.data();
+}
+
+PoissonOptions poisson_options(const RenderOptions &options, std::uint64_t frames) {
     PoissonOptions poisson;
     poisson.norm = options.norm;
-    poisson.alpha_from_variances = !options.alpha && layers.frames > 1;
+    poisson.alpha_from_variances = !options.alpha && frames > 1;
     poisson.alpha = options.alpha.value_or(poisson.alpha);
-    std::vector<float> result(primal.size());
-    solver.solve(images, poisson, result.data());
+    return poisson;
+}
 
-    Image image;
-    image.width = whole.width;
-    image.height = whole.height;
-    add_layer(image, "", result);
-    add_layer(image, "direct.", direct);
-    image.channels.insert(image.channels.end(), layers.means.begin(), layers.means.end());
-    if (options.aov)
-        image.channels.insert(image.channels.end(), layers.variances.begin(), layers.variances.end());
-    image.channels.insert(image.channels.end(), whole.channels.begin() + 3, whole.channels.end());
-    return image;
+Image reconstruct(PoissonSolver &solver, Image whole, std::unique_ptr<const GradientFilm> film,
+                  const std::vector<DirectPixel> &edges, const RenderOptions &options, bool layers,
+                  const std::function<void()> &film_is_read) {
+    const PoissonOptions poisson = poisson_options(options, film->frames());
+    take_primal_off(whole, *film, edges);
+    std::vector<Channel> more;
+    if (layers)
+        more = layers_of(whole, *film, options.aov);
+
+    const auto mean = [&film](GradientFilm::Layer layer) {
+        return [&film, layer](std::uint32_t c, float *plane) { film->mean(layer, c, plane); };
+    };
+    const auto variance = [&film](GradientFilm::Layer layer) {
+        return [&film, layer](std::uint32_t c, float *plane) { film->variance(layer, c, plane); };
+    };
+    ImageSources images;
+    images.primal = mean(GradientFilm::primal);
+    images.dx = mean(GradientFilm::dx);
+    images.dy = mean(GradientFilm::dy);
+    images.primal_variance = variance(GradientFilm::primal);
+    images.dx_variance = variance(GradientFilm::dx);
+    images.dy_variance = variance(GradientFilm::dy);
+    // The result takes the place of the direct image.
+    const auto plane_of = [&whole](std::uint32_t c) { return whole.channels[c].values.data(); };
+    const std::size_t pixels = film->pixels();
+    images.direct = [&](std::uint32_t c, float *plane) { std::copy_n(plane_of(c), pixels, plane); };
+    solver.solve(
+        images, poisson, [&](std::uint32_t c, const float *plane) { std::copy_n(plane, pixels, plane_of(c)); },
+        [&] {
+            film.reset();
+            if (film_is_read)
+                film_is_read();
+        });
+    whole.channels.insert(whole.channels.begin() + 3, std::make_move_iterator(more.begin()),
+                          std::make_move_iterator(more.end()));
+    return whole;
 }
 
 } // namespace gradus

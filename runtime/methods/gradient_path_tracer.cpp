@@ -369,6 +369,11 @@ bool GradientPathTracer::render_batch() {
     if (done_ >= total_)
         return false;
     const auto start = std::chrono::steady_clock::now();
+    if (!solver_ && !solver_compiled_.valid())
+        solver_compiled_ = std::async(std::launch::async, [this] {
+            PoissonSolver::compile(session_.device,
+                                   poisson_options(options_, session_.settings.samples_per_pixel));
+        });
     if (!direct_edges_ && session_.max_depth() != 0 && !session_.settings.hide_emitters)
         direct_edges_ =
             sample_direct_edges(session_.scene, session_.film, session_.tracer, options_.seed,
@@ -439,17 +444,28 @@ void GradientPathTracer::restart(std::uint64_t first_sample, std::uint64_t sampl
     stages_.reset_times();
 }
 
-Image GradientPathTracer::image() {
+Image GradientPathTracer::make_image(bool layers, bool last) {
+    if (last) // what a pass needs and the films do not
+        tables_->release_all_but({"film", "feature_film", "gradient_film", "outcome"});
     statistics_.non_finite = 0;
-    const Image whole = film_.image(done_, statistics_.non_finite);
+    Image whole = film_.image(done_, statistics_.non_finite);
+    if (last)
+        tables_->release_all_but({"gradient_film", "outcome"});
+    if (solver_compiled_.valid())
+        solver_compiled_.get();
     if (!solver_)
         solver_ =
             std::make_unique<PoissonSolver>(session_.device, session_.film.crop_width, session_.film.crop_height, 3);
-    const std::size_t pixels = session_.pixels();
-    return reconstruct(
-        *solver_, whole,
-        read_gradient_film(HostTable((*tables_)["gradient_film"], pixels, options_.precision), pixels, done_ / pixels),
-        direct_edges_.value_or(std::vector<DirectPixel>()), options_);
+    Image image = reconstruct(*solver_, std::move(whole),
+                              std::make_unique<GradientFilm>((*tables_)["gradient_film"], session_.film.crop_width,
+                                                             session_.film.crop_height, options_.precision, done_),
+                              direct_edges_.value_or(std::vector<DirectPixel>()), options_, layers, [&] {
+                                  if (last)
+                                      tables_->release_all_but({"outcome"});
+                              });
+    if (last)
+        solver_.reset();
+    return image;
 }
 
 Statistics GradientPathTracer::statistics() const {

@@ -17,6 +17,7 @@
 #include "runtime/wavefront/wavefront.h"
 #include "solver/poisson_solver.h"
 
+#include <future>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -30,9 +31,11 @@ class GradientPathTracer final : public Method {
     std::uint64_t total_samples() const override { return total_; }
     std::uint64_t done_samples() const override { return done_; }
     bool render_batch() override;
-    /// R, G, B reconstructed, then layers primal, dx, dy, direct; with aov also their variances and the path tracer's
-    /// layers.
-    Image image() override;
+    /// R, G, B reconstructed; with `layers` then direct, primal, dx, dy, and with aov also their variances; with aov
+    /// the path tracer's layers.
+    Image image() override { return make_image(options_.layers, false); }
+    Image last_image() override { return make_image(options_.layers, true); }
+    Image image_with_layers() { return make_image(true, false); }
     Statistics statistics() const override;
 
     /// Forgets all samples; the next ones are of numbers [first_sample, first_sample + samples_per_pixel) of each
@@ -71,6 +74,8 @@ class GradientPathTracer final : public Method {
     void find_emission(const Hits &next);
     void shade(const Hits &next);
     void follow(const Hits &next, std::uint32_t stride);
+    /// `last`: lets go of batches and films as soon as they have been read.
+    Image make_image(bool layers, bool last);
     void count_outcomes(Range rows);
     void add_to_film(const Strip &strip);
 
@@ -92,6 +97,7 @@ class GradientPathTracer final : public Method {
     std::optional<std::vector<DirectPixel>> direct_edges_; ///< once sampled: a restart needs no others
     std::uint64_t edge_rays_ = 0;
     std::unique_ptr<PoissonSolver> solver_;
+    std::future<void> solver_compiled_; ///< while the first samples render
 };
 
 } // namespace gradus

@@ -21,6 +21,7 @@ class Device; // runtime/device/device.h
 
 /// What methods that reconstruct ask beside that.
 struct RenderOptions : SessionOptions {
+    bool layers = false;                ///< also what the image was reconstructed from, gradient-domain methods
     PoissonNorm norm = PoissonNorm::l1; ///< of the reconstruction, gradient-domain methods
     std::optional<double> alpha;        ///< their weight of the primal; none: from the variances
     double shift_threshold = 0.01;      ///< offset paths reconnect at surfaces of this roughness (alpha) or more
@@ -41,9 +42,13 @@ class Method {
     /// Renders the next batch. Returns false once all samples are done. The image depends neither on the batch
     /// size nor on the number of threads.
     virtual bool render_batch() = 0;
-    /// The image of the samples done so far: R, G, B and, with aov, albedo, normal, depth and variance layers.
-    /// Each pixel is divided by its own count; a pixel without a sample is 0. Metadata is the driver's.
+    /// The image of the samples done so far: R, G, B and, with aov, albedo, normal, depth and variance layers; with
+    /// layers, those that a reconstruction is made from. Each pixel is divided by its own count; a pixel without a
+    /// sample is 0. Metadata is the driver's.
     virtual Image image() = 0;
+    /// The same for the last time: the method may let go of the memory that it renders to. Only statistics() may be
+    /// called after it.
+    virtual Image last_image() { return image(); }
     virtual Statistics statistics() const = 0;
 };
 

@@ -88,7 +88,7 @@ Pilot run_pilot(GradientPathTracer &method) {
         method.restart(first_samples[half], half_samples);
         while (method.render_batch()) {
         }
-        halves[half] = method.image();
+        halves[half] = method.image_with_layers();
         const Statistics statistics = method.statistics();
         for (const auto &[kind, count] : statistics.rays)
             rays[kind] += double(count);

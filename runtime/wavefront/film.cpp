@@ -47,20 +47,20 @@ Image Film::image(std::uint64_t samples, std::uint64_t &non_finite) const {
     Image image;
     image.width = session_.film.crop_width;
     image.height = session_.film.crop_height;
-    std::vector<double> taken(count);
-    for (std::size_t pixel = 0; pixel < count; ++pixel) {
-        const std::uint32_t rejected = film.uint(film_rejected, pixel);
-        non_finite += rejected;
-        taken[pixel] = double(samples / count + (pixel < samples % count ? 1 : 0)) - rejected;
-    }
+    for (std::size_t pixel = 0; pixel < count; ++pixel)
+        non_finite += film.uint(film_rejected, pixel);
+    const std::uint64_t of_all = samples / count, with_one_more = samples % count;
+    const auto taken = [&](std::size_t pixel) {
+        return double(of_all + (pixel < with_one_more ? 1 : 0)) - film.uint(film_rejected, pixel);
+    };
     const auto add = [&](const std::string &name, auto mean) {
         Channel channel{name, std::vector<float>(count)};
         for (std::size_t pixel = 0; pixel < count; ++pixel)
-            channel.values[pixel] = taken[pixel] > 0 ? static_cast<float>(mean(pixel)) : 0.0f;
+            channel.values[pixel] = taken(pixel) > 0 ? static_cast<float>(mean(pixel)) : 0.0f;
         image.channels.push_back(std::move(channel));
     };
     const auto mean_color = [&](int channel, std::size_t pixel) {
-        return (film.real(film_sum_r + channel, pixel) + film.real(film_correction_r + channel, pixel)) / taken[pixel];
+        return (film.real(film_sum_r + channel, pixel) + film.real(film_correction_r + channel, pixel)) / taken(pixel);
     };
     const char *const colors[3] = {"R", "G", "B"};
     for (int c = 0; c < 3; ++c)
@@ -71,7 +71,7 @@ Image Film::image(std::uint64_t samples, std::uint64_t &non_finite) const {
     const HostTable features((*tables_)["feature_film"], count, tables_->precision());
     const char *const axes[3] = {"X", "Y", "Z"};
     const auto mean_feature = [&](int column, std::size_t pixel) {
-        return features.real(column, pixel) / taken[pixel];
+        return features.real(column, pixel) / taken(pixel);
     };
     for (int c = 0; c < 3; ++c)
         add(std::string("albedo.") + colors[c],
@@ -86,8 +86,8 @@ Image Film::image(std::uint64_t samples, std::uint64_t &non_finite) const {
             const double mean = mean_color(c, pixel);
             const double square = (features.real(feature_film_square_r + c, pixel) +
                                    features.real(feature_film_square_correction_r + c, pixel)) /
-                                  taken[pixel];
-            return taken[pixel] > 1 ? std::max(0.0, square - mean * mean) / (taken[pixel] - 1) : 0.0;
+                                  taken(pixel);
+            return taken(pixel) > 1 ? std::max(0.0, square - mean * mean) / (taken(pixel) - 1) : 0.0;
         });
     return image;
 }

@@ -6,26 +6,26 @@
 
 #include <cstdint>
 #include <cstring>
-#include <vector>
 
 namespace gradus {
 
+/// Where host and device share memory, nothing is copied.
 class HostTable {
   public:
-    /// Waits for the device and copies all columns of a table of `rows` rows.
+    /// Waits for the device. The table has `rows` rows; no kernel may write to it meanwhile, and `buffer` must outlive
+    /// this.
     HostTable(const Buffer &buffer, std::size_t rows, Precision precision)
-        : rows_(rows), bytes_(buffer.bytes()), size_(real_bytes(precision)) {
-        buffer.read(bytes_.data(), bytes_.size());
-    }
+        : rows_(rows), mapping_(buffer.map(Access::read)), size_(real_bytes(precision)) {}
     double real(int column, std::size_t row) const {
-        const char *place = &bytes_[(std::size_t(column) * rows_ + row) * size_];
+        const char *place = place_of(column, row);
         return size_ == 8 ? load<double>(place) : load<float>(place);
     }
-    std::uint32_t uint(int column, std::size_t row) const {
-        return load<std::uint32_t>(&bytes_[(std::size_t(column) * rows_ + row) * size_]);
-    }
+    std::uint32_t uint(int column, std::size_t row) const { return load<std::uint32_t>(place_of(column, row)); }
 
   private:
+    const char *place_of(int column, std::size_t row) const {
+        return mapping_.as<const char>() + (std::size_t(column) * rows_ + row) * size_;
+    }
     template <class T>
     static T load(const char *place) {
         T value;
@@ -33,7 +33,7 @@ class HostTable {
         return value;
     }
     std::size_t rows_;
-    std::vector<char> bytes_;
+    Buffer::Mapping mapping_;
     std::size_t size_;
 };
 

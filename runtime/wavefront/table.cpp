@@ -74,6 +74,11 @@ Buffer &Tables::operator[](const std::string &name) {
     return const_cast<Buffer &>(static_cast<const Tables &>(*this)[name]);
 }
 
+void Tables::release_all_but(const std::vector<std::string> &kept) {
+    std::erase_if(tables_,
+                  [&](const auto &entry) { return std::find(kept.begin(), kept.end(), entry.first) == kept.end(); });
+}
+
 std::uint32_t slot_rows(std::uint32_t paths) {
     constexpr std::uint32_t line = 64 / sizeof(float);
     return ((paths + line - 1) / line | 1u) * line;

@@ -60,6 +60,9 @@ class Tables {
     Buffer &operator[](const std::string &name);
     const Buffer &operator[](const std::string &name) const;
 
+    /// Lets go of the memory of all tables but these; kernels may not be launched any more.
+    void release_all_but(const std::vector<std::string> &kept);
+
     /// Of those that alternate, the newest becomes the old one.
     void exchange() { newest_ = 1 - newest_; }
     int newest() const { return newest_; }

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
@@ -47,6 +48,38 @@ TEST_F(EndToEnd, RendersWithLayersPictureAndStatistics) {
     EXPECT_GE(statistics.at("rays").at("extension").at("count").get<std::uint64_t>(), 32u * 32 * 4);
     EXPECT_GT(statistics.at("stages").size(), 3u);
     EXPECT_EQ(statistics.at("non_finite"), 0);
+}
+
+/// The channels of an image in the order of their names.
+std::vector<std::string> names_of(const Image &image) {
+    std::vector<std::string> names;
+    for (const Channel &channel : image.channels)
+        names.push_back(channel.name);
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+TEST_F(EndToEnd, WritesWhatTheImageWasMadeFromOnlyOnRequest) {
+    using ::testing::ElementsAre;
+    ASSERT_EQ(run(render("plain.exr", {"--spp", "4"})).exit_code, 0);
+    ASSERT_EQ(run(render("aov.exr", {"--spp", "4", "--aov"})).exit_code, 0);
+    ASSERT_EQ(run(render("layers.exr", {"--spp", "4", "--layers"})).exit_code, 0);
+    ASSERT_EQ(run(render("all.exr", {"--spp", "4", "--layers", "--aov"})).exit_code, 0);
+    const Image plain = read_image(at("plain.exr")), layers = read_image(at("layers.exr"));
+    EXPECT_THAT(names_of(plain), ElementsAre("B", "G", "R"));
+    EXPECT_EQ(read_image(at("aov.exr")).channels.size(), 3u + 10); // albedo, normal, depth, variance
+    EXPECT_THAT(names_of(layers), ElementsAre("B", "G", "R", "direct.B", "direct.G", "direct.R", "dx.B", "dx.G", "dx.R",
+                                              "dy.B", "dy.G", "dy.R", "primal.B", "primal.G", "primal.R"));
+    EXPECT_EQ(read_image(at("all.exr")).channels.size(), 3u + 10 + 12 + 9);
+    for (const Channel &channel : plain.channels)
+        EXPECT_EQ(channel.values, layers.find(channel.name)->values);
+    // The layers are what the image was made from, bit for bit.
+    ASSERT_EQ(run({"solve", "all.exr", "-o", "again.exr", "--alpha", "auto", "-q"}).exit_code, 0);
+    const Image again = read_image(at("again.exr"));
+    for (const Channel &channel : plain.channels)
+        EXPECT_EQ(channel.values, again.find(channel.name)->values);
+    // And without them there is nothing to make it from.
+    EXPECT_EQ(run({"solve", "plain.exr", "-o", "again.exr"}).exit_code, 6);
 }
 
 TEST_F(EndToEnd, TheImageDependsOnTheSeedAndNotOnThreadsOrBatches) {

@@ -54,6 +54,28 @@ class ImageFiles : public ::testing::Test {
     fs::path folder;
 };
 
+/// Files are coded some rows at a time (runtime/io/image_io.cpp).
+TEST_F(ImageFiles, ManyRowsComeBackInTheirPlaces) {
+    constexpr std::uint32_t width = 3, height = 300;
+    std::vector<float> values(width * height);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] = float(i);
+    std::vector<float> others(values.rbegin(), values.rend());
+    const Image image = make_image(width, height, {{"B", others}, {"G", others}, {"R", values}});
+    write_image(image, at("many.exr"));
+    const Image copy = read_image(at("many.exr"));
+    EXPECT_EQ(copy.find("R")->values, values);
+    EXPECT_EQ(copy.find("G")->values, others);
+    Image picture = image;
+    for (Channel &channel : picture.channels)
+        for (float &value : channel.values)
+            value /= float(width * height);
+    write_png(picture, at("many.png"));
+    const Image shown = read_image(at("many.png"));
+    for (std::size_t i = 0; i < values.size(); ++i)
+        EXPECT_NEAR(shown.find("R")->values[i], picture.find("R")->values[i], 0.01) << i;
+}
+
 TEST_F(ImageFiles, RoundTripKeepsEveryBitOfEveryChannel) {
     const float infinity = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
     const float smallest = std::numeric_limits<float>::denorm_min(), largest = std::numeric_limits<float>::max();

@@ -131,6 +131,22 @@ TEST(Automatic, TakesGptInTheCornellBox) {
     expect_choice(scene, "gpt");
 }
 
+/// The pilot looks at layers that an image does not have unless they are asked for. And the last image, for which the
+/// method lets go of its memory, is like all others.
+TEST(Automatic, HasNoLayersThatNobodyAskedFor) {
+    Scene scene = own_scene("cornell-box.xml", 48, 40);
+    scene.settings.samples_per_pixel = 80;
+    const std::unique_ptr<Method> method = make_method("auto", shared_device(), scene, {});
+    while (method->render_batch()) {
+    }
+    const Image image = method->image();
+    EXPECT_EQ(image.channels.size(), 3u);
+    EXPECT_TRUE(equal_bits(image, method->last_image()));
+    const Image with_layers = render(scene, {}, "gpt").image;
+    for (const Channel &channel : image.channels)
+        EXPECT_EQ(channel.values, with_layers.find(channel.name)->values) << channel.name;
+}
+
 /// Spheres no larger than a pixel, of all colours: neighbouring pixels have nothing in common, and shifts seldom
 /// connect.
 TEST(Automatic, TakesPtWhereNeighboursHaveNothingInCommon) {

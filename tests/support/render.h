@@ -29,8 +29,10 @@ struct Rendered {
     Statistics statistics;
 };
 
-/// Renders all samples. Values that are not finite, left out by the film, fail the test.
-inline Rendered render(const Scene &scene, const RenderOptions &options = {}, const char *name = "pt") {
+/// Renders all samples, to an image with the layers that it was reconstructed from. Values that are not finite, left
+/// out by the film, fail the test.
+inline Rendered render(const Scene &scene, RenderOptions options = {}, const char *name = "pt") {
+    options.layers = true;
     const std::unique_ptr<Method> method = make_method(name, shared_device(), scene, options);
     while (method->render_batch()) {
     }

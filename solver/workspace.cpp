@@ -1,0 +1,45 @@
+#include "solver/workspace.h"
+
+#include <algorithm>
+
+namespace gradus::solver {
+
+namespace {
+
+/// Planes that a solve by the L1 norm holds: by channel I0, both gradients, u and one to spare; weights, partial sums
+/// and what is valid once for all; and by channel of a group those of the linear solver.
+constexpr std::uint64_t planes_by_channel = 5, planes_once = 11, planes_by_channel_of_group = 8;
+
+} // namespace
+
+std::uint32_t channels_together(const DeviceDescription &device, const Grid &grid, std::uint32_t channels,
+                                Precision precision) {
+    if (device.type == "cpu")
+        return 1;
+    const std::uint64_t planes = (planes_by_channel + planes_by_channel_of_group) * channels + planes_once;
+    return planes * grid.plane * real_bytes(precision) <= device.memory_bytes / 2 ? channels : 1;
+}
+
+Workspace::Workspace(Device &device, std::uint32_t width, std::uint32_t height, std::uint32_t channels,
+                     Precision precision, std::uint32_t together)
+    : channels(channels),
+      together(together > 0 ? std::min(together, channels)
+                            : channels_together(device.description(), Grid(width, height), channels, precision)),
+      make(device, precision), multigrid(make, width, height, this->together),
+      sums(make, multigrid.system().grid, channels), linear(make, multigrid, sums, this->together) {}
+
+std::vector<Planes> Workspace::groups() const {
+    std::vector<Planes> groups;
+    for (std::uint32_t first = 0; first < channels; first += together)
+        groups.push_back({first, std::min(together, channels - first)});
+    return groups;
+}
+
+Kernels &Workspace::kernels(Weights weights) {
+    std::unique_ptr<Kernels> &kernels = kernels_[weights];
+    if (!kernels)
+        kernels = std::make_unique<Kernels>(make.device(), make.precision(), channels, weights);
+    return *kernels;
+}
+
+} // namespace gradus::solver

@@ -1,0 +1,138 @@
+// Channels that are solved one after the other, which takes a fraction of the memory, or together; and images that are
+// made under way.
+#include "solver/grid.h"
+#include "tests/solver/solver_fixture.h"
+
+#include <functional>
+#include <utility>
+
+namespace gradus::testing {
+namespace {
+
+/// Channel 1 has nothing to solve, so it is finished long before the others.
+PoissonProblem unequal_channels(std::uint32_t width, std::uint32_t height) {
+    PoissonProblem problem = make_poisson_problem(width, height, 3, 1);
+    for (std::uint32_t y = 0; y < problem.height; ++y)
+        for (std::uint32_t x = 0; x < problem.width; ++x) {
+            const auto primal = [&](std::uint32_t i, std::uint32_t j) { return problem.primal[problem.at(1, i, j)]; };
+            if (x + 1 < problem.width)
+                problem.dx[problem.at(1, x, y)] = primal(x + 1, y) - primal(x, y);
+            if (y + 1 < problem.height)
+                problem.dy[problem.at(1, x, y)] = primal(x, y + 1) - primal(x, y);
+        }
+    // But for one pixel, so that steps too many change its bits.
+    problem.dx[problem.at(1, 7, 9)] += 1e-3f;
+    return problem;
+}
+
+class Groups : public ::testing::TestWithParam<PoissonOptions> {};
+
+void expect_equal_bits(const PoissonProblem &problem, const PoissonOptions &options) {
+    std::vector<Solution> solutions;
+    for (const std::uint32_t together : {1u, 2u, 3u}) {
+        PoissonSolver solver(test_device(), problem.width, problem.height, 3, Precision::single, together);
+        solutions.push_back(solve(solver, problem.images_with_variances(), options));
+    }
+    for (const Solution &other : {solutions[1], solutions[2]}) {
+        EXPECT_EQ(other.image, solutions[0].image);
+        EXPECT_EQ(other.report.iterations, solutions[0].report.iterations);
+        EXPECT_EQ(other.report.converged, solutions[0].report.converged);
+        EXPECT_EQ(other.report.residuals, solutions[0].report.residuals);
+        EXPECT_EQ(other.report.objectives, solutions[0].report.objectives);
+        EXPECT_EQ(other.report.correction, solutions[0].report.correction);
+    }
+}
+
+TEST_P(Groups, DoNotChangeABit) { expect_equal_bits(unequal_channels(129, 65), GetParam()); }
+
+/// Large grids are gone through in bands (solver/multigrid.cpp), which are the narrower the more channels go together:
+/// of 144, 64 and 48 rows here.
+TEST(Bands, DoNotChangeABit) {
+    const PoissonProblem problem = unequal_channels(1000, 611);
+    PoissonOptions l1;
+    l1.iterations = 3;
+    expect_equal_bits(problem, l1);
+    expect_equal_bits(problem, l2_options(LinearMethod::multigrid));
+}
+
+std::vector<PoissonOptions> all_options() {
+    std::vector<PoissonOptions> all = {{}, plain_l1_options()};
+    all.emplace_back().joint_channels = false;
+    for (const LinearMethod method : linear_methods)
+        all.push_back(l2_options(method, 0.5));
+    PoissonOptions &weighted = all.emplace_back(l2_options(LinearMethod::automatic));
+    weighted.weigh_by_variance = weighted.alpha_from_variances = true;
+    return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Solver, Groups, ::testing::ValuesIn(all_options()));
+
+/// The buffers of a solve in planes of one channel, for a 512 x 512 image.
+double planes_of(const PoissonOptions &options, std::uint32_t together) {
+    constexpr std::uint32_t side = 512;
+    const PoissonProblem problem = make_poisson_problem(side, side, 3, 1);
+    Device device;
+    PoissonSolver solver(device, side, side, 3, Precision::single, together);
+    const PoissonReport report = solve(solver, problem.images_with_variances(), options).report;
+    return double(report.device_bytes) / (4.0 * solver::Grid(side, side).plane);
+}
+
+TEST(Memory, OfOneChannelAfterTheOther) {
+    PoissonOptions automatic;
+    automatic.alpha_from_variances = true;
+    // I0, both gradients, u and one to spare for each channel, three that say what is valid, four of weights on all
+    // grids (4/3), three of multigrid on all grids, b, two directions and their image, two of partial sums; and less
+    // than two more for small things.
+    EXPECT_LE(planes_of(automatic, 1), 15 + 3 + 4 * 4 / 3. + 3 * 4 / 3. + 4 + 2 + 2);
+    EXPECT_GE(planes_of(automatic, 3), 15 + 3 + 4 * 4 / 3. + 3 * 3 * 4 / 3. + 3 * 4 + 2);
+    // Without weights that lie in memory, without directions; sums of three channels.
+    EXPECT_LE(planes_of(l2_options(LinearMethod::automatic), 1), 15 + 3 + 4 / 3. + 3 * 4 / 3. + 1 + 3 + 2);
+}
+
+TEST(Sources, AreReadOnceAndGiveTheSameBits) {
+    const PoissonProblem problem = make_poisson_problem(129, 65, 3, 1);
+    const std::vector<float> direct(problem.primal.size(), 0.5f);
+    HostImages images = problem.images_with_variances();
+    images.direct = direct.data();
+    PoissonOptions options;
+    options.alpha_from_variances = true;
+    PoissonSolver &solver = solver_for(problem);
+    const Solution expected = solve(solver, images, options);
+
+    std::vector<std::string> calls;
+    const auto source = [&](const char *name, const float *image) -> PlaneSource {
+        return [&calls, &problem, name, image](std::uint32_t channel, float *plane) {
+            calls.push_back(name + std::to_string(channel));
+            std::copy_n(image + channel * problem.pixels(), problem.pixels(), plane);
+        };
+    };
+    ImageSources sources;
+    sources.primal = source("primal", images.primal);
+    sources.dx = source("dx", images.dx);
+    sources.dy = source("dy", images.dy);
+    sources.direct = source("direct", images.direct);
+    sources.primal_variance = source("primal variance", images.primal_variance);
+    sources.dx_variance = source("dx variance", images.dx_variance);
+    sources.dy_variance = source("dy variance", images.dy_variance);
+    std::vector<float> result(problem.primal.size());
+    solver.solve(
+        sources, options,
+        [&](std::uint32_t channel, const float *plane) {
+            calls.push_back("result" + std::to_string(channel));
+            std::copy_n(plane, problem.pixels(), result.begin() + std::ptrdiff_t(channel * problem.pixels()));
+        },
+        [&] { calls.push_back("all read"); });
+    EXPECT_EQ(result, expected.image);
+    std::vector<std::string> in_order;
+    for (const char *name :
+         {"primal", "dx", "dy", "dx variance", "dy variance", "primal variance", "", "direct", "result"})
+        for (const char *channel : {"0", "1", "2"})
+            if (*name)
+                in_order.push_back(std::string(name) + channel);
+            else if (*channel == '0')
+                in_order.emplace_back("all read");
+    EXPECT_EQ(calls, in_order);
+}
+
+} // namespace
+} // namespace gradus::testing
