@@ -51,9 +51,10 @@ Arguments arguments_of(const Columns &columns, std::size_t i) {
 
 MeasuredFunction bsdf(const std::string &kind) {
     const bool is_dielectric = kind.find("dielectric") != std::string::npos, is_rough = kind.starts_with("rough");
-    MeasuredFunction f{kind, "kernels/measure/bsdf.cl", "measure_bsdf", {{"BSDF", kind}}, 12, {}, 11, {}, {}, {}};
+    MeasuredFunction f{kind, "kernels/measure/bsdf.cl", "measure_bsdf", {{"BSDF", kind}}, 13, {}, 11, {}, {}, {}};
     f.outputs = {{"eval", 0, 3, 1e-6},
                  {"pdf", 3, 1, 1e-6},
+                 {"reverse pdf", 12, 1, 1e-6},
                  {"sampled direction", 4, 3, 0, true, true},
                  {"sample weight", 7, 3, 1e-6, false, true}};
     f.domains.push_back({"inside", [](Random &random) { return columns_of(testing::draw_arguments(random, 0.01)); }});

@@ -1,9 +1,8 @@
-/* Every BSDF kind of GRADUS_BSDF_KINDS: K_eval, K_pdf, K_sample, K_albedo. Conventions: bsdf_sample.h.
+/* Every BSDF kind of GRADUS_BSDF_KINDS. Conventions: bsdf_sample.h.
  *
- *   rgb K_eval(material m, vec3 wi, vec3 wo)                              f |cos wo|; 0 for delta kinds
- *   real K_pdf(material m, vec3 wi, vec3 wo)                              by solid angle; 0 for delta kinds
- *   bsdf_sample K_sample(material m, vec3 wi, real u_lobe, real u1, real u2)    u in [0, 1)
- *   rgb K_albedo(material m)                                              rough, for the denoiser's albedo channel */
+ *   bsdf_value K_evaluate(material m, vec3 wi, vec3 wo, int mode)           one pair of directions
+ *   bsdf_sample K_sample(material m, vec3 wi, real u_lobe, real u1, real u2, int mode)    u in [0, 1)
+ *   rgb K_albedo(material m)                                                rough, for the denoiser's albedo channel */
 #ifndef GRADUS_LIB_BSDF_H
 #define GRADUS_LIB_BSDF_H
 #include "kernels/lib/bsdf_conductor.h"
@@ -12,4 +11,19 @@
 #include "kernels/lib/bsdf_null.h"
 #include "kernels/lib/bsdf_roughconductor.h"
 #include "kernels/lib/bsdf_roughdielectric.h"
+
+GRADUS_LIB_BEGIN
+
+/* K_eval and K_pdf: parts of K_evaluate, of radiance. */
+#define GRADUS_PARTS_OF_EVALUATE(name, ...)                                                                            \
+    GRADUS_FN rgb name##_eval(material m, vec3 wi, vec3 wo) {                                                          \
+        return name##_evaluate(m, wi, wo, transport_radiance).value;                                                   \
+    }                                                                                                                  \
+    GRADUS_FN real name##_pdf(material m, vec3 wi, vec3 wo) {                                                          \
+        return name##_evaluate(m, wi, wo, transport_radiance).pdf;                                                     \
+    }
+GRADUS_BSDF_KINDS(GRADUS_PARTS_OF_EVALUATE)
+#undef GRADUS_PARTS_OF_EVALUATE
+
+GRADUS_LIB_END
 #endif

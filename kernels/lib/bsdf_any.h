@@ -5,12 +5,6 @@
 #include "kernels/lib/bsdf.h"
 #include "kernels/shared/tables.h"
 
-typedef struct {
-    rgb value; /* f |cos wo|; of a Dirac event the factor on what arrives */
-    real pdf;  /* by solid angle; of a Dirac event its probability */
-    GRADUS_NOT_IN_REGISTERS
-} bsdf_value;
-
 /* Independent ifs, not a switch: PoCL vectorises those. */
 #if ONE_KIND
 #define BSDF_ANY_IF(name)
@@ -19,15 +13,14 @@ typedef struct {
 #endif
 #define BSDF_ANY_CASE(name)                                                                                            \
     BSDF_ANY_IF(name) {                                                                                                \
-        v.value = name##_eval(m, wi, wo);                                                                              \
-        v.pdf = name##_pdf(m, wi, wo);                                                                                 \
+        const bsdf_value own = name##_evaluate(m, wi, wo, transport_radiance);                                         \
+        v.value = own.value;                                                                                           \
+        v.pdf = own.pdf;                                                                                               \
     }
 
-/* Zero for Dirac kinds. */
+/* Zero for Dirac kinds; without the density of the way back. */
 GRADUS_FN bsdf_value bsdf_any(uint kind, material m, vec3 wi, vec3 wo) {
-    bsdf_value v;
-    v.value = rgb_gray(R(0));
-    v.pdf = R(0);
+    bsdf_value v = bsdf_value_none();
     (void)kind, (void)m, (void)wi, (void)wo;
 #if HAS_diffuse
     BSDF_ANY_CASE(diffuse)
@@ -54,7 +47,7 @@ GRADUS_FN bsdf_value bsdf_any_dirac(uint kind, material m, vec3 wi, int is_refle
     (void)kind, (void)m, (void)wi, (void)is_reflected;
 #if HAS_conductor
     BSDF_ANY_IF(conductor) {
-        const bsdf_sample s = conductor_sample(m, wi, R(0), R(0), R(0));
+        const bsdf_sample s = conductor_sample(m, wi, R(0), R(0), R(0), transport_radiance);
         weight = s.weight;
         pdf = is_reflected ? s.pdf : R(0);
     }
@@ -62,7 +55,7 @@ GRADUS_FN bsdf_value bsdf_any_dirac(uint kind, material m, vec3 wi, int is_refle
 #if HAS_dielectric
     BSDF_ANY_IF(dielectric) {
         /* Below and above all reflectances: the event is given. */
-        const bsdf_sample s = dielectric_sample(m, wi, is_reflected ? R(-1) : R(2), R(0), R(0));
+        const bsdf_sample s = dielectric_sample(m, wi, is_reflected ? R(-1) : R(2), R(0), R(0), transport_radiance);
         weight = s.weight;
         pdf = s.pdf;
     }
@@ -73,8 +66,8 @@ GRADUS_FN bsdf_value bsdf_any_dirac(uint kind, material m, vec3 wi, int is_refle
         pdf = is_reflected ? R(0) : R(1);
     }
 #endif
-    bsdf_value v;
-    v.value = rgb_scale(weight, pdf);
+    bsdf_value v = bsdf_value_none();
+    v.value = rgb_scale(weight, pdf); /* the factor on what arrives */
     v.pdf = pdf;
     return v;
 }

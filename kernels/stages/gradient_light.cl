@@ -58,8 +58,9 @@ STAGE gradient_light(uint count, uint unit, uint first, uint capacity, uint slot
     const frame axes = VERTEX_FRAME(row, m);
     const vec3 wo = frame_to_local(axes, s.direction);
     const vec3 wi = frame_to_local(axes, AT_V3(vertex, wi, row));
-    const real base_bsdf = PASTE(BSDF, _pdf)(m, wi, wo) * inverse_light_pdf;
-    const rgb base = rgb_mul(rgb_mul(AT_RGB(vertex, throughput, row), arriving), PASTE(BSDF, _eval)(m, wi, wo));
+    const bsdf_value base_f = PASTE(BSDF, _evaluate)(m, wi, wo, transport_radiance);
+    const real base_bsdf = base_f.pdf * inverse_light_pdf;
+    const rgb base = rgb_mul(rgb_mul(AT_RGB(vertex, throughput, row), arriving), base_f.value);
     real any_offset = R(0);
     AT(gain, base_bsdf, row) = base_bsdf;
 
@@ -87,14 +88,13 @@ STAGE gradient_light(uint count, uint unit, uint first, uint capacity, uint slot
         const real ratio = AT(shifted, ratio, at);
         const rgb so_far = AT_RGB(shifted, value, at);
         const vec3 joined_wi = frame_to_local(axes, AT_V3(shifted, wi, at));
-        const rgb joined_f = PASTE(BSDF, _eval)(m, joined_wi, wo);
-        const real joined_pdf = PASTE(BSDF, _pdf)(m, joined_wi, wo);
+        const bsdf_value joined_f = PASTE(BSDF, _evaluate)(m, joined_wi, wo, transport_radiance);
         /* Selected, not scaled: where there is no offset path, its direction is anything. */
         const int is_there = ratio >= R(0);
-        const rgb joined_value = rgb_mul(rgb_mul(so_far, arriving), joined_f);
+        const rgb joined_value = rgb_mul(rgb_mul(so_far, arriving), joined_f.value);
         rgb value =
             rgb3(is_there ? joined_value.r : R(0), is_there ? joined_value.g : R(0), is_there ? joined_value.b : R(0));
-        real offset_light = ratio, offset_bsdf = is_there ? ratio * joined_pdf * inverse_light_pdf : R(0);
+        real offset_light = ratio, offset_bsdf = is_there ? ratio * joined_f.pdf * inverse_light_pdf : R(0);
         real asks_base = rgb_max(value);
 #endif
 #if APART

@@ -24,7 +24,7 @@ STAGE gradient_scatter(uint count, uint unit, uint first, uint capacity, uint sl
     const material m = material_load(materials, AT_UINT(vertex, material, row), unit);
     const frame axes = VERTEX_FRAME(row, m);
     const vec3 wi = frame_to_local(axes, AT_V3(vertex, wi, row));
-    const bsdf_sample s = PASTE(BSDF, _sample)(m, wi, u.a, u.b, u.c);
+    const bsdf_sample s = PASTE(BSDF, _sample)(m, wi, u.a, u.b, u.c, transport_radiance);
     const rgb throughput = rgb_mul(AT_RGB(vertex, throughput, row), s.weight);
     real brightest = rgb_max(throughput);
     const real inverse_pdf = s.pdf > R(0) ? R(1) / s.pdf : R(0);
@@ -40,8 +40,9 @@ STAGE gradient_scatter(uint count, uint unit, uint first, uint capacity, uint sl
         const real change = R(1);
 #else
         const vec3 offset_wi = frame_to_local(axes, AT_V3(shifted, wi, at));
-        const rgb weight = rgb_scale(PASTE(BSDF, _eval)(m, offset_wi, s.wo), inverse_pdf);
-        const real change = PASTE(BSDF, _pdf)(m, offset_wi, s.wo) * inverse_pdf;
+        const bsdf_value f = PASTE(BSDF, _evaluate)(m, offset_wi, s.wo, transport_radiance);
+        const rgb weight = rgb_scale(f.value, inverse_pdf);
+        const real change = f.pdf * inverse_pdf;
 #endif
         /* Selected, not scaled: where there is no offset path, its direction is anything. */
         const int is_there = ratio >= R(0);

@@ -27,10 +27,9 @@ STAGE light_sample(uint count, uint unit, uint first, uint capacity, uint max_de
     const frame axes = VERTEX_FRAME(row, m);
     const vec3 wi = frame_to_local(axes, AT_V3(vertex, wi, row));
     const vec3 wo = frame_to_local(axes, s.direction);
-    const rgb reflected = PASTE(BSDF, _eval)(m, wi, wo);
-    const real pdf_bsdf = PASTE(BSDF, _pdf)(m, wi, wo);
-    const real weight = mis_weight_light(s.pdf * probability, pdf_bsdf) / probability;
-    const rgb gain = rgb_scale(rgb_mul(rgb_mul(AT_RGB(vertex, throughput, row), s.value), reflected), weight);
+    const bsdf_value f = PASTE(BSDF, _evaluate)(m, wi, wo, transport_radiance);
+    const real weight = mis_weight_light(s.pdf * probability, f.pdf) / probability;
+    const rgb gain = rgb_scale(rgb_mul(rgb_mul(AT_RGB(vertex, throughput, row), s.value), f.value), weight);
 
     CONNECT_TO_LIGHT(row, position, chosen)
     SET_RGB(shadow, value, row, gain);

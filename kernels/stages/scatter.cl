@@ -18,7 +18,7 @@ STAGE scatter(uint count, uint unit, uint first, uint capacity, uint max_depth, 
     const material m = material_load(materials, AT_UINT(vertex, material, row), unit);
     const frame axes = VERTEX_FRAME(row, m);
     const vec3 wi = frame_to_local(axes, AT_V3(vertex, wi, row));
-    const bsdf_sample s = PASTE(BSDF, _sample)(m, wi, u.a, u.b, u.c);
+    const bsdf_sample s = PASTE(BSDF, _sample)(m, wi, u.a, u.b, u.c, transport_radiance);
 
     rgb throughput = rgb_mul(AT_RGB(vertex, throughput, row), s.weight);
     real eta = R(1);

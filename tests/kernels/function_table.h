@@ -14,7 +14,7 @@ struct Arguments {
 
 struct Results {
     std::array<double, 3> eval;
-    double pdf;
+    double pdf, pdf_reverse;
     std::array<double, 3> wo, weight; ///< of the sample
     double sample_pdf, eta;
 };

@@ -17,10 +17,10 @@ namespace {
 
 namespace lib = lib_double;
 
-using Sample = lib::bsdf_sample (*)(lib::material, lib::vec3, double, double, double);
+using Sample = lib::bsdf_sample (*)(lib::material, lib::vec3, double, double, double, int);
 
 Sample sampler_named(const std::string &name) {
-#define GRADUS_NAMED(kind, is_dirac)                                                                                   \
+#define GRADUS_NAMED(kind, ...)                                                                                        \
     if (name == #kind)                                                                                                 \
         return lib::kind##_sample;
     GRADUS_BSDF_KINDS(GRADUS_NAMED)
@@ -105,7 +105,7 @@ WalkMean walk(ConvexShape shape, const Bsdf &bsdf, const View &view, int walks) 
             const Double3 s = point.tangent, n = point.normal, t = cross(n, s);
             const lib::vec3 wi = lib::v3(-dot(direction, s), -dot(direction, t), -dot(direction, n));
             const double u_lobe = uniform(engine), u1 = uniform(engine), u2 = uniform(engine);
-            const lib::bsdf_sample drawn = sample(material, wi, u_lobe, u1, u2);
+            const lib::bsdf_sample drawn = sample(material, wi, u_lobe, u1, u2, lib::transport_radiance);
             throughput[0] *= drawn.weight.r, throughput[1] *= drawn.weight.g, throughput[2] *= drawn.weight.b;
             if (drawn.pdf <= 0 || throughput[0] + throughput[1] + throughput[2] <= 0) {
                 throughput = {};
