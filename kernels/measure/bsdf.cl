@@ -2,7 +2,7 @@
 #include "kernels/lib/bsdf.h"
 #include "kernels/measure/function.h"
 
-#define MATERIAL_FIELD_IN(name, text) m.name = IN(material_##name);
+#define MATERIAL_FIELD_IN(name) m.name = IN(material_##name);
 
 STAGE measure_bsdf(MEASURE_ARGUMENTS) {
     MEASURE_ITEM

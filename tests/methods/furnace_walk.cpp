@@ -30,17 +30,11 @@ Sample sampler_named(const std::string &name) {
 
 lib::material material_from(const Bsdf &b) {
     lib::material m{};
-    m.reflectance_r = b.reflectance.r, m.reflectance_g = b.reflectance.g, m.reflectance_b = b.reflectance.b;
-    m.specular_reflectance_r = b.specular_reflectance.r;
-    m.specular_reflectance_g = b.specular_reflectance.g;
-    m.specular_reflectance_b = b.specular_reflectance.b;
-    m.specular_transmittance_r = b.specular_transmittance.r;
-    m.specular_transmittance_g = b.specular_transmittance.g;
-    m.specular_transmittance_b = b.specular_transmittance.b;
-    m.eta_r = b.eta.r, m.eta_g = b.eta.g, m.eta_b = b.eta.b;
-    m.k_r = b.k.r, m.k_g = b.k.g, m.k_b = b.k.b;
-    m.ior = b.ior;
-    m.alpha_u = b.alpha_u, m.alpha_v = b.alpha_v;
+#define GRADUS_COLOR(with, name, value, text) m.name##_r = b.name.r, m.name##_g = b.name.g, m.name##_b = b.name.b;
+#define GRADUS_NUMBER(with, name, value, text) m.name = b.name;
+    GRADUS_MATERIAL_PARAMETERS(GRADUS_COLOR, GRADUS_NUMBER, )
+#undef GRADUS_COLOR
+#undef GRADUS_NUMBER
     return m;
 }
 

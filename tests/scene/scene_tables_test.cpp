@@ -127,7 +127,7 @@ TEST(Primitives, BringTheirOptionalRecordsOnlyWhereATraitAsks) {
     EXPECT_TRUE(plain.triangle_tangents.empty());
     EXPECT_TRUE(plain.spheres.empty());
 
-    maker.scene.materials[material].front.kind = BsdfKind::roughconductor;
+    maker.scene.materials[material].front.kind = BsdfKind::roughconductor_beckmann;
     maker.scene.materials[material].front.alpha_v = 0.5f;
     maker.scene.meshes[0].normals.assign(maker.scene.meshes[0].positions.size(), {0, 1, 0});
     const SceneTables full = tables_of(maker.scene);
@@ -141,7 +141,7 @@ TEST(Primitives, BringTheirOptionalRecordsOnlyWhereATraitAsks) {
 TEST(Primitives, HaveTangentsAlongU) {
     SceneMaker maker(4, 1);
     Bsdf brushed;
-    brushed.kind = BsdfKind::roughconductor;
+    brushed.kind = BsdfKind::roughconductor_beckmann;
     brushed.alpha_v = 0.5f;
     maker.parallelogram({0, 0, 0}, {2, 0, 0}, {0, 3, 0}, maker.material(brushed));
     Mesh &mesh = maker.scene.meshes[0];
