@@ -8,6 +8,7 @@
 #include <cmath>
 
 // After GoogleTest, which has template parameters of the names of its macros.
+#include "kernels/shared/material.h"
 #include "kernels/shared/scene_records.h"
 
 namespace gradus::testing {
@@ -125,7 +126,7 @@ TEST(Primitives, BringTheirOptionalRecordsOnlyWhereATraitAsks) {
     SceneTables plain = tables_of(maker.scene);
     EXPECT_TRUE(plain.triangle_normals.empty());
     EXPECT_TRUE(plain.triangle_tangents.empty());
-    EXPECT_TRUE(plain.spheres.empty());
+    EXPECT_EQ(plain.spheres.size(), std::size_t(sphere_stride)) << "one that no primitive is";
 
     maker.scene.materials[material].front.kind = BsdfKind::roughconductor_beckmann;
     maker.scene.materials[material].front.alpha_v = 0.5f;
@@ -135,6 +136,25 @@ TEST(Primitives, BringTheirOptionalRecordsOnlyWhereATraitAsks) {
     EXPECT_EQ(full.triangle_normals.at(normals_n1_y), 1);
     EXPECT_EQ(full.triangle_tangents.size(), std::size_t(12 * triangle_tangent_stride));
     EXPECT_GT(table_bytes(full), table_bytes(plain));
+}
+
+TEST(Materials, LieAsTheirListSays) {
+    SceneMaker maker(4, 1);
+    Bsdf bsdf;
+    float next = 0;
+#define GRADUS_SET_COLOR(with, name, value, text) bsdf.name = {++next, ++next, ++next};
+#define GRADUS_SET_NUMBER(with, name, value, text) bsdf.name = ++next;
+    GRADUS_MATERIAL_PARAMETERS(GRADUS_SET_COLOR, GRADUS_SET_NUMBER, )
+#undef GRADUS_SET_COLOR
+#undef GRADUS_SET_NUMBER
+    maker.cube(maker.material(two_sided(diffuse(0.25), bsdf)));
+    const SceneTables tables = tables_of(maker.scene);
+    ASSERT_EQ(tables.materials.size(), std::size_t(2 * material_stride));
+    ASSERT_EQ(next, float(material_stride));
+    for (int field = 0; field < material_stride; ++field)
+        EXPECT_EQ(tables.materials[std::size_t(material_stride + field)], float(field + 1)) << field;
+    EXPECT_EQ(tables.materials[material_reflectance_g], 0.25f);
+    EXPECT_EQ(tables.material_back, (std::vector<std::uint32_t>{1, 1}));
 }
 
 // dp/du of a triangle whose texture coordinates are stretched, turned and mirrored.

@@ -130,5 +130,26 @@ TEST(BsdfKinds, AreThoseOfTheShapesInOneOrder) {
     EXPECT_FALSE(bsdf_kind_is_dirac("roughdielectric_ggx"));
 }
 
+TEST(BsdfKinds, FollowFromTheirList) {
+    // Each parameter that a kind names is a member of Bsdf, and each member is named by some kind.
+    std::set<std::string> members, named;
+#define GRADUS_MEMBER_NAME(with, name, value, text) members.insert(#name);
+    GRADUS_MATERIAL_PARAMETERS(GRADUS_MEMBER_NAME, GRADUS_MEMBER_NAME, )
+#undef GRADUS_MEMBER_NAME
+    for (const std::string &name : all_bsdf_kinds()) {
+        const BsdfKind kind = bsdf_kind_named(name);
+        const BsdfKindTraits &traits = bsdf_kind_traits(kind);
+        EXPECT_EQ(traits.name, name);
+        named.insert(traits.parameters.begin(), traits.parameters.end());
+        EXPECT_EQ(traits.refracts, name.find("dielectric") != std::string::npos) << name;
+        EXPECT_EQ(traits.has_roughness, name.starts_with("rough")) << name;
+    }
+    EXPECT_EQ(members, named);
+    EXPECT_TRUE(bsdf_kind_traits(BsdfKind::null).transmits);
+    EXPECT_FALSE(bsdf_kind_traits(BsdfKind::null).refracts);
+    EXPECT_FALSE(bsdf_kind_traits(BsdfKind::conductor).transmits);
+    EXPECT_THROW(bsdf_kind_named("plaster"), std::out_of_range);
+}
+
 } // namespace
 } // namespace gradus::testing
