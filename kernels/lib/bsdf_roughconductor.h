@@ -33,8 +33,10 @@ GRADUS_FN bsdf_terms roughconductor_terms(material m, vec3 wi, vec3 wo, int dist
 GRADUS_FN bsdf_sample roughconductor_sample(material m, vec3 wi, real u1, real u2, int distribution) {
     bsdf_sample sample;
     const vec3 from = v3(wi.x, wi.y, r_abs(wi.z));
-    const vec3 normal =
-        microfacet_sample_visible(distribution, from, microfacet_alpha(m.alpha_u), microfacet_alpha(m.alpha_v), u1, u2);
+    /* Written as in roughconductor_terms, so that what both compute from wi is computed once. */
+    const real alpha_u = microfacet_alpha(m.alpha_u);
+    const real alpha_v = microfacet_alpha(r_after(m.alpha_v, alpha_u));
+    const vec3 normal = microfacet_sample_visible(distribution, from, alpha_u, alpha_v, u1, u2);
     sample.wo = v3_mad(v3_neg(from), R(2) * v3_dot(from, normal), normal);
     const bsdf_terms terms = roughconductor_terms(m, wi, sample.wo, distribution);
     sample.weight = terms.weight;
