@@ -46,7 +46,7 @@ GRADUS_FN bsdf_terms roughdielectric_terms(material m, vec3 wi, vec3 wo, int mod
     /* wi and the microfacet's front are on one side; wo is on the side that its lobe says. */
     const int is_valid = (from_cosine > R(0)) & ((to_cosine > R(0)) == is_reflected) & (to_cosine != R(0)) &
                          (to.z != R(0)) & (pdf > R(0));
-    const vec3 above = v3(to.x, to.y, r_abs(to.z));
+    const vec3 above = v3(r_after(to.x, area), r_after(to.y, area), r_abs(to.z));
     const real area_to = microfacet_projected_area(distribution, above, alpha_u, alpha_v);
     const real masking = above.z / area_to;
     const real scale = mode == transport_radiance ? masking / (eta * eta) : masking;
