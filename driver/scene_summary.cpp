@@ -1,6 +1,7 @@
 #include "driver/scene_summary.h"
 
 #include "driver/scene_request.h"
+#include "runtime/scene/traits.h"
 
 #include <algorithm>
 #include <limits>
@@ -13,10 +14,10 @@ namespace {
 constexpr std::uint64_t tree_bytes_per_triangle = 82;
 
 std::string material_name(const Material &material) {
-    const std::string front = name_of(material.front.kind);
+    const std::string front = bsdf_kind_name(material.front);
     if (!material.two_sided)
         return front;
-    const std::string back = name_of(material.back.kind);
+    const std::string back = bsdf_kind_name(material.back);
     return front == back ? "twosided " + front : "twosided " + front + "/" + back;
 }
 
@@ -36,24 +37,6 @@ struct Bounds {
 };
 
 } // namespace
-
-const char *name_of(BsdfKind kind) {
-    switch (kind) {
-    case BsdfKind::diffuse:
-        return "diffuse";
-    case BsdfKind::conductor:
-        return "conductor";
-    case BsdfKind::dielectric:
-        return "dielectric";
-    case BsdfKind::null:
-        return "null";
-    case BsdfKind::roughconductor:
-        return "roughconductor";
-    case BsdfKind::roughdielectric:
-        return "roughdielectric";
-    }
-    return "unknown";
-}
 
 const char *name_of(Emitter::Kind kind) {
     switch (kind) {

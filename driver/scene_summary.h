@@ -21,7 +21,6 @@ struct SceneSummary {
 };
 
 /// The names that Mitsuba files have for them.
-const char *name_of(BsdfKind kind);
 const char *name_of(Emitter::Kind kind);
 const char *name_of(FilmSettings::Filter filter);
 const char *name_of(Camera::FovAxis axis);

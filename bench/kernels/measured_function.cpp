@@ -15,7 +15,8 @@ using testing::Arguments;
 using testing::rounded;
 using Random = std::mt19937_64;
 
-constexpr std::size_t material_columns = 18, wi_column = 18, wo_column = 21, bsdf_columns = 27;
+constexpr std::size_t material_columns = testing::material_fields, wi_column = material_columns,
+                      wo_column = wi_column + 3, bsdf_columns = wo_column + 6;
 
 double uniform(Random &random) { return std::uniform_real_distribution<double>()(random); }
 double log_uniform(Random &random, double low, double high) { return low * std::pow(high / low, uniform(random)); }
@@ -51,9 +52,10 @@ Arguments arguments_of(const Columns &columns, std::size_t i) {
 
 MeasuredFunction bsdf(const std::string &kind) {
     const bool is_dielectric = kind.find("dielectric") != std::string::npos, is_rough = kind.starts_with("rough");
-    MeasuredFunction f{kind, "kernels/measure/bsdf.cl", "measure_bsdf", {{"BSDF", kind}}, 12, {}, 11, {}, {}, {}};
+    MeasuredFunction f{kind, "kernels/measure/bsdf.cl", "measure_bsdf", {{"BSDF", kind}}, 13, {}, 11, {}, {}, {}};
     f.outputs = {{"eval", 0, 3, 1e-6},
                  {"pdf", 3, 1, 1e-6},
+                 {"reverse pdf", 12, 1, 1e-6},
                  {"sampled direction", 4, 3, 0, true, true},
                  {"sample weight", 7, 3, 1e-6, false, true}};
     f.domains.push_back({"inside", [](Random &random) { return columns_of(testing::draw_arguments(random, 0.01)); }});
@@ -66,8 +68,8 @@ MeasuredFunction bsdf(const std::string &kind) {
         f.domains.push_back({"critical angle", [](Random &random) {
                                  Arguments a = testing::draw_arguments(random, 0.01);
                                  // From the denser side, within 1e-3 of where the transmitted ray grazes.
-                                 const double side = a.material[15] < 1 ? 1 : -1;
-                                 const double eta = side > 0 ? a.material[15] : 1 / a.material[15];
+                                 const double side = a[testing::Field::ior] < 1 ? 1 : -1;
+                                 const double eta = side > 0 ? a[testing::Field::ior] : 1 / a[testing::Field::ior];
                                  const double near = sign(random) * log_uniform(random, 1e-7, 1e-3);
                                  a.wi = direction_of(side * std::sqrt(1 - eta * eta + near), draw_azimuth(random));
                                  return columns_of(a);
@@ -75,8 +77,8 @@ MeasuredFunction bsdf(const std::string &kind) {
     if (is_rough) {
         f.domains.push_back({"roughness 1e-4 to 0.01", [](Random &random) {
                                  Arguments a = testing::draw_arguments(random, 0.01);
-                                 a.material[16] = rounded(log_uniform(random, 1e-4, 1e-2));
-                                 a.material[17] = rounded(log_uniform(random, 1e-4, 1e-2));
+                                 a[testing::Field::alpha_u] = rounded(log_uniform(random, 1e-4, 1e-2));
+                                 a[testing::Field::alpha_v] = rounded(log_uniform(random, 1e-4, 1e-2));
                                  return columns_of(a);
                              }});
         f.domains.push_back({"half vector at the horizon", [](Random &random) {
@@ -84,7 +86,8 @@ MeasuredFunction bsdf(const std::string &kind) {
                                  const double azimuth = draw_azimuth(random);
                                  a.wi = direction_of(log_uniform(random, 1e-4, 1e-2), azimuth);
                                  a.wo = direction_of(log_uniform(random, 1e-4, 1e-2), azimuth + 0.6 * uniform(random));
-                                 a.material[16] = a.material[17] = rounded(0.3 + 0.7 * uniform(random));
+                                 a[testing::Field::alpha_u] = a[testing::Field::alpha_v] =
+                                     rounded(0.3 + 0.7 * uniform(random));
                                  return columns_of(a);
                              }});
     }

@@ -19,6 +19,7 @@
 #include "runtime/error.h"
 #include "runtime/io/load_scene.h"
 #include "runtime/methods/method.h"
+#include "runtime/scene/traits.h"
 #include "solver/poisson_solver.h"
 #include "tests/support/poisson_problem.h"
 
@@ -50,18 +51,10 @@ Scene room(const std::string &path, const std::string &kind, std::uint32_t queue
     for (Material &material : scene.materials) {
         shade *= 0.95f;
         for (Bsdf *bsdf : {&material.front, &material.back}) {
-            bsdf->kind = kind == "diffuse"                    ? BsdfKind::diffuse
-                         : kind == "conductor"                ? BsdfKind::conductor
-                         : kind == "dielectric"               ? BsdfKind::dielectric
-                         : kind == "null"                     ? BsdfKind::null
-                         : kind.starts_with("roughconductor") ? BsdfKind::roughconductor
-                                                              : BsdfKind::roughdielectric;
-            bsdf->distribution = kind.ends_with("ggx") ? Microfacet::ggx : Microfacet::beckmann;
+            bsdf->kind = bsdf_kind_named(kind);
             bsdf->specular_reflectance = bsdf->specular_transmittance = {shade, shade, shade};
             bsdf->alpha_u = bsdf->alpha_v = 0.2f * shade;
-            const bool has_both_sides = bsdf->kind == BsdfKind::dielectric || bsdf->kind == BsdfKind::null ||
-                                        bsdf->kind == BsdfKind::roughdielectric;
-            material.two_sided = !has_both_sides;
+            material.two_sided = !bsdf_kind_traits(bsdf->kind).transmits;
         }
     }
     Emitter glow;

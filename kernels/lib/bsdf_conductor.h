@@ -15,24 +15,21 @@ GRADUS_FN rgb conductor_reflectance(material m, real cosine) {
     return rgb_mul(material_specular_reflectance(m), rgb3(r, g, b));
 }
 
-GRADUS_FN real conductor_pdf(material m, vec3 wi, vec3 wo) {
-    (void)m, (void)wi, (void)wo;
-    return R(0);
+GRADUS_FN bsdf_value conductor_evaluate(material m, vec3 wi, vec3 wo, int mode) {
+    (void)m, (void)wi, (void)wo, (void)mode;
+    return bsdf_value_none();
 }
 
-GRADUS_FN rgb conductor_eval(material m, vec3 wi, vec3 wo) {
-    (void)m, (void)wi, (void)wo;
-    return rgb_gray(R(0));
-}
-
-GRADUS_FN bsdf_sample conductor_sample(material m, vec3 wi, real u_lobe, real u1, real u2) {
-    (void)u_lobe, (void)u1, (void)u2;
+GRADUS_FN bsdf_sample conductor_sample(material m, vec3 wi, real u_lobe, real u1, real u2, int mode) {
+    (void)u_lobe, (void)u1, (void)u2, (void)mode;
     bsdf_sample sample;
     const real is_valid = wi.z > R(0) ? R(1) : R(0);
     sample.wo = v3(-wi.x, -wi.y, wi.z);
     sample.weight = rgb_scale(conductor_reflectance(m, r_clamp(wi.z, R(0), R(1))), is_valid);
     sample.pdf = is_valid;
+    sample.pdf_reverse = is_valid;
     sample.eta = R(1);
+    sample.is_specular = 1;
     return sample;
 }
 

@@ -7,17 +7,12 @@
 
 GRADUS_LIB_BEGIN
 
-GRADUS_FN real dielectric_pdf(material m, vec3 wi, vec3 wo) {
-    (void)m, (void)wi, (void)wo;
-    return R(0);
+GRADUS_FN bsdf_value dielectric_evaluate(material m, vec3 wi, vec3 wo, int mode) {
+    (void)m, (void)wi, (void)wo, (void)mode;
+    return bsdf_value_none();
 }
 
-GRADUS_FN rgb dielectric_eval(material m, vec3 wi, vec3 wo) {
-    (void)m, (void)wi, (void)wo;
-    return rgb_gray(R(0));
-}
-
-GRADUS_FN bsdf_sample dielectric_sample(material m, vec3 wi, real u_lobe, real u1, real u2) {
+GRADUS_FN bsdf_sample dielectric_sample(material m, vec3 wi, real u_lobe, real u1, real u2, int mode) {
     (void)u1, (void)u2;
     bsdf_sample sample;
     const real side = r_copysign1(wi.z);
@@ -27,12 +22,13 @@ GRADUS_FN bsdf_sample dielectric_sample(material m, vec3 wi, real u_lobe, real u
     const int is_reflected = u_lobe < fresnel.reflectance;
     sample.wo = v3(is_reflected ? -wi.x : -wi.x * inverse_eta, is_reflected ? -wi.y : -wi.y * inverse_eta,
                    is_reflected ? wi.z : -side * fresnel.cosine_transmitted);
-    const rgb reflected = material_specular_reflectance(m);
-    const rgb transmitted = rgb_scale(material_specular_transmittance(m), inverse_eta * inverse_eta);
-    sample.weight = rgb3(is_reflected ? reflected.r : transmitted.r, is_reflected ? reflected.g : transmitted.g,
-                         is_reflected ? reflected.b : transmitted.b);
+    const rgb transmitted = rgb_scale(material_specular_transmittance(m), transport_scale(inverse_eta, mode));
+    sample.weight = rgb_select(is_reflected, material_specular_reflectance(m), transmitted);
     sample.pdf = is_reflected ? fresnel.reflectance : R(1) - fresnel.reflectance;
+    /* Fresnel's reflectance is the same from both sides of a refracted ray. */
+    sample.pdf_reverse = sample.pdf;
     sample.eta = is_reflected ? R(1) : eta;
+    sample.is_specular = 1;
     return sample;
 }
 

@@ -6,23 +6,35 @@
 
 GRADUS_LIB_BEGIN
 
-GRADUS_FN real diffuse_pdf(material m, vec3 wi, vec3 wo) {
-    (void)m;
+GRADUS_FN bsdf_terms diffuse_terms(material m, vec3 wi, vec3 wo) {
+    bsdf_terms terms;
     const int is_valid = (wi.z > R(0)) & (wo.z > R(0));
-    return is_valid ? warp_cosine_hemisphere_pdf(wo.z) : R(0);
+    terms.pdf = is_valid ? warp_cosine_hemisphere_pdf(wo.z) : R(0);
+    terms.pdf_reverse = is_valid ? warp_cosine_hemisphere_pdf(wi.z) : R(0);
+    terms.weight = rgb_scale(material_reflectance(m), terms.pdf > R(0) ? R(1) : R(0));
+    return terms;
 }
 
-GRADUS_FN rgb diffuse_eval(material m, vec3 wi, vec3 wo) {
-    return rgb_scale(material_reflectance(m), diffuse_pdf(m, wi, wo));
+GRADUS_FN bsdf_value diffuse_evaluate(material m, vec3 wi, vec3 wo, int mode) {
+    (void)mode;
+    bsdf_value v;
+    const bsdf_terms terms = diffuse_terms(m, wi, wo);
+    v.value = rgb_scale(material_reflectance(m), terms.pdf);
+    v.pdf = terms.pdf;
+    v.pdf_reverse = terms.pdf_reverse;
+    return v;
 }
 
-GRADUS_FN bsdf_sample diffuse_sample(material m, vec3 wi, real u_lobe, real u1, real u2) {
-    (void)u_lobe;
+GRADUS_FN bsdf_sample diffuse_sample(material m, vec3 wi, real u_lobe, real u1, real u2, int mode) {
+    (void)u_lobe, (void)mode;
     bsdf_sample sample;
     sample.wo = warp_cosine_hemisphere(u1, u2);
-    sample.pdf = diffuse_pdf(m, wi, sample.wo);
-    sample.weight = rgb_scale(material_reflectance(m), sample.pdf > R(0) ? R(1) : R(0));
+    const bsdf_terms terms = diffuse_terms(m, wi, sample.wo);
+    sample.weight = terms.weight;
+    sample.pdf = terms.pdf;
+    sample.pdf_reverse = terms.pdf_reverse;
     sample.eta = R(1);
+    sample.is_specular = 0;
     return sample;
 }
 

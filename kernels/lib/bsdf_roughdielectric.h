@@ -2,7 +2,7 @@
  * The normal points outside; ior is the index inside over the index outside.
  *
  * With eta = (index on wo's side) / (index on wi's side), 1 for reflection, and h = wi + eta wo, both lobes are
- *     pdf = P D(m) |wi.m| / sigma(wi)  eta^2 |wo.m| / |h|^2,   weight = G1(wo) (1 / eta^2 for transmitted radiance),
+ *     pdf = P D(m) |wi.m| / sigma(wi)  eta^2 |wo.m| / |h|^2,   weight = G1(wo) (over eta^2 for transmitted radiance),
  * where P is Fresnel's R or 1 - R, for |wi.m + eta wo.m| = |h|. A path from below is turned by a point reflection,
  * which leaves D unchanged, so that wi is always above.
  *
@@ -20,7 +20,7 @@ GRADUS_FN real roughdielectric_eta(material m, real side) {
     return side > R(0) ? ior : R(1) / ior;
 }
 
-GRADUS_FN bsdf_terms roughdielectric_terms(material m, vec3 wi, vec3 wo, int distribution) {
+GRADUS_FN bsdf_terms roughdielectric_terms(material m, vec3 wi, vec3 wo, int mode, int distribution) {
     bsdf_terms terms;
     const real alpha_u = microfacet_alpha(m.alpha_u), alpha_v = microfacet_alpha(m.alpha_v);
     const real side = r_copysign1(wi.z);
@@ -46,27 +46,22 @@ GRADUS_FN bsdf_terms roughdielectric_terms(material m, vec3 wi, vec3 wo, int dis
     /* wi and the microfacet's front are on one side; wo is on the side that its lobe says. */
     const int is_valid = (from_cosine > R(0)) & ((to_cosine > R(0)) == is_reflected) & (to_cosine != R(0)) &
                          (to.z != R(0)) & (pdf > R(0));
-    const vec3 above = v3(to.x, to.y, r_abs(to.z));
-    const real masking = above.z / microfacet_projected_area(distribution, above, alpha_u, alpha_v);
-    const real scale = is_valid ? masking / (eta * eta) : R(0);
-    const rgb reflected = material_specular_reflectance(m), transmitted = material_specular_transmittance(m);
-    terms.pdf = is_valid ? pdf : R(0);
+    const vec3 above = v3(r_after(to.x, area), r_after(to.y, area), r_abs(to.z));
+    const real area_to = microfacet_projected_area(distribution, above, alpha_u, alpha_v);
+    const real masking = above.z / area_to;
+    const real scale = mode == transport_radiance ? masking / (eta * eta) : masking;
     terms.weight =
-        rgb3(scale * (is_reflected ? reflected.r : transmitted.r), scale * (is_reflected ? reflected.g : transmitted.g),
-             scale * (is_reflected ? reflected.b : transmitted.b));
+        rgb_scale(rgb_select(is_reflected, material_specular_reflectance(m), material_specular_transmittance(m)),
+                  is_valid ? scale : R(0));
+    terms.pdf = is_valid ? pdf : R(0);
+    /* The way back has the same half vector and the same P; its index ratio is 1 / eta, so its Jacobian lacks eta^2. */
+    const real back = probability * density * jacobian / (eta * eta * area_to);
+    terms.pdf_reverse = is_valid & (from.z > R(0)) ? back : R(0);
     return terms;
 }
 
-GRADUS_FN rgb roughdielectric_eval(material m, vec3 wi, vec3 wo, int distribution) {
-    const bsdf_terms terms = roughdielectric_terms(m, wi, wo, distribution);
-    return rgb_scale(terms.weight, terms.pdf);
-}
-
-GRADUS_FN real roughdielectric_pdf(material m, vec3 wi, vec3 wo, int distribution) {
-    return roughdielectric_terms(m, wi, wo, distribution).pdf;
-}
-
-GRADUS_FN bsdf_sample roughdielectric_sample(material m, vec3 wi, real u_lobe, real u1, real u2, int distribution) {
+GRADUS_FN bsdf_sample roughdielectric_sample(material m, vec3 wi, real u_lobe, real u1, real u2, int mode,
+                                             int distribution) {
     bsdf_sample sample;
     const real side = r_copysign1(wi.z);
     const real eta = roughdielectric_eta(m, side);
@@ -82,20 +77,23 @@ GRADUS_FN bsdf_sample roughdielectric_sample(material m, vec3 wi, real u_lobe, r
     const real from_scale = is_reflected ? R(1) : inverse_eta;
     const vec3 to = v3_sub(v3_scale(normal, along), v3_scale(from, from_scale));
     sample.wo = v3_scale(to, side);
-    const bsdf_terms terms = roughdielectric_terms(m, wi, sample.wo, distribution);
+    const bsdf_terms terms = roughdielectric_terms(m, wi, sample.wo, mode, distribution);
     /* The lobe that was chosen may leave on the wrong side: then there is no sample. */
     const int is_valid = (to.z > R(0)) == is_reflected;
-    sample.pdf = is_valid ? terms.pdf : R(0);
     sample.weight = rgb_scale(terms.weight, is_valid ? R(1) : R(0));
+    sample.pdf = is_valid ? terms.pdf : R(0);
+    sample.pdf_reverse = is_valid ? terms.pdf_reverse : R(0);
     sample.eta = is_reflected ? R(1) : eta;
+    sample.is_specular = 0;
     return sample;
 }
 
 #define GRADUS_ROUGHDIELECTRIC(name, distribution)                                                                     \
-    GRADUS_FN rgb name##_eval(material m, vec3 wi, vec3 wo) { return roughdielectric_eval(m, wi, wo, distribution); }  \
-    GRADUS_FN real name##_pdf(material m, vec3 wi, vec3 wo) { return roughdielectric_pdf(m, wi, wo, distribution); }   \
-    GRADUS_FN bsdf_sample name##_sample(material m, vec3 wi, real u_lobe, real u1, real u2) {                          \
-        return roughdielectric_sample(m, wi, u_lobe, u1, u2, distribution);                                            \
+    GRADUS_FN bsdf_value name##_evaluate(material m, vec3 wi, vec3 wo, int mode) {                                     \
+        return bsdf_value_of(roughdielectric_terms(m, wi, wo, mode, distribution));                                    \
+    }                                                                                                                  \
+    GRADUS_FN bsdf_sample name##_sample(material m, vec3 wi, real u_lobe, real u1, real u2, int mode) {                \
+        return roughdielectric_sample(m, wi, u_lobe, u1, u2, mode, distribution);                                      \
     }                                                                                                                  \
     GRADUS_FN rgb name##_albedo(material m) { return dielectric_albedo(m); }
 GRADUS_ROUGHDIELECTRIC(roughdielectric_ggx, microfacet_ggx)

@@ -1,9 +1,13 @@
 /* What every BSDF kind returns, and the conventions they share.
  *
  * Local shading frame: z is the normal. wi points to where the path came from, wo to where it goes; both are unit
- * vectors and point away from the surface. Densities are by solid angle. K_eval returns f |cos wo|, for the
- * transport of radiance: light that crosses into the index eta_o from eta_i carries the factor (eta_i / eta_o)^2
- * along the path. Delta kinds have eval and pdf 0. */
+ * vectors and point away from the surface. Densities are by solid angle.
+ *
+ * Values are f |cos wo|. What a path transports decides how they scale where light crosses from the index eta_i on wi's
+ * side into eta_o on wo's: radiance, sought from the camera, takes the factor (eta_i / eta_o)^2; importance's adjoint,
+ * power that a path from a light carries, takes none (Veach 1997, 5.2). The mode is a compile-time constant wherever it
+ * is passed, so that nothing is left of it. Densities do not depend on it. That shading normals are not the surface's
+ * own is no business of a BSDF. */
 #ifndef GRADUS_LIB_BSDF_SAMPLE_H
 #define GRADUS_LIB_BSDF_SAMPLE_H
 #include "kernels/lib/vector.h"
@@ -11,20 +15,55 @@
 
 GRADUS_LIB_BEGIN
 
+enum transport_mode { transport_radiance, transport_importance };
+
+/* Of one pair of directions. Densities that a caller does not read cost nothing once inlined. All are 0 where there is
+ * no such path, and for Dirac lobes, which no given pair meets. */
+typedef struct {
+    rgb value;        /* f |cos wo| */
+    real pdf;         /* of wo, given wi */
+    real pdf_reverse; /* of wi, given wo */
+    GRADUS_NOT_IN_REGISTERS
+} bsdf_value;
+
 typedef struct {
     vec3 wo;
-    rgb weight; /* f |cos wo| / pdf */
-    real pdf;   /* by solid angle; for delta kinds the discrete probability; 0: no sample, weight is 0 too */
-    real eta;   /* index on wo's side over the index on wi's side; 1 for reflection */
+    rgb weight;       /* f |cos wo| / pdf */
+    real pdf;         /* by solid angle; of a Dirac lobe its probability; 0: no sample, weight is 0 too */
+    real pdf_reverse; /* of wi, given wo; likewise */
+    real eta;         /* index on wo's side over the index on wi's side; 1 for reflection */
+    int is_specular;  /* whether wo came from a Dirac lobe */
+    GRADUS_NOT_IN_REGISTERS
 } bsdf_sample;
 
-/* Density and weight of one pair of directions: the sampled kinds form both from the same terms, so that
- * eval = weight pdf holds to rounding. */
+/* What evaluation and sampling form from the same terms, so that value = weight pdf holds to rounding. */
 typedef struct {
-    rgb weight; /* first: returned in registers as (r, g), (b, pdf); the other order stops PoCL's vectoriser */
-    real pdf;
+    rgb weight;
+    real pdf, pdf_reverse;
     GRADUS_NOT_IN_REGISTERS
 } bsdf_terms;
+
+GRADUS_FN bsdf_value bsdf_value_of(bsdf_terms terms) {
+    bsdf_value v;
+    v.value = rgb_scale(terms.weight, terms.pdf);
+    v.pdf = terms.pdf;
+    v.pdf_reverse = terms.pdf_reverse;
+    return v;
+}
+
+/* Of kinds that are Dirac all through. */
+GRADUS_FN bsdf_value bsdf_value_none(void) {
+    bsdf_value v;
+    v.value = rgb_gray(R(0));
+    v.pdf = R(0);
+    v.pdf_reverse = R(0);
+    return v;
+}
+
+/* Light that crosses into an index 1 / inverse_eta times as high. */
+GRADUS_FN real transport_scale(real inverse_eta, int mode) {
+    return mode == transport_radiance ? inverse_eta * inverse_eta : R(1);
+}
 
 GRADUS_FN rgb material_reflectance(material m) { return rgb3(m.reflectance_r, m.reflectance_g, m.reflectance_b); }
 GRADUS_FN rgb material_specular_reflectance(material m) {

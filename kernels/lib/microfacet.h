@@ -38,15 +38,15 @@ GRADUS_FN real microfacet_density(int distribution, vec3 h, real length_squared,
 }
 
 /* sigma(v) = v.z / G1(v), unitless. GGX: (z + sqrt(z^2 + a^2)) / 2; Beckmann: z (1 + erf(z/a)) / 2 +
- * a exp(-z^2/a^2) / (2 sqrt(pi)); a = |(alpha_u v.x, alpha_v v.y)|. */
+ * a exp(-z^2/a^2) / (2 sqrt(pi)), which is z and what the integral of its tail adds; a = |(alpha_u v.x, alpha_v v.y)|.
+ */
 GRADUS_FN real microfacet_projected_area(int distribution, vec3 v, real alpha_u, real alpha_v) {
     const real x = alpha_u * v.x;
     const real y = alpha_v * r_after(v.y, x);
     const real a_squared = x * x + y * y;
     const real ggx = R(0.5) * (v.z + r_sqrt(v.z * v.z + a_squared));
     const real a = r_sqrt(a_squared);
-    const gauss_cdf pair = approx_gauss_cdf(r_min(v.z / r_max(a, R(1e-15)), R(10)));
-    const real beckmann = v.z * pair.cdf + a * R(0.28209479177387814347) * pair.gauss;
+    const real beckmann = v.z + a * approx_gauss_excess(v.z * (R(1) / r_max(a, R(1e-15))));
     return distribution == microfacet_ggx ? ggx : beckmann;
 }
 
@@ -72,16 +72,16 @@ GRADUS_FN vec3 microfacet_sample_ggx(vec3 wi, real alpha_u, real alpha_v, real u
 
 /* One Halley step towards the slope x whose cumulated visible area equals target. The cumulated area
  * z cdf(x) + a gauss(x) / (2 sqrt(pi)) grows from 0 to sigma as x runs from -infinity to z / a. */
-GRADUS_FN real microfacet_beckmann_step(real x, real highest, real target, real z, real a) {
-    const gauss_cdf pair = approx_gauss_cdf(x);
+GRADUS_FN real microfacet_beckmann_step(real x, gauss_cdf pair, real highest, real target, real z, real a) {
     /* The area ends in a double root: nearer to it than the root of the rounding error, the error is noise. */
     const real facing = r_max(z - x * a, GRADUS_BECKMANN_FACING * (z + a));
     const real error = z * pair.cdf + R(0.28209479177387814347) * a * pair.gauss - target;
-    /* The derivative is gauss facing / sqrt(pi); 1e-7 exceeds gauss only beyond |x| = 4. */
-    const real newton = R(1.77245385090551602730) * error / (r_max(pair.gauss, R(1e-7)) * facing);
-    /* Halley divides by 1 - error f'' / (2 f'^2); f'' / f' = -2x - a / facing. */
-    const real halley = R(1) + newton * (x + R(0.5) * a / facing);
-    const real next = x - newton / r_clamp(halley, R(0.5), R(4));
+    /* The derivative is gauss facing / sqrt(pi); 1e-7 exceeds gauss only beyond |x| = 4. Halley divides Newton's step
+     * by 1 - error f'' / (2 f'^2), with f'' / f' = -2x - a / facing: all in one fraction. */
+    const real numerator = R(1.77245385090551602730) * error;
+    const real newton = r_max(pair.gauss, R(1e-7)) * facing * facing;
+    const real halley = newton + numerator * (x * facing + R(0.5) * a);
+    const real next = x - numerator * facing / r_clamp(halley, R(0.5) * newton, R(4) * newton);
     return r_clamp(next, R(-4), highest);
 }
 
@@ -89,23 +89,33 @@ GRADUS_FN real microfacet_beckmann_step(real x, real highest, real target, real 
  * density), the slope across is gaussian. Unit vector with z > 0. */
 GRADUS_FN vec3 microfacet_sample_beckmann(vec3 wi, real alpha_u, real alpha_v, real u1, real u2) {
     const real tiny = R(1e-15);
-    const real x = alpha_u * wi.x, y = alpha_v * wi.y, z = wi.z;
-    const real a = r_sqrt(x * x + y * y);
-    const real cosine_phi = a > tiny ? x / r_max(a, tiny) : R(1);
-    const real sine_phi = a > tiny ? y / r_max(a, tiny) : R(0);
-    const real highest = r_min(z / r_max(a, tiny), R(4));
-    const gauss_cdf end = approx_gauss_cdf(highest);
-    const real target = u1 * (z * end.cdf + R(0.28209479177387814347) * a * end.gauss);
+    /* As in microfacet_projected_area, which whoever evaluates the sample calls too: the compiler joins them. */
+    const real x = alpha_u * wi.x, z = wi.z;
+    const real y = alpha_v * r_after(wi.y, x);
+    const real a_squared = x * x + y * y;
+    const real a = r_sqrt(a_squared);
+    const real inverse_a = R(1) / r_max(a, tiny);
+    const real cosine_phi = a > tiny ? x * inverse_a : R(1);
+    const real sine_phi = a > tiny ? y * inverse_a : R(0);
+    const real highest = r_min(z * inverse_a, R(4));
     /* Start: at normal incidence the area is linear in cdf(x), at grazing it is nearly a parabola in it. */
+    const gauss_cdf end = approx_gauss_tail_rough(highest);
     const real rest = R(1) - u1;
     const real blend = a / (a + z);
-    const real start = end.cdf * (R(1) - (blend * r_sqrt(rest) + (R(1) - blend) * rest));
-    real along = r_min(approx_inverse_erf_unit(start), highest);
-    along = microfacet_beckmann_step(along, highest, target, z, a);
-    along = microfacet_beckmann_step(along, highest, target, z, a);
+    const real missing = blend * r_sqrt(rest) + (R(1) - blend) * rest;
+    const real below = (R(1) - end.cdf) * (R(1) - missing), above = end.cdf + (R(1) - end.cdf) * missing;
+    real along = r_min(approx_inverse_erf_rough(below, above), highest);
+    /* The first step knows the area roughly, and its end as roughly. It goes halfway to the end at most: there is no
+     * way back from a double root. */
+    gauss_cdf pair = approx_gauss_tail_rough(along);
+    pair.cdf = along < R(0) ? pair.cdf : R(1) - pair.cdf;
+    const real rough_area = z * (R(1) - end.cdf) + R(0.28209479177387814347) * a * end.gauss;
+    along = microfacet_beckmann_step(along, pair, R(0.5) * (along + highest), u1 * rough_area, z, a);
+    const real target = u1 * microfacet_projected_area(microfacet_beckmann, wi, alpha_u, alpha_v);
+    along = microfacet_beckmann_step(along, approx_gauss_cdf(along), highest, target, z, a);
 #ifdef GRADUS_DOUBLE
-    along = microfacet_beckmann_step(along, highest, target, z, a);
-    along = microfacet_beckmann_step(along, highest, target, z, a);
+    along = microfacet_beckmann_step(along, approx_gauss_cdf(along), highest, target, z, a);
+    along = microfacet_beckmann_step(along, approx_gauss_cdf(along), highest, target, z, a);
 #endif
     const real across = approx_inverse_erf_unit(u2);
     const real slope_u = alpha_u * (along * cosine_phi - across * sine_phi);

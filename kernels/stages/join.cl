@@ -61,16 +61,17 @@ STAGE join(uint count, uint unit, uint first, uint capacity, uint slots, uint ro
 #else
         const vec3 wi = frame_to_local(axes, AT_V3(offset, wi, at));
 #if SAMPLES_LIGHTS
-        const rgb f_light = PASTE(BSDF, _eval)(m, wi, to_light);
-        const rgb gain = rgb_select(is_there, rgb_mul(rgb_mul(so_far, arriving), f_light), rgb_gray(R(0)));
-        const real gain_bsdf = is_there ? ratio * PASTE(BSDF, _pdf)(m, wi, to_light) * inverse_light_pdf : R(0);
+        const bsdf_value f_light = PASTE(BSDF, _evaluate)(m, wi, to_light, transport_radiance);
+        const rgb gain = rgb_select(is_there, rgb_mul(rgb_mul(so_far, arriving), f_light.value), rgb_gray(R(0)));
+        const real gain_bsdf = is_there ? ratio * f_light.pdf * inverse_light_pdf : R(0);
         SET_RGB(evaluation, value, at, gain);
         AT(evaluation, pdf, at) = gain_bsdf;
         AT(shift, light_density, at) = ratio;
         asks |= !is_own & (rgb_max(gain) > R(0));
 #endif
-        const rgb weight = rgb_scale(PASTE(BSDF, _eval)(m, wi, wo), inverse_pdf);
-        const real change = PASTE(BSDF, _pdf)(m, wi, wo) * inverse_pdf;
+        const bsdf_value f = PASTE(BSDF, _evaluate)(m, wi, wo, transport_radiance);
+        const rgb weight = rgb_scale(f.value, inverse_pdf);
+        const real change = f.pdf * inverse_pdf;
 #endif
         const rgb merged = rgb_select(is_there, rgb_mul(so_far, weight), rgb_gray(R(0)));
         const real merged_ratio = is_there ? ratio * change : ratio;

@@ -74,8 +74,9 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
         light_sampling(lights, light_kinds, light_alias, light_count, scene_diameter, unit, point.position, l);
     const light_choice light = chosen.choice;
     const vec3 to_light = frame_to_local(axes, light.direction);
-    const rgb reflected = PASTE(BSDF, _eval)(m, wi, to_light);
-    const real pdf_bsdf = PASTE(BSDF, _pdf)(m, wi, to_light);
+    const bsdf_value f = PASTE(BSDF, _evaluate)(m, wi, to_light, transport_radiance);
+    const rgb reflected = f.value;
+    const real pdf_bsdf = f.pdf;
     const rgb unweighted = rgb_mul(rgb_mul(throughput, light.value), reflected);
     const real weight = mis_weight_light(light.pdf * chosen.probability, pdf_bsdf) / chosen.probability;
     rgb gain = rgb_scale(unweighted, weight);
@@ -115,7 +116,7 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
 #endif
 
     const random4 u = random_draw(key_0, key_1, random_dimension_scatter(depth));
-    const bsdf_sample s = PASTE(BSDF, _sample)(m, wi, u.a, u.b, u.c);
+    const bsdf_sample s = PASTE(BSDF, _sample)(m, wi, u.a, u.b, u.c, transport_radiance);
     const rgb scattered = rgb_mul(throughput, s.weight);
     real eta = R(1);
 #if TRAIT_REFRACTION
@@ -144,7 +145,7 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
     AT_UINT(path, key_1, row) = key_1;
     AT_UINT(path, depth, row) = depth + 1u;
     SET_RGB(path, throughput, row, rgb_scale(scattered, inverse_survival));
-    AT(path, pdf, row) = BSDF_IS_DIRAC ? R(0) : s.pdf;
+    AT(path, pdf, row) = s.is_specular ? R(0) : s.pdf;
     SET_V3(ray, origin, row, origin);
     SET_V3(ray, direction, row, next);
     AT_UINT(ray, primitive, row) = alive ? ray_pending : ray_none;

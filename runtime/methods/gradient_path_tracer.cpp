@@ -20,8 +20,8 @@ namespace {
 
 /// Whether offset paths may reconnect there.
 bool is_rough(const Bsdf &bsdf, double threshold) {
-    return bsdf.kind == BsdfKind::diffuse ||
-           (!bsdf_kind_is_dirac(bsdf_kind_name(bsdf)) && std::min(bsdf.alpha_u, bsdf.alpha_v) >= threshold);
+    const BsdfKindTraits &kind = bsdf_kind_traits(bsdf.kind);
+    return !kind.is_dirac && (!kind.has_roughness || std::min(bsdf.alpha_u, bsdf.alpha_v) >= threshold);
 }
 
 /// By material record, the kind with what `kind` in kernels/shared/tables.h says of it.

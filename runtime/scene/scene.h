@@ -3,6 +3,8 @@
 // for the device.
 #pragma once
 
+#include "kernels/shared/bsdf_list.h"
+
 #include <array>
 #include <cstdint>
 #include <string>
@@ -51,30 +53,28 @@ struct Shape {
     std::string name;           ///< its id in the file, or a description of where it came from
 };
 
-/// The names are those of GRADUS_BSDF_KINDS without the microfacet distribution.
-enum class BsdfKind { diffuse, conductor, dielectric, null, roughconductor, roughdielectric };
-enum class Microfacet { beckmann, ggx };
+/// GRADUS_BSDF_KINDS. A kind's place is its number in kernels.
+#define GRADUS_KIND_NAME(name, ...) name,
+enum class BsdfKind : std::uint32_t { GRADUS_BSDF_KINDS(GRADUS_KIND_NAME) };
+#undef GRADUS_KIND_NAME
 
-/// One side of a surface. Members that its kind does not name are ignored.
+/// One side of a surface. The members are those of GRADUS_MATERIAL_PARAMETERS; what its kind does not name is ignored.
+#define GRADUS_COLOR_MEMBER(with, name, value, text) Rgb name{value, value, value};
+#define GRADUS_NUMBER_MEMBER(with, name, value, text) float name = value;
 struct Bsdf {
     BsdfKind kind = BsdfKind::diffuse;
-    Microfacet distribution = Microfacet::beckmann;
-    Rgb reflectance{0.5f, 0.5f, 0.5f};
-    Rgb specular_reflectance{1, 1, 1};
-    Rgb specular_transmittance{1, 1, 1};
-    Rgb eta{0, 0, 0}; ///< conductors, relative to the outside; eta 0 with k 1 is a perfect mirror
-    Rgb k{1, 1, 1};
-    float ior = 1.5046f; ///< dielectrics: inside over outside
-    float alpha_u = 0.1f, alpha_v = 0.1f;
+    GRADUS_MATERIAL_PARAMETERS(GRADUS_COLOR_MEMBER, GRADUS_NUMBER_MEMBER, )
     bool operator==(const Bsdf &) const = default;
 };
+#undef GRADUS_COLOR_MEMBER
+#undef GRADUS_NUMBER_MEMBER
 
 /// A BSDF for the front side of a surface and one for its back. One-sided kinds (diffuse, conductors) absorb what
 /// arrives from behind unless two_sided; then `back` describes the back side as seen from there.
 struct Material {
     Bsdf front;
     Bsdf back;              ///< used only where two_sided
-    bool two_sided = false; ///< never true for dielectrics and null, which have both sides by nature
+    bool two_sided = false; ///< never true for kinds that transmit, which have both sides by nature
     std::string name;
 };
 

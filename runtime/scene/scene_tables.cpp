@@ -213,15 +213,12 @@ void add_other_lights(const Scene &scene, double radius, SceneTables &tables, Li
 void add_material_record(const Bsdf &bsdf, SceneTables &tables) {
     tables.materials.resize(tables.materials.size() + material_stride);
     float *record = &tables.materials[tables.materials.size() - material_stride];
-    const auto put_rgb = [&](int field, Rgb c) { put(record, field, {c.r, c.g, c.b}); };
-    put_rgb(material_reflectance_r, bsdf.reflectance);
-    put_rgb(material_specular_reflectance_r, bsdf.specular_reflectance);
-    put_rgb(material_specular_transmittance_r, bsdf.specular_transmittance);
-    put_rgb(material_eta_r, bsdf.eta);
-    put_rgb(material_k_r, bsdf.k);
-    record[material_ior] = bsdf.ior;
-    record[material_alpha_u] = bsdf.alpha_u;
-    record[material_alpha_v] = bsdf.alpha_v;
+#define GRADUS_PUT_COLOR(with, name, value, text)                                                                      \
+    put(record, material_##name##_r, {bsdf.name.r, bsdf.name.g, bsdf.name.b});
+#define GRADUS_PUT_NUMBER(with, name, value, text) record[material_##name] = bsdf.name;
+    GRADUS_MATERIAL_PARAMETERS(GRADUS_PUT_COLOR, GRADUS_PUT_NUMBER, )
+#undef GRADUS_PUT_COLOR
+#undef GRADUS_PUT_NUMBER
     tables.material_back.push_back(static_cast<std::uint32_t>(tables.material_back.size()));
 }
 

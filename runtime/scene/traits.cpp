@@ -1,9 +1,9 @@
 #include "runtime/scene/traits.h"
 
-#include "kernels/shared/material.h"
-
 #include <algorithm>
+#include <iterator>
 #include <set>
+#include <sstream>
 
 namespace gradus {
 
@@ -32,70 +32,60 @@ constexpr TraitText descriptions[] = {
     {"TRAIT_FILTER_GAUSSIAN", "Gaussian pixel filter"},
 };
 
-struct KindEntry {
-    const char *name;
-    bool is_dirac;
-};
+std::vector<std::string> words_of(const std::string &text) {
+    std::istringstream stream(text);
+    return {std::istream_iterator<std::string>(stream), {}};
+}
 
-#define GRADUS_KIND_ENTRY(name, is_dirac) {#name, is_dirac != 0},
-constexpr KindEntry kinds[] = {GRADUS_BSDF_KINDS(GRADUS_KIND_ENTRY)};
-#undef GRADUS_KIND_ENTRY
+BsdfKindTraits kind_from(const char *name, bool is_dirac, bool transmits, const char *parameters) {
+    BsdfKindTraits kind{name, is_dirac, transmits, false, false, words_of(parameters)};
+    const auto has = [&](const char *parameter) { return std::ranges::count(kind.parameters, parameter) > 0; };
+    kind.refracts = transmits && has("ior");
+    kind.has_roughness = has("alpha_u");
+    return kind;
+}
 
-bool refracts(const Bsdf &bsdf) { return bsdf.kind == BsdfKind::dielectric || bsdf.kind == BsdfKind::roughdielectric; }
+const std::vector<BsdfKindTraits> &kinds() {
+#define GRADUS_KIND_TRAITS(name, is_dirac, transmits, parameters) kind_from(#name, is_dirac, transmits, parameters),
+    static const std::vector<BsdfKindTraits> list = {GRADUS_BSDF_KINDS(GRADUS_KIND_TRAITS)};
+#undef GRADUS_KIND_TRAITS
+    return list;
+}
 
-bool is_anisotropic(const Bsdf &bsdf) {
-    return (bsdf.kind == BsdfKind::roughconductor || bsdf.kind == BsdfKind::roughdielectric) &&
-           bsdf.alpha_u != bsdf.alpha_v;
+std::size_t place_of(const std::string &name) {
+    return std::size_t(std::ranges::find(kinds(), name, &BsdfKindTraits::name) - kinds().begin());
 }
 
 } // namespace
 
-std::string bsdf_kind_name(const Bsdf &bsdf) {
-    const std::string distribution = bsdf.distribution == Microfacet::ggx ? "_ggx" : "_beckmann";
-    switch (bsdf.kind) {
-    case BsdfKind::diffuse:
-        return "diffuse";
-    case BsdfKind::conductor:
-        return "conductor";
-    case BsdfKind::dielectric:
-        return "dielectric";
-    case BsdfKind::null:
-        return "null";
-    case BsdfKind::roughconductor:
-        return "roughconductor" + distribution;
-    case BsdfKind::roughdielectric:
-        return "roughdielectric" + distribution;
-    }
-    return "";
-}
+const BsdfKindTraits &bsdf_kind_traits(BsdfKind kind) { return kinds().at(std::size_t(kind)); }
+
+std::string bsdf_kind_name(const Bsdf &bsdf) { return bsdf_kind_traits(bsdf.kind).name; }
 
 std::vector<std::string> all_bsdf_kinds() {
     std::vector<std::string> names;
-    for (const KindEntry &kind : kinds)
+    for (const BsdfKindTraits &kind : kinds())
         names.push_back(kind.name);
     return names;
 }
 
-std::uint32_t bsdf_kind_number(const Bsdf &bsdf) {
-    const std::string name = bsdf_kind_name(bsdf);
-    return static_cast<std::uint32_t>(
-        std::find_if(std::begin(kinds), std::end(kinds), [&](const KindEntry &kind) { return kind.name == name; }) -
-        std::begin(kinds));
-}
+BsdfKind bsdf_kind_named(const std::string &name) { return BsdfKind(&kinds().at(place_of(name)) - kinds().data()); }
+
+std::uint32_t bsdf_kind_number(const Bsdf &bsdf) { return std::uint32_t(bsdf.kind); }
 
 std::vector<std::string> bsdf_kinds(const Scene &scene) {
     std::set<std::string> found;
     for_each_bsdf(scene, [&](const Bsdf &bsdf) { found.insert(bsdf_kind_name(bsdf)); });
     std::vector<std::string> ordered;
-    for (const KindEntry &kind : kinds)
+    for (const BsdfKindTraits &kind : kinds())
         if (found.contains(kind.name))
             ordered.push_back(kind.name);
     return ordered;
 }
 
 bool bsdf_kind_is_dirac(const std::string &name) {
-    return std::any_of(std::begin(kinds), std::end(kinds),
-                       [&](const KindEntry &kind) { return kind.name == name && kind.is_dirac; });
+    const std::size_t place = place_of(name);
+    return place < kinds().size() && kinds()[place].is_dirac;
 }
 
 TraitMap scene_traits(const Scene &scene) {
@@ -117,9 +107,10 @@ TraitMap scene_traits(const Scene &scene) {
         }
     }
     for_each_bsdf(scene, [&](const Bsdf &bsdf) {
-        if (refracts(bsdf))
+        const BsdfKindTraits &kind = bsdf_kind_traits(bsdf.kind);
+        if (kind.refracts)
             traits["TRAIT_REFRACTION"] = 1;
-        if (is_anisotropic(bsdf))
+        if (kind.has_roughness && bsdf.alpha_u != bsdf.alpha_v)
             traits["TRAIT_ANISOTROPIC"] = 1;
     });
     for (const Emitter &emitter : scene.emitters) {

@@ -25,11 +25,26 @@ std::string trait_description(const std::string &name);
 /// Every feature on, as if the scene had it: what a renderer without specialised kernels would run.
 TraitMap with_all_traits(TraitMap traits);
 
+/// What GRADUS_BSDF_KINDS says of a kind, and what follows from it.
+struct BsdfKindTraits {
+    std::string name;
+    bool is_dirac;                       ///< has Dirac lobes alone, which light sampling cannot meet
+    bool transmits;                      ///< has both sides by nature
+    bool refracts;                       ///< and changes the index
+    bool has_roughness;                  ///< alpha_u and alpha_v
+    std::vector<std::string> parameters; ///< members of Bsdf that it reads
+};
+
+const BsdfKindTraits &bsdf_kind_traits(BsdfKind kind);
+
 /// The BSDF of the kernels that a Bsdf of the scene uses: a name of GRADUS_BSDF_KINDS.
 std::string bsdf_kind_name(const Bsdf &bsdf);
 
 /// All of GRADUS_BSDF_KINDS by name; a kind's place is its number in kernels.
 std::vector<std::string> all_bsdf_kinds();
+
+/// The kind of that name, which must be one of these.
+BsdfKind bsdf_kind_named(const std::string &name);
 
 /// That place for the kind of one Bsdf.
 std::uint32_t bsdf_kind_number(const Bsdf &bsdf);

@@ -19,7 +19,7 @@ TEST(SceneSummary, CountsWhatTheSceneHolds) {
     plain.front.kind = BsdfKind::dielectric;
     both.two_sided = true;
     scene.materials = {plain, both, both};
-    both.back.kind = BsdfKind::roughconductor;
+    both.back.kind = BsdfKind::roughconductor_ggx;
     scene.materials.push_back(both);
     scene.emitters.resize(3);
     scene.emitters[1].kind = Emitter::Kind::point;
@@ -37,7 +37,7 @@ TEST(SceneSummary, CountsWhatTheSceneHolds) {
     EXPECT_THAT(summary.upper, ::testing::ElementsAre(12, 5, 2));
     using ::testing::Pair;
     EXPECT_THAT(summary.materials, ::testing::ElementsAre(Pair("dielectric", 1), Pair("twosided diffuse", 2),
-                                                          Pair("twosided diffuse/roughconductor", 1)));
+                                                          Pair("twosided diffuse/roughconductor_ggx", 1)));
     EXPECT_THAT(summary.emitters, ::testing::ElementsAre(Pair("area", 2), Pair("point", 1)));
 }
 

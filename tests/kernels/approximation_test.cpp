@@ -122,3 +122,55 @@ TEST(Approximation, InverseErrorFunctionIsTheInverse) {
     for (const real x : {R(-1), R(1)})
         EXPECT_TRUE(std::isfinite(lib::approx_inverse_erf(x)));
 }
+
+TEST(Approximation, GaussExcessIsTheIntegralOfTheTail) {
+    double worst = 0;
+    for (int i = 0; i <= 100'000; ++i) {
+        const real x = static_cast<real>(i * 1e-4);
+        const long double y = x;
+        const long double exact =
+            std::exp(-y * y) * 0.28209479177387814347L - 0.5L * y * std::erfc(y); // beyond 5 both are nothing
+        worst = std::max(worst, double(std::fabs(lib::approx_gauss_excess(x) - exact) / (y + exact)));
+    }
+    std::printf("  largest error against x and the integral: %.3g\n", worst);
+    // In float 4e-8 of the fit, and four roundings of 6e-8 where the polynomial is largest.
+    EXPECT_LE(worst, bound(3e-7, 1e-15));
+    EXPECT_LE(std::fabs(lib::approx_gauss_excess(R(1e15))), bound(2.2e-7, 1e-300));
+}
+
+TEST(Approximation, RoughFunctionsKeepToTheirBounds) {
+    double gauss = 0, tail = 0, inverse = 0, step = 0;
+    double before = 0;
+    for (int i = 0; i <= 80'000; ++i) {
+        const real x = static_cast<real>((i - 40'000) * 1e-4);
+        const lib::gauss_cdf pair = lib::approx_gauss_tail_rough(x);
+        const double exact = 0.5 * std::erfc(std::fabs(double(x)));
+        gauss = std::max(gauss, std::fabs(pair.gauss / std::exp(-double(x) * x) - 1));
+        tail = std::max(tail, std::fabs(pair.cdf / exact - 1));
+        // Smooth: the error of one place is nearly that of the next.
+        const double slip = pair.cdf / exact;
+        step = std::max(step, i == 0 ? 0.0 : std::fabs(slip - before));
+        before = slip;
+        const double u = 0.5 * std::erfc(-double(x));
+        const double allowed = std::fabs(double(x)) < 3.5 ? 0.01 : 0.1;
+        inverse =
+            std::max(inverse, std::fabs(lib::approx_inverse_erf_rough(real(u), real(1 - u)) - double(x)) / allowed);
+    }
+    std::printf("  gauss %.2g, tail %.2g, from place to place %.2g, inverse %.2g\n", gauss, tail, step, inverse);
+    EXPECT_LE(gauss, 4e-6);
+    EXPECT_LE(tail, 3e-3);
+    EXPECT_LE(step, 2e-5); // twice the error of gauss, and what the fit changes over 1e-4
+    EXPECT_LE(inverse, 1);
+}
+
+#ifndef GRADUS_DOUBLE
+TEST(Approximation, LogarithmWithoutADivisionHasAnAbsoluteError) {
+    double worst = 0;
+    for (int i = 0; i < 1'000'000; ++i) {
+        const float x = std::exp2(float(i) * 2e-5f - 18);
+        const double exact = std::log(double(x));
+        worst = std::max(worst, std::fabs(lib::approx_log_absolute(x) - exact) / std::max(1.0, std::fabs(exact)));
+    }
+    EXPECT_LE(worst, 1.6e-7); // 3.4e-8 of the fit, and two roundings
+}
+#endif

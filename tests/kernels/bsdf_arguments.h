@@ -23,16 +23,16 @@ inline Arguments draw_arguments(std::mt19937_64 &random, double smallest_alpha) 
     std::uniform_real_distribution<double> uniform;
     Arguments a;
     const auto factor = [&] { return rounded(0.1 + 0.9 * uniform(random)); };
-    for (int i = 0; i < 9; ++i)
-        a.material[i] = factor(); // three reflectances
-    for (int i = 9; i < 12; ++i)
-        a.material[i] = rounded(0.05 + 2 * uniform(random)); // eta
-    for (int i = 12; i < 15; ++i)
-        a.material[i] = rounded(0.5 + 4 * uniform(random)); // k
+    for (double &field : a.material) // reflectances, and whatever has no range of its own below
+        field = factor();
+    for (const Field eta : {Field::eta_r, Field::eta_g, Field::eta_b})
+        a[eta] = rounded(0.05 + 2 * uniform(random));
+    for (const Field k : {Field::k_r, Field::k_g, Field::k_b})
+        a[k] = rounded(0.5 + 4 * uniform(random));
     const double ior = 1.1 + 1.4 * uniform(random);
-    a.material[15] = rounded(uniform(random) < 0.5 ? ior : 1 / ior);
-    a.material[16] = rounded(std::pow(smallest_alpha, uniform(random)));
-    a.material[17] = rounded(std::pow(smallest_alpha, uniform(random)));
+    a[Field::ior] = rounded(uniform(random) < 0.5 ? ior : 1 / ior);
+    a[Field::alpha_u] = rounded(std::pow(smallest_alpha, uniform(random)));
+    a[Field::alpha_v] = rounded(std::pow(smallest_alpha, uniform(random)));
     a.wi = draw_direction(random);
     a.wo = draw_direction(random);
     a.u_lobe = std::ldexp(double(random() >> 40), -24);
@@ -46,7 +46,7 @@ inline Arguments draw_arguments(std::mt19937_64 &random, double smallest_alpha) 
 inline bool is_edge(const Arguments &a, bool is_dielectric) {
     if (std::min(std::fabs(a.wi[2]), std::fabs(a.wo[2])) < 0.01)
         return true;
-    const double below = a.wi[2] > 0 ? a.material[15] : 1 / a.material[15];
+    const double below = a.wi[2] > 0 ? a[Field::ior] : 1 / a[Field::ior];
     const double eta = is_dielectric && a.wi[2] * a.wo[2] < 0 ? below : 1;
     std::array<double, 3> h;
     for (int axis = 0; axis < 3; ++axis)

@@ -14,14 +14,24 @@ namespace gradus::testing {
 struct Kind {
     const char *name;
     bool is_delta;
-    lib::rgb (*eval)(lib::material, lib::vec3, lib::vec3);
-    real (*pdf)(lib::material, lib::vec3, lib::vec3);
-    lib::bsdf_sample (*sample)(lib::material, lib::vec3, real, real, real);
+    lib::bsdf_value (*evaluate_in)(lib::material, lib::vec3, lib::vec3, int mode);
+    lib::bsdf_sample (*sample_in)(lib::material, lib::vec3, real, real, real, int mode);
     lib::rgb (*albedo)(lib::material);
+
+    lib::bsdf_value evaluate(const lib::material &m, lib::vec3 wi, lib::vec3 wo,
+                             int mode = lib::transport_radiance) const {
+        return evaluate_in(m, wi, wo, mode);
+    }
+    lib::rgb eval(const lib::material &m, lib::vec3 wi, lib::vec3 wo) const { return evaluate(m, wi, wo).value; }
+    real pdf(const lib::material &m, lib::vec3 wi, lib::vec3 wo) const { return evaluate(m, wi, wo).pdf; }
+    lib::bsdf_sample sample(const lib::material &m, lib::vec3 wi, real u_lobe, real u1, real u2,
+                            int mode = lib::transport_radiance) const {
+        return sample_in(m, wi, u_lobe, u1, u2, mode);
+    }
 };
 
-#define GRADUS_TEST_KIND(name, is_delta)                                                                               \
-    Kind{#name, (is_delta) != 0, lib::name##_eval, lib::name##_pdf, lib::name##_sample, lib::name##_albedo},
+#define GRADUS_TEST_KIND(name, is_delta, ...)                                                                          \
+    Kind{#name, (is_delta) != 0, lib::name##_evaluate, lib::name##_sample, lib::name##_albedo},
 inline const std::vector<Kind> kinds = {GRADUS_BSDF_KINDS(GRADUS_TEST_KIND)};
 #undef GRADUS_TEST_KIND
 

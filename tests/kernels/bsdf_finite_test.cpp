@@ -66,9 +66,10 @@ TEST(BsdfFinite, EveryFunctionOnAnAdversarialGrid) {
                     const double largest = 1.001 * std::max(1.0, std::pow(std::max(ior, 1 / ior), 2));
                     for (const lib::vec3 &wi : directions) {
                         for (const lib::vec3 &wo : directions) {
-                            ASSERT_TRUE(is_fine(kind.eval(m, wi, wo), any)) << describe(kind, m, wi, wo);
-                            const real pdf = kind.pdf(m, wi, wo);
-                            ASSERT_TRUE(pdf >= 0 && pdf <= any) << describe(kind, m, wi, wo);
+                            const lib::bsdf_value f = kind.evaluate(m, wi, wo);
+                            ASSERT_TRUE(is_fine(f.value, any)) << describe(kind, m, wi, wo);
+                            ASSERT_TRUE(f.pdf >= 0 && f.pdf <= any) << describe(kind, m, wi, wo);
+                            ASSERT_TRUE(f.pdf_reverse >= 0 && f.pdf_reverse <= any) << describe(kind, m, wi, wo);
                         }
                         for (const real u_lobe : {R(0), last})
                             for (const real u1 : {R(0), R(0.5), last})
@@ -77,6 +78,8 @@ TEST(BsdfFinite, EveryFunctionOnAnAdversarialGrid) {
                                     ASSERT_TRUE(is_fine(s.weight, largest)) << describe(kind, m, wi, s.wo);
                                     worst = std::max(worst, double(lib::rgb_max(s.weight)) / largest);
                                     ASSERT_TRUE(s.pdf >= 0 && s.pdf <= any) << describe(kind, m, wi, s.wo);
+                                    ASSERT_TRUE(s.pdf_reverse >= 0 && s.pdf_reverse <= any)
+                                        << describe(kind, m, wi, s.wo);
                                     ASSERT_NEAR(lib::v3_length_squared(s.wo), 1, 1e-5) << describe(kind, m, wi, s.wo);
                                     ASSERT_TRUE(s.eta > 0 && s.eta < 3);
                                 }

@@ -1,20 +1,31 @@
 // The functions of kernels/lib in one precision, called with doubles: lets one program hold both builds.
 #pragma once
 
+#include "kernels/shared/bsdf_list.h"
+
 #include <array>
+#include <cstddef>
 #include <span>
 
 namespace gradus::testing {
 
+/// The fields of GRADUS_MATERIAL_FIELDS.
+#define GRADUS_FIELD_NAME(name) name,
+enum class Field { GRADUS_MATERIAL_FIELDS(GRADUS_FIELD_NAME) count };
+#undef GRADUS_FIELD_NAME
+constexpr auto material_fields = std::size_t(Field::count);
+
 struct Arguments {
-    std::array<double, 18> material; ///< the fields of GRADUS_MATERIAL_FIELDS in their order
-    std::array<double, 3> wi, wo;    ///< unit vectors
+    std::array<double, material_fields> material; ///< in their order
+    double &operator[](Field field) { return material[std::size_t(field)]; }
+    double operator[](Field field) const { return material[std::size_t(field)]; }
+    std::array<double, 3> wi, wo; ///< unit vectors
     double u_lobe, u1, u2;
 };
 
 struct Results {
     std::array<double, 3> eval;
-    double pdf;
+    double pdf, pdf_reverse;
     std::array<double, 3> wo, weight; ///< of the sample
     double sample_pdf, eta;
 };

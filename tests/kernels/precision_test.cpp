@@ -42,7 +42,7 @@ TEST(Precision, FloatEvaluationMatchesDouble) {
         if (in_float[kind].is_delta)
             continue;
         std::mt19937_64 random(17);
-        ErrorStatistics eval, pdf, weight;
+        ErrorStatistics eval, pdf, reverse, weight;
         for (int i = 0; i < 200'000; ++i) {
             Arguments a = draw_arguments(random, 0.01);
             // Two of three pairs are where the BSDF samples them; the third is anywhere.
@@ -56,6 +56,8 @@ TEST(Precision, FloatEvaluationMatchesDouble) {
                 continue;
             if (exact.pdf > 1e-6)
                 pdf.add(std::fabs(approximate.pdf / exact.pdf - 1));
+            if (exact.pdf_reverse > 1e-6)
+                reverse.add(std::fabs(approximate.pdf_reverse / exact.pdf_reverse - 1));
             if (exact.eval[1] > 1e-6)
                 eval.add(std::fabs(approximate.eval[1] / exact.eval[1] - 1));
         }
@@ -65,6 +67,8 @@ TEST(Precision, FloatEvaluationMatchesDouble) {
         EXPECT_GT(eval.count(), 30'000u) << in_float[kind].name;
         EXPECT_LE(eval.quantile(0.999), 1e-4) << in_float[kind].name;
         EXPECT_LE(pdf.quantile(0.999), 1e-4) << in_float[kind].name;
+        EXPECT_LE(reverse.quantile(0.999), 1e-4) << in_float[kind].name;
+        EXPECT_LE(reverse.quantile(1), 3e-4) << in_float[kind].name;
         EXPECT_LE(eval.quantile(1), 3e-4) << in_float[kind].name;
         EXPECT_LE(pdf.quantile(1), 3e-4) << in_float[kind].name;
         EXPECT_LE(weight.quantile(0.999), 1e-5) << in_float[kind].name;

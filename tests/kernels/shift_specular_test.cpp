@@ -25,8 +25,10 @@ TEST(ShiftSpecular, IsWhatTheDielectricSamples) {
         const lib::material glass = white_material(0, 0, ior_base), other = white_material(0, 0, ior_offset);
         const bool is_reflection = i % 4 == 0;
         // u_lobe 0 reflects, 1 refracts where anything is transmitted
-        const lib::bsdf_sample base = lib::dielectric_sample(glass, wi, is_reflection ? 0 : 1, 0, 0);
-        const lib::bsdf_sample offset = lib::dielectric_sample(other, wi_offset, is_reflection ? 0 : 1, 0, 0);
+        const lib::bsdf_sample base =
+            lib::dielectric_sample(glass, wi, is_reflection ? 0 : 1, 0, 0, lib::transport_radiance);
+        const lib::bsdf_sample offset =
+            lib::dielectric_sample(other, wi_offset, is_reflection ? 0 : 1, 0, 0, lib::transport_radiance);
         if (!(base.pdf > 0))
             continue; // the base is totally reflected
         const lib::shifted_direction result = lib::shift_specular(wi, base.wo, wi_offset, real(ior_offset));

@@ -40,10 +40,9 @@ RenderOptions with(RenderOptions::Strategy strategy) {
     return options;
 }
 
-Bsdf rough(BsdfKind kind, Microfacet distribution, double alpha_u, double alpha_v) {
+Bsdf rough(BsdfKind kind, double alpha_u, double alpha_v) {
     Bsdf bsdf;
     bsdf.kind = kind;
-    bsdf.distribution = distribution;
     bsdf.alpha_u = float(alpha_u);
     bsdf.alpha_v = float(alpha_v);
     return bsdf;
@@ -119,8 +118,7 @@ TEST(Furnace, AConvexDiffuseObjectShowsItsAlbedo) {
 }
 
 TEST(Furnace, TheBackOfAOneSidedMaterialIsBlack) {
-    const Bsdf kinds[] = {diffuse(1), mirror(), rough_metal(0.3),
-                          rough(BsdfKind::roughconductor, Microfacet::beckmann, 0.3, 0.3)};
+    const Bsdf kinds[] = {diffuse(1), mirror(), rough_metal(0.3), rough(BsdfKind::roughconductor_beckmann, 0.3, 0.3)};
     for (const Bsdf &bsdf : kinds)
         for (const ConvexShape shape : both_shapes) {
             SCOPED_TRACE(fmt::format("{} {}", bsdf_kind_name(bsdf), name_of(shape)));
@@ -193,27 +191,26 @@ TEST_P(FurnaceWalk, IsReproduced) {
 std::vector<WalkCase> walk_cases() {
     std::vector<WalkCase> cases;
     const double roughness[][2] = {{0.02, 0.02}, {0.2, 0.2}, {0.6, 0.6}, {0.1, 0.5}};
-    for (const BsdfKind kind : {BsdfKind::roughconductor, BsdfKind::roughdielectric})
-        for (const Microfacet distribution : {Microfacet::ggx, Microfacet::beckmann})
-            for (const auto &alpha : roughness) {
-                const Bsdf bsdf = rough(kind, distribution, alpha[0], alpha[1]);
-                cases.push_back(
-                    {fmt::format("{}_{:.0f}_{:.0f}", bsdf_kind_name(bsdf), 100 * alpha[0], 100 * alpha[1]), bsdf});
-            }
+    for (const BsdfKind kind : {BsdfKind::roughconductor_ggx, BsdfKind::roughconductor_beckmann,
+                                BsdfKind::roughdielectric_ggx, BsdfKind::roughdielectric_beckmann})
+        for (const auto &alpha : roughness) {
+            const Bsdf bsdf = rough(kind, alpha[0], alpha[1]);
+            cases.push_back(
+                {fmt::format("{}_{:.0f}_{:.0f}", bsdf_kind_name(bsdf), 100 * alpha[0], 100 * alpha[1]), bsdf});
+        }
     Bsdf copper = mirror();
     copper.eta = {0.271f, 0.677f, 1.317f};
     copper.k = {3.61f, 2.625f, 2.292f};
     copper.specular_reflectance = {0.9f, 0.8f, 0.7f};
     cases.push_back({"copper", copper});
-    copper.kind = BsdfKind::roughconductor;
+    copper.kind = BsdfKind::roughconductor_beckmann;
     copper.alpha_u = copper.alpha_v = 0.3f;
     cases.push_back({"rough_copper", copper});
     Bsdf tinted = glass(1.33);
     tinted.specular_reflectance = {0.5f, 0.75f, 1};
     tinted.specular_transmittance = {0.9f, 0.6f, 0.3f};
     cases.push_back({"tinted_glass", tinted});
-    tinted.kind = BsdfKind::roughdielectric;
-    tinted.distribution = Microfacet::ggx;
+    tinted.kind = BsdfKind::roughdielectric_ggx;
     tinted.alpha_u = tinted.alpha_v = 0.3f;
     cases.push_back({"tinted_rough_glass", tinted});
     tinted.ior = 0.75f;

@@ -17,10 +17,10 @@ namespace {
 
 namespace lib = lib_double;
 
-using Sample = lib::bsdf_sample (*)(lib::material, lib::vec3, double, double, double);
+using Sample = lib::bsdf_sample (*)(lib::material, lib::vec3, double, double, double, int);
 
 Sample sampler_named(const std::string &name) {
-#define GRADUS_NAMED(kind, is_dirac)                                                                                   \
+#define GRADUS_NAMED(kind, ...)                                                                                        \
     if (name == #kind)                                                                                                 \
         return lib::kind##_sample;
     GRADUS_BSDF_KINDS(GRADUS_NAMED)
@@ -30,17 +30,11 @@ Sample sampler_named(const std::string &name) {
 
 lib::material material_from(const Bsdf &b) {
     lib::material m{};
-    m.reflectance_r = b.reflectance.r, m.reflectance_g = b.reflectance.g, m.reflectance_b = b.reflectance.b;
-    m.specular_reflectance_r = b.specular_reflectance.r;
-    m.specular_reflectance_g = b.specular_reflectance.g;
-    m.specular_reflectance_b = b.specular_reflectance.b;
-    m.specular_transmittance_r = b.specular_transmittance.r;
-    m.specular_transmittance_g = b.specular_transmittance.g;
-    m.specular_transmittance_b = b.specular_transmittance.b;
-    m.eta_r = b.eta.r, m.eta_g = b.eta.g, m.eta_b = b.eta.b;
-    m.k_r = b.k.r, m.k_g = b.k.g, m.k_b = b.k.b;
-    m.ior = b.ior;
-    m.alpha_u = b.alpha_u, m.alpha_v = b.alpha_v;
+#define GRADUS_COLOR(with, name, value, text) m.name##_r = b.name.r, m.name##_g = b.name.g, m.name##_b = b.name.b;
+#define GRADUS_NUMBER(with, name, value, text) m.name = b.name;
+    GRADUS_MATERIAL_PARAMETERS(GRADUS_COLOR, GRADUS_NUMBER, )
+#undef GRADUS_COLOR
+#undef GRADUS_NUMBER
     return m;
 }
 
@@ -105,7 +99,7 @@ WalkMean walk(ConvexShape shape, const Bsdf &bsdf, const View &view, int walks) 
             const Double3 s = point.tangent, n = point.normal, t = cross(n, s);
             const lib::vec3 wi = lib::v3(-dot(direction, s), -dot(direction, t), -dot(direction, n));
             const double u_lobe = uniform(engine), u1 = uniform(engine), u2 = uniform(engine);
-            const lib::bsdf_sample drawn = sample(material, wi, u_lobe, u1, u2);
+            const lib::bsdf_sample drawn = sample(material, wi, u_lobe, u1, u2, lib::transport_radiance);
             throughput[0] *= drawn.weight.r, throughput[1] *= drawn.weight.g, throughput[2] *= drawn.weight.b;
             if (drawn.pdf <= 0 || throughput[0] + throughput[1] + throughput[2] <= 0) {
                 throughput = {};

@@ -8,6 +8,7 @@
 #include <cmath>
 
 // After GoogleTest, which has template parameters of the names of its macros.
+#include "kernels/shared/material.h"
 #include "kernels/shared/scene_records.h"
 
 namespace gradus::testing {
@@ -125,9 +126,9 @@ TEST(Primitives, BringTheirOptionalRecordsOnlyWhereATraitAsks) {
     SceneTables plain = tables_of(maker.scene);
     EXPECT_TRUE(plain.triangle_normals.empty());
     EXPECT_TRUE(plain.triangle_tangents.empty());
-    EXPECT_TRUE(plain.spheres.empty());
+    EXPECT_EQ(plain.spheres.size(), std::size_t(sphere_stride)) << "one that no primitive is";
 
-    maker.scene.materials[material].front.kind = BsdfKind::roughconductor;
+    maker.scene.materials[material].front.kind = BsdfKind::roughconductor_beckmann;
     maker.scene.materials[material].front.alpha_v = 0.5f;
     maker.scene.meshes[0].normals.assign(maker.scene.meshes[0].positions.size(), {0, 1, 0});
     const SceneTables full = tables_of(maker.scene);
@@ -137,11 +138,30 @@ TEST(Primitives, BringTheirOptionalRecordsOnlyWhereATraitAsks) {
     EXPECT_GT(table_bytes(full), table_bytes(plain));
 }
 
+TEST(Materials, LieAsTheirListSays) {
+    SceneMaker maker(4, 1);
+    Bsdf bsdf;
+    float next = 0;
+#define GRADUS_SET_COLOR(with, name, value, text) bsdf.name = {++next, ++next, ++next};
+#define GRADUS_SET_NUMBER(with, name, value, text) bsdf.name = ++next;
+    GRADUS_MATERIAL_PARAMETERS(GRADUS_SET_COLOR, GRADUS_SET_NUMBER, )
+#undef GRADUS_SET_COLOR
+#undef GRADUS_SET_NUMBER
+    maker.cube(maker.material(two_sided(diffuse(0.25), bsdf)));
+    const SceneTables tables = tables_of(maker.scene);
+    ASSERT_EQ(tables.materials.size(), std::size_t(2 * material_stride));
+    ASSERT_EQ(next, float(material_stride));
+    for (int field = 0; field < material_stride; ++field)
+        EXPECT_EQ(tables.materials[std::size_t(material_stride + field)], float(field + 1)) << field;
+    EXPECT_EQ(tables.materials[material_reflectance_g], 0.25f);
+    EXPECT_EQ(tables.material_back, (std::vector<std::uint32_t>{1, 1}));
+}
+
 // dp/du of a triangle whose texture coordinates are stretched, turned and mirrored.
 TEST(Primitives, HaveTangentsAlongU) {
     SceneMaker maker(4, 1);
     Bsdf brushed;
-    brushed.kind = BsdfKind::roughconductor;
+    brushed.kind = BsdfKind::roughconductor_beckmann;
     brushed.alpha_v = 0.5f;
     maker.parallelogram({0, 0, 0}, {2, 0, 0}, {0, 3, 0}, maker.material(brushed));
     Mesh &mesh = maker.scene.meshes[0];

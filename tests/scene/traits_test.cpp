@@ -53,20 +53,20 @@ TEST(Traits, AreThoseOfTheMaterials) {
                 UnorderedElementsAre("TRAIT_TRIANGLES", "TRAIT_TWO_SIDED"));
     EXPECT_THAT(traits_of(triangles(two_sided(diffuse(0.5), diffuse(0.4))).scene),
                 UnorderedElementsAre("TRAIT_TRIANGLES", "TRAIT_TWO_SIDED", "TRAIT_TWO_FACED"));
-    EXPECT_THAT(traits_of(triangles(material_of(rough(BsdfKind::roughconductor, 0.1f, 0.1f))).scene),
+    EXPECT_THAT(traits_of(triangles(material_of(rough(BsdfKind::roughconductor_ggx, 0.1f, 0.1f))).scene),
                 UnorderedElementsAre("TRAIT_TRIANGLES"));
-    EXPECT_THAT(traits_of(triangles(material_of(rough(BsdfKind::roughconductor, 0.1f, 0.2f))).scene),
+    EXPECT_THAT(traits_of(triangles(material_of(rough(BsdfKind::roughconductor_ggx, 0.1f, 0.2f))).scene),
                 UnorderedElementsAre("TRAIT_TRIANGLES", "TRAIT_ANISOTROPIC"));
-    EXPECT_THAT(traits_of(triangles(material_of(rough(BsdfKind::roughdielectric, 0.1f, 0.2f))).scene),
+    EXPECT_THAT(traits_of(triangles(material_of(rough(BsdfKind::roughdielectric_ggx, 0.1f, 0.2f))).scene),
                 UnorderedElementsAre("TRAIT_TRIANGLES", "TRAIT_ANISOTROPIC", "TRAIT_REFRACTION"));
     EXPECT_THAT(traits_of(triangles(material_of(rough(BsdfKind::dielectric, 0.1f, 0.2f))).scene),
                 UnorderedElementsAre("TRAIT_TRIANGLES", "TRAIT_REFRACTION"))
         << "a smooth material has no roughness";
     // The back counts where it can be seen, and only there.
-    EXPECT_THAT(traits_of(triangles(two_sided(diffuse(0.5), rough(BsdfKind::roughconductor, 0.1f, 0.2f))).scene),
+    EXPECT_THAT(traits_of(triangles(two_sided(diffuse(0.5), rough(BsdfKind::roughconductor_ggx, 0.1f, 0.2f))).scene),
                 UnorderedElementsAre("TRAIT_TRIANGLES", "TRAIT_TWO_SIDED", "TRAIT_TWO_FACED", "TRAIT_ANISOTROPIC"));
     Material one_sided = material_of(diffuse(0.5));
-    one_sided.back = rough(BsdfKind::roughconductor, 0.1f, 0.2f);
+    one_sided.back = rough(BsdfKind::roughconductor_ggx, 0.1f, 0.2f);
     EXPECT_THAT(traits_of(triangles(one_sided).scene), ElementsAre("TRAIT_TRIANGLES"));
 }
 
@@ -120,8 +120,7 @@ TEST(Traits, HaveDescriptions) {
 
 TEST(BsdfKinds, AreThoseOfTheShapesInOneOrder) {
     SceneMaker maker(4, 1);
-    Bsdf glass = rough(BsdfKind::roughdielectric, 0.1f, 0.1f);
-    glass.distribution = Microfacet::ggx;
+    const Bsdf glass = rough(BsdfKind::roughdielectric_ggx, 0.1f, 0.1f);
     maker.cube(maker.material(glass));
     maker.cube(maker.material(two_sided(diffuse(0.5), rough(BsdfKind::conductor, 0.1f, 0.1f))));
     maker.material(rough(BsdfKind::null, 0.1f, 0.1f)); // on no shape
@@ -129,6 +128,27 @@ TEST(BsdfKinds, AreThoseOfTheShapesInOneOrder) {
     EXPECT_TRUE(bsdf_kind_is_dirac("conductor"));
     EXPECT_TRUE(bsdf_kind_is_dirac("null"));
     EXPECT_FALSE(bsdf_kind_is_dirac("roughdielectric_ggx"));
+}
+
+TEST(BsdfKinds, FollowFromTheirList) {
+    // Each parameter that a kind names is a member of Bsdf, and each member is named by some kind.
+    std::set<std::string> members, named;
+#define GRADUS_MEMBER_NAME(with, name, value, text) members.insert(#name);
+    GRADUS_MATERIAL_PARAMETERS(GRADUS_MEMBER_NAME, GRADUS_MEMBER_NAME, )
+#undef GRADUS_MEMBER_NAME
+    for (const std::string &name : all_bsdf_kinds()) {
+        const BsdfKind kind = bsdf_kind_named(name);
+        const BsdfKindTraits &traits = bsdf_kind_traits(kind);
+        EXPECT_EQ(traits.name, name);
+        named.insert(traits.parameters.begin(), traits.parameters.end());
+        EXPECT_EQ(traits.refracts, name.find("dielectric") != std::string::npos) << name;
+        EXPECT_EQ(traits.has_roughness, name.starts_with("rough")) << name;
+    }
+    EXPECT_EQ(members, named);
+    EXPECT_TRUE(bsdf_kind_traits(BsdfKind::null).transmits);
+    EXPECT_FALSE(bsdf_kind_traits(BsdfKind::null).refracts);
+    EXPECT_FALSE(bsdf_kind_traits(BsdfKind::conductor).transmits);
+    EXPECT_THROW(bsdf_kind_named("plaster"), std::out_of_range);
 }
 
 } // namespace

@@ -30,8 +30,7 @@ inline Bsdf glass(double ior) {
 /// GGX, as rough along both axes.
 inline Bsdf rough_metal(double roughness) {
     Bsdf bsdf;
-    bsdf.kind = BsdfKind::roughconductor;
-    bsdf.distribution = Microfacet::ggx;
+    bsdf.kind = BsdfKind::roughconductor_ggx;
     bsdf.alpha_u = bsdf.alpha_v = float(roughness);
     return bsdf;
 }
@@ -39,7 +38,7 @@ inline Bsdf rough_metal(double roughness) {
 /// As rough_metal(); ior: inside over outside.
 inline Bsdf rough_glass(double roughness, double ior) {
     Bsdf bsdf = rough_metal(roughness);
-    bsdf.kind = BsdfKind::roughdielectric;
+    bsdf.kind = BsdfKind::roughdielectric_ggx;
     bsdf.ior = float(ior);
     return bsdf;
 }

@@ -1,6 +1,6 @@
 // <bsdf type="conductor">: a smooth metal.
 //   material, or eta and k; ext_eta, specular_reflectance
-#include "runtime/io/plugins/parameters.h"
+#include "runtime/io/plugins/parameters_of_bsdfs.h"
 #include "runtime/io/plugins/plugin.h"
 
 namespace gradus {

@@ -1,6 +1,6 @@
 // <bsdf type="dielectric">: a smooth boundary between two transparent media.
 //   int_ior, ext_ior, specular_reflectance, specular_transmittance
-#include "runtime/io/plugins/parameters.h"
+#include "runtime/io/plugins/parameters_of_bsdfs.h"
 #include "runtime/io/plugins/plugin.h"
 
 namespace gradus {

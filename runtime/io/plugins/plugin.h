@@ -1,4 +1,6 @@
-// What a plugin of each category turns its properties into.
+// What a plugin of each category turns its properties into. A plugin is a file <category>_<name>.cpp beside this one
+// that defines the function <category>_<name>; plugin_list.h, which names them all, is made of the files' names when
+// the project is configured.
 #pragma once
 
 #include "runtime/io/plugins/plugin_list.h"

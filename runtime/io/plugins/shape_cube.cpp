@@ -1,7 +1,7 @@
 // <shape type="cube">: [-1, 1]^3, its front outside.
 //   to_world, flip_normals
+#include "runtime/io/plugins/parameters_of_shapes.h"
 #include "runtime/io/plugins/plugin.h"
-#include "runtime/io/plugins/shape_parameters.h"
 
 namespace gradus {
 

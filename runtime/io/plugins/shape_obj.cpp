@@ -1,8 +1,8 @@
 // <shape type="obj">: a Wavefront OBJ file as one mesh.
 //   filename, to_world, face_normals, flip_normals, flip_tex_coords (true)
 #include "runtime/io/mesh_files.h"
+#include "runtime/io/plugins/parameters_of_shapes.h"
 #include "runtime/io/plugins/plugin.h"
-#include "runtime/io/plugins/shape_parameters.h"
 
 namespace gradus {
 

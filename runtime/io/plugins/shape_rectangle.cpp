@@ -1,7 +1,7 @@
 // <shape type="rectangle">: [-1, 1]^2 in the plane z = 0, its front towards +z.
 //   to_world, flip_normals
+#include "runtime/io/plugins/parameters_of_shapes.h"
 #include "runtime/io/plugins/plugin.h"
-#include "runtime/io/plugins/shape_parameters.h"
 
 namespace gradus {
 

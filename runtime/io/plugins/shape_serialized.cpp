@@ -1,8 +1,8 @@
 // <shape type="serialized">: one mesh of a file in Mitsuba's own format.
 //   filename, shape_index (0), to_world, face_normals, flip_normals
 #include "runtime/io/mesh_files.h"
+#include "runtime/io/plugins/parameters_of_shapes.h"
 #include "runtime/io/plugins/plugin.h"
-#include "runtime/io/plugins/shape_parameters.h"
 
 namespace gradus {
 

@@ -1,7 +1,7 @@
 // <shape type="sphere">, its front outside.
 //   center (0, 0, 0), radius (1), to_world (applied to both; no stretching), flip_normals
+#include "runtime/io/plugins/parameters_of_shapes.h"
 #include "runtime/io/plugins/plugin.h"
-#include "runtime/io/plugins/shape_parameters.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "runtime/io/plugins/parameters.h"
+#include "runtime/io/plugins/parameters_of_bsdfs.h"
 
 #include "runtime/io/refractive_index.h"
 #include "runtime/io/text.h"
@@ -7,13 +7,9 @@
 
 namespace gradus {
 
-void read_roughness(Properties &properties, Bsdf &bsdf) {
+Microfacet read_roughness(Properties &properties, Bsdf &bsdf) {
     const std::string name = lower_case(properties.string("distribution", "beckmann"));
-    if (name == "beckmann")
-        bsdf.distribution = Microfacet::beckmann;
-    else if (name == "ggx")
-        bsdf.distribution = Microfacet::ggx;
-    else
+    if (name != "beckmann" && name != "ggx")
         throw properties.error("distribution",
                                "unknown microfacet distribution \"" + name + "\" (known: beckmann, ggx)");
     // Below this, single precision cannot hold the distribution's peak.
@@ -22,6 +18,7 @@ void read_roughness(Properties &properties, Bsdf &bsdf) {
     bsdf.alpha_u = float(std::max(least_alpha, properties.number("alpha_u", alpha, 0)));
     bsdf.alpha_v = float(std::max(least_alpha, properties.number("alpha_v", alpha, 0)));
     properties.ignore({"sample_visible"}); // visible normals are always sampled
+    return name == "ggx" ? Microfacet::ggx : Microfacet::beckmann;
 }
 
 void read_dielectric(Properties &properties, Bsdf &bsdf) {

@@ -1,4 +1,4 @@
-#include "runtime/io/plugins/shape_parameters.h"
+#include "runtime/io/plugins/parameters_of_shapes.h"
 
 namespace gradus {
 
