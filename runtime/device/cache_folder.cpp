@@ -2,9 +2,11 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdint>
 #include <cstdlib>
 #include <string>
 
@@ -16,6 +18,8 @@ namespace {
 
 // A folder is named `locked` once its owner holds a lock on it, which the system takes back when that process ends.
 constexpr const char *locked = "gradus-running-", *not_yet_locked = "gradus-starting-";
+
+constexpr std::uint64_t least_free_bytes = std::uint64_t(256) << 20;
 
 int locked_folder(const fs::path &folder) {
     const int file = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -44,13 +48,32 @@ void delete_what_others_left(const fs::path &parent) {
     }
 }
 
+/// Whether code that is written there can be run.
+bool takes_code(const fs::path &folder) {
+    struct statvfs system = {};
+    return !folder.empty() && access(folder.c_str(), W_OK | X_OK) == 0 && statvfs(folder.c_str(), &system) == 0 &&
+           !(system.f_flag & ST_NOEXEC) && std::uint64_t(system.f_bavail) * system.f_frsize >= least_free_bytes;
+}
+
+/// In memory where that is possible: PoCL waits for the disk after each of its many small files, and a disk may take
+/// seconds to delete them.
+fs::path folder_for_code() {
+    std::error_code ignored;
+    const fs::path kept = program_cache_folder();
+    if (!kept.empty())
+        fs::create_directories(kept, ignored);
+    for (const fs::path &folder : {fs::path("/dev/shm"), kept, fs::temp_directory_path(ignored)})
+        if (takes_code(folder))
+            return folder;
+    return {};
+}
+
 class PrivateFolder {
   public:
     explicit PrivateFolder(const fs::path &parent) {
         std::error_code ignored;
         if (parent.empty())
             return;
-        fs::create_directories(parent, ignored);
         delete_what_others_left(parent);
         std::string name = (parent / (std::string(not_yet_locked) + "XXXXXX")).string();
         if (!mkdtemp(name.data()))
@@ -93,12 +116,8 @@ fs::path program_cache_folder() {
 }
 
 fs::path private_folder() {
-    static const PrivateFolder beside_the_programs(program_cache_folder());
-    if (!beside_the_programs.path().empty())
-        return beside_the_programs.path();
-    std::error_code none;
-    static const PrivateFolder elsewhere(fs::temp_directory_path(none));
-    return elsewhere.path();
+    static const PrivateFolder folder(folder_for_code());
+    return folder.path();
 }
 
 } // namespace gradus

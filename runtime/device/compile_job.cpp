@@ -2,12 +2,14 @@
 
 #include "runtime/device/byte_text.h"
 #include "runtime/device/framed_socket.h"
+#include "runtime/device/pocl_stub.h"
 #include "runtime/error.h"
 
 #include <sys/prctl.h>
 
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <optional>
 
 namespace gradus {
@@ -59,22 +61,25 @@ namespace {
 struct OpenDevice {
     cl::Device device;
     cl::Context context;
+    PoclStubs stubs;
 };
 
 OpenDevice open_device(const DeviceDescription &wanted) {
+    const char *pocl_folder = std::getenv("POCL_CACHE_DIR");
     for (const FoundDevice &found : find_devices())
         if (found.description.platform == wanted.platform && found.description.name == wanted.name &&
             found.description.driver == wanted.driver)
-            return {found.device, cl::Context(found.device)};
+            return {found.device, cl::Context(found.device), PoclStubs(pocl_folder ? pocl_folder : "", wanted)};
     throw cl::Error(CL_DEVICE_NOT_FOUND, "clGetDeviceIDs");
 }
 
 CompileAnswer compile(const CompileJob &job, std::optional<OpenDevice> &opened) {
     try {
         if (!opened)
-            opened = open_device(job.device);
-        return {CompileAnswer::Kind::compiled,
-                to_bytes(image_of(build_source(opened->context, opened->device, job.source))), 0};
+            opened.emplace(open_device(job.device));
+        const BuiltProgram program = build_source(opened->context, opened->device, job.source);
+        opened->stubs.put(program.kernels);
+        return {CompileAnswer::Kind::compiled, to_bytes(image_of(program)), 0};
     } catch (const Error &error) {
         return {CompileAnswer::Kind::does_not_compile, error.what(), 0};
     } catch (const cl::Error &error) {

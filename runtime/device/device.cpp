@@ -74,8 +74,8 @@ std::size_t choose(const std::vector<FoundDevice> &found, const std::string &sel
                 fmt::format("no OpenCL device matches \"{}\"; there are:{}", selector, list_of(found)));
 }
 
-/// Where programs come as code from other processes, PoCL only unpacks them. Two processes that do so in one folder can
-/// read each other's half-written files (pocl #430), so each has one of its own. A folder that the user chose stays.
+/// PoCL unpacks programs that it gets as code into its folder. Processes that share one can disturb each other (pocl
+/// #430), so each has one of its own, which need not be on a disk. A folder that the user chose stays.
 void give_pocl_a_private_folder() {
     if (std::getenv("POCL_CACHE_DIR") || program_cache_folder().empty() || compile_worker_program().empty())
         return;
