@@ -49,7 +49,10 @@ CompileAnswer compile_answer(std::string_view bytes) {
     if (reader.text() != compile_protocol)
         throw std::runtime_error("an answer of another version");
     CompileAnswer answer;
-    answer.kind = static_cast<CompileAnswer::Kind>(reader.number());
+    const std::uint64_t kind = reader.number();
+    if (kind > static_cast<std::uint64_t>(CompileAnswer::Kind::no_code))
+        throw std::runtime_error("an answer of no kind");
+    answer.kind = static_cast<CompileAnswer::Kind>(kind);
     answer.content = reader.text();
     answer.seconds = reader.seconds();
     return answer;

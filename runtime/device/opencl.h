@@ -37,8 +37,9 @@ struct Device::Implementation {
     unsigned compile_threads = 1; ///< programs that are compiled at a time
     std::uint64_t allocated_bytes = 0, peak_bytes = 0;
     BuiltPrograms built;
-    ProgramStore store;      ///< what other processes built
-    LaunchObserver observer; ///< empty: none
+    ProgramStore store;       ///< what other processes built
+    std::size_t compiled = 0; ///< programs that were not taken from there
+    LaunchObserver observer;  ///< empty: none
 };
 
 struct FoundDevice {

@@ -11,6 +11,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <utility>
@@ -159,9 +160,15 @@ class Builder {
     }
 
     bool take_answer(const Task &task, const CompileAnswer &answer) {
-        const ProgramImage image = program_image(answer.content);
+        ProgramImage image;
+        try {
+            image = program_image(answer.content);
+        } catch (const std::runtime_error &) {
+            return false;
+        }
         if (!take_image(task, image, answer.seconds))
             return false;
+        ++device_.compiled;
         device_.store.put(task.key, image);
         return true;
     }
@@ -177,6 +184,8 @@ class Builder {
                     if (keep)
                         store(tasks[i], program);
                     finish(tasks[i], std::move(program), seconds_since(start));
+                    const std::lock_guard lock(finishing_);
+                    ++device_.compiled;
                 } catch (...) {
                     const std::lock_guard lock(finishing_);
                     failure = std::current_exception();
