@@ -10,7 +10,8 @@
 
 namespace gradus {
 
-/// Called as each program is ready, one call at a time, with its number and the seconds that it took.
+/// Called as each program is ready, one call at a time, with its number and the seconds that it took to
+/// compile: 0 where it was not.
 using ProgramReady = std::function<void(std::size_t, double)>;
 
 /// One program for each source, equal ones shared. What is compiled goes into the device's store. Several threads may

@@ -134,8 +134,11 @@ void PathTracer::build_kernels(const std::vector<std::string> &kinds, const Addi
     KernelLibrary library(device_, traits_, options_.precision, options_.work_group_size);
     const std::vector<Kernel> built = library.build(
         requests,
-        [&](const std::string &name, std::size_t, std::size_t, double seconds) {
-            statistics_.compile_seconds[name] += seconds;
+        [&](const std::string &name, std::size_t ready, std::size_t total, double seconds) {
+            if (seconds > 0)
+                statistics_.compile_seconds[name] += seconds;
+            if (seconds > 0 && options_.on_compiled)
+                options_.on_compiled(name, ready, total, seconds);
         },
         options_.dump_kernels);
     for (std::size_t i = 0; i < wanted.size(); ++i)
@@ -197,6 +200,9 @@ std::vector<Kernel *> PathTracer::all_kernels() {
     return kernels;
 }
 
+/// A launch on no rows takes less than a thousandth of that, and no compiler is so fast.
+constexpr double least_compile_seconds = 0.02;
+
 /// Some implementations compile at the first launch: do that now, on no rows, and say what it took.
 void PathTracer::warm(std::vector<Kernel *> kernels) {
     for (std::size_t i = 0; i < kernels.size(); ++i) {
@@ -205,9 +211,12 @@ void PathTracer::warm(std::vector<Kernel *> kernels) {
         kernels[i]->launch(1);
         finish(device_);
         kernels[i]->reset_usage();
-        const double total = statistics_.compile_seconds[kernels[i]->name()] += seconds_since(start);
+        const double seconds = seconds_since(start);
+        if (seconds < least_compile_seconds)
+            continue; // it was there
+        statistics_.compile_seconds[kernels[i]->name()] += seconds;
         if (options_.on_compiled)
-            options_.on_compiled(kernels[i]->name(), i + 1, kernels.size(), total);
+            options_.on_compiled(kernels[i]->name(), i + 1, kernels.size(), seconds);
     }
 }
 

@@ -161,8 +161,11 @@ TEST_F(Store, DeletesWhatAKilledProcessLeft) {
 // Readers see a whole program or none, whatever others put, remove and trim at the time.
 TEST_F(Store, ServesSeveralProcessesAtOnce) {
     const auto work = [&](int number) {
-        const ProgramStore shared(folder, 400000);
-        for (int round = 0; round < 100; ++round)
+        const ProgramStore shared(folder, 1000000);
+        for (int round = 0; round < 100; ++round) {
+            shared.put("again", image_of_size(100000, 'x'));
+            if (!shared.find("again"))
+                return 2; // half of another one's was seen
             for (const char key : {'a', 'b', 'c'}) {
                 const auto found = shared.find({key});
                 if (found && found->binary != std::string(100000 + key, key))
@@ -174,6 +177,7 @@ TEST_F(Store, ServesSeveralProcessesAtOnce) {
                 if (round % 25 == number)
                     shared.trim();
             }
+        }
         return 0;
     };
     std::vector<pid_t> processes;
