@@ -31,6 +31,7 @@ int run_warm(const WarmRequest &request, const Services &services) {
     // Some implementations compile a kernel when it first runs, and once for each shape of its grid: a batch as a
     // render has it meets them all.
     prepared.method->render_batch();
+    prepared.method->image(); // and what makes an image of it
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     print_message(fmt::format("{:8.3f} s  in all, on {}\n", seconds, prepared.description.name));
     return static_cast<int>(ExitCode::success);

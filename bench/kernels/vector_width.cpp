@@ -38,11 +38,12 @@ std::map<std::string, int> pocl_vector_widths(const Settings &settings) {
     std::map<std::string, int> widths;
     if (!is_pocl(settings.device))
         return widths;
-    const std::string text = output_of(fmt::format(
-        "POCL_VECTORIZER_REMARKS=1 /proc/{}/exe --parts remarks --queue-bits 8 --scene '{}' --device '{}' --kinds {} "
-        "--methods {} 2>&1",
-        getpid(), settings.scene, settings.device.description().name, fmt::join(settings.kinds, ","),
-        fmt::join(settings.methods, ",")));
+    const std::string text =
+        output_of(fmt::format("GRADUS_CACHE_DIR=off POCL_VECTORIZER_REMARKS=1 /proc/{}/exe --parts remarks "
+                              "--queue-bits 8 --scene '{}' --device '{}' --kinds {} "
+                              "--methods {} 2>&1",
+                              getpid(), settings.scene, settings.device.description().name,
+                              fmt::join(settings.kinds, ","), fmt::join(settings.methods, ",")));
     for (std::size_t at = text.find(begin_mark); at != std::string::npos; at = text.find(begin_mark, at + 1)) {
         const std::size_t name = at + begin_mark.size(), line_end = text.find('\n', name),
                           end = text.find(end_mark, at);

@@ -27,8 +27,9 @@ def render(arguments, scene, folder, cache):
     image, record = pathlib.Path(folder) / "image.exr", pathlib.Path(folder) / "statistics.json"
     command = [arguments.gradus, "render", scene, "--method", "pt", "-o", image, "--stats", record, "--quiet"]
     command += ["--size", "128x128", "--spp", 1, *(["--device", arguments.device] if arguments.device else [])]
-    # PoCL's cache, and ours of compiled programs.
-    environment = {**os.environ, "POCL_CACHE_DIR": cache, "GRADUS_CACHE_DIR": f"{cache}/programs"}
+    # Without a folder of PoCL's, as users start it: each process then has one of its own.
+    environment = {name: value for name, value in os.environ.items() if name != "POCL_CACHE_DIR"}
+    environment["GRADUS_CACHE_DIR"] = cache
     started = time.perf_counter()
     renders.run(*command, environment=environment)
     return time.perf_counter() - started, json.loads(record.read_text())

@@ -1,5 +1,7 @@
 #include "runtime/device/device.h"
 
+#include "runtime/device/cache_folder.h"
+#include "runtime/device/compile_workers.h"
 #include "runtime/device/opencl.h"
 #include "runtime/error.h"
 
@@ -7,6 +9,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <thread>
 
 namespace gradus {
@@ -27,6 +30,7 @@ std::string lower(std::string text) {
 DeviceDescription describe(const cl::Platform &platform, const cl::Device &device) {
     DeviceDescription d;
     d.platform = trimmed(platform.getInfo<CL_PLATFORM_NAME>());
+    d.platform_version = trimmed(platform.getInfo<CL_PLATFORM_VERSION>());
     d.name = trimmed(device.getInfo<CL_DEVICE_NAME>());
     d.vendor = trimmed(device.getInfo<CL_DEVICE_VENDOR>());
     d.version = trimmed(device.getInfo<CL_DEVICE_VERSION>());
@@ -40,13 +44,51 @@ DeviceDescription describe(const cl::Platform &platform, const cl::Device &devic
     return d;
 }
 
-struct Found {
-    cl::Device device;
-    DeviceDescription description;
-};
+std::string list_of(const std::vector<FoundDevice> &found) {
+    std::string text;
+    for (std::size_t i = 0; i < found.size(); ++i)
+        text += fmt::format("\n  {}: {} ({})", i, found[i].description.name, found[i].description.platform);
+    return text;
+}
 
-std::vector<Found> find_devices() {
-    std::vector<Found> found;
+std::size_t choose(const std::vector<FoundDevice> &found, const std::string &selector) {
+    if (found.empty())
+        throw Error(ExitCode::device, "no OpenCL device was found; install one, for example PoCL for the CPU: "
+                                      "apt install pocl-opencl-icd");
+    if (selector.empty()) {
+        for (std::size_t i = 0; i < found.size(); ++i)
+            if (is_pocl_cpu(found[i].description))
+                return i;
+        return 0;
+    }
+    if (std::all_of(selector.begin(), selector.end(), [](unsigned char c) { return std::isdigit(c); })) {
+        const unsigned long number = selector.size() < 6 ? std::stoul(selector) : found.size();
+        if (number < found.size())
+            return number;
+    }
+    for (std::size_t i = 0; i < found.size(); ++i)
+        if (lower(found[i].description.platform + " " + found[i].description.name).find(lower(selector)) !=
+            std::string::npos)
+            return i;
+    throw Error(ExitCode::device,
+                fmt::format("no OpenCL device matches \"{}\"; there are:{}", selector, list_of(found)));
+}
+
+/// PoCL unpacks programs that it gets as code into its folder. Processes that share one can disturb each other (pocl
+/// #430), so each has one of its own, which need not be on a disk. A folder that the user chose stays.
+void give_pocl_a_private_folder() {
+    if (std::getenv("POCL_CACHE_DIR") || program_cache_folder().empty() || compile_worker_program().empty())
+        return;
+    if (const std::filesystem::path folder = private_folder(); !folder.empty())
+        setenv("POCL_CACHE_DIR", (folder / "pocl").c_str(), 0);
+}
+
+} // namespace
+
+std::vector<FoundDevice> find_devices() {
+    // PoCL reads its variables once, when the platform is first asked for.
+    give_pocl_a_private_folder();
+    std::vector<FoundDevice> found;
     std::vector<cl::Platform> platforms;
     try {
         cl::Platform::get(&platforms);
@@ -70,53 +112,22 @@ bool is_pocl_cpu(const DeviceDescription &d) {
     return d.type == "cpu" && lower(d.platform).find("portable computing language") != std::string::npos;
 }
 
-std::string list_of(const std::vector<Found> &found) {
-    std::string text;
-    for (std::size_t i = 0; i < found.size(); ++i)
-        text += fmt::format("\n  {}: {} ({})", i, found[i].description.name, found[i].description.platform);
-    return text;
-}
-
-std::size_t choose(const std::vector<Found> &found, const std::string &selector) {
-    if (found.empty())
-        throw Error(ExitCode::device, "no OpenCL device was found; install one, for example PoCL for the CPU: "
-                                      "apt install pocl-opencl-icd");
-    if (selector.empty()) {
-        for (std::size_t i = 0; i < found.size(); ++i)
-            if (is_pocl_cpu(found[i].description))
-                return i;
-        return 0;
-    }
-    if (std::all_of(selector.begin(), selector.end(), [](unsigned char c) { return std::isdigit(c); })) {
-        const unsigned long number = selector.size() < 6 ? std::stoul(selector) : found.size();
-        if (number < found.size())
-            return number;
-    }
-    for (std::size_t i = 0; i < found.size(); ++i)
-        if (lower(found[i].description.platform + " " + found[i].description.name).find(lower(selector)) !=
-            std::string::npos)
-            return i;
-    throw Error(ExitCode::device,
-                fmt::format("no OpenCL device matches \"{}\"; there are:{}", selector, list_of(found)));
-}
-
-} // namespace
-
 std::vector<DeviceDescription> list_devices() {
     std::vector<DeviceDescription> descriptions;
-    for (const Found &found : find_devices())
+    for (const FoundDevice &found : find_devices())
         descriptions.push_back(found.description);
     return descriptions;
 }
 
 Device::Device(const std::string &selector, int threads) : implementation_(std::make_unique<Implementation>()) {
-    // PoCL reads its worker count once, when the platform is first asked for.
+    // Read once too.
     if (threads > 0)
         setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(threads).c_str(), 1);
-    const std::vector<Found> found = find_devices();
-    const Found &chosen = found[choose(found, selector)];
+    const std::vector<FoundDevice> found = find_devices();
+    const FoundDevice &chosen = found[choose(found, selector)];
     implementation_->description = chosen.description;
     implementation_->device = chosen.device;
+    implementation_->store = ProgramStore(program_cache_folder());
     implementation_->compile_threads =
         threads > 0 ? static_cast<unsigned>(threads) : std::max(1u, std::thread::hardware_concurrency());
     opencl_call("opening the device " + chosen.description.name, [&] {
@@ -141,6 +152,7 @@ Device::Device(_cl_context *context, _cl_command_queue *queue) : implementation_
         i.profiles = properties & CL_QUEUE_PROFILING_ENABLE;
         i.device = i.queue.getInfo<CL_QUEUE_DEVICE>();
         i.description = describe(cl::Platform(i.device.getInfo<CL_DEVICE_PLATFORM>()), i.device);
+        i.store = ProgramStore(program_cache_folder());
         i.compile_threads = std::max(1u, std::thread::hardware_concurrency());
     });
 }

@@ -14,7 +14,8 @@ namespace gradus {
 
 struct DeviceDescription {
     std::string platform, name, vendor, version, driver;
-    std::string type; ///< "cpu", "gpu" or "accelerator"
+    std::string platform_version; ///< names the compiler, where there is more than one
+    std::string type;             ///< "cpu", "gpu" or "accelerator"
     unsigned compute_units = 0;
     std::uint64_t memory_bytes = 0;     ///< as the implementation reports it, which is not always true
     std::uint64_t allocation_bytes = 0; ///< largest single allocation

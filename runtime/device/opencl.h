@@ -3,6 +3,7 @@
 
 #include "runtime/device/device.h"
 #include "runtime/device/launch_observer.h"
+#include "runtime/device/program_store.h"
 
 #define CL_TARGET_OPENCL_VERSION 120
 #define CL_HPP_TARGET_OPENCL_VERSION 120
@@ -12,15 +13,19 @@
 
 #include <future>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 namespace gradus {
 
-/// Programs that were built for a device, by source and options.
-struct ProgramCache {
+struct BuiltProgram;
+
+/// Programs that were built for a device in this process, by source and options.
+struct BuiltPrograms {
     std::mutex mutex;
-    std::map<std::string, std::shared_future<cl::Program>> programs;
+    std::map<std::string, std::shared_future<std::shared_ptr<const BuiltProgram>>> programs;
 };
 
 struct Device::Implementation {
@@ -29,11 +34,23 @@ struct Device::Implementation {
     cl::Context context;
     cl::CommandQueue queue;
     bool profiles = true;         ///< the queue times what runs on it
-    unsigned compile_threads = 1; ///< kernels that are compiled at a time
+    unsigned compile_threads = 1; ///< programs that are compiled at a time
     std::uint64_t allocated_bytes = 0, peak_bytes = 0;
-    ProgramCache built;
-    LaunchObserver observer; ///< empty: none
+    BuiltPrograms built;
+    ProgramStore store;       ///< what other processes built
+    std::size_t compiled = 0; ///< programs that were not taken from there
+    LaunchObserver observer;  ///< empty: none
 };
+
+struct FoundDevice {
+    cl::Device device;
+    DeviceDescription description;
+};
+
+/// Every device of every platform, as list_devices() has them.
+std::vector<FoundDevice> find_devices();
+
+bool is_pocl_cpu(const DeviceDescription &device);
 
 /// Runs a function and turns an OpenCL error into an Error that says what was being done.
 template <class Function>

@@ -3,18 +3,14 @@
 #include "runtime/device/kernel_source.h"
 #include "runtime/device/launch_observer.h"
 #include "runtime/device/opencl.h"
+#include "runtime/device/program_builder.h"
 #include "runtime/error.h"
 
 #include <fmt/format.h>
 
-#include <atomic>
-#include <chrono>
-#include <exception>
 #include <filesystem>
 #include <fstream>
-#include <mutex>
 #include <stdexcept>
-#include <thread>
 #include <utility>
 
 namespace gradus {
@@ -24,7 +20,6 @@ struct Kernel::Handle {
     Device::Implementation *device = nullptr;
     Precision precision = Precision::single;
     std::uint32_t work_group_size = default_work_group_size;
-    cl::Program program;
     cl::Kernel kernel;
     std::map<std::string, cl_uint> arguments; ///< index by name
     std::vector<bool> is_set;
@@ -187,118 +182,53 @@ void dump(const std::string &folder, const KernelRequest &request, const std::st
         throw Error(ExitCode::output, "cannot write kernel sources to " + folder);
 }
 
-cl::Program build_program(Device::Implementation &device, const std::string &text, const std::string &options,
-                          const std::string &name) {
-    cl::Program program(device.context, text);
-    try {
-        program.build({device.device}, options.c_str());
-    } catch (const cl::Error &) {
-        throw Error(ExitCode::device,
-                    fmt::format("kernel {} does not compile for {}:\n{}", name, device.description.name,
-                                program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.device)));
-    }
-    return program;
-}
-
-/// Builds a program, or takes the one that was built from the same source with the same options, or waits for it.
-cl::Program built_program(Device::Implementation &device, const std::string &text, const std::string &options,
-                          const std::string &name) {
-    std::promise<cl::Program> promise;
-    std::shared_future<cl::Program> program;
-    bool here = false;
-    {
-        const std::lock_guard lock(device.built.mutex);
-        auto [found, is_new] = device.built.programs.try_emplace(options + '\n' + text);
-        if (is_new)
-            found->second = promise.get_future().share();
-        program = found->second;
-        here = is_new;
-    }
-    if (here)
-        try {
-            promise.set_value(build_program(device, text, options, name));
-        } catch (...) {
-            promise.set_exception(std::current_exception());
-        }
-    return program.get();
-}
-
-std::string type_name(const cl::Kernel &kernel, cl_uint argument) {
-    std::string name = kernel.getArgInfo<CL_KERNEL_ARG_TYPE_NAME>(argument);
-    while (!name.empty() && name.back() == '\0')
-        name.pop_back();
-    return name;
-}
-
 } // namespace
 
 std::vector<Kernel> KernelLibrary::build(const std::vector<KernelRequest> &requests, const Progress &progress,
                                          const std::string &dump_folder) {
-    std::vector<Kernel> kernels(requests.size());
-    std::mutex reporting;
-    std::size_t built = 0;
-    std::exception_ptr failure;
-    std::atomic<std::size_t> next{0};
-
-    const auto build_one = [&](const KernelRequest &request) {
-        Device::Implementation &d = device_.implementation();
-        const auto start = std::chrono::steady_clock::now();
-        const KernelSource source = kernel_source(request.file);
-        const std::string options = options_for(request, source, traits_, precision_, work_group_size());
+    Device::Implementation &d = device_.implementation();
+    std::vector<ProgramSource> sources;
+    std::map<std::string, KernelSource> files;
+    for (const KernelRequest &request : requests) {
+        const auto [file, is_new] = files.try_emplace(request.file);
+        if (is_new)
+            file->second = kernel_source(request.file);
+        const std::string options = options_for(request, file->second, traits_, precision_, work_group_size());
         if (!dump_folder.empty())
-            dump(dump_folder, request, options, source.text);
+            dump(dump_folder, request, options, file->second.text);
+        sources.push_back({request.name, file->second.text, options});
+    }
+
+    std::size_t built = 0;
+    const auto programs = opencl_call("compiling kernels", [&] {
+        return obtain_programs(d, sources, work_group_size(), [&](std::size_t i, double seconds) {
+            ++built;
+            if (progress)
+                progress(requests[i].name, built, requests.size(), seconds);
+        });
+    });
+
+    std::vector<Kernel> kernels(requests.size());
+    for (std::size_t i = 0; i < requests.size(); ++i) {
         auto handle = std::make_shared<Kernel::Handle>();
-        handle->request = request;
+        handle->request = requests[i];
         handle->device = &d;
         handle->precision = precision_;
         handle->work_group_size = work_group_size();
         handle->is_observed = static_cast<bool>(d.observer);
         if (handle->is_observed)
             handle->traits = traits_;
-        opencl_call("compiling kernel " + request.name, [&] {
-            handle->program = built_program(d, source.text, options, request.name);
-            handle->kernel = cl::Kernel(handle->program, request.entry.c_str());
-            const cl_uint count = handle->kernel.getInfo<CL_KERNEL_NUM_ARGS>();
-            for (cl_uint i = 0; i < count; ++i) {
-                std::string name = handle->kernel.getArgInfo<CL_KERNEL_ARG_NAME>(i);
-                while (!name.empty() && name.back() == '\0')
-                    name.pop_back();
-                handle->arguments[name] = i;
-                if (handle->is_observed)
-                    handle->values[name].type = type_name(handle->kernel, i);
-            }
-            handle->is_set.assign(count, false);
-        });
-        Kernel kernel;
-        kernel.handle_ = handle;
-        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        const std::lock_guard lock(reporting);
-        ++built;
-        if (progress)
-            progress(request.name, built, requests.size(), seconds);
-        return kernel;
-    };
-
-    const auto work = [&] {
-        for (std::size_t i = next++; i < requests.size(); i = next++) {
-            try {
-                kernels[i] = build_one(requests[i]);
-            } catch (...) {
-                const std::lock_guard lock(reporting);
-                failure = std::current_exception();
-                next = requests.size();
-            }
+        opencl_call("making kernel " + requests[i].name,
+                    [&] { handle->kernel = cl::Kernel(programs[i]->program, requests[i].entry.c_str()); });
+        cl_uint index = 0;
+        for (const KernelArgument &argument : programs[i]->kernels.at(requests[i].entry)) {
+            handle->arguments[argument.name] = index++;
+            if (handle->is_observed)
+                handle->values[argument.name].type = argument.type;
         }
-    };
-    std::vector<std::thread> threads;
-    const std::size_t count = std::min<std::size_t>(device_.implementation().compile_threads, requests.size());
-    for (std::size_t i = 1; i < count; ++i)
-        threads.emplace_back(work);
-    work();
-    for (std::thread &thread : threads)
-        thread.join();
-    if (failure)
-        std::rethrow_exception(failure);
+        handle->is_set.assign(index, false);
+        kernels[i].handle_ = std::move(handle);
+    }
     return kernels;
 }
 

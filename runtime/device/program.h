@@ -77,10 +77,11 @@ class KernelLibrary {
     KernelLibrary(Device &device, TraitValues traits, Precision precision = Precision::single,
                   std::uint32_t work_group_size = 0);
 
-    /// Called after each program was built: its name, how many are built, of how many, and its seconds.
+    /// Called after each kernel was built: its name, how many are built, of how many, and the seconds that compiling
+    /// its program took: 0 where that was not compiled for it.
     using Progress = std::function<void(const std::string &, std::size_t, std::size_t, double)>;
-    /// Builds several kernels, several at a time. Where `dump_folder` is not empty, the final source of each goes
-    /// there. Throws Error with the compiler's log.
+    /// Builds several kernels, several at a time, or takes them from the folder of programs (cache_folder.h). Where
+    /// `dump_folder` is not empty, the final source of each goes there. Throws Error with the compiler's log.
     std::vector<Kernel> build(const std::vector<KernelRequest> &requests, const Progress &progress = {},
                               const std::string &dump_folder = "");
 

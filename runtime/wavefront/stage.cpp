@@ -121,8 +121,11 @@ void Stages::build(Session &session, const Tables &tables) {
     KernelLibrary library(session.device, session.traits, session.options.precision, session.options.work_group_size);
     const std::vector<Kernel> built = library.build(
         requests,
-        [&](const std::string &name, std::size_t, std::size_t, double seconds) {
-            session.compile_seconds[name] += seconds;
+        [&](const std::string &name, std::size_t ready, std::size_t total, double seconds) {
+            if (seconds > 0)
+                session.compile_seconds[name] += seconds;
+            if (seconds > 0 && session.options.on_compiled)
+                session.options.on_compiled(name, ready, total, seconds);
         },
         session.options.dump_kernels);
     for (std::size_t i = 0; i < built.size(); ++i)
@@ -135,6 +138,9 @@ void Stages::build(Session &session, const Tables &tables) {
     }
     warm(session);
 }
+
+/// A launch on no rows takes less than a thousandth of that, and no compiler is so fast.
+constexpr double least_compile_seconds = 0.02;
 
 /// Some implementations compile at the first launch: do that now, on no rows, and say what it took.
 void Stages::warm(Session &session) {
@@ -149,9 +155,12 @@ void Stages::warm(Session &session) {
         kernels[i]->launch(1);
         finish(session.device);
         kernels[i]->reset_usage();
-        const double total = session.compile_seconds[kernels[i]->name()] += seconds_since(start);
+        const double seconds = seconds_since(start);
+        if (seconds < least_compile_seconds)
+            continue; // it was there
+        session.compile_seconds[kernels[i]->name()] += seconds;
         if (session.options.on_compiled)
-            session.options.on_compiled(kernels[i]->name(), i + 1, kernels.size(), total);
+            session.options.on_compiled(kernels[i]->name(), i + 1, kernels.size(), seconds);
     }
 }
 

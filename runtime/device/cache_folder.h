@@ -1,0 +1,16 @@
+// The folders in which programs are kept and compiled.
+#pragma once
+
+#include <filesystem>
+
+namespace gradus {
+
+/// Where compiled programs are kept: $GRADUS_CACHE_DIR, else $XDG_CACHE_HOME/gradus/programs, else
+/// ~/.cache/gradus/programs. Empty where GRADUS_CACHE_DIR is empty or "off", or where there is no home.
+std::filesystem::path program_cache_folder();
+
+/// A folder that only this process uses, deleted when it ends; made at the first call. Empty where none can be made.
+/// What processes that were killed left behind goes when the next one makes its own.
+std::filesystem::path private_folder();
+
+} // namespace gradus

@@ -1,0 +1,114 @@
+#include "runtime/device/compile_job.h"
+
+#include "runtime/device/byte_text.h"
+#include "runtime/device/framed_socket.h"
+#include "runtime/device/pocl_stub.h"
+#include "runtime/error.h"
+
+#include <sys/prctl.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <optional>
+
+namespace gradus {
+
+std::string to_bytes(const CompileJob &job) {
+    ByteWriter writer;
+    for (const std::string_view text :
+         {compile_protocol, std::string_view(job.device.platform), std::string_view(job.device.name),
+          std::string_view(job.device.driver), std::string_view(job.source.name), std::string_view(job.source.text),
+          std::string_view(job.source.options)})
+        writer.text(text);
+    return writer.bytes();
+}
+
+CompileJob compile_job(std::string_view bytes) {
+    ByteReader reader(bytes);
+    if (reader.text() != compile_protocol)
+        throw std::runtime_error("a job of another version");
+    CompileJob job;
+    for (std::string *text : {&job.device.platform, &job.device.name, &job.device.driver, &job.source.name,
+                              &job.source.text, &job.source.options})
+        *text = reader.text();
+    return job;
+}
+
+std::string to_bytes(const CompileAnswer &answer) {
+    ByteWriter writer;
+    writer.text(compile_protocol);
+    writer.number(static_cast<std::uint64_t>(answer.kind));
+    writer.text(answer.content);
+    writer.seconds(answer.seconds);
+    return writer.bytes();
+}
+
+CompileAnswer compile_answer(std::string_view bytes) {
+    ByteReader reader(bytes);
+    if (reader.text() != compile_protocol)
+        throw std::runtime_error("an answer of another version");
+    CompileAnswer answer;
+    const std::uint64_t kind = reader.number();
+    if (kind > static_cast<std::uint64_t>(CompileAnswer::Kind::no_code))
+        throw std::runtime_error("an answer of no kind");
+    answer.kind = static_cast<CompileAnswer::Kind>(kind);
+    answer.content = reader.text();
+    answer.seconds = reader.seconds();
+    return answer;
+}
+
+namespace {
+
+/// A device that is opened once: an implementation may load its library of built-in functions for each context.
+struct OpenDevice {
+    cl::Device device;
+    cl::Context context;
+    PoclStubs stubs;
+};
+
+OpenDevice open_device(const DeviceDescription &wanted) {
+    const char *pocl_folder = std::getenv("POCL_CACHE_DIR");
+    for (const FoundDevice &found : find_devices())
+        if (found.description.platform == wanted.platform && found.description.name == wanted.name &&
+            found.description.driver == wanted.driver)
+            return {found.device, cl::Context(found.device), PoclStubs(pocl_folder ? pocl_folder : "", wanted)};
+    throw cl::Error(CL_DEVICE_NOT_FOUND, "clGetDeviceIDs");
+}
+
+CompileAnswer compile(const CompileJob &job, std::optional<OpenDevice> &opened) {
+    try {
+        if (!opened)
+            opened.emplace(open_device(job.device));
+        const BuiltProgram program = build_source(opened->context, opened->device, job.source);
+        opened->stubs.put(program.kernels);
+        return {CompileAnswer::Kind::compiled, to_bytes(image_of(program)), 0};
+    } catch (const Error &error) {
+        return {CompileAnswer::Kind::does_not_compile, error.what(), 0};
+    } catch (const cl::Error &error) {
+        return {CompileAnswer::Kind::no_code, error.what(), 0};
+    }
+}
+
+} // namespace
+
+int run_compile_worker(int socket) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL); // nobody waits for what is compiled when the other process is gone
+    std::optional<OpenDevice> opened;
+    std::string message;
+    while (receive_message(socket, message)) {
+        const auto start = std::chrono::steady_clock::now();
+        CompileAnswer answer;
+        try {
+            answer = compile(compile_job(message), opened);
+        } catch (const std::exception &error) {
+            answer = {CompileAnswer::Kind::no_code, error.what(), 0};
+        }
+        answer.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        if (!send_message(socket, to_bytes(answer)))
+            break;
+    }
+    return 0;
+}
+
+} // namespace gradus

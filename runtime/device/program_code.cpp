@@ -1,0 +1,72 @@
+#include "runtime/device/program_code.h"
+
+#include "runtime/error.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+#include <vector>
+
+namespace gradus {
+
+namespace {
+
+std::string without_end(std::string text) {
+    while (!text.empty() && text.back() == '\0')
+        text.pop_back();
+    return text;
+}
+
+KernelArguments arguments_of(const cl::Program &program) {
+    KernelArguments found;
+    cl::Program asked = program; // its createKernels() is not const
+    std::vector<cl::Kernel> kernels;
+    asked.createKernels(&kernels);
+    for (const cl::Kernel &kernel : kernels) {
+        std::vector<KernelArgument> &arguments = found[without_end(kernel.getInfo<CL_KERNEL_FUNCTION_NAME>())];
+        const cl_uint count = kernel.getInfo<CL_KERNEL_NUM_ARGS>();
+        for (cl_uint i = 0; i < count; ++i)
+            arguments.push_back({without_end(kernel.getArgInfo<CL_KERNEL_ARG_NAME>(i)),
+                                 without_end(kernel.getArgInfo<CL_KERNEL_ARG_TYPE_NAME>(i))});
+    }
+    return found;
+}
+
+} // namespace
+
+BuiltProgram build_source(const cl::Context &context, const cl::Device &device, const ProgramSource &source) {
+    cl::Program program(context, source.text);
+    try {
+        program.build({device}, source.options.c_str());
+    } catch (const cl::Error &) {
+        throw Error(ExitCode::device, fmt::format("kernel {} does not compile for {}:\n{}", source.name,
+                                                  without_end(device.getInfo<CL_DEVICE_NAME>()),
+                                                  program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device)));
+    }
+    KernelArguments kernels = arguments_of(program);
+    return {std::move(program), std::move(kernels)};
+}
+
+BuiltProgram load_image(const cl::Context &context, const cl::Device &device, const ProgramImage &image) {
+    const auto *bytes = reinterpret_cast<const unsigned char *>(image.binary.data());
+    const cl::Program::Binaries binaries = {{bytes, bytes + image.binary.size()}};
+    cl::Program program(context, {device}, binaries);
+    program.build({device}, "");
+    for (const auto &[name, arguments] : image.kernels)
+        if (cl::Kernel(program, name.c_str()).getInfo<CL_KERNEL_NUM_ARGS>() != arguments.size())
+            throw cl::Error(CL_INVALID_BINARY, "clCreateKernel");
+    return {std::move(program), image.kernels};
+}
+
+ProgramImage image_of(const BuiltProgram &program) {
+    const auto binaries = program.program.getInfo<CL_PROGRAM_BINARIES>();
+    if (binaries.empty() || binaries.front().empty())
+        throw cl::Error(CL_INVALID_BINARY, "clGetProgramInfo");
+    return {program.kernels, std::string(binaries.front().begin(), binaries.front().end())};
+}
+
+std::string pocl_specialization(std::uint32_t work_group_size) {
+    return fmt::format("{}-1-1-goffs0-smallgrid", work_group_size);
+}
+
+} // namespace gradus

@@ -1,0 +1,35 @@
+// Making programs of source and of code, for the files of runtime/device only.
+#pragma once
+
+#include "runtime/device/opencl.h"
+#include "runtime/device/program_image.h"
+
+#include <cstdint>
+#include <string>
+
+namespace gradus {
+
+struct ProgramSource {
+    std::string name; ///< for messages
+    std::string text, options;
+};
+
+struct BuiltProgram {
+    cl::Program program;
+    KernelArguments kernels;
+};
+
+/// Throws Error with the compiler's log.
+BuiltProgram build_source(const cl::Context &context, const cl::Device &device, const ProgramSource &source);
+
+/// Throws cl::Error where the device does not take the code.
+BuiltProgram load_image(const cl::Context &context, const cl::Device &device, const ProgramImage &image);
+
+/// The program's code. PoCL gives it as POCL_BINARY_SPECIALIZE_WG says (pocl_specialization()). Throws cl::Error.
+ProgramImage image_of(const BuiltProgram &program);
+
+/// The value of POCL_BINARY_SPECIALIZE_WG with which PoCL's binaries hold the code that all launches use: work-groups
+/// of this size, no offset, lines narrower than 65536 work-items.
+std::string pocl_specialization(std::uint32_t work_group_size);
+
+} // namespace gradus

@@ -1,0 +1,62 @@
+#include "runtime/device/program_key.h"
+
+#include "runtime/device/byte_text.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace gradus {
+
+namespace {
+
+/// Model and features of the first processor as the kernel of the system lists them: a virtual machine may hide some.
+std::string processor() {
+    std::ifstream file("/proc/cpuinfo");
+    std::string text;
+    for (std::string line; std::getline(file, line) && !line.empty();)
+        if (line.starts_with("model name") || line.starts_with("flags") || line.starts_with("Features"))
+            text += line + '\n';
+    return text;
+}
+
+/// PoCL's variables but those that do not change code.
+std::vector<std::string> compiler_variables() {
+    std::vector<std::string> variables;
+    for (char **variable = environ; variable && *variable; ++variable) {
+        const std::string text = *variable;
+        const bool is_harmless = text.starts_with("POCL_CACHE_DIR=") || text.starts_with("POCL_MAX_PTHREAD_COUNT=") ||
+                                 text.starts_with("POCL_DEBUG=");
+        if (text.starts_with("POCL_") && !is_harmless)
+            variables.push_back(text);
+    }
+    std::sort(variables.begin(), variables.end());
+    return variables;
+}
+
+} // namespace
+
+std::string device_key(const DeviceDescription &device) {
+    ByteWriter writer;
+    for (const std::string *text : {&device.platform, &device.name, &device.vendor, &device.version, &device.driver,
+                                    &device.platform_version, &device.type})
+        writer.text(*text);
+    if (device.type == "cpu") {
+        writer.text(processor());
+        for (const std::string &variable : compiler_variables())
+            writer.text(variable);
+    }
+    return writer.bytes();
+}
+
+std::string program_key(const std::string &device_key, const std::string &options, const std::string &source) {
+    ByteWriter writer;
+    for (const std::string *text : {&device_key, &options, &source})
+        writer.text(*text);
+    return writer.bytes();
+}
+
+} // namespace gradus

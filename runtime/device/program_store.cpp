@@ -1,0 +1,161 @@
+#include "runtime/device/program_store.h"
+
+#include "runtime/device/byte_text.h"
+#include "runtime/device/hash.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+namespace gradus {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Changes with the layout of the files.
+constexpr std::string_view magic = "gradus program 1\n";
+constexpr const char *suffix = ".program", *unfinished = ".unfinished-";
+/// The name of a file is one hash of its key, its head holds another: a file that was renamed is seen.
+constexpr std::uint64_t seed_in_name = 1, seed_in_head = 2, seed_of_content = 3;
+
+void write_hash(ByteWriter &writer, const Hash128 &hash) {
+    writer.number(hash.low);
+    writer.number(hash.high);
+}
+
+Hash128 read_hash(ByteReader &reader) {
+    const std::uint64_t low = reader.number();
+    return {low, reader.number()};
+}
+
+std::string file_content(const std::string &key, const ProgramImage &image) {
+    const std::string payload = to_bytes(image);
+    ByteWriter writer;
+    write_hash(writer, hash128(key, seed_in_head));
+    write_hash(writer, hash128(payload, seed_of_content));
+    writer.text(payload);
+    return std::string(magic) + writer.bytes();
+}
+
+/// Throws std::runtime_error for anything but what file_content() wrote for this key.
+ProgramImage checked_image(const std::string &key, std::string_view content) {
+    if (!content.starts_with(magic))
+        throw std::runtime_error("not a program, or one of another version");
+    ByteReader reader(content.substr(magic.size()));
+    if (read_hash(reader) != hash128(key, seed_in_head))
+        throw std::runtime_error("a program of another key");
+    const Hash128 checksum = read_hash(reader);
+    const std::string_view payload = reader.text();
+    if (!reader.rest().empty() || checksum != hash128(payload, seed_of_content))
+        throw std::runtime_error("a damaged program");
+    return program_image(payload);
+}
+
+bool write_all(int file, std::string_view bytes) {
+    while (!bytes.empty()) {
+        const ssize_t written = write(file, bytes.data(), bytes.size());
+        if (written <= 0)
+            return false;
+        bytes.remove_prefix(static_cast<std::size_t>(written));
+    }
+    return true;
+}
+
+} // namespace
+
+ProgramStore::ProgramStore(fs::path folder, std::uint64_t limit) : folder_(std::move(folder)), limit_(limit) {}
+
+fs::path ProgramStore::file_of(const std::string &key) const {
+    return folder_ / (hexadecimal(hash128(key, seed_in_name)) + suffix);
+}
+
+std::optional<ProgramImage> ProgramStore::find(const std::string &key) const {
+    if (!is_on())
+        return std::nullopt;
+    const fs::path path = file_of(key);
+    std::ifstream file(path, std::ios::binary);
+    if (!file)
+        return std::nullopt;
+    const std::string content{std::istreambuf_iterator<char>(file), {}};
+    try {
+        ProgramImage image = checked_image(key, content);
+        utimensat(AT_FDCWD, path.c_str(), nullptr, 0); // trim() goes by the time of the last use
+        return image;
+    } catch (const std::runtime_error &) {
+        remove(key);
+        return std::nullopt;
+    }
+}
+
+void ProgramStore::put(const std::string &key, const ProgramImage &image) const {
+    if (!is_on())
+        return;
+    std::error_code ignored;
+    fs::create_directories(folder_, ignored);
+    const fs::path path = file_of(key);
+    std::string temporary = path.string() + unfinished + "XXXXXX";
+    const int file = mkostemp(temporary.data(), O_CLOEXEC);
+    if (file < 0)
+        return;
+    // No fsync: after a crash the checksum tells.
+    const bool written = write_all(file, file_content(key, image));
+    const bool closed = close(file) == 0;
+    if (!written || !closed || std::rename(temporary.c_str(), path.c_str()) != 0)
+        unlink(temporary.c_str());
+}
+
+void ProgramStore::remove(const std::string &key) const {
+    std::error_code ignored;
+    if (is_on())
+        fs::remove(file_of(key), ignored);
+}
+
+void ProgramStore::trim() const {
+    if (!is_on())
+        return;
+    struct Entry {
+        fs::file_time_type used;
+        std::uint64_t bytes;
+        fs::path path;
+    };
+    std::vector<Entry> entries;
+    std::uint64_t total = 0;
+    std::error_code failure;
+    const auto now = fs::file_time_type::clock::now();
+    for (fs::directory_iterator file(folder_, failure), end; !failure && file != end; file.increment(failure)) {
+        const std::string name = file->path().filename().string();
+        if (name.find(suffix) == std::string::npos)
+            continue; // not ours
+        std::error_code gone;
+        const auto used = fs::last_write_time(file->path(), gone);
+        const std::uint64_t bytes = gone ? 0 : fs::file_size(file->path(), gone);
+        if (gone)
+            continue; // by another process
+        // What another process is writing now is young; the rest is of processes that were killed.
+        if (name.find(unfinished) != std::string::npos) {
+            if (now - used > std::chrono::hours(1))
+                fs::remove(file->path(), gone);
+            continue;
+        }
+        entries.push_back({used, bytes, file->path()});
+        total += bytes;
+    }
+    std::sort(entries.begin(), entries.end(), [](const Entry &a, const Entry &b) { return a.used < b.used; });
+    for (const Entry &entry : entries) {
+        if (total <= limit_)
+            break;
+        std::error_code gone;
+        fs::remove(entry.path, gone);
+        total -= entry.bytes;
+    }
+}
+
+} // namespace gradus

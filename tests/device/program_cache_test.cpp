@@ -1,0 +1,248 @@
+// Kernels from the store of programs against kernels that were compiled.
+#include "runtime/device/cache_folder.h"
+#include "runtime/device/opencl.h"
+#include "runtime/device/program.h"
+#include "runtime/device/program_key.h"
+#include "runtime/error.h"
+
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <thread>
+#include <unistd.h>
+#include <vector>
+
+namespace gradus {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A variable of the environment, until it is destroyed.
+class Variable {
+  public:
+    Variable(const char *name, const std::string &value) : name_(name) {
+        if (const char *before = std::getenv(name))
+            before_ = before;
+        setenv(name, value.c_str(), 1);
+    }
+    ~Variable() {
+        if (before_)
+            setenv(name_, before_->c_str(), 1);
+        else
+            unsetenv(name_);
+    }
+
+  private:
+    const char *name_;
+    std::optional<std::string> before_;
+};
+
+KernelRequest scan_of(int chunk) {
+    return {"scan " + std::to_string(chunk),
+            "kernels/stages/partition.cl",
+            "partition_scan",
+            {{"PARTITION_CHUNK", std::to_string(chunk)}}};
+}
+
+std::vector<std::uint32_t> run_scan(Device &device, Kernel kernel) {
+    const std::vector<std::uint32_t> counts = {3, 1, 4, 1, 5, 9}, zeros(8);
+    const Buffer offset(device, "offset", counts.data(), 24), range(device, "range", zeros.data(), 32);
+    kernel.bind(offset);
+    kernel.bind(range);
+    kernel.set("bins", 3);
+    kernel.set("chunks", 2);
+    kernel.launch(1);
+    std::vector<std::uint32_t> result(8);
+    range.read(result.data(), 32);
+    return result;
+}
+
+class ProgramCache : public ::testing::Test {
+  protected:
+    void TearDown() override { fs::remove_all(folder); }
+
+    struct Outcome {
+        std::vector<std::uint32_t> result;
+        std::size_t compiled;
+    };
+    /// As a new process would: with a device that has built nothing yet.
+    static Outcome build_and_run(int chunk = 4) {
+        Device device;
+        const Kernel kernel = KernelLibrary(device, {}).build({scan_of(chunk)})[0];
+        return {run_scan(device, kernel), device.implementation().compiled};
+    }
+    std::vector<fs::path> entries() const {
+        std::vector<fs::path> found;
+        for (const auto &file : fs::directory_iterator(folder))
+            if (file.path().extension() == ".program")
+                found.push_back(file.path());
+        return found;
+    }
+
+    const fs::path folder = fs::path(::testing::TempDir()) / ("gradus-cache-" + std::to_string(getpid()));
+    const Variable in_folder{"GRADUS_CACHE_DIR", folder.string()};
+    const ::testing::Matcher<std::vector<std::uint32_t>> right = ::testing::ElementsAre(0, 4, 9, 23, 0, 0, 0, 0);
+};
+
+TEST_F(ProgramCache, IsUsedAgain) {
+    const Outcome first = build_and_run(), second = build_and_run();
+    EXPECT_EQ(first.compiled, 1u);
+    EXPECT_EQ(second.compiled, 0u);
+    EXPECT_THAT(first.result, right);
+    EXPECT_EQ(first.result, second.result);
+    EXPECT_EQ(build_and_run(8).compiled, 1u) << "other options, another program";
+    EXPECT_EQ(entries().size(), 2u);
+}
+
+TEST_F(ProgramCache, RebuildsWhatIsDamaged) {
+    build_and_run();
+    ASSERT_EQ(entries().size(), 1u);
+    fs::resize_file(entries()[0], fs::file_size(entries()[0]) / 2);
+    const Outcome again = build_and_run();
+    EXPECT_EQ(again.compiled, 1u);
+    EXPECT_THAT(again.result, right);
+    EXPECT_EQ(build_and_run().compiled, 0u) << "and it is kept again";
+}
+
+// A whole entry that the device does not take: of an implementation that changed without a new name.
+TEST_F(ProgramCache, RebuildsWhatTheDeviceRefuses) {
+    Device device;
+    KernelLibrary(device, {}).build({scan_of(4)});
+    ASSERT_EQ(entries().size(), 1u);
+    // The key is not at hand here: the entry is written by a store whose find() has checked it.
+    std::string key;
+    for (const auto &[name, program] : device.implementation().built.programs) {
+        const std::size_t end = name.find('\n');
+        key = program_key(device_key(device.description()), name.substr(0, end), name.substr(end + 1));
+    }
+    const ProgramStore store(folder);
+    auto image = store.find(key);
+    ASSERT_TRUE(image);
+    const ProgramImage good = *image;
+    image->binary = "not code at all, and long enough to have a head like the code of other implementations has";
+    store.put(key, *image);
+    EXPECT_EQ(build_and_run().compiled, 1u);
+    EXPECT_EQ(store.find(key)->kernels, good.kernels);
+    image = good;
+    image->kernels.begin()->second.pop_back();
+    store.put(key, *image);
+    EXPECT_EQ(build_and_run().compiled, 1u) << "a kernel with another number of arguments";
+}
+
+TEST_F(ProgramCache, NeedsNoCompilerAtTheFirstLaunch) {
+    if (!is_pocl_cpu(Device().description()))
+        GTEST_SKIP() << "of other implementations nothing is known";
+    const KernelRequest request = scan_of(100 + getpid());
+    {
+        Device device;
+        KernelLibrary(device, {}).build({request});
+    }
+    const auto files = [] {
+        std::size_t count = 0;
+        for (const auto &file : fs::recursive_directory_iterator(std::getenv("POCL_CACHE_DIR")))
+            count += file.path().extension() == ".so";
+        return count;
+    };
+    Device device;
+    const Kernel kernel = KernelLibrary(device, {}).build({request})[0];
+    const std::size_t before = files();
+    EXPECT_THAT(run_scan(device, kernel), right);
+    EXPECT_EQ(files(), before) << "PoCL compiled at the launch";
+}
+
+TEST_F(ProgramCache, IsFilledBySeveralWorkers) {
+    Device device("", 3);
+    std::vector<KernelRequest> requests;
+    for (const int chunk : {1, 2, 4, 8})
+        requests.push_back(scan_of(chunk));
+    requests.push_back(requests[0]);
+    std::size_t calls = 0;
+    const auto kernels =
+        KernelLibrary(device, {})
+            .build(requests, [&](const std::string &, std::size_t built, std::size_t of, double seconds) {
+                EXPECT_EQ(built, ++calls);
+                EXPECT_EQ(of, 5u);
+                EXPECT_GE(seconds, 0);
+            });
+    EXPECT_EQ(calls, 5u);
+    EXPECT_EQ(device.implementation().compiled, 4u);
+    EXPECT_EQ(entries().size(), 4u);
+    for (const Kernel &kernel : kernels)
+        EXPECT_THAT(run_scan(device, kernel), right);
+    for (const auto &file : fs::directory_iterator(private_folder()))
+        EXPECT_THAT(file.path().filename().string(), ::testing::Not(::testing::StartsWith("worker"))) << "left behind";
+}
+
+TEST_F(ProgramCache, CompilesItselfWhereNoWorkerDoes) {
+    for (const char *worker : {"/no/such/program", "/bin/false", "/bin/true"}) {
+        const Variable chosen("GRADUS_COMPILE", worker);
+        const Outcome outcome = build_and_run();
+        EXPECT_EQ(outcome.compiled, 1u) << worker;
+        EXPECT_THAT(outcome.result, right) << worker;
+    }
+}
+
+TEST_F(ProgramCache, CanBeOffOrOutOfReach) {
+    fs::create_directories(folder);
+    std::ofstream(folder / "file") << "in the way";
+    for (const std::string &value : {std::string("off"), std::string(), (folder / "file" / "programs").string()}) {
+        const Variable chosen("GRADUS_CACHE_DIR", value);
+        for (int i = 0; i < 2; ++i) {
+            const Outcome outcome = build_and_run();
+            EXPECT_EQ(outcome.compiled, 1u) << value;
+            EXPECT_THAT(outcome.result, right) << value;
+        }
+    }
+    EXPECT_TRUE(entries().empty());
+}
+
+TEST_F(ProgramCache, ReportsWhatDoesNotCompileWithAndWithoutWorkers) {
+    KernelRequest broken = scan_of(4);
+    broken.definitions["PARTITION_CHUNK"] = "no_such_name";
+    broken.entry = "partition_count";
+    for (const char *folder_or_off : {folder.c_str(), "off"}) {
+        const Variable chosen("GRADUS_CACHE_DIR", folder_or_off);
+        Device device;
+        KernelLibrary library(device, {});
+        try {
+            library.build({scan_of(4), broken});
+            FAIL() << folder_or_off;
+        } catch (const Error &error) {
+            EXPECT_THAT(error.what(), ::testing::HasSubstr("no_such_name")) << folder_or_off;
+        }
+        EXPECT_NO_THROW(library.build({scan_of(4)})) << "what was not compiled for another's error is compiled now";
+    }
+}
+
+TEST(ProgramCacheOfOthers, DISABLED_IsFilledByThisProcess) {
+    for (const int chunk : {1, 2, 4}) {
+        Device device;
+        EXPECT_THAT(run_scan(device, KernelLibrary(device, {}).build({scan_of(chunk)})[0]),
+                    ::testing::ElementsAre(0, 4, 9, 23, 0, 0, 0, 0));
+    }
+}
+
+// Programs that start at the same time, as a farm starts them, with folders that the first of them makes.
+TEST_F(ProgramCache, ServesProgramsThatStartTogether) {
+    const std::string program = fs::read_symlink("/proc/self/exe");
+    const std::string command = "env -u POCL_CACHE_DIR GRADUS_CACHE_DIR=" + folder.string() + " " + program +
+                                " --gtest_also_run_disabled_tests "
+                                "--gtest_filter='*DISABLED_IsFilledByThisProcess' >/dev/null 2>&1";
+    std::vector<int> ends(3, -1);
+    std::vector<std::thread> threads;
+    for (int &end : ends)
+        threads.emplace_back([&end, &command] { end = std::system(command.c_str()); });
+    for (std::thread &thread : threads)
+        thread.join();
+    EXPECT_THAT(ends, ::testing::Each(0));
+    EXPECT_EQ(entries().size(), 3u);
+    for (const int chunk : {1, 2, 4})
+        EXPECT_EQ(build_and_run(chunk).compiled, 0u);
+}
+
+} // namespace
+} // namespace gradus
