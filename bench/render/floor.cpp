@@ -61,10 +61,10 @@ nlohmann::json measure_floor(const Settings &settings, const Job &job) {
     RenderOptions options;
     options.threads = settings.threads;
     // One render is recorded and kept; its time does not count, as recording costs time.
-    const std::unique_ptr<PathTracer> recorder = make_tracer(settings, job, options);
+    const std::unique_ptr<Method> recorder = make_tracer(settings, job, options);
     const std::uint64_t batches = (recorder->total_samples() + (1u << 16) - 1) >> 16;
     const int depth = job.scene.settings.max_depth < 0 ? 16 : job.scene.settings.max_depth;
-    recorder->tracer().record(record_interval(batches * static_cast<std::uint64_t>(depth)));
+    recorder->tracer()->record(record_interval(batches * static_cast<std::uint64_t>(depth)));
     while (recorder->render_batch()) {
     }
 
@@ -72,7 +72,7 @@ nlohmann::json measure_floor(const Settings &settings, const Job &job) {
     std::vector<Render> renders;
     std::vector<double> floors;
     std::map<std::string, std::vector<double>> other_ratios, other_rates;
-    Tracer &tracer = recorder->tracer();
+    Tracer &tracer = *recorder->tracer();
     const std::uint64_t recorded = tracer.replay(ReplayedAs::traced).rays;
     for (int i = 0; i < settings.repeats; ++i) {
         const double before = seconds_per_ray(tracer, ReplayedAs::traced);

@@ -61,17 +61,15 @@ double Render::stage_seconds(const std::string &name) const {
     return 0;
 }
 
-std::unique_ptr<PathTracer> make_tracer(const Settings &settings, const Job &job, const RenderOptions &options) {
-    if (settings.method == "gpt")
-        return std::make_unique<GradientPathTracer>(settings.device, job.scene, options);
-    return std::make_unique<PathTracer>(settings.device, job.scene, options);
+std::unique_ptr<Method> make_tracer(const Settings &settings, const Job &job, const RenderOptions &options) {
+    return make_method(settings.method, settings.device, job.scene, options);
 }
 
 Render render(const Settings &settings, const Job &job, const RenderOptions &options,
-              const std::function<void(PathTracer &)> &prepare) {
+              const std::function<void(Method &)> &prepare) {
     RenderOptions own = options;
     own.threads = settings.threads;
-    const std::unique_ptr<PathTracer> method = make_tracer(settings, job, own);
+    const std::unique_ptr<Method> method = make_tracer(settings, job, own);
     if (prepare)
         prepare(*method);
     while (method->render_batch()) {

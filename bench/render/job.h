@@ -44,12 +44,12 @@ struct Render {
     double stage_seconds(const std::string &name) const;
 };
 
-/// The method of the settings, which is a path tracer with or without gradients.
-std::unique_ptr<PathTracer> make_tracer(const Settings &settings, const Job &job, const RenderOptions &options);
+/// The method of the settings.
+std::unique_ptr<Method> make_tracer(const Settings &settings, const Job &job, const RenderOptions &options);
 
 /// Renders all samples. `prepare` is called before the first batch. Throws Error where a sample was not finite: such
 /// a render is no measurement.
 Render render(const Settings &settings, const Job &job, const RenderOptions &options = {},
-              const std::function<void(PathTracer &)> &prepare = {});
+              const std::function<void(Method &)> &prepare = {});
 
 } // namespace gradus::bench

@@ -14,7 +14,7 @@ nlohmann::json measure_ray_order(const Settings &settings, const Job &job) {
     for (int i = 0; i < settings.repeats; ++i) {
         for (const auto &[name, order] : orders) {
             const Render r = render(settings, job, {},
-                                    [order = order](PathTracer &method) { method.tracer().set_order(order, order); });
+                                    [order = order](Method &method) { method.tracer()->set_order(order, order); });
             seconds[name].push_back(r.seconds());
             trace[name].push_back(r.stage_seconds("trace"));
             against_none[name].push_back(seconds["none"][std::size_t(i)] / r.seconds());

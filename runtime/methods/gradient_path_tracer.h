@@ -42,8 +42,7 @@ class GradientPathTracer final : public Method {
     /// pixel. Other numbers are other random paths of the same seed. A new method is at number 0.
     void restart(std::uint64_t first_sample, std::uint64_t samples_per_pixel);
 
-    /// For measuring: the tracer records and replays the rays of a render.
-    Tracer &tracer() { return session_.tracer; }
+    Tracer *tracer() override { return &session_.tracer; }
 
   private:
     /// Where the offset paths of a vertex are: at the first vertices, not connected; at later ones some not connected;

@@ -18,6 +18,7 @@
 namespace gradus {
 
 class Device; // runtime/device/device.h
+class Tracer; // runtime/trace/tracer.h
 
 /// What methods that reconstruct ask beside that.
 struct RenderOptions : SessionOptions {
@@ -50,6 +51,8 @@ class Method {
     /// called after it.
     virtual Image last_image() { return image(); }
     virtual Statistics statistics() const = 0;
+    /// For measuring: records and replays the rays of a render. Null where there is none.
+    virtual Tracer *tracer() { return nullptr; }
 };
 
 /// Methods by their names on the command line; `auto` picks one of the others.

@@ -20,8 +20,7 @@ class PathTracer final : public Method {
     Image image() override;
     Statistics statistics() const override;
 
-    /// For measuring: the tracer records and replays the rays of a render.
-    Tracer &tracer() { return session_.tracer; }
+    Tracer *tracer() override { return &session_.tracer; }
 
   private:
     Session session_;
