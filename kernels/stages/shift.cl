@@ -17,6 +17,7 @@
 #include "kernels/lib/bsdf_evaluate.h"
 #include "kernels/lib/gradient.h"
 #include "kernels/lib/light_sampling.h"
+#include "kernels/lib/ordered.h"
 #include "kernels/lib/reconnectable.h"
 #include "kernels/lib/scene_hit.h"
 #include "kernels/lib/shift_reconnection.h"
@@ -83,13 +84,14 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
     const chosen_light chosen =
         light_sampling(lights, light_kinds, light_alias, light_count, scene_diameter, unit, base, u);
     const light_choice s = chosen.choice;
-    const vec3 light_point = v3_add(base, s.connection);
     const int is_surface =
         IS_LIGHT(chosen, triangle, TRAIT_LIGHT_TRIANGLE) | IS_LIGHT(chosen, sphere, TRAIT_LIGHT_SPHERE);
     const int is_point = IS_LIGHT(chosen, point, TRAIT_LIGHT_POINT);
     const int is_finite_light = is_surface | is_point;
     const real base_distance_squared = v3_dot(s.connection, s.connection);
     const real base_cosine = -v3_dot(s.normal, s.direction);
+    /* After the light's normal, which is normalised as the ways to it will be (kernels/lib/ordered.h). */
+    const vec3 light_point = v3_after(v3_add(base, s.connection), base_cosine);
     const real end_gap = FIELD_OF(light, lights, chosen.light, offset);
     const int arrives = rgb_max(AT_RGB(event, arriving, row)) > R(0);
 #endif
@@ -158,10 +160,15 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
 #endif
         AT_UINT(link, open, (size_t)j * stride + row) = asks_light ? 1u : 0u;
 
-        /* The step to the next vertex. */
-        const vec3 connection = v3_sub(hit.position, from);
+        /* The step to the next vertex: the like computation, one after the other (kernels/lib/ordered.h). */
+#if SAMPLES_LIGHTS
+        const vec3 from_after = v3_after(from, cosine);
+#else
+        const vec3 from_after = from;
+#endif
+        const vec3 connection = v3_sub(hit.position, from_after);
         const vec3 to_next = v3_select(is_escaped, base_direction, v3_normalize(connection));
-        const real reconnection = is_escaped ? R(1) : reconnection_jacobian(base, from, hit.position, hit.normal);
+        const real reconnection = is_escaped ? R(1) : reconnection_jacobian(base, from_after, hit.position, hit.normal);
         const int same_side = is_escaped | (-v3_dot(hit.normal, connection) * base_side > R(0));
 #if TRAIT_APART
         const int both_rough = base_is_rough & ((kind & kind_is_rough) != 0u);
