@@ -113,7 +113,8 @@ GradientPathTracer::GradientPathTracer(Device &device, const Scene &scene, const
       escape_(stages_.add(escape_stage(session_))), emission_(stages_.add(emission_stage(session_))),
       gradient_escape_(stages_.add(gradient_emission_stage("gradient escape", "1", session_.has("TRAIT_ENVIRONMENT")))),
       gradient_emission_(stages_.add(gradient_emission_stage("gradient emission", "0", session_.has_emission()))),
-      shade_(stages_.add(shade_stage({"with_offsets"}))), advance_(stages_.add(advance_stage("advance", "0", true))),
+      shade_with_offsets_(stages_.add(shade_stage(true))), shade_(stages_.add(shade_stage(false))),
+      advance_(stages_.add(advance_stage("advance", "0", true))),
       advance_apart_(stages_.add(advance_stage("advance apart", "1", session_.has("TRAIT_APART")))),
       join_(stages_.add({.name = "join", .kinds = StageDeclaration::Kinds::all, .numbers = {"first", "keeps"}})),
       count_(stages_.add(count_stage())), combine_(stages_.add({.name = "gradient_combine", .strict = true})),
@@ -335,12 +336,8 @@ void GradientPathTracer::find_emission(const Hits &next) {
 /// Next-event estimation and scattering at the new vertices.
 void GradientPathTracer::shade(const Hits &next) {
     for (std::uint32_t phase = 0; phase < phases_.count; ++phase)
-        for (std::size_t kind = 0; kind < paths_.kinds(); ++kind) {
-            const Range rows = next.kind(phase, kind);
-            shade_.run_kind(
-                kind, rows.count,
-                {{"first", next.place(rows.first)}, {"to", rows.first}, {"with_offsets", phase != phases_.later}});
-        }
+        for (std::size_t kind = 0; kind < paths_.kinds(); ++kind)
+            run_shade(phase == phases_.later ? shade_ : shade_with_offsets_, next, next.kind(phase, kind), kind);
 }
 
 /// Brings offset paths to the new vertices; those that are connected there take the base path's direction. `stride` as
@@ -371,8 +368,7 @@ bool GradientPathTracer::render_batch() {
     const auto start = std::chrono::steady_clock::now();
     if (!solver_ && !solver_compiled_.valid())
         solver_compiled_ = std::async(std::launch::async, [this] {
-            PoissonSolver::compile(session_.device,
-                                   poisson_options(options_, session_.settings.samples_per_pixel));
+            PoissonSolver::compile(session_.device, poisson_options(options_, session_.settings.samples_per_pixel));
         });
     if (!direct_edges_ && session_.max_depth() != 0 && !session_.settings.hide_emitters)
         direct_edges_ =
