@@ -145,7 +145,8 @@ void CapturedLaunch::lay_out(CapturedBuffer &captured, const TableLayout &layout
     captured.is_uint.resize(std::min(captured.is_uint.size(), captured.content.size() / (captured.rows * float_bytes)));
     captured.lines = layout.rows({1, 1, 1, 1, uint_argument("at_first") ? 1u : 4u});
     const std::string &name = captured.arguments.front();
-    captured.line_rows = name == "link" || name == "offset_ray" ? uint_argument("stride") : captured.rows / captured.lines;
+    captured.line_rows =
+        name == "link" || name == "offset_ray" ? uint_argument("stride") : captured.rows / captured.lines;
 }
 
 std::size_t CapturedLaunch::uint_argument(const std::string &name) const {

@@ -54,7 +54,8 @@ STAGE gradient_accumulate(uint count, uint slots, uint pixels, uint first_slot, 
     ADD(3, pixel, 1, has_right ? DIFFERENCE(0, r, at) - DIFFERENCE(1, r, at + right) : R(0))
     ADD(4, pixel, 1, has_right ? DIFFERENCE(0, g, at) - DIFFERENCE(1, g, at + right) : R(0))
     ADD(5, pixel, 1, has_right ? DIFFERENCE(0, b, at) - DIFFERENCE(1, b, at + right) : R(0))
-    const uint pixel_above = has_above ? pixel - crop_width : pixel;
+    /* The first row reads where nobody writes: the last row has no gradient. */
+    const uint pixel_above = has_above ? pixel - crop_width : pixels - crop_width + place.x;
     ADD(6, pixel_above, has_above, FROM_ABOVE(r) - DIFFERENCE(3, r, at))
     ADD(7, pixel_above, has_above, FROM_ABOVE(g) - DIFFERENCE(3, g, at))
     ADD(8, pixel_above, has_above, FROM_ABOVE(b) - DIFFERENCE(3, b, at))

@@ -170,8 +170,8 @@ TableList GradientPathTracer::tables() const {
             {.name = "vertex", .columns = vertex_columns - not_needed},
             {.name = "event", .columns = event_columns},
             {.name = "offset", .multiple = 4, .columns = offset_columns_used, .alternates = true, .is_cleared = true},
-            {.name = "shift", .multiple = 4, .columns = shift_columns},
-            {.name = "evaluation", .multiple = 8, .columns = evaluation_columns},
+            {.name = "shift", .multiple = 4, .columns = shift_columns, .is_cleared = true},
+            {.name = "evaluation", .multiple = 8, .columns = evaluation_columns, .is_cleared = true},
             {.name = "link", .multiple = 8, .columns = link_columns},
             {.name = "offset_vertex",
              .multiple = 4,
@@ -369,8 +369,8 @@ bool GradientPathTracer::render_batch() {
     if (done_ >= total_)
         return false;
     const auto start = std::chrono::steady_clock::now();
-    if (!solver_ && !solver_compiled_.valid())
-        solver_compiled_ = std::async(std::launch::async, [this] {
+    if (!solver_ && !solver_compiled_.valid()) // with one thread, once it is needed
+        solver_compiled_ = std::async(options_.threads == 1 ? std::launch::deferred : std::launch::async, [this] {
             PoissonSolver::compile(session_.device,
                                    poisson_options(options_, session_.settings.samples_per_pixel));
         });

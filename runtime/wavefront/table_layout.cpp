@@ -11,11 +11,10 @@ namespace {
 #define GRADUS_REAL_COLUMN(table, column, text) {#column, false},
 #define GRADUS_UINT_COLUMN(table, column, text) {#column, true},
 #define GRADUS_LAYOUT(table, COLUMNS)                                                                                  \
-    {#table,                                                                                                           \
-     {{COLUMNS(GRADUS_REAL_COLUMN, GRADUS_UINT_COLUMN)}, [](const TableSizes &sizes) -> std::size_t {                  \
-          [[maybe_unused]] const auto [capacity, slots, pixels, crop_width, own_rows] = sizes;                         \
-          return ROWS_OF_##table;                                                                                      \
-      }}},
+    {#table, {{COLUMNS(GRADUS_REAL_COLUMN, GRADUS_UINT_COLUMN)}, [](const TableSizes &sizes) -> std::size_t {          \
+                  [[maybe_unused]] const auto [capacity, slots, pixels, crop_width, own_rows] = sizes;                 \
+                  return ROWS_OF_##table;                                                                              \
+              }}},
 
 const std::map<std::string, TableLayout> layouts = {GRADUS_TABLES(GRADUS_LAYOUT)};
 

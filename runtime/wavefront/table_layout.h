@@ -22,8 +22,8 @@ struct TableLayout {
     std::size_t (*rows)(const TableSizes &sizes);
 };
 
-/// The layout of the table that a kernel's argument of this name points to, which may be `direct` or end in `_old`; null
-/// where it is none of kernels/shared/tables.h.
+/// The layout of the table that a kernel's argument of this name points to, which may be `direct` or end in `_old`;
+/// null where it is none of kernels/shared/tables.h.
 const TableLayout *table_layout(const std::string &argument);
 
 } // namespace gradus
