@@ -89,6 +89,13 @@ void Replay::restore() const {
             write(memory.buffer, *memory.content);
 }
 
+std::vector<std::vector<char>> Replay::contents() const {
+    std::vector<std::vector<char>> result;
+    for (const Memory &memory : memory_)
+        result.push_back(content_of(memory.buffer));
+    return result;
+}
+
 void Replay::run() {
     if (lines_ > 0)
         kernel_.launch(items_, lines_);

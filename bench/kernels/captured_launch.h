@@ -39,6 +39,8 @@ class Replay {
     /// Puts back what the launch writes.
     void restore() const;
     Kernel &kernel() { return kernel_; }
+    /// What CapturedLaunch::buffers() hold now, in the precision of this build.
+    std::vector<std::vector<char>> contents() const;
 
   private:
     friend class CapturedLaunch;
@@ -64,6 +66,7 @@ class CapturedLaunch {
 
     const std::string &name() const { return request_.name; }
     const std::string &file() const { return request_.file; }
+    bool is_written(std::size_t buffer) const { return is_written_[buffer]; }
     std::size_t items() const { return items_ * std::max<std::size_t>(lines_, 1) * planes_; }
     Device &device() const { return device_; }
     const std::vector<CapturedBuffer> &buffers() const { return buffers_; }
