@@ -1,6 +1,6 @@
 #include "bench/kernels/captured_launch.h"
 
-#include "bench/kernels/table_layout.h"
+#include "runtime/wavefront/table_layout.h"
 
 #include <algorithm>
 #include <cstring>
@@ -53,6 +53,10 @@ std::uint32_t number_at(const char *column, std::size_t row) {
 /// launch takes; where all are equal, and the second time in columns of tables that may hold flags, 0 or 1.
 constexpr int disturbances = 2;
 
+/// Of tables of more lines than these (`link`: connections to lights, then steps), each so many are a column of their
+/// own.
+constexpr std::size_t lines_at_once = 4;
+
 void disturb(char *column, std::size_t rows, bool is_uint, bool is_table, std::size_t taken_row, int way) {
     if (is_uint) {
         std::uint32_t number = number_at(column, taken_row);
@@ -85,11 +89,18 @@ void Replay::restore() const {
             write(memory.buffer, *memory.content);
 }
 
+std::vector<std::vector<char>> Replay::contents() const {
+    std::vector<std::vector<char>> result;
+    for (const Memory &memory : memory_)
+        result.push_back(content_of(memory.buffer));
+    return result;
+}
+
 void Replay::run() {
     if (lines_ > 0)
         kernel_.launch(items_, lines_);
     else
-        kernel_.launch(items_);
+        kernel_.launch_planes(items_, planes_);
     finish(*device_);
 }
 
@@ -102,7 +113,7 @@ double Replay::seconds() {
 
 CapturedLaunch::CapturedLaunch(Device &device, const Launch &launch)
     : device_(device), request_(launch.request), traits_(launch.traits), arguments_(launch.arguments),
-      items_(launch.items), lines_(launch.lines) {
+      items_(launch.items), lines_(launch.lines), planes_(launch.planes) {
     for (const auto &[name, argument] : arguments_) {
         const Buffer *buffer = std::get_if<Buffer>(&argument.value);
         if (!buffer)
@@ -115,14 +126,9 @@ CapturedLaunch::CapturedLaunch(Device &device, const Launch &launch)
             same->arguments.push_back(name);
             continue;
         }
-        CapturedBuffer captured{{name}, *buffer, content_of(*buffer), !argument.type.starts_with("uint"), 0, {}};
-        if (const TableLayout *layout = table_layout(name)) {
-            captured.rows = uint_argument(layout->rows_argument) * layout->rows_factor;
-            captured.is_uint = layout->is_uint;
-            if (captured.rows)
-                captured.is_uint.resize(
-                    std::min(layout->is_uint.size(), captured.content.size() / (captured.rows * float_bytes)));
-        }
+        CapturedBuffer captured{{name}, *buffer, content_of(*buffer), !argument.type.starts_with("uint")};
+        if (const TableLayout *layout = table_layout(name); layout && captured.is_real)
+            lay_out(captured, *layout);
         buffers_.push_back(std::move(captured));
     }
     // One run tells what the launch writes.
@@ -135,6 +141,20 @@ CapturedLaunch::CapturedLaunch(Device &device, const Launch &launch)
 }
 
 CapturedLaunch::~CapturedLaunch() { restore(); }
+
+void CapturedLaunch::lay_out(CapturedBuffer &captured, const TableLayout &layout) const {
+    captured.rows = layout.rows({uint_argument("capacity"), uint_argument("slots"), uint_argument("pixels"),
+                                 uint_argument("crop_width"), uint_argument("own_rows")});
+    if (captured.rows == 0)
+        return;
+    for (const TableColumn &column : layout.columns)
+        captured.is_uint.push_back(column.is_uint);
+    captured.is_uint.resize(std::min(captured.is_uint.size(), captured.content.size() / (captured.rows * float_bytes)));
+    captured.lines = layout.rows({1, 1, 1, 1, uint_argument("at_first") ? 1u : 4u});
+    const std::string &name = captured.arguments.front();
+    captured.line_rows =
+        name == "link" || name == "offset_ray" ? uint_argument("stride") : captured.rows / captured.lines;
+}
 
 std::size_t CapturedLaunch::uint_argument(const std::string &name) const {
     const auto found = arguments_.find(name);
@@ -161,6 +181,7 @@ Replay CapturedLaunch::replay(Precision precision, const std::map<std::string, s
     replay.device_ = &device_;
     replay.items_ = items_;
     replay.lines_ = lines_;
+    replay.planes_ = planes_;
     replay.kernel_ = KernelLibrary(device_, traits_, precision).build({request}).front();
     for (const auto &[name, argument] : arguments_) {
         if (const auto *number = std::get_if<std::uint32_t>(&argument.value))
@@ -202,19 +223,23 @@ double CapturedLaunch::table_bytes_an_item() {
     double bytes = 0;
     for (std::size_t b = 0; b < buffers_.size(); ++b) {
         const CapturedBuffer &captured = buffers_[b];
-        const TableLayout *layout = table_layout(captured.arguments.front());
-        const bool is_list = captured.arguments.front() == "index" || captured.arguments.front() == "bin";
-        if (!is_list && (!layout || captured.rows == 0))
+        const std::string &name = captured.arguments.front();
+        const bool is_list = name == "index" || name == "bin" || name == "offsets_state";
+        if (!is_list && captured.rows == 0)
             continue;
         const std::size_t rows = is_list ? captured.content.size() / float_bytes : captured.rows;
         const std::size_t columns = is_list ? 1 : captured.is_uint.size();
-        for (std::size_t c = 0; c < columns; ++c) {
-            const std::size_t first = c * rows * float_bytes, size = rows * float_bytes;
+        const std::size_t lines = is_list ? 1 : std::min(captured.lines, lines_at_once);
+        const std::size_t parts = is_list ? 1 : captured.lines / lines;
+        for (std::size_t c = 0; c < columns * parts; ++c) {
+            const std::size_t part = c % parts, begin = parts > 1 ? part * lines * captured.line_rows : 0;
+            const std::size_t part_rows = parts > 1 ? lines * captured.line_rows : rows;
+            const std::size_t first = (c / parts * rows + begin) * float_bytes, size = part_rows * float_bytes;
             bool is_read = false, is_written = differ(result[b], captured.content, first, size);
             for (int way = 0; way < disturbances; ++way) {
                 std::vector<char> disturbed = captured.content;
-                disturb(&disturbed[first], rows, is_list || captured.is_uint[c], !is_list,
-                        std::min(is_list ? place : taken_row, rows - 1), way);
+                disturb(&disturbed[first], part_rows, is_list || captured.is_uint[c / parts], !is_list,
+                        std::min(is_list ? place : taken_row, part_rows - 1), way);
                 write(captured.buffer, disturbed);
                 launch.run();
                 const std::vector<std::vector<char>> other = contents();
@@ -232,7 +257,7 @@ double CapturedLaunch::table_bytes_an_item() {
                               (!is_own || differ(other[b], disturbed, at, float_bytes));
                 }
             }
-            bytes += double(float_bytes) * (layout ? layout->rows_an_item : 1) * (int(is_read) + int(is_written));
+            bytes += double(float_bytes * lines) / double(planes_) * (int(is_read) + int(is_written));
         }
     }
     return bytes;

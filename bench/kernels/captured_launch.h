@@ -4,22 +4,29 @@
 
 #include "runtime/device/launch_observer.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
+namespace gradus {
+struct TableLayout; // runtime/wavefront/table_layout.h
+}
+
 namespace gradus::bench {
 
 /// Memory that a launch was given, under each of its names: the solver's kernels work in place.
 struct CapturedBuffer {
     std::vector<std::string> arguments;
-    Buffer buffer;             ///< that of the render
-    std::vector<char> content; ///< before the launch
-    bool is_real = true;       ///< else uint
-    std::size_t rows = 0;      ///< of a table of kernels/shared/tables.h; 0 for anything else
-    std::vector<bool> is_uint; ///< by column of a table, as many as the buffer holds
+    Buffer buffer;                  ///< that of the render
+    std::vector<char> content;      ///< before the launch
+    bool is_real = true;            ///< else uint
+    std::size_t rows = 0;           ///< of a table of kernels/shared/tables.h; 0 for anything else
+    std::vector<bool> is_uint = {}; ///< by column of a table, as many as the buffer holds
+    std::size_t lines = 1;          ///< rows for each work-item: 4 where there is one for each offset path
+    std::size_t line_rows = 0;      ///< how far they are apart
 };
 
 /// A kernel with its arguments, in one build, and what restores its memory.
@@ -32,6 +39,8 @@ class Replay {
     /// Puts back what the launch writes.
     void restore() const;
     Kernel &kernel() { return kernel_; }
+    /// What CapturedLaunch::buffers() hold now, in the precision of this build.
+    std::vector<std::vector<char>> contents() const;
 
   private:
     friend class CapturedLaunch;
@@ -42,7 +51,7 @@ class Replay {
     };
     Device *device_ = nullptr;
     Kernel kernel_;
-    std::size_t items_ = 0, lines_ = 0; ///< as of Launch
+    std::size_t items_ = 0, lines_ = 0, planes_ = 1; ///< as of Launch
     std::vector<Memory> memory_;
 };
 
@@ -57,14 +66,16 @@ class CapturedLaunch {
 
     const std::string &name() const { return request_.name; }
     const std::string &file() const { return request_.file; }
-    std::size_t items() const { return lines_ > 0 ? items_ * lines_ : items_; }
+    bool is_written(std::size_t buffer) const { return is_written_[buffer]; }
+    std::size_t items() const { return items_ * std::max<std::size_t>(lines_, 1) * planes_; }
     Device &device() const { return device_; }
     const std::vector<CapturedBuffer> &buffers() const { return buffers_; }
 
     /// The kernel as it was built for the launch but for its arithmetic and these definitions more.
     Replay replay(Precision precision, const std::map<std::string, std::string> &definitions = {});
 
-    /// Bytes that one item has to read and write, in float: every column of a table that the launch touches, once.
+    /// Bytes that one item has to read and write, in float: every column of a table that the launch touches, once; the
+    /// items of several planes share them.
     ///
     /// Found by experiment: a column is read if the launch leaves something else once its values are changed, and
     /// written if the launch leaves it changed. Records of the scene are not counted, for they stay in caches.
@@ -72,6 +83,7 @@ class CapturedLaunch {
 
   private:
     std::size_t uint_argument(const std::string &name) const; ///< 0 where there is none
+    void lay_out(CapturedBuffer &captured, const TableLayout &layout) const;
     std::vector<std::vector<char>> contents() const;
     void restore() const;
 
@@ -79,7 +91,7 @@ class CapturedLaunch {
     KernelRequest request_;
     TraitValues traits_;
     std::map<std::string, Launch::Argument> arguments_;
-    std::size_t items_, lines_;
+    std::size_t items_, lines_, planes_;
     std::vector<CapturedBuffer> buffers_;
     std::vector<bool> is_written_; ///< by buffer
 };

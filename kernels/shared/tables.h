@@ -251,39 +251,38 @@
     REAL(gradient_film, square_7, "")                                                                                  \
     REAL(gradient_film, square_8, "")
 
+/* All of these: TABLE(name, columns). */
+#define GRADUS_TABLES(TABLE)                                                                                           \
+    TABLE(ray, GRADUS_RAY_COLUMNS)                                                                                     \
+    TABLE(shadow, GRADUS_SHADOW_COLUMNS)                                                                               \
+    TABLE(path, GRADUS_PATH_COLUMNS)                                                                                   \
+    TABLE(radiance, GRADUS_RADIANCE_COLUMNS)                                                                           \
+    TABLE(feature, GRADUS_FEATURE_COLUMNS)                                                                             \
+    TABLE(film, GRADUS_FILM_COLUMNS)                                                                                   \
+    TABLE(feature_film, GRADUS_FEATURE_FILM_COLUMNS)                                                                   \
+    TABLE(primary, GRADUS_PRIMARY_COLUMNS)                                                                             \
+    TABLE(primary_vertex, GRADUS_PRIMARY_VERTEX_COLUMNS)                                                               \
+    TABLE(vertex, GRADUS_VERTEX_COLUMNS)                                                                               \
+    TABLE(event, GRADUS_EVENT_COLUMNS)                                                                                 \
+    TABLE(offset_vertex, GRADUS_OFFSET_VERTEX_COLUMNS)                                                                 \
+    TABLE(own_vertex, GRADUS_OWN_VERTEX_COLUMNS)                                                                       \
+    TABLE(offset_ray, GRADUS_OFFSET_RAY_COLUMNS)                                                                       \
+    TABLE(offset, GRADUS_OFFSET_COLUMNS)                                                                               \
+    TABLE(shift, GRADUS_SHIFT_COLUMNS)                                                                                 \
+    TABLE(evaluation, GRADUS_EVALUATION_COLUMNS)                                                                       \
+    TABLE(link, GRADUS_LINK_COLUMNS)                                                                                   \
+    TABLE(prefix, GRADUS_PREFIX_COLUMNS)                                                                               \
+    TABLE(difference, GRADUS_DIFFERENCE_COLUMNS)                                                                       \
+    TABLE(carry, GRADUS_CARRY_COLUMNS)                                                                                 \
+    TABLE(gradient_film, GRADUS_GRADIENT_FILM_COLUMNS)
+
 GRADUS_LIB_BEGIN
 
 #define GRADUS_COLUMN_INDEX(table, column, text) table##_##column,
-enum ray_column { GRADUS_RAY_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) ray_columns };
-enum shadow_column { GRADUS_SHADOW_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) shadow_columns };
-enum path_column { GRADUS_PATH_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) path_columns };
-enum radiance_column { GRADUS_RADIANCE_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) radiance_columns };
-enum feature_column { GRADUS_FEATURE_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) feature_columns };
-enum film_column { GRADUS_FILM_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) film_columns };
-enum feature_film_column { GRADUS_FEATURE_FILM_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) feature_film_columns };
-enum primary_column { GRADUS_PRIMARY_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) primary_columns };
-enum primary_vertex_column {
-    GRADUS_PRIMARY_VERTEX_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) primary_vertex_columns
-};
-enum vertex_column { GRADUS_VERTEX_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) vertex_columns };
-enum event_column { GRADUS_EVENT_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) event_columns };
-enum offset_vertex_column {
-    GRADUS_OFFSET_VERTEX_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) offset_vertex_columns
-};
-enum own_vertex_column {
-    GRADUS_OWN_VERTEX_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) own_vertex_columns
-};
-enum offset_ray_column { GRADUS_OFFSET_RAY_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) offset_ray_columns };
-enum offset_column { GRADUS_OFFSET_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) offset_columns };
-enum shift_column { GRADUS_SHIFT_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) shift_columns };
-enum evaluation_column { GRADUS_EVALUATION_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) evaluation_columns };
-enum link_column { GRADUS_LINK_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) link_columns };
-enum prefix_column { GRADUS_PREFIX_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) prefix_columns };
-enum difference_column { GRADUS_DIFFERENCE_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) difference_columns };
-enum carry_column { GRADUS_CARRY_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) carry_columns };
-enum gradient_film_column {
-    GRADUS_GRADIENT_FILM_COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) gradient_film_columns
-};
+#define GRADUS_COLUMN_ENUM(table, COLUMNS)                                                                             \
+    enum table##_column { COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) table##_columns };
+GRADUS_TABLES(GRADUS_COLUMN_ENUM)
+#undef GRADUS_COLUMN_ENUM
 #undef GRADUS_COLUMN_INDEX
 
 /* Frames that gradient_accumulate adds at once. */

@@ -87,7 +87,8 @@ STAGE weigh(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         const int is_dirac = (kind & kind_is_dirac) != 0u;
         const int both_rough = (base_kind & kind & kind_is_rough) != 0u;
 
-        /* The light sample. */
+        /* The light sample. Selected, not scaled: of offset paths that are no longer their own nothing was asked, so what
+         * is read here of `evaluation` and `shift` may be of another row's time. */
         const rgb f_light = AT_RGB(evaluation, value, at);
         const real pdf_light = AT(evaluation, pdf, at), density = AT(shift, light_density, at);
         const real jacobian_light = AT(shift, light_jacobian, at);

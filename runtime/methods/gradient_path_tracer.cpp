@@ -171,8 +171,8 @@ TableList GradientPathTracer::tables() const {
             {.name = "vertex", .columns = vertex_columns - not_needed},
             {.name = "event", .columns = event_columns},
             {.name = "offset", .multiple = 4, .columns = offset_columns_used, .alternates = true, .is_cleared = true},
-            {.name = "shift", .multiple = 4, .columns = shift_columns},
-            {.name = "evaluation", .multiple = 8, .columns = evaluation_columns},
+            {.name = "shift", .multiple = 4, .columns = shift_columns, .is_cleared = true},
+            {.name = "evaluation", .multiple = 8, .columns = evaluation_columns, .is_cleared = true},
             {.name = "link", .multiple = 8, .columns = link_columns},
             {.name = "offset_vertex",
              .multiple = 4,
@@ -182,7 +182,6 @@ TableList GradientPathTracer::tables() const {
             {.name = "offsets_state", .columns = with("TRAIT_APART", 1), .is_uint = true},
             {.name = "outcome", .rows = RowsOf::chunk, .columns = shift_outcomes, .is_uint = true, .is_cleared = true},
             {.name = "carry", .rows = RowsOf::image_row, .columns = carry_columns},
-            {.name = "carry_old", .rows = RowsOf::image_row, .columns = carry_columns},
             {.name = "gradient_film", .rows = RowsOf::pixel, .columns = gradient_film_columns, .is_cleared = true}};
 }
 
@@ -366,8 +365,8 @@ bool GradientPathTracer::render_batch() {
     if (done_ >= total_)
         return false;
     const auto start = std::chrono::steady_clock::now();
-    if (!solver_ && !solver_compiled_.valid())
-        solver_compiled_ = std::async(std::launch::async, [this] {
+    if (!solver_ && !solver_compiled_.valid()) // with one thread, once it is needed
+        solver_compiled_ = std::async(options_.threads == 1 ? std::launch::deferred : std::launch::async, [this] {
             PoissonSolver::compile(session_.device, poisson_options(options_, session_.settings.samples_per_pixel));
         });
     if (!direct_edges_ && session_.max_depth() != 0 && !session_.settings.hide_emitters)
@@ -418,13 +417,16 @@ void GradientPathTracer::add_to_film(const Strip &strip) {
     const std::uint32_t width = session_.film.crop_width, pixels = strip.rows * width;
     combine_.run(strip.frames * pixels);
     film_.add(strip.frames * pixels, strip.first * width);
-    // What the strip before left is read while this one leaves its own.
-    const bool is_odd = strip.first / strip_rows_ % 2 == 1;
-    accumulate_.bind("carry", (*tables_)[is_odd ? "carry_old" : "carry"]);
-    accumulate_.bind("carry_old", (*tables_)[is_odd ? "carry" : "carry_old"]);
     for (std::uint32_t frame = 0; frame < strip.frames; frame += accumulated_frames)
         accumulate_.run(
             pixels, {{"first_slot", frame * pixels}, {"frames", std::min(accumulated_frames, strip.frames - frame)}});
+    // Differences of offset 2 in the last row are finished by the next strip.
+    const bool is_last = strip.first + strip.rows == session_.film.crop_height;
+    const std::size_t size = real_bytes(options_.precision), slots = tables_->rows().slots;
+    const std::size_t last_row = 2 * slots + std::size_t(strip.rows - 1) * width;
+    for (std::size_t column = 0; !is_last && column < carry_columns; ++column)
+        (*tables_)["difference"].copy_to((*tables_)["carry"], size * (column * 4 * slots + last_row),
+                                         size * column * width, size * width);
 }
 
 void GradientPathTracer::restart(std::uint64_t first_sample, std::uint64_t samples_per_pixel) {

@@ -92,10 +92,10 @@ std::uint32_t choose_batch_size(Device &device, std::uint32_t requested, std::ui
                                 Precision precision) {
     const DeviceDescription &d = device.description();
     // By a batch of one path: what does not grow with the batch is small, or is the film, which must fit anyway.
-    const TableRows one = {1, batches_a_pass, 0, 0, 0};
+    const TableRows none = {}, one = {1, batches_a_pass, 0, 0, 0};
     std::uint64_t of_path = 0, largest_table = 1;
     for (const TableDeclaration &table : list) {
-        const std::uint64_t bytes = table_bytes(table, one, precision);
+        const std::uint64_t bytes = table_bytes(table, one, precision) - table_bytes(table, none, precision);
         of_path += bytes * (table.alternates ? 2 : 1);
         largest_table = std::max(largest_table, bytes);
     }

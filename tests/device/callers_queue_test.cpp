@@ -73,8 +73,9 @@ class CallersQueue : public ::testing::Test {
         const KernelRequest scan = {
             "partition scan", "kernels/stages/partition.cl", "partition_scan", {{"PARTITION_CHUNK", "4"}}};
         Kernel kernel = library.build({scan})[0];
-        kernel.bind(Buffer::wrap(device, "offset", counts));
+        kernel.bind(Buffer::wrap(device, "chunk_offset", counts));
         kernel.bind(Buffer::wrap(device, "range", ranges));
+        kernel.set("count", 1);
         kernel.set("bins", 3);
         kernel.set("chunks", 2);
         kernel.launch(1);

@@ -42,7 +42,7 @@ std::string code_of(const std::string &text) {
 }
 
 std::set<std::string> traits_used_in(const std::string &text) {
-    static const std::regex name(R"(\b(TRAIT_\w+|STRATEGY|SOLVER_(?:CHANNELS|WEIGHTED|JOINT))\b)");
+    static const std::regex name(R"(\b(TRAIT_\w+|STRATEGY|SAMPLES_LIGHTS|SOLVER_(?:CHANNELS|WEIGHTED|JOINT))\b)");
     const std::string code = code_of(text);
     std::set<std::string> names;
     for (std::sregex_iterator i(code.begin(), code.end(), name), end; i != end; ++i)
@@ -59,8 +59,8 @@ std::set<std::string> missing(const std::set<std::string> &wanted, const std::se
 }
 
 TEST(EmbeddedKernels, HoldEveryStage) {
-    EXPECT_THAT(stage_files(), ::testing::IsSupersetOf({"kernels/stages/camera.cl", "kernels/stages/surface.cl",
-                                                        "kernels/stages/scatter.cl", "kernels/stages/accumulate.cl"}));
+    EXPECT_THAT(stage_files(), ::testing::IsSupersetOf({"kernels/stages/camera.cl", "kernels/stages/shade.cl",
+                                                        "kernels/stages/shift.cl", "kernels/stages/accumulate.cl"}));
     for (const EmbeddedKernel &file : embedded_kernels())
         EXPECT_FALSE(file.text.empty()) << file.path;
 }
@@ -86,7 +86,7 @@ TEST(KernelTraits, AreUsedByEachStageThatHasThem) {
 
 TEST(KernelTraits, AreThoseThatAMethodKnows) {
     // Of the render and of the solver, not of the scene.
-    std::set<std::string> known = {"TRAIT_AOV", "TRAIT_SHARED_JITTER", "TRAIT_APART",     "TRAIT_SHIFT_DISTANCE",
+    std::set<std::string> known = {"TRAIT_AOV", "TRAIT_SHARED_JITTER", "TRAIT_APART", "TRAIT_SHIFT_DISTANCE", "TRAIT_GRADIENT", "SAMPLES_LIGHTS",
                                    "STRATEGY",  "SOLVER_CHANNELS",     "SOLVER_WEIGHTED", "SOLVER_JOINT"};
     for (const auto &[name, value] : scene_traits(Scene{}))
         known.insert(name);

@@ -50,9 +50,10 @@ KernelRequest scan_of(int chunk) {
 
 std::vector<std::uint32_t> run_scan(Device &device, Kernel kernel) {
     const std::vector<std::uint32_t> counts = {3, 1, 4, 1, 5, 9}, zeros(8);
-    const Buffer offset(device, "offset", counts.data(), 24), range(device, "range", zeros.data(), 32);
+    const Buffer offset(device, "chunk_offset", counts.data(), 24), range(device, "range", zeros.data(), 32);
     kernel.bind(offset);
     kernel.bind(range);
+    kernel.set("count", 1);
     kernel.set("bins", 3);
     kernel.set("chunks", 2);
     kernel.launch(1);

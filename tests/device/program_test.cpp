@@ -34,9 +34,10 @@ TEST_F(Program, LaunchesWithArgumentsByName) {
     const std::vector<std::uint32_t> counts = {3, 1, 4, 1, 5, 9};
     constexpr std::uint32_t canary = 0xC0FFEE;
     const std::vector<std::uint32_t> canaries(8, canary);
-    const Buffer offset(device, "offset", counts.data(), 24), range(device, "range", canaries.data(), 32);
+    const Buffer offset(device, "chunk_offset", counts.data(), 24), range(device, "range", canaries.data(), 32);
     kernel.bind(offset);
     kernel.bind(range);
+    kernel.set("count", 1);
     kernel.set("bins", 3);
     kernel.set("chunks", 2);
     kernel.set("no_such_argument", 5); // left out in silence
@@ -48,11 +49,12 @@ TEST_F(Program, LaunchesWithArgumentsByName) {
 
 TEST_F(Program, TellsAnObserverOfLaunchesAndNotOfItsOwn) {
     std::vector<std::string> seen;
-    const Buffer offset(device, "offset", 64), range(device, "range", 64);
+    const Buffer offset(device, "chunk_offset", 64), range(device, "range", 64);
     const auto launch = [&] {
         Kernel kernel = library.build({scan})[0];
         kernel.bind(offset);
         kernel.bind(range);
+        kernel.set("count", 1);
         kernel.set("bins", 1);
         kernel.set("chunks", 3);
         kernel.launch(1);
@@ -75,8 +77,9 @@ TEST_F(Program, TellsAnObserverOfLaunchesAndNotOfItsOwn) {
 
 TEST_F(Program, WillNotLaunchWithoutAnArgument) {
     Kernel kernel = library.build({scan})[0];
-    const Buffer offset(device, "offset", 64), range(device, "range", 64);
+    const Buffer offset(device, "chunk_offset", 64), range(device, "range", 64);
     kernel.bind(offset);
+    kernel.set("count", 1);
     kernel.set("bins", 1);
     kernel.set("chunks", 1);
     try {
@@ -93,9 +96,10 @@ TEST_F(Program, WillNotLaunchWithoutAnArgument) {
 TEST_F(Program, CountsItsLaunches) {
     Kernel kernel = library.build({scan})[0];
     const std::vector<std::uint32_t> zeros(64);
-    const Buffer offset(device, "offset", zeros.data(), 256), range(device, "range", 256);
+    const Buffer offset(device, "chunk_offset", zeros.data(), 256), range(device, "range", 256);
     kernel.bind(offset);
     kernel.bind(range);
+    kernel.set("count", 1);
     kernel.set("bins", 1);
     kernel.set("chunks", 1);
     for (int i = 0; i < 300; ++i)
@@ -112,15 +116,15 @@ TEST_F(Program, CountsItsLaunches) {
 
 TEST_F(Program, ThatDoesNotCompileIsNamedWithTheCompilersLog) {
     KernelRequest broken = {
-        "scatter broken", "kernels/stages/scatter.cl", "scatter", {{"BSDF", "nonsense"}, {"BSDF_IS_DIRAC", "0"}}};
+        "shade broken", "kernels/stages/shade.cl", "shade", {{"BSDF", "nonsense"}, {"BSDF_IS_DIRAC", "0"}}};
     try {
         library.build({broken});
         FAIL();
     } catch (const Error &error) {
         EXPECT_EQ(error.code, ExitCode::device);
-        EXPECT_THAT(error.what(), HasSubstr("scatter broken"));
+        EXPECT_THAT(error.what(), HasSubstr("shade broken"));
         EXPECT_THAT(error.what(), HasSubstr("nonsense_sample"));
-        EXPECT_THAT(error.what(), HasSubstr("kernels/stages/scatter.cl")) << "the real file, by #line";
+        EXPECT_THAT(error.what(), HasSubstr("kernels/stages/shade.cl")) << "the real file, by #line";
     }
 }
 

@@ -1,5 +1,6 @@
-// The shifts of a render, taken back: at each launch of the stage `shift` every offset path that arrives is made a base
-// path of its own, and the same kernel takes it to where its base path came from.
+// The shifts of a render, taken back: after each launch of the stage `weigh` every offset path that arrives is made a
+// base path of its own, and the same kernels, `shift`, `evaluate` and `weigh`, take it to where its base path came
+// from.
 #pragma once
 
 #include "kernels/lib/vector.h"
@@ -11,7 +12,6 @@
 #include <cstdint>
 #include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace gradus::testing {
@@ -39,20 +39,27 @@ class ShiftInverter {
 
   private:
     struct Base;
+    using Arguments = std::map<std::string, Launch::Argument>;
+    /// A launch, kept.
+    struct Kept {
+        KernelRequest request;
+        TraitValues traits;
+        Arguments arguments;
+    };
     void on_launch(const Launch &launch);
-    /// The shifts of a launch that arrive.
-    std::vector<Base> arrivals(const Launch &launch);
-    void take_back(const Launch &launch, const std::vector<Base> &bases);
+    /// The shifts of a launch of `weigh` that arrive, once it has run.
+    std::vector<Base> arrivals(const Kept &weigh) const;
+    void take_back(const Kept &weigh, const std::vector<Base> &bases);
     lib_float::vec3 hit(std::uint32_t primitive, lib_float::vec3 origin, lib_float::vec3 direction) const;
-    Kernel &kernel_for(const Launch &launch, bool as_apart);
-    void bind_rest(Kernel &kernel, const Launch &launch) const;
-    std::uint32_t number(const Launch &launch, const char *name) const;
+    /// The kernel of a stage, with all arguments as the render had them last.
+    Kernel kernel_of(const std::string &stage);
 
     Device &device_;
     SceneTables tables_;
     Tracer tracer_;
-    std::map<std::pair<std::string, std::string>, Kernel> kernels_; ///< by APART and ESCAPED
-    std::map<std::string, Launch::Argument> arguments_;             ///< the last that any launch had under each name
+    std::map<std::string, Kept> stages_; ///< the last launch of each kernel, by its name in the profile
+    std::map<std::string, Kernel> kernels_;
+    std::vector<Kept> weighed_; ///< launches of `weigh` whose results nobody has looked at
     InverseShifts found_[2];
 };
 

@@ -1,5 +1,7 @@
 // The film: sums that lose nothing, samples that are not finite, and which pixel gets which sample.
-#include "runtime/stages/film_stage.h"
+#include "runtime/wavefront/film.h"
+
+#include "tests/support/small_scenes.h"
 
 #include <gtest/gtest.h>
 
@@ -14,43 +16,56 @@ namespace {
 
 using namespace lib_float;
 
-class Film : public ::testing::Test {
+class FilmTest : public ::testing::Test {
   protected:
-    static TraitValues traits(bool aov) {
-        return {{"TRAIT_REFRACTION", 0}, {"TRAIT_AOV", aov}, {"TRAIT_ANISOTROPIC", 0}, {"TRAIT_SHADING_NORMALS", 0}};
-    }
     Device device;
 };
 
-/// Sets the radiance of slots [0, count) to value(slot, channel).
-template <class Value>
-void set_radiance(const BatchTables &tables, std::uint32_t count, Value value) {
-    const auto view = tables.radiance.map(Access::read_write);
-    auto *radiance = view.template as<float>();
-    for (int c = 0; c < 3; ++c)
-        for (std::uint32_t slot = 0; slot < count; ++slot)
-            radiance[std::size_t(radiance_value_r + c) * tables.slots + slot] = float(value(slot, c));
-}
-
+/// A film with the radiance of its samples, and nothing that renders them.
 struct FilmUnderTest {
-    FilmUnderTest(Device &device, std::uint32_t slots, std::uint32_t width, std::uint32_t height,
-                  const TraitValues &traits)
-        : tables(device, 64, slots, 2, traits, Precision::single),
-          film(device, KernelLibrary(device, traits).build({FilmStage::request()})[0], tables, width, height, traits,
-               Precision::single) {}
-    BatchTables tables;
-    FilmStage film;
+    FilmUnderTest(Device &device, std::uint32_t slots, std::uint32_t width, std::uint32_t height, bool aov)
+        : session(device, scene_of(width, height), options_with(aov), {}), film(session, stages),
+          tables(device, film.tables(), {64, slots, session.pixels(), width, 1}, Precision::single) {
+        session.numbers["slots"] = slots;
+        stages.build(session, tables);
+        film.attach(tables);
+    }
+    static Scene scene_of(std::uint32_t width, std::uint32_t height) {
+        testing::SceneMaker maker(width, 1);
+        maker.floor(-1, 1, 1, maker.material(testing::diffuse(0.5)));
+        maker.scene.film.height = height;
+        return maker.scene;
+    }
+    static SessionOptions options_with(bool aov) {
+        SessionOptions options;
+        options.aov = aov;
+        return options;
+    }
+    /// Sets the radiance of slots [0, count) to value(slot, channel).
+    template <class Value>
+    void set_radiance(std::uint32_t count, Value value) {
+        const auto view = tables["radiance"].map(Access::read_write);
+        auto *radiance = view.template as<float>();
+        for (int c = 0; c < 3; ++c)
+            for (std::uint32_t slot = 0; slot < count; ++slot)
+                radiance[std::size_t(radiance_value_r + c) * tables.rows().slots + slot] = float(value(slot, c));
+    }
+
+    Session session;
+    Stages stages;
+    Film film;
+    Tables tables;
 };
 
-TEST_F(Film, GivesEachPixelItsSamplesWhateverTheBatches) {
+TEST_F(FilmTest, GivesEachPixelItsSamplesWhateverTheBatches) {
     constexpr std::uint32_t pixels = 7 * 3, samples = 100;
     const auto value = [](std::uint64_t sample, int c) { return double(sample % pixels) * 3 + c; };
     for (const std::uint32_t batch : {1u, 5u, 21u, 22u, 50u, 100u}) {
-        FilmUnderTest test(device, 128, 7, 3, traits(false));
+        FilmUnderTest test(device, 128, 7, 3, false);
         for (std::uint32_t done = 0; done < samples; done += batch) {
             const std::uint32_t count = std::min(batch, samples - done);
-            set_radiance(test.tables, count, [&](std::uint32_t slot, int c) { return value(done + slot, c); });
-            test.film.accumulate(count, done % pixels);
+            test.set_radiance(count, [&](std::uint32_t slot, int c) { return value(done + slot, c); });
+            test.film.add(count, done % pixels);
         }
         std::uint64_t non_finite = 0;
         const Image image = test.film.image(samples, non_finite);
@@ -70,14 +85,14 @@ TEST_F(Film, GivesEachPixelItsSamplesWhateverTheBatches) {
 
 // Without compensation a float sum of 1e4 and a million of 1e-3 is off by more than a hundred: 1e-3 is hardly more
 // than half of its last place.
-TEST_F(Film, LosesNothingToRounding) {
+TEST_F(FilmTest, LosesNothingToRounding) {
     constexpr std::uint32_t slots = 8192, many = 1'000'000;
-    FilmUnderTest test(device, slots, 1, 1, traits(false));
-    set_radiance(test.tables, 1, [](std::uint32_t, int) { return 1e4; });
-    test.film.accumulate(1, 0);
-    set_radiance(test.tables, slots, [](std::uint32_t, int) { return 1e-3; });
+    FilmUnderTest test(device, slots, 1, 1, false);
+    test.set_radiance(1, [](std::uint32_t, int) { return 1e4; });
+    test.film.add(1, 0);
+    test.set_radiance(slots, [](std::uint32_t, int) { return 1e-3; });
     for (std::uint32_t done = 0; done < many; done += slots)
-        test.film.accumulate(std::min(slots, many - done), 0);
+        test.film.add(std::min(slots, many - done), 0);
     std::uint64_t non_finite = 0;
     const Image image = test.film.image(many + 1, non_finite);
     const double expected = (1e4 + many * double(1e-3f)) / (many + 1.0);
@@ -90,9 +105,9 @@ TEST_F(Film, LosesNothingToRounding) {
     EXPECT_GT(std::fabs(plain / (many + 1.0) - expected), 1e-3 * expected);
 }
 
-TEST_F(Film, LeavesOutAndCountsWhatIsNotFinite) {
+TEST_F(FilmTest, LeavesOutAndCountsWhatIsNotFinite) {
     constexpr std::uint32_t pixels = 4;
-    FilmUnderTest test(device, 64, 2, 2, traits(false));
+    FilmUnderTest test(device, 64, 2, 2, false);
     const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
     // Three samples of each pixel. Pixel 0: all good. 1: a NaN in one channel. 2: infinities. 3: none that is good.
     const auto value = [&](std::uint32_t slot, int c) -> double {
@@ -103,8 +118,8 @@ TEST_F(Film, LeavesOutAndCountsWhatIsNotFinite) {
             return sample == 1 ? infinity : -infinity;
         return 1 + sample;
     };
-    set_radiance(test.tables, 12, value);
-    test.film.accumulate(12, 0);
+    test.set_radiance(12, value);
+    test.film.add(12, 0);
     std::uint64_t non_finite = 0;
     const Image image = test.film.image(12, non_finite);
     EXPECT_EQ(non_finite, 6u);
@@ -116,11 +131,11 @@ TEST_F(Film, LeavesOutAndCountsWhatIsNotFinite) {
     }
 }
 
-TEST_F(Film, KnowsTheVarianceOfItsMean) {
-    FilmUnderTest test(device, 64, 1, 1, traits(true));
-    test.tables.feature.clear();
-    set_radiance(test.tables, 4, [](std::uint32_t slot, int c) { return (c + 1) * double(slot); }); // 0, 1, 2, 3
-    test.film.accumulate(4, 0);
+TEST_F(FilmTest, KnowsTheVarianceOfItsMean) {
+    FilmUnderTest test(device, 64, 1, 1, true);
+    test.tables["feature"].clear();
+    test.set_radiance(4, [](std::uint32_t slot, int c) { return (c + 1) * double(slot); }); // 0, 1, 2, 3
+    test.film.add(4, 0);
     std::uint64_t non_finite = 0;
     const Image image = test.film.image(4, non_finite);
     // Sample variance 5/3, over 4.
