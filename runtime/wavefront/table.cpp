@@ -95,6 +95,8 @@ std::uint32_t choose_batch_size(Device &device, std::uint32_t requested, std::ui
     const TableRows one = {1, batches_a_pass, 0, 0, 0};
     std::uint64_t of_path = 0, largest_table = 1;
     for (const TableDeclaration &table : list) {
+        if (table.rows == RowsOf::one)
+            continue;
         const std::uint64_t bytes = table_bytes(table, one, precision);
         of_path += bytes * (table.alternates ? 2 : 1);
         largest_table = std::max(largest_table, bytes);
