@@ -5,26 +5,24 @@
  * are needed. The order does not depend on how rows are shared out, since there is but one that is stable. */
 #include "kernels/shared/stage.h"
 
-/* The keys as they lie; those above `highest` become `last`, which is one more, or the same where there is no more. */
-STAGE sort_begin(uint count, uint highest, uint last, __global const uint *sort_from, __global uint *sort_key,
+/* The keys as they lie; larger ones than `last` become that. */
+STAGE sort_begin(uint count, uint last, __global const uint *sort_from, __global uint *sort_key,
                  __global uint *sort_index) {
     const size_t i = work_item();
     if (i >= count)
         return;
-    const uint key = sort_from[i];
-    sort_key[i] = key <= highest ? key : last;
+    sort_key[i] = min(sort_from[i], last);
     sort_index[i] = (uint)i;
 }
 
 /* Other keys of the same rows, in the order that these have now. */
-STAGE sort_again(uint count, uint highest, uint last, __global const uint *sort_from, __global const uint *sort_index,
+STAGE sort_again(uint count, uint last, __global const uint *sort_from, __global const uint *sort_index,
                  __global uint *sort_key_next, __global uint *sort_index_next) {
     const size_t i = work_item();
     if (i >= count)
         return;
     const uint row = sort_index[i];
-    const uint key = sort_from[row];
-    sort_key_next[i] = key <= highest ? key : last;
+    sort_key_next[i] = min(sort_from[row], last);
     sort_index_next[i] = row;
 }
 

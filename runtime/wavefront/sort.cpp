@@ -33,19 +33,19 @@ StageDeclaration sort_stage(const std::string &sort, const std::string &step, st
     return stage;
 }
 
-/// A work-group for each of the device's cores. Each chunk has counts of its own, so that their number is bounded.
+/// Two work-groups for each of the device's cores. Each chunk has counts of its own, so that their number is bounded.
 std::uint32_t chunks_for(const Session &session) {
     const std::uint32_t group =
         session.options.work_group_size ? session.options.work_group_size : default_work_group_size;
-    return std::clamp(session.device.description().compute_units * group, 128u, 1024u);
+    return std::clamp(2 * session.device.description().compute_units * group, 256u, 1024u);
 }
 
 } // namespace
 
 Sort::Sort(const Session &session, Stages &stages, const std::string &name, RowsOf rows_of, std::uint32_t multiple)
     : name_(name), rows_of_(rows_of), multiple_(multiple), most_chunks_(chunks_for(session)),
-      begin_(stages.add(sort_stage(name, "begin", {"highest", "last"}, {"from", "key", "index"}))),
-      again_(stages.add(sort_stage(name, "again", {"highest", "last"}, {"from", "index", "key_next", "index_next"}))),
+      begin_(stages.add(sort_stage(name, "begin", {"last"}, {"from", "key", "index"}))),
+      again_(stages.add(sort_stage(name, "again", {"last"}, {"from", "index", "key_next", "index_next"}))),
       count_(
           stages.add(sort_stage(name, "count", {"rows", "chunk_rows", "shift", "values", "stride"}, {"key", "place"}))),
       total_(stages.add(sort_stage(name, "total", {"chunks", "stride"}, {"place", "found"}))),
@@ -73,7 +73,7 @@ void Sort::run(const Buffer &keys, std::uint32_t count, std::uint32_t highest) {
     begin_.bind("sort_from", keys);
     begin_.bind("sort_key", to.key);
     begin_.bind("sort_index", to.index);
-    begin_.run(count, {{"highest", highest}, {"last", passes.last}});
+    begin_.run(count, {{"last", passes.last}});
     sort(count, passes);
 }
 
@@ -83,7 +83,7 @@ void Sort::again(const Buffer &keys, std::uint32_t count, std::uint32_t highest)
     again_.bind("sort_from", keys);
     again_.bind("sort_key_next", to.key);
     again_.bind("sort_index_next", to.index);
-    again_.run(count, {{"highest", highest}, {"last", passes.last}});
+    again_.run(count, {{"last", passes.last}});
     sort(count, passes);
 }
 

@@ -43,11 +43,11 @@ class SplatFilm {
     void add(const std::vector<SplatRow> &rows, std::size_t first, std::size_t count) {
         std::uint32_t highest_path = 0;
         {
-            const auto values = (*tables)["splat"].map(Access::read_write);
-            const auto pixels = (*tables)["splat_pixel"].map(Access::read_write);
+            const auto values = (*tables)["splat"].map(Access::write);
+            const auto pixels = (*tables)["splat_pixel"].map(Access::write);
             std::optional<Buffer::Mapping> paths;
             if (order_ == Splats::Order::paths)
-                paths.emplace((*tables)["splat_path"], Access::read_write, Wait::now);
+                paths.emplace((*tables)["splat_path"], Access::write, Wait::now);
             const std::size_t room = tables->rows().paths * 2;
             for (std::size_t i = 0; i < count; ++i) {
                 const SplatRow &row = rows[first + i];
@@ -97,6 +97,7 @@ inline std::vector<SplatRow> random_splats(std::size_t count, std::uint32_t pixe
         row.pixel = engine() % 2 ? spot(engine) : anywhere(engine);
         if (one_of_20(engine) == 0)
             row.pixel = splat_none;
+        row.path = engine() % 1000;
         for (double &value : row.value)
             value = float(std::exp(3 * normal(engine)));
     }
