@@ -5,20 +5,17 @@ import plotting
 # What a stage's name begins with: the part that it is counted to. The first that fits counts.
 PARTS = [
     ("primary", "camera"), ("camera", "camera"),
-    ("gradient_light", "light sampling"), ("light_sample", "light sampling"),
-    ("gradient_scatter", "scattering"), ("scatter", "scattering"),
-    ("surface", "surface"),
-    ("shift", "shifts"), ("settle", "shifts"), ("close links", "shifts"), ("offset", "shifts"),
-    ("gradient_begin", "shifts"), ("gradient connect", "shifts"), ("gradient clear", "shifts"),
+    ("shade", "shading"),
+    ("shift", "shifts"), ("evaluate", "shifts"), ("weigh", "shifts"), ("advance", "shifts"), ("join", "shifts"),
+    ("gradient_begin", "shifts"), ("gradient_connect", "shifts"), ("gradient escape", "shifts"),
+    ("gradient emission", "shifts"),
     ("accumulate", "film"), ("gradient_accumulate", "film"), ("gradient_combine", "film"),
 ]
 COLOURS = {
     "Embree alone (floor)": plotting.GREY,
     "tracing beside Embree": plotting.SKY,
     "camera": plotting.YELLOW,
-    "surface": plotting.ORANGE,
-    "light sampling": plotting.GREEN,
-    "scattering": plotting.BLUE,
+    "shading": plotting.BLUE,
     "shifts": plotting.VERMILLION,
     "film": plotting.PURPLE,
     "reconstruction": plotting.INK,

@@ -128,7 +128,7 @@ class Throughput {
             Largest &largest = launches.at(launch.request.name);
             // A launch of one item ends a sum.
             if (largest.seen++ != largest.ordinal || launch.items == 1 || !is_wanted(launch) ||
-                !known_.insert(launch.request.name).second)
+                !known_.insert(launch.request.file + launch.request.name).second)
                 return;
             CapturedLaunch captured(device_, launch);
             if (is_remarking_)
@@ -252,7 +252,7 @@ class Throughput {
     const Settings &settings_;
     Device &device_;
     bool is_remarking_ = false;
-    std::set<std::string> known_; ///< kernels that this queue size has been measured for
+    std::set<std::string> known_; ///< files and names of kernels that this queue size has been measured for
     std::map<std::string, std::optional<double>> bytes_;
     std::map<std::string, int> widths_; ///< of vectors
     nlohmann::json rows_ = nlohmann::json::array();

@@ -16,7 +16,6 @@
 namespace gradus {
 namespace {
 
-using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsSupersetOf;
 
@@ -95,38 +94,63 @@ TEST_F(Oclgrind, ReportsWhatItIsToFind) {
     EXPECT_THAT(report_of("out[i + 100] = (float)i;"), HasSubstr("Invalid write"));
 }
 
+const std::string kinds[] = {"diffuse",
+                             "roughconductor_ggx",
+                             "roughconductor_beckmann",
+                             "roughdielectric_ggx",
+                             "roughdielectric_beckmann",
+                             "conductor",
+                             "dielectric",
+                             "null"};
+
 // Every BSDF kind and light kind, meshes and spheres, the layers, and two batches.
 TEST_F(Oclgrind, EveryMaterialAndLight) {
-    std::vector<std::string> expected = {"camera",          "classify",       "surface",
-                                         "escape",          "connect",        "accumulate",
+    std::vector<std::string> expected = {"camera",          "classify",       "escape",
+                                         "emission",        "connect",        "accumulate",
                                          "partition count", "partition scan", "partition scatter"};
-    for (const std::string kind : {"diffuse", "roughconductor_ggx", "roughconductor_beckmann", "roughdielectric_ggx",
-                                   "roughdielectric_beckmann", "conductor", "dielectric", "null"}) {
-        expected.push_back("scatter " + kind);
-        expected.push_back("feature " + kind);
-        if (kind.starts_with("rough") || kind == "diffuse")
-            expected.push_back("light_sample " + kind);
-    }
+    for (const std::string &kind : kinds)
+        expected.push_back("shade " + kind);
     EXPECT_THAT(render("materials.xml", {"--size", "8x8", "--aov", "--batch-size", "64"}), IsSupersetOf(expected));
 }
 
 // The same by gradient-domain path tracing; the reconstruction's kernels have a test of their own.
 TEST_F(Oclgrind, GradientsOfEveryMaterialAndLight) {
-    std::vector<std::string> expected = {
-        "primary begin",    "primary surface",       "gradient_begin",   "shift",
-        "settle",           "close links",           "gradient connect", "gradient connect apart",
-        "gradient_combine", "shift escaped",         "gradient escape",  "gradient_accumulate",
-        "shift apart",      "offset begin",          "offset surface",   "gradient emission apart",
-        "gradient clear",   "gradient connect first"};
-    for (const std::string kind : {"diffuse", "roughconductor_ggx", "conductor", "dielectric"})
-        expected.push_back("gradient_scatter apart " + kind);
+    std::vector<std::string> expected = {"primary",
+                                         "gradient_begin",
+                                         "gradient_connect",
+                                         "shift",
+                                         "weigh",
+                                         "gradient escape",
+                                         "gradient emission",
+                                         "advance",
+                                         "advance apart",
+                                         "shift count",
+                                         "gradient_combine",
+                                         "accumulate",
+                                         "gradient_accumulate"};
+    for (const std::string &kind : kinds) {
+        expected.push_back("shade " + kind);
+        expected.push_back("evaluate " + kind);
+    }
+    for (const std::string kind : {"diffuse", "conductor", "dielectric", "null", "roughdielectric_ggx"})
+        expected.push_back("join " + kind);
     EXPECT_THAT(render("materials.xml", {"--method", "gpt", "--norm", "L2", "--size", "8x8", "--batch-size", "64"}),
                 IsSupersetOf(expected));
 }
 
 TEST_F(Oclgrind, GradientsOfOneMaterialAndLight) {
     EXPECT_THAT(render("cornell-box.xml", {"--method", "gpt", "--norm", "L2", "--size", "9x7"}),
-                Contains("gradient_scatter diffuse"));
+                IsSupersetOf({"shift", "weigh", "advance", "join diffuse"}));
+}
+
+// In strips, one of them of another height than the others.
+TEST_F(Oclgrind, GradientsInStripsOfACrop) {
+    render("door-ajar.xml", {"--method", "gpt", "--norm", "L2", "--size", "96x72", "--crop", "5,7,70,8", "--batch-size",
+                             "64", "--rr-depth", "2"});
+}
+
+TEST_F(Oclgrind, GradientsWithEveryTrait) {
+    render("materials.xml", {"--method", "gpt", "--norm", "L2", "--size", "8x8", "--all-traits", "--aov"});
 }
 
 TEST_F(Oclgrind, KernelsWithEveryTrait) {
