@@ -1,9 +1,9 @@
-#include "runtime/methods/gradient_path_tracer.h"
+#include "methods/gradient_path_tracer.h"
 
 #include "kernels/shared/material.h"
 #include "kernels/shared/tables.h"
-#include "runtime/methods/gradient_image.h"
-#include "runtime/methods/path_stages.h"
+#include "methods/gradient_image.h"
+#include "methods/path_stages.h"
 #include "runtime/seconds_since.h"
 #include "runtime/wavefront/segments.h"
 
