@@ -33,6 +33,9 @@ void remark_on_kernels(const Settings &settings);
 /// Errors of the float and relaxed builds of kernels/lib against the double build, on the device.
 nlohmann::json measure_accuracy(const Settings &settings);
 
+/// The sort of runtime/wavefront, sums over runs of equal keys, and splats.
+nlohmann::json measure_sort(const Settings &settings);
+
 /// What the work-group and batch size that a tuner chose gain.
 nlohmann::json measure_tuning(const Settings &settings);
 

@@ -33,10 +33,13 @@ GRADUS_FN film_pixel pixel_of(uint slot, uint strip_pixels, uint strip_multiplie
 /* The slot of neighbour j: right, left, below, above; `slot` itself where there is none. Above the first row of a strip
  * it is below 0, and below the last beyond the strip: only `primary`, whose slots begin a row earlier, has it. */
 GRADUS_FN uint gradient_neighbour(uint slot, uint j, film_pixel pixel, uint width, uint height) {
-    return j == 0u   ? (pixel.x + 1u < width ? slot + 1u : slot)
-           : j == 1u ? (pixel.x > 0u ? slot - 1u : slot)
-           : j == 2u ? (pixel.y + 1u < height ? slot + width : slot)
-                     : (pixel.y > 0u ? slot - width : slot);
+    /* Arithmetic, not a choice among four, where j is not known to the compiler. */
+    const int is_across = j < 2u, is_onward = (j & 1u) == 0u;
+    const uint place = is_across ? pixel.x : pixel.y, size = is_across ? width : height;
+    const uint distance = is_across ? 1u : width;
+    const int exists = is_onward ? place + 1u < size : place > 0u;
+    const uint onward = slot + distance, back = slot - distance;
+    return exists ? (is_onward ? onward : back) : slot;
 }
 
 /* Vertices of offset paths that are not connected: `own_vertex`, whose columns are `own_rows` apart. Of first vertices

@@ -3,6 +3,7 @@
 #ifndef GRADUS_LIB_LIGHT_H
 #define GRADUS_LIB_LIGHT_H
 #include "kernels/lib/frame.h"
+#include "kernels/lib/ordered.h"
 #include "kernels/lib/vector.h"
 #include "kernels/lib/warp.h"
 #include "kernels/shared/scene_records.h"
@@ -52,10 +53,11 @@ GRADUS_FN light_choice light_from_surface(rgb radiance, real pdf, vec3 place, ve
 
 GRADUS_FN light_choice light_from_triangle(rgb radiance, vec3 p0, vec3 e1, vec3 e2, vec3 place, real u1, real u2) {
     const point2 b = warp_uniform_triangle(u1, u2);
-    const vec3 point = v3_mad(v3_mad(p0, b.x, e1), b.y, e2);
     const vec3 parallelogram = v3_cross(e1, e2);
     const real inverse = R(1) / r_sqrt(v3_dot(parallelogram, parallelogram));
     const vec3 normal = v3_scale(parallelogram, inverse);
+    /* The connection is normalised too, after the normal (kernels/lib/ordered.h). */
+    const vec3 point = v3_after(v3_mad(v3_mad(p0, b.x, e1), b.y, e2), normal.x);
     const vec3 connection = v3_sub(point, place);
     const real distance_squared = r_max(v3_dot(connection, connection), R(1e-36));
     const real cosine = -v3_dot(normal, connection) / r_sqrt(distance_squared);

@@ -2,6 +2,7 @@
 #ifndef GRADUS_LIB_LIGHT_SAMPLING_H
 #define GRADUS_LIB_LIGHT_SAMPLING_H
 //! traits: TRAIT_LIGHT_TRIANGLE TRAIT_LIGHT_SPHERE TRAIT_LIGHT_POINT TRAIT_LIGHT_DIRECTIONAL TRAIT_LIGHT_CONSTANT
+//! traits: FEW_LIGHTS
 #include "kernels/lib/light.h"
 #include "kernels/lib/random.h"
 
@@ -14,6 +15,34 @@
 #define IS_LIGHT_KIND(name) 1
 #define IS_LIGHT(chosen, name, trait) (trait)
 #endif
+
+/* `array` at `index` (of `stride` elements each, `at` the first wanted). Where the scene has few lights, FEW_LIGHTS of
+ * them, all are loaded once for all work-items and chosen from: the 16 loads of a light's fields from places of their
+ * own cost as much as all else of a light sample. */
+#define LIGHT_AT(array, n, stride, at) (array)[(size_t)(n) * (stride) + (at)]
+#if FEW_LIGHTS == 0
+#define OF_LIGHT(array, index, stride, at) LIGHT_AT(array, index, stride, at)
+#elif FEW_LIGHTS == 1
+#define OF_LIGHT(array, index, stride, at) LIGHT_AT(array, 0u, stride, at)
+#elif FEW_LIGHTS == 2
+#define OF_LIGHT(array, index, stride, at)                                                                             \
+    ((index) < 1u ? LIGHT_AT(array, 0u, stride, at) : LIGHT_AT(array, 1u, stride, at))
+#else
+/* Sums of which all but one are 0, exactly: three choices would become a switch, which PoCL does not vectorise. */
+#define LIGHT_IF(array, index, n, stride, at) ((index) == (n)) * LIGHT_AT(array, n, stride, at)
+#if FEW_LIGHTS == 3
+#define OF_LIGHT(array, index, stride, at)                                                                             \
+    (LIGHT_IF(array, index, 0u, stride, at) + LIGHT_IF(array, index, 1u, stride, at) +                                 \
+     LIGHT_IF(array, index, 2u, stride, at))
+#else
+#define OF_LIGHT(array, index, stride, at)                                                                             \
+    (LIGHT_IF(array, index, 0u, stride, at) + LIGHT_IF(array, index, 1u, stride, at) +                                 \
+     LIGHT_IF(array, index, 2u, stride, at) + LIGHT_IF(array, index, 3u, stride, at))
+#endif
+#endif
+#define LIGHT_FIELD(index, field) OF_LIGHT(lights, index, light_stride, light_##field *(size_t)unit)
+#define LIGHT_V3(index, field)                                                                                         \
+    v3(LIGHT_FIELD(index, field##_x), LIGHT_FIELD(index, field##_y), LIGHT_FIELD(index, field##_z))
 
 GRADUS_LIB_BEGIN
 
@@ -28,16 +57,16 @@ GRADUS_FN chosen_light light_sampling(GRADUS_GLOBAL const real *lights, GRADUS_G
                                       uint unit, vec3 position, random4 u) {
     (void)light_kinds, (void)scene_diameter;
     const uint column = min((uint)(u.a * (real)light_count), light_count - 1u);
-    const uint light = u.b < FIELD_OF(light, lights, column, alias_threshold) ? column : light_alias[column];
-    const real probability = FIELD_OF(light, lights, light, probability);
-    const rgb value = FIELD_RGB(light, lights, light, value);
-    const vec3 p = FIELD_V3(light, lights, light, p);
+    const uint light = u.b < LIGHT_FIELD(column, alias_threshold) ? column : OF_LIGHT(light_alias, column, 1u, 0u);
+    const real probability = LIGHT_FIELD(light, probability);
+    const rgb value = rgb3(LIGHT_FIELD(light, value_r), LIGHT_FIELD(light, value_g), LIGHT_FIELD(light, value_b));
+    const vec3 p = LIGHT_V3(light, p);
 #if TRAIT_LIGHT_TRIANGLE || TRAIT_LIGHT_SPHERE
-    const vec3 e1 = FIELD_V3(light, lights, light, e1);
+    const vec3 e1 = LIGHT_V3(light, e1);
 #endif
     uint kind = 0u;
 #if LIGHT_KINDS > 1
-    kind = light_kinds[light];
+    kind = OF_LIGHT(light_kinds, light, 1u, 0u);
 #endif
 
     /* Every kind that the scene has is computed, and the one chosen is kept: loads behind conditions, and conditions
@@ -49,12 +78,12 @@ GRADUS_FN chosen_light light_sampling(GRADUS_GLOBAL const real *lights, GRADUS_G
     s.value = rgb_gray(R(0));
     s.pdf = R(0);
 #if TRAIT_LIGHT_TRIANGLE
-    s = light_from_triangle(value, p, e1, FIELD_V3(light, lights, light, e2), position, u.c, u.d);
+    s = light_from_triangle(value, p, e1, LIGHT_V3(light, e2), position, u.c, u.d);
 #endif
 #if TRAIT_LIGHT_SPHERE
     s = light_choice_select(
         IS_LIGHT_KIND(sphere),
-        light_from_sphere(value, p, e1.x, e1.y, FIELD_OF(light, lights, light, inverse_area), position, u.c, u.d), s);
+        light_from_sphere(value, p, e1.x, e1.y, LIGHT_FIELD(light, inverse_area), position, u.c, u.d), s);
 #endif
 #if TRAIT_LIGHT_POINT
     s = light_choice_select(IS_LIGHT_KIND(point), light_from_point(value, p, position), s);

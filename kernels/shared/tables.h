@@ -110,6 +110,13 @@
     REAL(feature_film, normal_z, "")                                                                                   \
     REAL(feature_film, depth, "")
 
+/* What paths add to pixels that are not their own. The pixel is in a table of uints of its own, by which they are
+ * sorted. The sums are those of `film`, in a table `splat_film` of the same columns. */
+#define GRADUS_SPLAT_COLUMNS(REAL, UINT)                                                                               \
+    REAL(splat, value_r, "")                                                                                           \
+    REAL(splat, value_g, "")                                                                                           \
+    REAL(splat, value_b, "")
+
 /* Gradient-domain path tracing only, from here on. A base path has four offset paths, j = 0 to 3: through the pixel to
  * the right, left, below and above (gradient_neighbour in kernels/lib/gradient.h). Tables of offset paths have the
  * offset j of row r at row j * capacity + r. */
@@ -260,6 +267,7 @@
     TABLE(feature, GRADUS_FEATURE_COLUMNS)                                                                             \
     TABLE(film, GRADUS_FILM_COLUMNS)                                                                                   \
     TABLE(feature_film, GRADUS_FEATURE_FILM_COLUMNS)                                                                   \
+    TABLE(splat, GRADUS_SPLAT_COLUMNS)                                                                                 \
     TABLE(primary, GRADUS_PRIMARY_COLUMNS)                                                                             \
     TABLE(primary_vertex, GRADUS_PRIMARY_VERTEX_COLUMNS)                                                               \
     TABLE(vertex, GRADUS_VERTEX_COLUMNS)                                                                               \
@@ -287,6 +295,9 @@ GRADUS_TABLES(GRADUS_COLUMN_ENUM)
 
 /* Frames that gradient_accumulate adds at once. */
 #define accumulated_frames 4u
+
+/* A splat_pixel that is none: the row is left out. */
+#define splat_none 0xFFFFFFFFu
 
 /* Values of ray_primitive that are no primitive. */
 #define ray_escaped 0xFFFFFFFFu /* traced, and nothing was hit */
@@ -356,6 +367,7 @@ GRADUS_LIB_END
 #define ROWS_OF_feature slots
 #define ROWS_OF_film pixels
 #define ROWS_OF_feature_film pixels
+#define ROWS_OF_splat splat_rows
 #define ROWS_OF_primary slots
 #define ROWS_OF_primary_vertex slots
 #define ROWS_OF_vertex capacity

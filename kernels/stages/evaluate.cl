@@ -30,16 +30,11 @@ STAGE evaluate(uint count, uint unit, uint first, uint first_line, uint stride, 
     const vec3 wo = v3(AT(evaluation, value_r, at), AT(evaluation, value_g, at), AT(evaluation, value_b, at));
     const bsdf_value v =
         bsdf_evaluate(m, frame_to_local(axes, AT_V3(own_vertex, wi, own.row)), frame_to_local(axes, wo));
-    const int is_light = line < 4u;
-    const int is_nothing = is_light ? !(rgb_max(v.value) > R(0)) : !(v.pdf > R(0));
-    if (is_asked) {
-        SET_RGB(evaluation, value, at, v.value);
-        AT(evaluation, pdf, at) = v.pdf;
-    }
-    if (is_asked && is_nothing)
-        AT_UINT(link, open, (size_t)line * stride + row) = 0u;
-#if TRAIT_APART
-    if (is_asked && is_nothing && !is_light)
-        AT_UINT(offset_ray, primitive, (size_t)j * stride + row) = ray_none;
-#endif
+    const int is_nothing = line < 4u ? !(rgb_max(v.value) > R(0)) : !(v.pdf > R(0));
+    /* What is not asked here is stored as it was: a store behind a condition costs several of these. */
+    const rgb value = rgb_select(is_asked, v.value, rgb3(wo.x, wo.y, wo.z));
+    SET_RGB(evaluation, value, at, value);
+    AT(evaluation, pdf, at) = is_asked ? v.pdf : AT(evaluation, pdf, at);
+    const size_t segment = (size_t)line * stride + row;
+    AT_UINT(link, open, segment) = is_asked && is_nothing ? 0u : AT_UINT(link, open, segment);
 }

@@ -3,12 +3,12 @@
  * one's offset path to the other gives, less what the other's to the one gives (Kettunen et al. 2015).
  *
  * The gradient to the pixel below belongs to the row above: so the first row of a strip finishes that of the strip
- * before, which has left its part in `carry_old`, and the last leaves its own in `carry`. */
+ * before, whose part is in `carry`. */
 #include "kernels/lib/compensated.h"
 #include "kernels/lib/gradient.h"
 
-/* `sample` is that of slot `at`, for pixel `to` of the film. Only the stores are behind a condition. */
-#define ADD(number, to, is_wanted, sample)                                                                             \
+/* `sample` is that of slot `at`, for pixel `to` of the film. */
+#define ADD(number, to, sample)                                                                                        \
     {                                                                                                                  \
         compensated s;                                                                                                 \
         s.sum = FILM(gradient_film_primal_r + number, to);                                                             \
@@ -23,21 +23,19 @@
             s.correction = is_there ? added.correction : s.correction;                                                 \
             square += is_there ? value * value : R(0);                                                                 \
         }                                                                                                              \
-        if (is_wanted) {                                                                                               \
-            FILM(gradient_film_primal_r + number, to) = s.sum;                                                         \
-            FILM(gradient_film_correction_first + number, to) = s.correction;                                          \
-            FILM(gradient_film_square_first + number, to) = square;                                                    \
-        }                                                                                                              \
+        FILM(gradient_film_primal_r + number, to) = s.sum;                                                             \
+        FILM(gradient_film_correction_first + number, to) = s.correction;                                              \
+        FILM(gradient_film_square_first + number, to) = square;                                                        \
     }
 #define FILM(column, to) gradient_film[(size_t)(column)*pixels + (to)]
 #define DIFFERENCE(j, channel, of) AT(difference, value_##channel, (size_t)(j)*slots + (of))
 /* Of the pixel above slot `at`, to below. */
 #define FROM_ABOVE(channel)                                                                                            \
-    (is_carried ? AT_IN(carry_old, carry, value_##channel, place.x) : DIFFERENCE(2, channel, above + (at - slot)))
+    (is_carried ? AT(carry, value_##channel, place.x) : DIFFERENCE(2, channel, above + (at - slot)))
 
 STAGE gradient_accumulate(uint count, uint slots, uint pixels, uint first_slot, uint frames,
                           __global const real *prefix, __global const real *difference, __global real *gradient_film,
-                          __global const real *carry_old, __global real *carry, STRIP_PLACE) {
+                          __global const real *carry, STRIP_PLACE) {
     const size_t i = work_item();
     if (i >= count)
         return;
@@ -48,20 +46,15 @@ STAGE gradient_accumulate(uint count, uint slots, uint pixels, uint first_slot, 
     const int is_carried = place.y == strip_first;
     const uint above = is_carried ? slot : slot - crop_width;
     const uint right = has_right ? 1u : 0u;
-    ADD(0, pixel, 1, AT(prefix, value_r, at))
-    ADD(1, pixel, 1, AT(prefix, value_g, at))
-    ADD(2, pixel, 1, AT(prefix, value_b, at))
-    ADD(3, pixel, 1, has_right ? DIFFERENCE(0, r, at) - DIFFERENCE(1, r, at + right) : R(0))
-    ADD(4, pixel, 1, has_right ? DIFFERENCE(0, g, at) - DIFFERENCE(1, g, at + right) : R(0))
-    ADD(5, pixel, 1, has_right ? DIFFERENCE(0, b, at) - DIFFERENCE(1, b, at + right) : R(0))
-    /* The first row reads where nobody writes: the last row has no gradient. */
+    ADD(0, pixel, AT(prefix, value_r, at))
+    ADD(1, pixel, AT(prefix, value_g, at))
+    ADD(2, pixel, AT(prefix, value_b, at))
+    ADD(3, pixel, has_right ? DIFFERENCE(0, r, at) - DIFFERENCE(1, r, at + right) : R(0))
+    ADD(4, pixel, has_right ? DIFFERENCE(0, g, at) - DIFFERENCE(1, g, at + right) : R(0))
+    ADD(5, pixel, has_right ? DIFFERENCE(0, b, at) - DIFFERENCE(1, b, at + right) : R(0))
+    /* The first row adds nothing to where nobody else adds: the last row has no gradient. */
     const uint pixel_above = has_above ? pixel - crop_width : pixels - crop_width + place.x;
-    ADD(6, pixel_above, has_above, FROM_ABOVE(r) - DIFFERENCE(3, r, at))
-    ADD(7, pixel_above, has_above, FROM_ABOVE(g) - DIFFERENCE(3, g, at))
-    ADD(8, pixel_above, has_above, FROM_ABOVE(b) - DIFFERENCE(3, b, at))
-    if (i + crop_width >= count) {
-        AT(carry, value_r, place.x) = DIFFERENCE(2, r, slot);
-        AT(carry, value_g, place.x) = DIFFERENCE(2, g, slot);
-        AT(carry, value_b, place.x) = DIFFERENCE(2, b, slot);
-    }
+    ADD(6, pixel_above, has_above ? FROM_ABOVE(r) - DIFFERENCE(3, r, at) : R(0))
+    ADD(7, pixel_above, has_above ? FROM_ABOVE(g) - DIFFERENCE(3, g, at) : R(0))
+    ADD(8, pixel_above, has_above ? FROM_ABOVE(b) - DIFFERENCE(3, b, at) : R(0))
 }

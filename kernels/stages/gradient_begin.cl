@@ -21,16 +21,12 @@ STAGE gradient_begin(uint count, uint unit, uint capacity, uint slots, __global 
     BEGIN_PATH(row, slot, AT_UINT(primary, key_0, seen), AT_UINT(primary, key_1, seen))
     SET_RGB(radiance, value, slot, rgb_gray(R(0)));
     SET_RGB_IN(direct, radiance, value, slot, rgb_gray(R(0)));
+    SET_RGB(prefix, value, slot, rgb_gray(R(0)));
     SET_RGB(prefix, throughput, slot, rgb_gray(R(0)));
 #pragma unroll
-    for (uint j = 0; j < 4; ++j)
-        AT(difference, ratio, (size_t)j * slots + slot) = shift_absent;
-    if (primitive == ray_escaped) {
-        SET_RGB(prefix, value, slot, rgb_gray(R(0)));
-#pragma unroll
-        for (uint j = 0; j < 4; ++j) {
-            const size_t at = (size_t)j * slots + slot;
-            SET_RGB(difference, value, at, rgb_gray(R(0)));
-        }
+    for (uint j = 0; j < 4; ++j) {
+        const size_t at = (size_t)j * slots + slot;
+        SET_RGB(difference, value, at, rgb_gray(R(0)));
+        AT(difference, ratio, at) = shift_absent;
     }
 }

@@ -9,6 +9,7 @@
  * Russian roulette goes by the brightest of them all. */
 //! traits: TRAIT_REFRACTION TRAIT_APART SAMPLES_LIGHTS
 #include "kernels/lib/bsdf.h"
+#include "kernels/lib/ordered.h"
 #include "kernels/lib/random.h"
 #include "kernels/lib/vertex_frame.h"
 #include "kernels/shared/stage.h"
@@ -37,7 +38,7 @@ STAGE join(uint count, uint unit, uint first, uint capacity, uint slots, uint ro
     const vec3 to_light = frame_to_local(axes, AT_V3(event, to_light, row));
     const rgb arriving = AT_RGB(event, arriving, row);
     const real inverse_light_pdf = AT(event, inverse_light_pdf, row);
-    int asks = 0;
+    real gained = R(0); /* by offset paths that see what the base path's vertex sees */
 #endif
 #else
     const rgb weight = AT_RGB(event, weight, row);
@@ -67,9 +68,15 @@ STAGE join(uint count, uint unit, uint first, uint capacity, uint slots, uint ro
         SET_RGB(evaluation, value, at, gain);
         AT(evaluation, pdf, at) = gain_bsdf;
         AT(shift, light_density, at) = ratio;
-        asks |= !is_own & (rgb_max(gain) > R(0));
+        gained = r_max(gained, is_own ? R(0) : rgb_max(gain));
 #endif
-        const bsdf_value f = PASTE(BSDF, _evaluate)(m, wi, wo, transport_radiance);
+#if SAMPLES_LIGHTS
+        /* The like computation, one after the other (kernels/lib/ordered.h). */
+        const vec3 wo_after = v3_after(wo, f_light.value.b + f_light.pdf);
+#else
+        const vec3 wo_after = wo;
+#endif
+        const bsdf_value f = PASTE(BSDF, _evaluate)(m, wi, wo_after, transport_radiance);
         const rgb weight = rgb_scale(f.value, inverse_pdf);
         const real change = f.pdf * inverse_pdf;
 #endif
@@ -93,7 +100,7 @@ STAGE join(uint count, uint unit, uint first, uint capacity, uint slots, uint ro
         }
     }
 #if SAMPLES_LIGHTS && !BSDF_IS_DIRAC
-    if (asks)
+    if (gained > R(0))
         AT_UINT(shadow, open, row) = 1u;
 #endif
 

@@ -6,10 +6,10 @@
  *
  * A path ends where the sample fails, its throughput is zero, it is as long as it may be, or Russian roulette says so.
  *
- * TRAIT_GRADIENT, `with_offsets`: the path has offset paths that have not merged with it. Then the light sample is not
- * weighted yet, no roulette is played, black paths go on since their offset paths may not be black, and what these need
- * to know of the vertex is left in `vertex` and `event`. */
-//! traits: TRAIT_REFRACTION TRAIT_AOV TRAIT_GRADIENT SAMPLES_LIGHTS
+ * WITH_OFFSETS: the paths have offset paths that are not connected with them. Then the light sample is not weighted
+ * yet, no roulette is played, black paths go on since their offset paths may not be black, and what these need to know
+ * of the vertex is left in `vertex` and `event`. */
+//! traits: TRAIT_REFRACTION TRAIT_AOV SAMPLES_LIGHTS
 #include "kernels/lib/bsdf.h"
 #include "kernels/lib/light_sampling.h"
 #include "kernels/lib/mis.h"
@@ -28,9 +28,9 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
             ,
             __global real *feature, uint slots
 #endif
-#if TRAIT_GRADIENT
+#if WITH_OFFSETS
             ,
-            uint with_offsets, __global real *vertex, __global real *event, __global const uint *material_kind
+            __global real *vertex, __global real *event, __global const uint *material_kind
 #endif
 ) {
     const size_t i = work_item();
@@ -62,10 +62,8 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
         AT(feature, depth, slot) = r_sqrt(v3_length_squared(v3_sub(point.position, from)));
     }
 #endif
-#if TRAIT_GRADIENT
-    if (with_offsets) {
-        SET_SURFACE_VERTEX(vertex, row, material_kind[point.material], point, direction)
-    }
+#if WITH_OFFSETS
+    SET_SURFACE_VERTEX(vertex, row, material_kind[point.material], point, direction)
 #endif
 
 #if SAMPLES_LIGHTS && !BSDF_IS_DIRAC
@@ -75,43 +73,35 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
     const light_choice light = chosen.choice;
     const vec3 to_light = frame_to_local(axes, light.direction);
     const bsdf_value f = PASTE(BSDF, _evaluate)(m, wi, to_light, transport_radiance);
-    const rgb reflected = f.value;
-    const real pdf_bsdf = f.pdf;
-    const rgb unweighted = rgb_mul(rgb_mul(throughput, light.value), reflected);
-    const real weight = mis_weight_light(light.pdf * chosen.probability, pdf_bsdf) / chosen.probability;
-    rgb gain = rgb_scale(unweighted, weight);
-    int asks = goes_on && rgb_max(gain) > R(0);
-#if TRAIT_GRADIENT
+#if WITH_OFFSETS
     const rgb arriving = rgb_scale(light.value, goes_on ? R(1) / chosen.probability : R(0));
     const real light_pdf = light.pdf * chosen.probability;
     /* Point lights and directions have no density that BSDF sampling could match. */
     const real inverse_light_pdf = LIGHT_CAN_BE_FOUND && light_pdf > R(0) ? R(1) / light_pdf : R(0);
-    const real base_bsdf = pdf_bsdf * inverse_light_pdf;
-    gain = rgb_select(with_offsets != 0u, rgb_mul(rgb_mul(throughput, arriving), reflected), gain);
+    const rgb gain = rgb_mul(rgb_mul(throughput, arriving), f.value);
     /* Who sees the light weighs the offset paths, whatever the base path gains. */
-    asks = with_offsets ? goes_on && (rgb_max(gain) > R(0) || rgb_max(arriving) * pdf_bsdf > R(0)) : asks;
-    if (with_offsets) {
-        SET_V3(event, to_light, row, light.direction);
-        SET_RGB(event, arriving, row, arriving);
-        AT(event, inverse_light_pdf, row) = inverse_light_pdf;
-        AT(event, base_bsdf, row) = base_bsdf;
-    }
+    const int asks = goes_on && (rgb_max(gain) > R(0) || rgb_max(arriving) * f.pdf > R(0));
+    SET_V3(event, to_light, row, light.direction);
+    SET_RGB(event, arriving, row, arriving);
+    AT(event, inverse_light_pdf, row) = inverse_light_pdf;
+    AT(event, base_bsdf, row) = f.pdf * inverse_light_pdf;
+#else
+    const real weight = mis_weight_light(light.pdf * chosen.probability, f.pdf) / chosen.probability;
+    const rgb gain = rgb_scale(rgb_mul(rgb_mul(throughput, light.value), f.value), weight);
+    const int asks = goes_on && rgb_max(gain) > R(0);
 #endif
     const vec3 start = ray_origin(point.position, point.geometric, point.offset, light.direction);
-    const vec3 end =
-        v3_mad(v3_add(point.position, light.connection), FIELD_OF(light, lights, chosen.light, offset), light.normal);
+    const vec3 end = v3_mad(v3_add(point.position, light.connection), LIGHT_FIELD(chosen.light, offset), light.normal);
     SET_V3(shadow, origin, row, start);
     SET_V3(shadow, direction, row, v3_sub(end, start));
     SET_RGB(shadow, value, row, gain);
     AT_UINT(shadow, open, row) = asks ? 1u : 0u;
 #else
     AT_UINT(shadow, open, row) = 0u;
-#if TRAIT_GRADIENT
-    if (with_offsets) {
-        SET_RGB(event, arriving, row, rgb_gray(R(0)));
-        AT(event, inverse_light_pdf, row) = R(0);
-        AT(event, base_bsdf, row) = R(0);
-    }
+#if WITH_OFFSETS
+    SET_RGB(event, arriving, row, rgb_gray(R(0)));
+    AT(event, inverse_light_pdf, row) = R(0);
+    AT(event, base_bsdf, row) = R(0);
 #endif
 #endif
 
@@ -123,20 +113,18 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
     eta = eta_before * s.eta;
     AT(path, eta, row) = eta;
 #endif
+    const int can_go_on = goes_on && s.pdf > R(0);
+#if WITH_OFFSETS
+    const int alive = can_go_on;
+    const rgb left = scattered;
+    AT(event, pdf, row) = s.pdf;
+    SET_RGB(event, weight, row, s.weight);
+#else
     /* Mitsuba's rule: survive with the largest throughput, freed of the radiance scaling by eta^2, at most 0.95. */
     const real survival = depth + 1u >= roulette_depth ? r_min(rgb_max(scattered) * eta * eta, R(0.95)) : R(1);
-    int alive = goes_on && s.pdf > R(0);
-    int survives = rgb_max(scattered) > R(0) && u.d < survival;
-    real inverse_survival = R(1) / (alive && survives ? survival : R(1));
-#if TRAIT_GRADIENT
-    survives = survives || with_offsets;
-    inverse_survival = with_offsets ? R(1) : inverse_survival;
-    if (with_offsets) {
-        AT(event, pdf, row) = s.pdf;
-        SET_RGB(event, weight, row, s.weight);
-    }
+    const int alive = can_go_on && rgb_max(scattered) > R(0) && u.d < survival;
+    const rgb left = rgb_scale(scattered, R(1) / (alive ? survival : R(1)));
 #endif
-    alive = alive && survives;
 
     const vec3 next = v3_normalize(frame_to_world(axes, s.wo));
     const vec3 origin = ray_origin(point.position, point.geometric, point.offset, next);
@@ -144,7 +132,7 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
     AT_UINT(path, key_0, row) = key_0;
     AT_UINT(path, key_1, row) = key_1;
     AT_UINT(path, depth, row) = depth + 1u;
-    SET_RGB(path, throughput, row, rgb_scale(scattered, inverse_survival));
+    SET_RGB(path, throughput, row, left);
     AT(path, pdf, row) = s.is_specular ? R(0) : s.pdf;
     SET_V3(ray, origin, row, origin);
     SET_V3(ray, direction, row, next);

@@ -17,6 +17,7 @@
 #include "kernels/lib/bsdf_evaluate.h"
 #include "kernels/lib/gradient.h"
 #include "kernels/lib/light_sampling.h"
+#include "kernels/lib/ordered.h"
 #include "kernels/lib/reconnectable.h"
 #include "kernels/lib/scene_hit.h"
 #include "kernels/lib/shift_reconnection.h"
@@ -83,14 +84,15 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
     const chosen_light chosen =
         light_sampling(lights, light_kinds, light_alias, light_count, scene_diameter, unit, base, u);
     const light_choice s = chosen.choice;
-    const vec3 light_point = v3_add(base, s.connection);
     const int is_surface =
         IS_LIGHT(chosen, triangle, TRAIT_LIGHT_TRIANGLE) | IS_LIGHT(chosen, sphere, TRAIT_LIGHT_SPHERE);
     const int is_point = IS_LIGHT(chosen, point, TRAIT_LIGHT_POINT);
     const int is_finite_light = is_surface | is_point;
     const real base_distance_squared = v3_dot(s.connection, s.connection);
     const real base_cosine = -v3_dot(s.normal, s.direction);
-    const real end_gap = FIELD_OF(light, lights, chosen.light, offset);
+    /* After the light's normal, which is normalised as the ways to it will be (kernels/lib/ordered.h). */
+    const vec3 light_point = v3_after(v3_add(base, s.connection), base_cosine);
+    const real end_gap = LIGHT_FIELD(chosen.light, offset);
     const int arrives = rgb_max(AT_RGB(event, arriving, row)) > R(0);
 #endif
 #pragma unroll
@@ -124,32 +126,30 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         /* The same point of the same light, chosen with the same density by area. Spheres are sampled by cones. */
         real light_density = light_jacobian > R(0) ? R(1) : R(0);
 #if TRAIT_LIGHT_SPHERE
-        const vec3 to_center = v3_sub(FIELD_V3(light, lights, chosen.light, p), from);
-        const real sphere_pdf =
-            light_sphere_pdf(FIELD_OF(light, lights, chosen.light, e1_x), FIELD_OF(light, lights, chosen.light, e1_y),
-                             FIELD_OF(light, lights, chosen.light, inverse_area), v3_dot(to_center, to_center),
-                             point_distance_squared, cosine);
+        const vec3 to_center = v3_sub(LIGHT_V3(chosen.light, p), from);
+        const real sphere_pdf = light_sphere_pdf(LIGHT_FIELD(chosen.light, e1_x), LIGHT_FIELD(chosen.light, e1_y),
+                                                 LIGHT_FIELD(chosen.light, inverse_area), v3_dot(to_center, to_center),
+                                                 point_distance_squared, cosine);
         const real by_cone = s.pdf > R(0) ? light_jacobian * sphere_pdf / s.pdf : R(0);
         light_density = IS_LIGHT(chosen, sphere, 1) ? by_cone : light_density;
 #endif
         AT(shift, light_jacobian, at) = light_jacobian;
         asks_light = own.is_own & !is_dirac & arrives & (light_jacobian > R(0));
-#if TRAIT_APART
-        if (own.is_own) /* others keep what `join` left there */
-#endif
-        {
-            AT(shift, light_density, at) = light_density;
 #ifdef BSDF
-            const bsdf_value of_light = bsdf_evaluate(m, wi, frame_to_local(axes, to_light));
-            asks_light &= rgb_max(of_light.value) > R(0);
-            SET_RGB(evaluation, value, at, of_light.value);
-            AT(evaluation, pdf, at) = of_light.pdf;
+        const bsdf_value of_light = bsdf_evaluate(m, wi, frame_to_local(axes, to_light));
+        asks_light &= rgb_max(of_light.value) > R(0);
+        const rgb request = of_light.value;
 #else
-            AT(evaluation, value_r, at) = to_light.x;
-            AT(evaluation, value_g, at) = to_light.y;
-            AT(evaluation, value_b, at) = to_light.z;
+        const rgb request = rgb3(to_light.x, to_light.y, to_light.z);
 #endif
-        }
+        /* Offset paths that are connected keep what `join` left there. */
+        const int keeps = TRAIT_APART && !own.is_own;
+        const rgb left = rgb_select(keeps, AT_RGB(evaluation, value, at), request);
+        SET_RGB(evaluation, value, at, left);
+        AT(shift, light_density, at) = keeps ? AT(shift, light_density, at) : light_density;
+#ifdef BSDF
+        AT(evaluation, pdf, at) = keeps ? AT(evaluation, pdf, at) : of_light.pdf;
+#endif
         const vec3 light_origin = ray_origin(from, geometric, from_offset, to_light);
         const vec3 light_end = v3_select(is_finite_light, light_point, v3_add(from, s.connection));
         const size_t light_link = (size_t)j * stride + row;
@@ -158,10 +158,15 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
 #endif
         AT_UINT(link, open, (size_t)j * stride + row) = asks_light ? 1u : 0u;
 
-        /* The step to the next vertex. */
-        const vec3 connection = v3_sub(hit.position, from);
+        /* The step to the next vertex: the like computation, one after the other (kernels/lib/ordered.h). */
+#if SAMPLES_LIGHTS
+        const vec3 from_after = v3_after(from, cosine);
+#else
+        const vec3 from_after = from;
+#endif
+        const vec3 connection = v3_sub(hit.position, from_after);
         const vec3 to_next = v3_select(is_escaped, base_direction, v3_normalize(connection));
-        const real reconnection = is_escaped ? R(1) : reconnection_jacobian(base, from, hit.position, hit.normal);
+        const real reconnection = is_escaped ? R(1) : reconnection_jacobian(base, from_after, hit.position, hit.normal);
         const int same_side = is_escaped | (-v3_dot(hit.normal, connection) * base_side > R(0));
 #if TRAIT_APART
         const int both_rough = base_is_rough & ((kind & kind_is_rough) != 0u);

@@ -113,7 +113,8 @@ GradientPathTracer::GradientPathTracer(Device &device, const Scene &scene, const
       escape_(stages_.add(escape_stage(session_))), emission_(stages_.add(emission_stage(session_))),
       gradient_escape_(stages_.add(gradient_emission_stage("gradient escape", "1", session_.has("TRAIT_ENVIRONMENT")))),
       gradient_emission_(stages_.add(gradient_emission_stage("gradient emission", "0", session_.has_emission()))),
-      shade_(stages_.add(shade_stage({"with_offsets"}))), advance_(stages_.add(advance_stage("advance", "0", true))),
+      shade_with_offsets_(stages_.add(shade_stage(true))), shade_(stages_.add(shade_stage(false))),
+      advance_(stages_.add(advance_stage("advance", "0", true))),
       advance_apart_(stages_.add(advance_stage("advance apart", "1", session_.has("TRAIT_APART")))),
       join_(stages_.add({.name = "join", .kinds = StageDeclaration::Kinds::all, .numbers = {"first", "keeps"}})),
       count_(stages_.add(count_stage())), combine_(stages_.add({.name = "gradient_combine", .strict = true})),
@@ -181,7 +182,6 @@ TableList GradientPathTracer::tables() const {
             {.name = "offsets_state", .columns = with("TRAIT_APART", 1), .is_uint = true},
             {.name = "outcome", .rows = RowsOf::chunk, .columns = shift_outcomes, .is_uint = true, .is_cleared = true},
             {.name = "carry", .rows = RowsOf::image_row, .columns = carry_columns},
-            {.name = "carry_old", .rows = RowsOf::image_row, .columns = carry_columns},
             {.name = "gradient_film", .rows = RowsOf::pixel, .columns = gradient_film_columns, .is_cleared = true}};
 }
 
@@ -335,12 +335,8 @@ void GradientPathTracer::find_emission(const Hits &next) {
 /// Next-event estimation and scattering at the new vertices.
 void GradientPathTracer::shade(const Hits &next) {
     for (std::uint32_t phase = 0; phase < phases_.count; ++phase)
-        for (std::size_t kind = 0; kind < paths_.kinds(); ++kind) {
-            const Range rows = next.kind(phase, kind);
-            shade_.run_kind(
-                kind, rows.count,
-                {{"first", next.place(rows.first)}, {"to", rows.first}, {"with_offsets", phase != phases_.later}});
-        }
+        for (std::size_t kind = 0; kind < paths_.kinds(); ++kind)
+            run_shade(phase == phases_.later ? shade_ : shade_with_offsets_, next, next.kind(phase, kind), kind);
 }
 
 /// Brings offset paths to the new vertices; those that are connected there take the base path's direction. `stride` as
@@ -371,8 +367,7 @@ bool GradientPathTracer::render_batch() {
     const auto start = std::chrono::steady_clock::now();
     if (!solver_ && !solver_compiled_.valid()) // with one thread, once it is needed
         solver_compiled_ = std::async(options_.threads == 1 ? std::launch::deferred : std::launch::async, [this] {
-            PoissonSolver::compile(session_.device,
-                                   poisson_options(options_, session_.settings.samples_per_pixel));
+            PoissonSolver::compile(session_.device, poisson_options(options_, session_.settings.samples_per_pixel));
         });
     if (!direct_edges_ && session_.max_depth() != 0 && !session_.settings.hide_emitters)
         direct_edges_ =
@@ -422,13 +417,16 @@ void GradientPathTracer::add_to_film(const Strip &strip) {
     const std::uint32_t width = session_.film.crop_width, pixels = strip.rows * width;
     combine_.run(strip.frames * pixels);
     film_.add(strip.frames * pixels, strip.first * width);
-    // What the strip before left is read while this one leaves its own.
-    const bool is_odd = strip.first / strip_rows_ % 2 == 1;
-    accumulate_.bind("carry", (*tables_)[is_odd ? "carry_old" : "carry"]);
-    accumulate_.bind("carry_old", (*tables_)[is_odd ? "carry" : "carry_old"]);
     for (std::uint32_t frame = 0; frame < strip.frames; frame += accumulated_frames)
         accumulate_.run(
             pixels, {{"first_slot", frame * pixels}, {"frames", std::min(accumulated_frames, strip.frames - frame)}});
+    // Differences of offset 2 in the last row are finished by the next strip.
+    const bool is_last = strip.first + strip.rows == session_.film.crop_height;
+    const std::size_t size = real_bytes(options_.precision), slots = tables_->rows().slots;
+    const std::size_t last_row = 2 * slots + std::size_t(strip.rows - 1) * width;
+    for (std::size_t column = 0; !is_last && column < carry_columns; ++column)
+        (*tables_)["difference"].copy_to((*tables_)["carry"], size * (column * 4 * slots + last_row),
+                                         size * column * width, size * width);
 }
 
 void GradientPathTracer::restart(std::uint64_t first_sample, std::uint64_t samples_per_pixel) {

@@ -84,8 +84,8 @@ class GradientPathTracer final : public Method {
     Stages stages_;
     Stage &camera_, &primary_, &begin_, &connect_, &gradient_connect_, &shift_, &evaluate_, &weigh_;
     Wavefront paths_;
-    Stage &escape_, &emission_, &gradient_escape_, &gradient_emission_, &shade_, &advance_, &advance_apart_, &join_,
-        &count_, &combine_;
+    Stage &escape_, &emission_, &gradient_escape_, &gradient_emission_, &shade_with_offsets_, &shade_, &advance_,
+        &advance_apart_, &join_, &count_, &combine_;
     Film film_;
     Stage &accumulate_;
     std::optional<Tables> tables_;

@@ -21,10 +21,12 @@ StageDeclaration emission_stage(const Session &session) {
     return {.name = "emission", .is_wanted = session.has_emission(), .numbers = {"first"}};
 }
 
-StageDeclaration shade_stage(const std::vector<std::string> &more) {
-    StageDeclaration stage = {.name = "shade", .kinds = StageDeclaration::Kinds::all, .numbers = {"first", "to"}};
-    stage.numbers.insert(stage.numbers.end(), more.begin(), more.end());
-    return stage;
+StageDeclaration shade_stage(bool with_offsets) {
+    return {.name = with_offsets ? "shade with offsets" : "shade",
+            .file = "shade",
+            .definitions = {{"WITH_OFFSETS", with_offsets ? "1" : "0"}},
+            .kinds = StageDeclaration::Kinds::all,
+            .numbers = {"first", "to"}};
 }
 
 TableList joined(TableList a, const TableList &b) {

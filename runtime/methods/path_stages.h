@@ -11,8 +11,8 @@ StageDeclaration camera_stage();
 StageDeclaration connect_stage();
 StageDeclaration escape_stage(const Session &session);
 StageDeclaration emission_stage(const Session &session);
-/// `more`: numbers that launches pass beside `first` and `to`.
-StageDeclaration shade_stage(const std::vector<std::string> &more = {});
+/// `with_offsets`: for paths with offset paths that are not connected (gradient_path_tracer.h).
+StageDeclaration shade_stage(bool with_offsets);
 
 /// The lists, one after the other.
 TableList joined(TableList a, const TableList &b);

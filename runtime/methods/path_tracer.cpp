@@ -13,7 +13,7 @@ PathTracer::PathTracer(Device &device, const Scene &scene, const RenderOptions &
       connect_(stages_.add(connect_stage())),
       paths_(session_, stages_, {.kinds = std::uint32_t(session_.scene.kinds.size())}),
       escape_(stages_.add(escape_stage(session_))), emission_(stages_.add(emission_stage(session_))),
-      shade_(stages_.add(shade_stage())), film_(session_, stages_) {
+      shade_(stages_.add(shade_stage(false))), film_(session_, stages_) {
     total_ = session_.pixels() * session_.settings.samples_per_pixel;
     const TableList list = joined(paths_.tables(), film_.tables());
     const std::uint32_t batch =

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace gradus {
 
@@ -29,7 +30,7 @@ void Film::attach(Tables &tables) {
 }
 
 void Film::clear() {
-    for (const char *name : {"film", "feature_film"})
+    for (const char *name : {"film", "feature_film", "splat_film"})
         if (tables_->has(name))
             (*tables_)[name].clear();
 }
@@ -41,14 +42,17 @@ void Film::add(std::uint32_t count, std::uint32_t first_pixel) {
         accumulate_.run(std::min(pixels, count - slot), {{"first_slot", slot}, {"first_pixel", first_pixel}});
 }
 
-Image Film::image(std::uint64_t samples, std::uint64_t &non_finite) const {
+Image Film::image(std::uint64_t samples, std::uint64_t &non_finite, std::uint64_t light_paths) const {
     const std::size_t count = session_.pixels();
     const HostTable film((*tables_)["film"], count, tables_->precision());
+    std::optional<HostTable> splats;
+    if (light_paths > 0 && tables_->has("splat_film"))
+        splats.emplace((*tables_)["splat_film"], count, tables_->precision());
     Image image;
     image.width = session_.film.crop_width;
     image.height = session_.film.crop_height;
     for (std::size_t pixel = 0; pixel < count; ++pixel)
-        non_finite += film.uint(film_rejected, pixel);
+        non_finite += film.uint(film_rejected, pixel) + (splats ? splats->uint(film_rejected, pixel) : 0);
     const std::uint64_t of_all = samples / count, with_one_more = samples % count;
     const auto taken = [&](std::size_t pixel) {
         return double(of_all + (pixel < with_one_more ? 1 : 0)) - film.uint(film_rejected, pixel);
@@ -56,22 +60,29 @@ Image Film::image(std::uint64_t samples, std::uint64_t &non_finite) const {
     const auto add = [&](const std::string &name, auto mean) {
         Channel channel{name, std::vector<float>(count)};
         for (std::size_t pixel = 0; pixel < count; ++pixel)
-            channel.values[pixel] = taken(pixel) > 0 ? static_cast<float>(mean(pixel)) : 0.0f;
+            channel.values[pixel] = static_cast<float>(mean(pixel));
         image.channels.push_back(std::move(channel));
     };
+    const auto sum_of = [](const HostTable &table, int channel, std::size_t pixel) {
+        return table.real(film_sum_r + channel, pixel) + table.real(film_correction_r + channel, pixel);
+    };
+    const auto over_taken = [&](double sum, std::size_t pixel) { return taken(pixel) > 0 ? sum / taken(pixel) : 0.0; };
     const auto mean_color = [&](int channel, std::size_t pixel) {
-        return (film.real(film_sum_r + channel, pixel) + film.real(film_correction_r + channel, pixel)) / taken(pixel);
+        return over_taken(sum_of(film, channel, pixel), pixel);
     };
     const char *const colors[3] = {"R", "G", "B"};
     for (int c = 0; c < 3; ++c)
-        add(colors[c], [&](std::size_t pixel) { return mean_color(c, pixel); });
+        add(colors[c], [&](std::size_t pixel) {
+            const double mean = mean_color(c, pixel);
+            return splats ? mean + sum_of(*splats, c, pixel) / double(light_paths) : mean;
+        });
     if (!session_.has("TRAIT_AOV"))
         return image;
 
     const HostTable features((*tables_)["feature_film"], count, tables_->precision());
     const char *const axes[3] = {"X", "Y", "Z"};
     const auto mean_feature = [&](int column, std::size_t pixel) {
-        return features.real(column, pixel) / taken(pixel);
+        return over_taken(features.real(column, pixel), pixel);
     };
     for (int c = 0; c < 3; ++c)
         add(std::string("albedo.") + colors[c],
@@ -84,9 +95,9 @@ Image Film::image(std::uint64_t samples, std::uint64_t &non_finite) const {
     for (int c = 0; c < 3; ++c)
         add(std::string("variance.") + colors[c], [&](std::size_t pixel) {
             const double mean = mean_color(c, pixel);
-            const double square = (features.real(feature_film_square_r + c, pixel) +
-                                   features.real(feature_film_square_correction_r + c, pixel)) /
-                                  taken(pixel);
+            const double square = over_taken(features.real(feature_film_square_r + c, pixel) +
+                                                 features.real(feature_film_square_correction_r + c, pixel),
+                                             pixel);
             return taken(pixel) > 1 ? std::max(0.0, square - mean * mean) / (taken(pixel) - 1) : 0.0;
         });
     return image;

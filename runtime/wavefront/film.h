@@ -22,11 +22,12 @@ class Film {
     /// Adds the samples of slots [0, count), which belong to the pixels from `first_pixel` on, cyclically.
     void add(std::uint32_t count, std::uint32_t first_pixel);
 
-    /// The means after `samples` samples: the first `samples` modulo pixels have one more than the rest. Adds the
-    /// samples that were left out to `non_finite`.
-    Image image(std::uint64_t samples, std::uint64_t &non_finite) const;
+    /// The means after `samples` samples: the first `samples` modulo pixels have one more than the rest. Where there
+    /// are splats (splats.h), their sums over `light_paths`, the paths that they are of, are added; 0: they are left
+    /// out. Adds the samples and splats that were left out to `non_finite`. Variances are those of the samples alone.
+    Image image(std::uint64_t samples, std::uint64_t &non_finite, std::uint64_t light_paths = 0) const;
 
-    /// All zero again.
+    /// All zero again, splats too.
     void clear();
 
   private:

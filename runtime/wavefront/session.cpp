@@ -11,6 +11,7 @@ namespace gradus {
 
 namespace {
 
+constexpr std::uint32_t most_few_lights = 4; // kernels/lib/light_sampling.h chooses among so many
 constexpr std::uint32_t deepest = 1u << 16; // where a file asks for paths without end
 
 TraitMap traits_for(const Scene &scene, const SessionOptions &options, const TraitMap &of_method) {
@@ -82,6 +83,8 @@ Session::Session(Device &session_device, const Scene &s, const SessionOptions &s
       scene_buffers(make_scene_buffers(session_device, scene, session_options.precision)),
       tracer(s, session_options.threads) {
     traits["SAMPLES_LIGHTS"] = scene.light_count > 0 && options.strategy != SessionOptions::Strategy::bsdf;
+    traits["FEW_LIGHTS"] =
+        scene.light_count <= most_few_lights && !options.all_traits ? static_cast<int>(scene.light_count) : 0;
     numbers = {{"unit", 1},
                {"triangle_count", scene.triangle_count},
                {"light_count", scene.light_count},

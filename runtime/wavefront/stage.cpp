@@ -16,7 +16,7 @@ KernelRequest request_of(const StageDeclaration &declaration) {
     const std::string file = declaration.file.empty() ? declaration.name : declaration.file;
     KernelRequest request;
     request.name = declaration.name;
-    request.file = "kernels/stages/" + file + ".cl";
+    request.file = fmt::format("kernels/stages/{}.cl", file);
     request.entry = declaration.entry.empty() ? file : declaration.entry;
     request.definitions = declaration.definitions;
     request.strict = declaration.strict;
