@@ -267,7 +267,6 @@
     TABLE(feature, GRADUS_FEATURE_COLUMNS)                                                                             \
     TABLE(film, GRADUS_FILM_COLUMNS)                                                                                   \
     TABLE(feature_film, GRADUS_FEATURE_FILM_COLUMNS)                                                                   \
-    TABLE(splat, GRADUS_SPLAT_COLUMNS)                                                                                 \
     TABLE(primary, GRADUS_PRIMARY_COLUMNS)                                                                             \
     TABLE(primary_vertex, GRADUS_PRIMARY_VERTEX_COLUMNS)                                                               \
     TABLE(vertex, GRADUS_VERTEX_COLUMNS)                                                                               \
@@ -290,6 +289,7 @@ GRADUS_LIB_BEGIN
 #define GRADUS_COLUMN_ENUM(table, COLUMNS)                                                                             \
     enum table##_column { COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) table##_columns };
 GRADUS_TABLES(GRADUS_COLUMN_ENUM)
+GRADUS_COLUMN_ENUM(splat, GRADUS_SPLAT_COLUMNS) /* its rows are its writer's */
 #undef GRADUS_COLUMN_ENUM
 #undef GRADUS_COLUMN_INDEX
 
