@@ -480,4 +480,8 @@ Statistics GradientPathTracer::statistics() const {
     return s;
 }
 
+std::unique_ptr<Method> make_gradient_path_tracer(Device &device, const Scene &scene, const RenderOptions &options) {
+    return std::make_unique<GradientPathTracer>(device, scene, options);
+}
+
 } // namespace gradus

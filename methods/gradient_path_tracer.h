@@ -99,4 +99,6 @@ class GradientPathTracer final : public Method {
     std::future<void> solver_compiled_; ///< while the first samples render
 };
 
+std::unique_ptr<Method> make_gradient_path_tracer(Device &device, const Scene &scene, const RenderOptions &options);
+
 } // namespace gradus

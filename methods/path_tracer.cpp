@@ -71,4 +71,8 @@ Image PathTracer::image() {
 
 Statistics PathTracer::statistics() const { return collected(statistics_, session_, stages_); }
 
+std::unique_ptr<Method> make_path_tracer(Device &device, const Scene &scene, const RenderOptions &options) {
+    return std::make_unique<PathTracer>(device, scene, options);
+}
+
 } // namespace gradus

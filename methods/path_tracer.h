@@ -6,6 +6,7 @@
 #include "runtime/wavefront/film.h"
 #include "runtime/wavefront/wavefront.h"
 
+#include <memory>
 #include <optional>
 
 namespace gradus {
@@ -34,5 +35,7 @@ class PathTracer final : public Method {
     std::uint32_t pass_ = 0; ///< paths of a pass, but for the last
     Statistics statistics_;
 };
+
+std::unique_ptr<Method> make_path_tracer(Device &device, const Scene &scene, const RenderOptions &options);
 
 } // namespace gradus
