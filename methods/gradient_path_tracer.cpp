@@ -61,7 +61,7 @@ StageDeclaration shift_stage(const Session &session) {
 
 StageDeclaration evaluate_stage(const Session &session) {
     return {.name = "evaluate",
-            .kinds = StageDeclaration::Kinds::all,
+            .by_kind = true,
             .is_wanted = session.scene.kinds.size() > 1,
             .numbers = {"first", "first_line", "stride", "at_first", "own_rows"},
             .tables = {{"own_vertex", "primary_vertex"}}};
@@ -116,7 +116,7 @@ GradientPathTracer::GradientPathTracer(Device &device, const Scene &scene, const
       shade_with_offsets_(stages_.add(shade_stage(true))), shade_(stages_.add(shade_stage(false))),
       advance_(stages_.add(advance_stage("advance", "0", true))),
       advance_apart_(stages_.add(advance_stage("advance apart", "1", session_.has("TRAIT_APART")))),
-      join_(stages_.add({.name = "join", .kinds = StageDeclaration::Kinds::all, .numbers = {"first", "keeps"}})),
+      join_(stages_.add({.name = "join", .by_kind = true, .numbers = {"first", "keeps"}})),
       count_(stages_.add(count_stage())), combine_(stages_.add({.name = "gradient_combine", .strict = true})),
       film_(session_, stages_),
       accumulate_(stages_.add({.name = "gradient_accumulate", .strict = true, .numbers = {"first_slot", "frames"}})) {
@@ -309,17 +309,16 @@ void GradientPathTracer::evaluate(std::uint32_t phase, bool mixed, bool at_first
 
 /// Adds the light that paths have met. What the camera sees of lights is kept apart.
 void GradientPathTracer::find_emission(const Hits &next) {
-    for (const bool is_first : {true, false}) {
-        const Buffer &radiance = (*tables_)[is_first ? "direct" : "radiance"];
-        escape_.bind("radiance", radiance);
-        emission_.bind("radiance", radiance);
-        const Range escaped = next.escaped(is_first ? escaped_first : escaped_later);
-        escape_.run(escaped.count, {{"first", escaped.first}});
-        for (const std::uint32_t phase : {is_first ? phases_.first : phases_.later, phases_.first_mixed})
-            for (std::size_t kind = 0; kind < paths_.kinds(); ++kind)
-                if (phase < phases_.count && (is_first || phase == phases_.later))
-                    run_on_places(emission_, next, next.emitting(phase, kind));
-    }
+    const auto add_to = [&](const char *table, Escaped escaped, std::initializer_list<std::uint32_t> phases) {
+        escape_.bind("radiance", (*tables_)[table]);
+        emission_.bind("radiance", (*tables_)[table]);
+        escape_.run(next.escaped(escaped).count, {{"first", next.escaped(escaped).first}});
+        for (const std::uint32_t phase : phases)
+            for (std::size_t kind = 0; phase < phases_.count && kind < paths_.kinds(); ++kind)
+                run_on_places(emission_, next, next.emitting(phase, kind));
+    };
+    add_to("direct", escaped_first, {phases_.first, phases_.first_mixed});
+    add_to("radiance", escaped_later, {phases_.later});
     const std::uint32_t stride = shifting();
     const Range escaped = next.escaped(escaped_shifting);
     gradient_escape_.run(escaped.count, {{"first", escaped.first}, {"stride", stride}});

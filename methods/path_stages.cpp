@@ -25,7 +25,7 @@ StageDeclaration shade_stage(bool with_offsets) {
     return {.name = with_offsets ? "shade with offsets" : "shade",
             .file = "shade",
             .definitions = {{"WITH_OFFSETS", with_offsets ? "1" : "0"}},
-            .kinds = StageDeclaration::Kinds::all,
+            .by_kind = true,
             .numbers = {"first", "to"}};
 }
 

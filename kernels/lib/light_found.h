@@ -25,15 +25,11 @@ GRADUS_FN light_found light_found_at(GRADUS_GLOBAL const uint *primitive_light, 
     const uint light = named < light_count ? named : light_count;
     const real inverse_area = FIELD_OF(light, lights, light, inverse_area);
     real pdf = light_area_pdf(inverse_area, distance_squared, side);
-#if TRAIT_LIGHT_SPHERE && TRAIT_LIGHT_TRIANGLE
-    if (primitive >= triangle_count)
-#endif
 #if TRAIT_LIGHT_SPHERE
-    {
-        const vec3 to_center = v3_sub(FIELD_V3(light, lights, light, p), origin);
-        pdf = light_sphere_pdf(FIELD_OF(light, lights, light, e1_x), FIELD_OF(light, lights, light, e1_y), inverse_area,
-                               v3_dot(to_center, to_center), distance_squared, side);
-    }
+    const vec3 to_center = v3_sub(FIELD_V3(light, lights, light, p), origin);
+    const real of_sphere = light_sphere_pdf(FIELD_OF(light, lights, light, e1_x), FIELD_OF(light, lights, light, e1_y),
+                                            inverse_area, v3_dot(to_center, to_center), distance_squared, side);
+    pdf = TRAIT_LIGHT_TRIANGLE && primitive < triangle_count ? pdf : of_sphere;
 #endif
     const real seen = side > R(0) ? R(1) : R(0);
     light_found found;

@@ -328,9 +328,6 @@ GRADUS_COLUMN_ENUM(splat, GRADUS_SPLAT_COLUMNS) /* its rows are its writer's */
 #define offsets_place(state) ((state)&3u)
 #define offsets_meet_light 4u /* beside that: some of them met a surface that emits */
 
-/* Of `evaluation` where each sampler is an integrand of its own: instead of the density of BSDF sampling. */
-#define gain_split R(-1)
-
 /* Ratios below zero: the offset path failed, so that the base path counts for itself; or there is no neighbour. */
 #define shift_failed(reason) (R(-1) - R(0.0625) * (real)(reason))
 #define shift_absent R(-2)

@@ -1,9 +1,8 @@
 /* classify: says for each traced ray which bin its path goes to next (BinLayout in runtime/wavefront/wavefront.h).
  * bin_none drops paths that have ended.
  *
- * TRAIT_GRADIENT: rows below `shifting` have offset paths that are not connected, those below `joining` have some that
- * have just become so, rows from `fresh` on begin; where offset paths are at the next vertex decides the phase
- * (gradient_path_tracer.h). */
+ * TRAIT_GRADIENT: rows below `shifting` have offset paths that are not connected, rows from `fresh` on begin; where
+ * offset paths are at the next vertex decides the phase (gradient_path_tracer.h). */
 //! traits: TRAIT_ENVIRONMENT TRAIT_TWO_FACED TRAIT_GRADIENT TRAIT_APART
 #include "kernels/lib/gradient.h"
 #include "kernels/lib/scene_hit.h"

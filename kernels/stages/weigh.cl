@@ -4,7 +4,7 @@
  *
  * Who does not see the light has contribution zero there, and BSDF sampling does not find it; light sampling still
  * does, so this is no failure of the shift. Where a vertex is not rough the two samplers shift differently: each is
- * then an integrand of its own, weighted by its share within each path (gain_split).
+ * then an integrand of its own, weighted by its share within each path.
  *
  * Offset paths that reconnect stand at the base's next vertex, whether they see it or not: the light that it emits must
  * be weighed before the hidden ones fail (`gradient_emission`, `advance`). Those that copied have failed where their

@@ -19,9 +19,9 @@ using TraitValues = std::map<std::string, int>;
 
 /// One kernel of a program: which file, which entry, and what it is compiled for.
 struct KernelRequest {
-    std::string name;                               ///< its row in the profile: "scatter diffuse"
-    std::string file;                               ///< "kernels/stages/scatter.cl"
-    std::string entry;                              ///< "scatter"
+    std::string name;                               ///< its row in the profile: "shade diffuse"
+    std::string file;                               ///< "kernels/stages/shade.cl"
+    std::string entry;                              ///< "shade"
     std::map<std::string, std::string> definitions; ///< more macros, such as BSDF=diffuse
     bool strict = false;                            ///< never relaxed: what counts on rounding or on NaN
 };

@@ -150,7 +150,7 @@ void add_mesh(const Scene &scene, const Shape &shape, const TraitMap &traits, Sc
                 put(light_record, light_p_x, p0);
                 put(light_record, light_e1_x, e1);
                 put(light_record, light_e2_x, e2);
-                light_record[light_inverse_area] = static_cast<float>(1 / area);
+                light_record[light_inverse_area] = static_cast<float>(std::min(1 / area, 3e38));
                 light_record[light_offset] = offset;
             }
         }
@@ -180,7 +180,7 @@ void add_sphere(const Scene &scene, const Shape &shape, SceneTables &tables, Lig
             put(light_record, light_p_x, sphere.center);
             light_record[light_e1_x] = sphere.radius;
             light_record[light_e1_y] = facing;
-            light_record[light_inverse_area] = static_cast<float>(1 / area);
+            light_record[light_inverse_area] = static_cast<float>(std::min(1 / area, 3e38));
             light_record[light_offset] = offset;
         }
     }

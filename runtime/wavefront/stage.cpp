@@ -102,14 +102,12 @@ void Stages::build(Session &session, const Tables &tables) {
         if (!declaration.is_wanted)
             continue;
         stage.tables_ = &tables;
-        const bool by_kind = declaration.kinds != StageDeclaration::Kinds::none;
+        const bool by_kind = declaration.by_kind;
         stage.kernels_.resize(by_kind ? kinds.size() : 1);
         for (std::size_t k = 0; k < stage.kernels_.size(); ++k) {
             KernelRequest request = request_of(declaration);
             if (by_kind) {
                 const bool is_dirac = bsdf_kind_is_dirac(kinds[k]);
-                if (is_dirac && declaration.kinds == StageDeclaration::Kinds::rough)
-                    continue;
                 request.name = fmt::format("{} {}", declaration.name, kinds[k]);
                 request.definitions["BSDF"] = kinds[k];
                 request.definitions["BSDF_IS_DIRAC"] = is_dirac ? "1" : "0";

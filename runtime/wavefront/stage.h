@@ -20,8 +20,8 @@ struct StageDeclaration {
     std::string file = {};  ///< kernels/stages/<file>.cl; empty: as the name
     std::string entry = {}; ///< the kernel in that file; empty: as the file
     std::map<std::string, std::string> definitions = {};
-    /// One kernel for each of these BSDF kinds, compiled with BSDF and BSDF_IS_DIRAC; none: one kernel.
-    enum class Kinds { none, all, rough } kinds = Kinds::none;
+    /// True: a kernel for each BSDF kind of the scene, compiled with BSDF and BSDF_IS_DIRAC.
+    bool by_kind = false;
     bool is_wanted = true; ///< false: nothing is built, and launches do nothing
     bool strict = false;   ///< never relaxed: what counts on rounding or on NaN
     /// The arguments that each launch passes, `count` apart.
