@@ -1,3 +1,4 @@
+#include "planning/make_method.h"
 #include "driver/program.h"
 #include "driver/solve_job.h"
 #include "driver/standard_streams.h"

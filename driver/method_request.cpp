@@ -1,3 +1,4 @@
+#include "planning/make_method.h"
 #include "driver/method_request.h"
 
 #include "driver/reconstruction_options.h"

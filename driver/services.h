@@ -3,8 +3,8 @@
 
 #include "runtime/device/device.h"
 #include "runtime/io/load_scene.h"
-#include "runtime/methods/method.h"
-#include "runtime/methods/tuner.h"
+#include "methods/method.h"
+#include "planning/tuner.h"
 #include "solver/poisson_solver.h"
 
 #include <cstdint>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "runtime/device/device.h"
-#include "runtime/methods/tuner.h"
+#include "planning/tuner.h"
 
 #include <optional>
 #include <string>

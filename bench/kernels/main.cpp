@@ -3,7 +3,8 @@
 #include "bench/kernels/measurements.h"
 #include "bench/program.h"
 #include "bench/write_results.h"
-#include "runtime/methods/method.h"
+#include "methods/method.h"
+#include "planning/make_method.h"
 #include "runtime/scene/traits.h"
 
 #include <CLI/CLI.hpp>

@@ -3,7 +3,7 @@
 #include "bench/kernels/measurements.h"
 #include "bench/spread.h"
 #include "runtime/io/load_scene.h"
-#include "runtime/methods/tuner.h"
+#include "planning/tuner.h"
 
 #include <fmt/format.h>
 

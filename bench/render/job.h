@@ -3,7 +3,7 @@
 
 #include "bench/spread.h"
 #include "runtime/device/device.h"
-#include "runtime/methods/path_tracer.h"
+#include "methods/path_tracer.h"
 
 #include <nlohmann/json.hpp>
 

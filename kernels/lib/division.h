@@ -4,7 +4,7 @@
 #include "kernels/shared/compat.h"
 
 /* number / divisor for number < 2^31 by a multiplication (Granlund and Montgomery 1994): vector units cannot divide.
- * See invariant_division in runtime/stages/invariant_division.h, which makes `multiplier` and `shift`. */
+ * See invariant_division in runtime/wavefront/invariant_division.h, which makes `multiplier` and `shift`. */
 GRADUS_FN uint divide(uint number, uint multiplier, uint shift) {
     return multiplier ? mul_hi(number, multiplier) >> shift : number;
 }

@@ -325,6 +325,8 @@ GRADUS_COLUMN_ENUM(splat, GRADUS_SPLAT_COLUMNS) /* its rows are its writer's */
 #define offsets_connected 0u /* all at its own, or they failed */
 #define offsets_alike 1u     /* some at vertices of their own, all of the base's BSDF kind */
 #define offsets_mixed 2u     /* some of other kinds */
+#define offsets_place(state) ((state)&3u)
+#define offsets_meet_light 4u /* beside that: some of them met a surface that emits */
 
 /* Of `evaluation` where each sampler is an integrand of its own: instead of the density of BSDF sampling. */
 #define gain_split R(-1)

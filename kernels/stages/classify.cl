@@ -51,11 +51,13 @@ STAGE classify(uint count, uint unit, uint capacity, __global const real *ray, _
     escaped_bin = begins ? ESCAPED_FIRST : shifts ? ESCAPED_SHIFTING : ESCAPED_LATER;
 #if TRAIT_APART
     const uint offsets = offsets_state[shifts ? row : 0u];
-    phase = shifts && offsets == offsets_alike ? PHASE_APART : phase;
+    phase = shifts && offsets_place(offsets) == offsets_alike ? PHASE_APART : phase;
+    /* An offset path may find a light where its base path finds none: bins of what emits are the even ones. */
+    hit_bin += shifts && (offsets & offsets_meet_light) != 0u ? hit_bin & 1u : 0u;
 #endif
 #if MIXED
 #if TRAIT_APART
-    phase = shifts && offsets == offsets_mixed ? PHASE_APART_MIXED : phase;
+    phase = shifts && offsets_place(offsets) == offsets_mixed ? PHASE_APART_MIXED : phase;
 #endif
     /* Whether the neighbours see the same BSDF kind. */
     const uint slot = begins ? AT_UINT(path, slot, row) : 0u;

@@ -75,7 +75,7 @@ STAGE weigh(uint count, uint unit, uint first, uint stride, uint capacity, uint 
 #endif
     const uint next_kind =
         kind_of_primitive(primitive_material, material_back, material_kind, is_hit ? primitive : 0u, base_is_behind);
-    int any_apart = 0, all_alike = 1;
+    int any_apart = 0, all_alike = 1, meets_light = 0;
 #endif
 #pragma unroll
     for (uint j = 0; j < 4; ++j) {
@@ -87,8 +87,8 @@ STAGE weigh(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         const int is_dirac = (kind & kind_is_dirac) != 0u;
         const int both_rough = (base_kind & kind & kind_is_rough) != 0u;
 
-        /* The light sample. Selected, not scaled: of offset paths that are no longer their own nothing was asked, so what
-         * is read here of `evaluation` and `shift` may be of another row's time. */
+        /* The light sample. Selected, not scaled: of offset paths that are no longer their own nothing was asked, so
+         * what is read here of `evaluation` and `shift` may be of another row's time. */
         const rgb f_light = AT_RGB(evaluation, value, at);
         const real pdf_light = AT(evaluation, pdf, at), density = AT(shift, light_density, at);
         const real jacobian_light = AT(shift, light_jacobian, at);
@@ -157,6 +157,7 @@ STAGE weigh(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         ratio = has_failed ? shift_failed(meets ? outcome_failed_back : outcome_failed_nothing) : ratio;
         const int is_apart = copies & is_hit & !has_failed;
         any_apart |= is_apart;
+        meets_light |= copies & meets & (primitive_light[met] != no_light);
         all_alike &= !is_apart | (kind_number(met_kind) == kind_number(next_kind));
         AT_UINT(offset, state, at) = own.is_own ? (reconnects  ? connection_recent
                                                    : was_rough ? connection_none_rough
@@ -171,6 +172,7 @@ STAGE weigh(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         AT(offset, ratio, at) = own.is_own ? ratio : own.ratio;
     }
 #if TRAIT_APART
-    offsets_state[row] = any_apart ? (all_alike ? offsets_alike : offsets_mixed) : offsets_connected;
+    offsets_state[row] = (any_apart ? (all_alike ? offsets_alike : offsets_mixed) : offsets_connected) |
+                         (meets_light ? offsets_meet_light : 0u);
 #endif
 }

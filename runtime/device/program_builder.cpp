@@ -111,7 +111,7 @@ class Builder {
     bool take_image(const Task &task, const ProgramImage &image, double seconds) {
         std::optional<BuiltProgram> program;
         try {
-            program = load_image(device_.context, device_.device, image);
+            program = load_image(device_.context, device_.device, image, sources_[task.index].options);
         } catch (const cl::Error &) {
             return false;
         }

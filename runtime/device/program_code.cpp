@@ -47,11 +47,14 @@ BuiltProgram build_source(const cl::Context &context, const cl::Device &device, 
     return {std::move(program), std::move(kernels)};
 }
 
-BuiltProgram load_image(const cl::Context &context, const cl::Device &device, const ProgramImage &image) {
+BuiltProgram load_image(const cl::Context &context, const cl::Device &device, const ProgramImage &image,
+                        const std::string &options) {
     const auto *bytes = reinterpret_cast<const unsigned char *>(image.binary.data());
     const cl::Program::Binaries binaries = {{bytes, bytes + image.binary.size()}};
     cl::Program program(context, {device}, binaries);
-    program.build({device}, "");
+    // How it is run is not in the code: PoCL flushes denormal numbers for programs that were built so.
+    const char *const flush = "-cl-denorms-are-zero";
+    program.build({device}, options.find(flush) != std::string::npos ? flush : "");
     for (const auto &[name, arguments] : image.kernels)
         if (cl::Kernel(program, name.c_str()).getInfo<CL_KERNEL_NUM_ARGS>() != arguments.size())
             throw cl::Error(CL_INVALID_BINARY, "clCreateKernel");

@@ -23,7 +23,9 @@ struct BuiltProgram {
 BuiltProgram build_source(const cl::Context &context, const cl::Device &device, const ProgramSource &source);
 
 /// Throws cl::Error where the device does not take the code.
-BuiltProgram load_image(const cl::Context &context, const cl::Device &device, const ProgramImage &image);
+/// `options`: those that the source was built with; some say how code is run.
+BuiltProgram load_image(const cl::Context &context, const cl::Device &device, const ProgramImage &image,
+                        const std::string &options);
 
 /// The program's code. PoCL gives it as POCL_BINARY_SPECIALIZE_WG says (pocl_specialization()). Throws cl::Error.
 ProgramImage image_of(const BuiltProgram &program);

@@ -8,9 +8,9 @@
 
 namespace gradus {
 
-/// The segmented sum: photons by cell, samples by pixel. On two cores a row costs 1 to 4 ns to find the runs, fewer the
-/// more rows there are, and 2 to 3 ns for each column that is summed; but a run is summed by one work-item, at some 10
-/// ns a row.
+/// The segmented sum: photons by cell, samples by pixel. On two cores a row costs 1 to 4 ns to find the runs, less
+/// where there are many, and 2 to 4 ns for each column that is summed; but a run is summed by one work-item, row by
+/// row.
 class Runs {
   public:
     /// Declares the stages `<sort> runs count`, `<sort> runs scan`, `<sort> runs list` and `<sort> runs sum`. At most

@@ -36,7 +36,7 @@ class Splats {
 
     /// Adds rows [0, count). With Order::paths no splat_path among them is above `highest_path`; the lower that is, the
     /// less there is to do. Splats that are NaN or infinite are left out and counted. On two cores a row costs 10 ns,
-    /// with Order::paths 15; but a pixel's splats are added by one work-item, at some 15 ns each.
+    /// with Order::paths 15; but a pixel's splats are added by one work-item, at some 5 ns each.
     void add(std::uint32_t count, std::uint32_t highest_path = 0xFFFFFFFFu);
 
   private:

@@ -1,6 +1,6 @@
 // The light that the camera sees at pixels which a lamp's edge crosses.
-#include "runtime/methods/direct_light.h"
-#include "runtime/methods/lit_rectangle.h"
+#include "runtime/direct_light/direct_light.h"
+#include "runtime/direct_light/lit_rectangle.h"
 #include "tests/support/render.h"
 #include "tests/support/small_scenes.h"
 

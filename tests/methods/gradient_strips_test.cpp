@@ -1,4 +1,5 @@
 // Gradient-domain path tracing of an image in strips of rows: what a strip is must not be seen in any layer.
+#include "planning/make_method.h"
 #include "tests/methods/reference_scene.h"
 #include "tests/support/render.h"
 #include "tests/support/test_name.h"

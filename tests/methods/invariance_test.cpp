@@ -1,4 +1,5 @@
 // What must not change an image, and what must.
+#include "planning/make_method.h"
 #include "tests/methods/reference_scene.h"
 #include "tests/support/render.h"
 #include "tests/support/small_scenes.h"

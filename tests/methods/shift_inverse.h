@@ -5,7 +5,7 @@
 
 #include "kernels/lib/vector.h"
 #include "runtime/device/launch_observer.h"
-#include "runtime/methods/method.h"
+#include "methods/method.h"
 #include "runtime/scene/scene_tables.h"
 #include "runtime/trace/tracer.h"
 

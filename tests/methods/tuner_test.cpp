@@ -1,5 +1,5 @@
 // The tuner: what it tries has the same image, and it takes nothing that does not gain.
-#include "runtime/methods/tuner.h"
+#include "planning/tuner.h"
 #include "tests/methods/reference_scene.h"
 #include "tests/support/render.h"
 #include "tests/support/small_scenes.h"

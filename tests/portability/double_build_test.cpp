@@ -2,7 +2,8 @@
 // the double build on what the float tables hold, so that what differs afterwards is what this stage rounds.
 #include "bench/kernels/captured_launch.h"
 #include "runtime/io/load_scene.h"
-#include "runtime/methods/method.h"
+#include "methods/method.h"
+#include "planning/make_method.h"
 #include "runtime/wavefront/table_layout.h"
 #include "tests/support/test_name.h"
 

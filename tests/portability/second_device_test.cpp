@@ -2,7 +2,8 @@
 // makes both implementations visible.
 #include "runtime/film/block_test.h"
 #include "runtime/io/load_scene.h"
-#include "runtime/methods/method.h"
+#include "methods/method.h"
+#include "planning/make_method.h"
 #include "tests/support/render.h"
 #include "tests/support/test_name.h"
 

@@ -4,7 +4,8 @@
 #include "runtime/device/device.h"
 #include "runtime/film/image.h"
 #include "runtime/film/metrics.h"
-#include "runtime/methods/method.h"
+#include "methods/method.h"
+#include "planning/make_method.h"
 #include "runtime/scene/scene.h"
 
 #include <gtest/gtest.h>

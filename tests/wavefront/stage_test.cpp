@@ -2,7 +2,8 @@
 #include "runtime/wavefront/stage.h"
 
 #include "runtime/device/launch_observer.h"
-#include "runtime/methods/method.h"
+#include "methods/method.h"
+#include "planning/make_method.h"
 #include "runtime/wavefront/table_layout.h"
 #include "tests/support/render.h"
 #include "tests/support/small_scenes.h"

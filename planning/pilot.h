@@ -2,8 +2,8 @@
 // would be. Its samples are not in the image: an image that decided on its own method would be biased.
 #pragma once
 
+#include "methods/gradient_path_tracer.h"
 #include "runtime/film/image.h"
-#include "runtime/methods/gradient_path_tracer.h"
 
 #include <cstdint>
 

@@ -2,8 +2,8 @@
 // on either: a candidate that changes a bit of it is thrown out.
 #pragma once
 
+#include "methods/method.h"
 #include "runtime/device/device.h"
-#include "runtime/methods/method.h"
 
 #include <functional>
 #include <string>

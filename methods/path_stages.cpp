@@ -1,4 +1,4 @@
-#include "runtime/methods/path_stages.h"
+#include "methods/path_stages.h"
 
 #include <sys/resource.h>
 

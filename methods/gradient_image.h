@@ -1,9 +1,9 @@
 // From the sums of a gradient-domain method to its image.
 #pragma once
 
+#include "methods/method.h"
+#include "runtime/direct_light/direct_light.h"
 #include "runtime/film/image.h"
-#include "runtime/methods/direct_light.h"
-#include "runtime/methods/method.h"
 #include "runtime/wavefront/host_table.h"
 #include "solver/poisson_solver.h"
 

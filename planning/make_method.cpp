@@ -1,9 +1,9 @@
-#include "runtime/methods/method.h"
+#include "planning/make_method.h"
 
+#include "methods/gradient_path_tracer.h"
+#include "methods/path_tracer.h"
+#include "planning/automatic_method.h"
 #include "runtime/error.h"
-#include "runtime/methods/automatic_method.h"
-#include "runtime/methods/gradient_path_tracer.h"
-#include "runtime/methods/path_tracer.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -11,8 +11,8 @@
 // A pass is some samples of the whole image, or a strip of its rows where the image is larger than that.
 #pragma once
 
-#include "runtime/methods/direct_light.h"
-#include "runtime/methods/method.h"
+#include "methods/method.h"
+#include "runtime/direct_light/direct_light.h"
 #include "runtime/wavefront/film.h"
 #include "runtime/wavefront/wavefront.h"
 #include "solver/poisson_solver.h"

@@ -1,4 +1,4 @@
-#include "runtime/methods/lit_rectangle.h"
+#include "runtime/direct_light/lit_rectangle.h"
 
 #include "kernels/shared/scene_records.h"
 #include "runtime/scene/transform.h"

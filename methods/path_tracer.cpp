@@ -1,6 +1,6 @@
-#include "runtime/methods/path_tracer.h"
+#include "methods/path_tracer.h"
 
-#include "runtime/methods/path_stages.h"
+#include "methods/path_stages.h"
 #include "runtime/seconds_since.h"
 
 #include <algorithm>

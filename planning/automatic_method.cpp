@@ -1,6 +1,7 @@
-#include "runtime/methods/automatic_method.h"
+#include "planning/automatic_method.h"
+#include "planning/make_method.h"
 
-#include "runtime/methods/gradient_path_tracer.h"
+#include "methods/gradient_path_tracer.h"
 
 #include <fmt/format.h>
 

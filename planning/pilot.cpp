@@ -1,4 +1,4 @@
-#include "runtime/methods/pilot.h"
+#include "planning/pilot.h"
 
 #include "runtime/film/metrics.h"
 

@@ -1,4 +1,4 @@
-#include "runtime/methods/gradient_image.h"
+#include "methods/gradient_image.h"
 
 #include "kernels/shared/tables.h"
 

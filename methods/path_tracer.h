@@ -2,7 +2,7 @@
 // 1986, Veach 1997), as a wavefront.
 #pragma once
 
-#include "runtime/methods/method.h"
+#include "methods/method.h"
 #include "runtime/wavefront/film.h"
 #include "runtime/wavefront/wavefront.h"
 

@@ -1,8 +1,8 @@
 // The method `auto`: path tracing or gradient-domain path tracing, whichever is nearer the truth at equal cost.
 #pragma once
 
-#include "runtime/methods/method.h"
-#include "runtime/methods/pilot.h"
+#include "methods/method.h"
+#include "planning/pilot.h"
 
 #include <memory>
 

@@ -1,4 +1,5 @@
-#include "runtime/methods/tuner.h"
+#include "planning/tuner.h"
+#include "planning/make_method.h"
 
 #include "runtime/device/program.h"
 #include "runtime/error.h"

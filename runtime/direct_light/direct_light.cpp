@@ -1,4 +1,4 @@
-#include "runtime/methods/direct_light.h"
+#include "runtime/direct_light/direct_light.h"
 
 #define TRAIT_TRIANGLES 1
 #define TRAIT_SPHERES 1
@@ -8,7 +8,7 @@
 #include "kernels/lib/camera_ray.h"
 #include "kernels/lib/light_found.h"
 #include "kernels/shared/tables.h"
-#include "runtime/methods/lit_rectangle.h"
+#include "runtime/direct_light/lit_rectangle.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
-#include "runtime/methods/gradient_path_tracer.h"
+#include "methods/gradient_path_tracer.h"
 
 #include "kernels/shared/material.h"
 #include "kernels/shared/tables.h"
-#include "runtime/methods/gradient_image.h"
-#include "runtime/methods/path_stages.h"
+#include "methods/gradient_image.h"
+#include "methods/path_stages.h"
 #include "runtime/seconds_since.h"
 #include "runtime/wavefront/segments.h"
 
@@ -323,13 +323,12 @@ void GradientPathTracer::find_emission(const Hits &next) {
     const std::uint32_t stride = shifting();
     const Range escaped = next.escaped(escaped_shifting);
     gradient_escape_.run(escaped.count, {{"first", escaped.first}, {"stride", stride}});
-    const auto on_rows = [&](Range rows) {
-        gradient_emission_.run(rows.count, {{"first", next.place(rows.first)}, {"stride", stride}});
-    };
-    // An offset path that is not connected may find a light where its base path finds none.
-    on_rows(next.phases(std::min(phases_.apart, phases_.joined), phases_.joined));
-    for (std::size_t kind = 0; kind < paths_.kinds(); ++kind)
-        on_rows(next.emitting(phases_.joined, kind));
+    // `classify` counts rows as emitting whose offset paths find a light where their base path finds none.
+    for (const std::uint32_t phase : {phases_.apart, phases_.apart_mixed, phases_.joined})
+        for (std::size_t kind = 0; phase < phases_.count && kind < paths_.kinds(); ++kind) {
+            const Range rows = next.emitting(phase, kind);
+            gradient_emission_.run(rows.count, {{"first", next.place(rows.first)}, {"stride", stride}});
+        }
 }
 
 /// Next-event estimation and scattering at the new vertices.
