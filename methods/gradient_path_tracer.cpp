@@ -181,7 +181,7 @@ TableList GradientPathTracer::tables() const {
             {.name = "offset_ray", .multiple = 4, .columns = with("TRAIT_APART", offset_ray_columns)},
             {.name = "offsets_state", .columns = with("TRAIT_APART", 1), .is_uint = true},
             {.name = "outcome", .rows = RowsOf::chunk, .columns = shift_outcomes, .is_uint = true, .is_cleared = true},
-            {.name = "carry", .rows = RowsOf::image_row, .columns = carry_columns},
+            {.name = "carry", .rows = RowsOf::image_row, .columns = carry_columns, .is_cleared = true},
             {.name = "gradient_film", .rows = RowsOf::pixel, .columns = gradient_film_columns, .is_cleared = true}};
 }
 

@@ -42,7 +42,8 @@ std::string code_of(const std::string &text) {
 }
 
 std::set<std::string> traits_used_in(const std::string &text) {
-    static const std::regex name(R"(\b(TRAIT_\w+|STRATEGY|SAMPLES_LIGHTS|SOLVER_(?:CHANNELS|WEIGHTED|JOINT))\b)");
+    static const std::regex name(
+        R"(\b(TRAIT_\w+|STRATEGY|SAMPLES_LIGHTS|FEW_LIGHTS|SOLVER_(?:CHANNELS|WEIGHTED|JOINT))\b)");
     const std::string code = code_of(text);
     std::set<std::string> names;
     for (std::sregex_iterator i(code.begin(), code.end(), name), end; i != end; ++i)
@@ -87,8 +88,8 @@ TEST(KernelTraits, AreUsedByEachStageThatHasThem) {
 TEST(KernelTraits, AreThoseThatAMethodKnows) {
     // Of the render and of the solver, not of the scene.
     std::set<std::string> known = {"TRAIT_AOV",       "TRAIT_SHARED_JITTER", "TRAIT_APART", "TRAIT_SHIFT_DISTANCE",
-                                   "TRAIT_GRADIENT",  "SAMPLES_LIGHTS",      "STRATEGY",    "SOLVER_CHANNELS",
-                                   "SOLVER_WEIGHTED", "SOLVER_JOINT"};
+                                   "TRAIT_GRADIENT",  "SAMPLES_LIGHTS",      "FEW_LIGHTS",  "STRATEGY",
+                                   "SOLVER_CHANNELS", "SOLVER_WEIGHTED",     "SOLVER_JOINT"};
     for (const auto &[name, value] : scene_traits(Scene{}))
         known.insert(name);
     std::set<std::string> declared;
