@@ -119,7 +119,8 @@ GradientPathTracer::GradientPathTracer(Device &device, const Scene &scene, const
       join_(stages_.add({.name = "join", .by_kind = true, .numbers = {"first", "keeps"}})),
       count_(stages_.add(count_stage())), combine_(stages_.add({.name = "gradient_combine", .strict = true})),
       film_(session_, stages_),
-      accumulate_(stages_.add({.name = "gradient_accumulate", .strict = true, .numbers = {"first_slot", "frames"}})) {
+      accumulate_(stages_.add({.name = "gradient_accumulate", .strict = true, .numbers = {"first_slot", "frames"}})),
+      carry_(stages_.add({.name = "gradient_carry", .numbers = {"first_slot"}})) {
     const std::vector<std::uint32_t> kinds = material_kinds(scene, options.shift_threshold);
     session_.scene_buffers.emplace_back(device, "material_kind", kinds.data(), kinds.size() * sizeof(kinds[0]));
     total_ = session_.pixels() * session_.settings.samples_per_pixel;
@@ -418,13 +419,8 @@ void GradientPathTracer::add_to_film(const Strip &strip) {
     for (std::uint32_t frame = 0; frame < strip.frames; frame += accumulated_frames)
         accumulate_.run(
             pixels, {{"first_slot", frame * pixels}, {"frames", std::min(accumulated_frames, strip.frames - frame)}});
-    // Differences of offset 2 in the last row are finished by the next strip.
-    const bool is_last = strip.first + strip.rows == session_.film.crop_height;
-    const std::size_t size = real_bytes(options_.precision), slots = tables_->rows().slots;
-    const std::size_t last_row = 2 * slots + std::size_t(strip.rows - 1) * width;
-    for (std::size_t column = 0; !is_last && column < carry_columns; ++column)
-        (*tables_)["difference"].copy_to((*tables_)["carry"], size * (column * 4 * slots + last_row),
-                                         size * column * width, size * width);
+    if (strip.first + strip.rows < session_.film.crop_height)
+        carry_.run(width, {{"first_slot", pixels - width}});
 }
 
 void GradientPathTracer::restart(std::uint64_t first_sample, std::uint64_t samples_per_pixel) {

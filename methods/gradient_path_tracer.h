@@ -87,7 +87,7 @@ class GradientPathTracer final : public Method {
     Stage &escape_, &emission_, &gradient_escape_, &gradient_emission_, &shade_with_offsets_, &shade_, &advance_,
         &advance_apart_, &join_, &count_, &combine_;
     Film film_;
-    Stage &accumulate_;
+    Stage &accumulate_, &carry_;
     std::optional<Tables> tables_;
     Hits newest_; ///< of the newest vertices
     std::uint64_t total_ = 0, done_ = 0, first_sample_ = 0;

@@ -90,12 +90,6 @@ Buffer Buffer::part(std::size_t first, std::size_t bytes) const {
 
 const void *Buffer::argument() const { return &handle_->memory(); }
 
-void Buffer::copy_to(const Buffer &to, std::size_t from_byte, std::size_t to_byte, std::size_t bytes) const {
-    opencl_call("copying " + name_ + " to " + to.name_, [&] {
-        handle_->device.queue.enqueueCopyBuffer(handle_->memory, to.handle_->memory, from_byte, to_byte, bytes);
-    });
-}
-
 void Buffer::clear() {
     // Not by clEnqueueFillBuffer: a checker of uninitialised memory (oclgrind) does not see what that writes.
     std::memset(map(Access::write).as<char>(), 0, bytes_);

@@ -40,8 +40,6 @@ class Buffer {
     /// The cl_mem, as a pointer that clSetKernelArg takes.
     const void *argument() const;
 
-    /// Copies bytes to another buffer, in the order of the queue.
-    void copy_to(const Buffer &to, std::size_t from_byte, std::size_t to_byte, std::size_t bytes) const;
     /// Sets all bytes to zero.
     void clear();
     /// Waits for all work on the queue, then copies the content.

@@ -1,9 +1,9 @@
 // The double build against the float build, stage by stage on equal inputs: each launch of a render is made again by
 // the double build on what the float tables hold, so that what differs afterwards is what this stage rounds.
 #include "bench/kernels/captured_launch.h"
-#include "runtime/io/load_scene.h"
 #include "methods/method.h"
 #include "planning/make_method.h"
+#include "runtime/io/load_scene.h"
 #include "runtime/wavefront/table_layout.h"
 #include "tests/support/test_name.h"
 
@@ -172,8 +172,8 @@ class DoubleBuild : public ::testing::TestWithParam<DoubleCase> {
         const auto far = errors.end() - std::upper_bound(errors.begin(), errors.end(), visible);
         std::vector<double> &total = figures[name];
         total.insert(total.end(), errors.begin(), errors.end());
-        const bool has_lobe =
-            name.starts_with("shade") && name.find(" rough") != std::string::npos && (name.ends_with("-> shadow") || name.ends_with("-> event"));
+        const bool has_lobe = name.starts_with("shade") && name.find(" rough") != std::string::npos &&
+                              (name.ends_with("-> shadow") || name.ends_with("-> event"));
         EXPECT_LE(errors[(errors.size() - 1) / 2], has_lobe ? allowed_median_of_lobes : allowed_median) << name;
         EXPECT_LE(double(far), std::max(3.0, allowed_fraction * double(errors.size())))
             << name << ": rows of " << errors.size();
