@@ -1,8 +1,8 @@
-#include "planning/make_method.h"
 #include "driver/program.h"
 #include "driver/solve_job.h"
 #include "driver/standard_streams.h"
 #include "driver/tuning_store.h"
+#include "planning/make_method.h"
 #include "runtime/scene/traits.h"
 
 int main(int argc, char **argv) {

@@ -1,5 +1,5 @@
-#include "planning/make_method.h"
 #include "driver/method_request.h"
+#include "planning/make_method.h"
 
 #include "driver/reconstruction_options.h"
 

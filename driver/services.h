@@ -1,10 +1,10 @@
 // What the program asks of the runtime, as functions, so that tests can run the program with a method of their own.
 #pragma once
 
-#include "runtime/device/device.h"
-#include "runtime/io/load_scene.h"
 #include "methods/method.h"
 #include "planning/tuner.h"
+#include "runtime/device/device.h"
+#include "runtime/io/load_scene.h"
 #include "solver/poisson_solver.h"
 
 #include <cstdint>

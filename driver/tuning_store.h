@@ -1,8 +1,8 @@
 // What `gradus tune` found for each device, kept in a file of the user's cache folder.
 #pragma once
 
-#include "runtime/device/device.h"
 #include "planning/tuner.h"
+#include "runtime/device/device.h"
 
 #include <optional>
 #include <string>

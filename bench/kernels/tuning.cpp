@@ -2,8 +2,8 @@
 // that chance favoured looks best.
 #include "bench/kernels/measurements.h"
 #include "bench/spread.h"
-#include "runtime/io/load_scene.h"
 #include "planning/tuner.h"
+#include "runtime/io/load_scene.h"
 
 #include <fmt/format.h>
 

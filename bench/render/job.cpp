@@ -1,9 +1,9 @@
-#include "planning/make_method.h"
 #include "bench/render/job.h"
+#include "planning/make_method.h"
 
+#include "methods/gradient_path_tracer.h"
 #include "runtime/error.h"
 #include "runtime/io/load_scene.h"
-#include "methods/gradient_path_tracer.h"
 
 #include <fmt/format.h>
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "bench/spread.h"
-#include "runtime/device/device.h"
 #include "methods/path_tracer.h"
+#include "runtime/device/device.h"
 
 #include <nlohmann/json.hpp>
 

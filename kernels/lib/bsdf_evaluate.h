@@ -12,8 +12,7 @@ GRADUS_FN bsdf_value bsdf_evaluate(material m, vec3 wi, vec3 wo) {
 #if BSDF_IS_DIRAC
     const int is_reflected = wi.z * wo.z > R(0);
     /* Below and above all reflectances: where there is a choice, the event is given. */
-    const bsdf_sample s =
-        PASTE(BSDF, _sample)(m, wi, is_reflected ? R(-1) : R(2), R(0), R(0), transport_radiance);
+    const bsdf_sample s = PASTE(BSDF, _sample)(m, wi, is_reflected ? R(-1) : R(2), R(0), R(0), transport_radiance);
     const int is_that = (s.wo.z * wi.z > R(0)) == is_reflected;
     bsdf_value v = bsdf_value_none();
     v.pdf = is_that ? s.pdf : R(0);

@@ -27,10 +27,10 @@ GRADUS_FN surface_point surface_point_of(GRADUS_GLOBAL const real *triangles,
     vec3 shading = hit.normal;
 #if TRAIT_SHADING_NORMALS
     const uint smooth = TRIANGLE_OF(primitive);
-    const vec3 interpolated = v3_normalize(
-        v3_mad(v3_mad(v3_scale(FIELD_V3(normals, triangle_normals, smooth, n0), R(1) - hit.u - hit.v), hit.u,
-                      FIELD_V3(normals, triangle_normals, smooth, n1)),
-               hit.v, FIELD_V3(normals, triangle_normals, smooth, n2)));
+    const vec3 interpolated =
+        v3_normalize(v3_mad(v3_mad(v3_scale(FIELD_V3(normals, triangle_normals, smooth, n0), R(1) - hit.u - hit.v),
+                                   hit.u, FIELD_V3(normals, triangle_normals, smooth, n1)),
+                            hit.v, FIELD_V3(normals, triangle_normals, smooth, n2)));
     shading = v3_select(!TRAIT_SPHERES || primitive < triangle_count, interpolated, shading);
 #endif
     const uint sided_material = primitive_material[primitive];

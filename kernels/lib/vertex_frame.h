@@ -1,5 +1,5 @@
-/* A vertex of a path in the columns of a table (GRADUS_SURFACE_VERTEX_COLUMNS), and its local frame: shading normal, and
- * dp/du where a surface is anisotropic. */
+/* A vertex of a path in the columns of a table (GRADUS_SURFACE_VERTEX_COLUMNS), and its local frame: shading normal,
+ * and dp/du where a surface is anisotropic. */
 #ifndef GRADUS_LIB_VERTEX_FRAME_H
 #define GRADUS_LIB_VERTEX_FRAME_H
 //! traits: TRAIT_ANISOTROPIC TRAIT_SHADING_NORMALS

@@ -33,8 +33,8 @@
     REAL(shadow, value_b, "")                                                                                          \
     UINT(shadow, open, "before tracing: 1 asks for a trace, 0 does not; after: 1 if the light is seen")
 
-/* The state of each path. Two of these tables and two of `ray` alternate: `shade` reads the old row of a path and writes
- * the new one. */
+/* The state of each path. Two of these tables and two of `ray` alternate: `shade` reads the old row of a path and
+ * writes the new one. */
 #define GRADUS_PATH_COLUMNS(REAL, UINT)                                                                                \
     UINT(path, slot, "its place in its pass: its row in `radiance`")                                                   \
     UINT(path, key_0, "random numbers: hash of seed, pixel and sample")                                                \
@@ -63,7 +63,8 @@
     REAL(table, shading_x, "only with TRAIT_SHADING_NORMALS or TRAIT_ANISOTROPIC: unit, on the side of geometric")     \
     REAL(table, shading_y, "")                                                                                         \
     REAL(table, shading_z, "")                                                                                         \
-    REAL(table, along_x, "only with TRAIT_ANISOTROPIC: dp/du, any length, where a rough surface's alpha_u is measured") \
+    REAL(table, along_x,                                                                                               \
+         "only with TRAIT_ANISOTROPIC: dp/du, any length, where a rough surface's alpha_u is measured")                \
     REAL(table, along_y, "")                                                                                           \
     REAL(table, along_z, "")
 
@@ -181,7 +182,8 @@
 /* How offset paths that are not connected go on, until it is known what their rays and segments meet. */
 #define GRADUS_SHIFT_COLUMNS(REAL, UINT)                                                                               \
     REAL(shift, light_jacobian, "of the connection to the light point, by solid angle at both vertices")               \
-    REAL(shift, light_density, "of light sampling there, times the Jacobian, over the base path's; then offset_ratio before the step")     \
+    REAL(shift, light_density,                                                                                         \
+         "of light sampling there, times the Jacobian, over the base path's; then offset_ratio before the step")       \
     REAL(shift, jacobian, "of the step to the next vertex; 0 where it cannot be made")                                 \
     UINT(shift, outcome, "one of GRADUS_SHIFT_OUTCOMES: which step it is, or why there is none")
 
@@ -287,7 +289,7 @@ GRADUS_LIB_BEGIN
 
 #define GRADUS_COLUMN_INDEX(table, column, text) table##_##column,
 #define GRADUS_COLUMN_ENUM(table, COLUMNS)                                                                             \
-    enum table##_column { COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) table##_columns };
+    enum table##_column{COLUMNS(GRADUS_COLUMN_INDEX, GRADUS_COLUMN_INDEX) table##_columns};
 GRADUS_TABLES(GRADUS_COLUMN_ENUM)
 GRADUS_COLUMN_ENUM(splat, GRADUS_SPLAT_COLUMNS) /* its rows are its writer's */
 #undef GRADUS_COLUMN_ENUM

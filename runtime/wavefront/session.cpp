@@ -12,7 +12,7 @@ namespace gradus {
 namespace {
 
 constexpr std::uint32_t most_few_lights = 4; // kernels/lib/light_sampling.h chooses among so many
-constexpr std::uint32_t deepest = 1u << 16; // where a file asks for paths without end
+constexpr std::uint32_t deepest = 1u << 16;  // where a file asks for paths without end
 
 TraitMap traits_for(const Scene &scene, const SessionOptions &options, const TraitMap &of_method) {
     TraitMap traits = scene_traits(scene);

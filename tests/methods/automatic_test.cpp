@@ -1,6 +1,6 @@
 // The method `auto`: what it estimates, what it picks, and that its image is that of the method that it picked.
-#include "planning/make_method.h"
 #include "planning/automatic_method.h"
+#include "planning/make_method.h"
 #include "tests/methods/reference_scene.h"
 #include "tests/support/render.h"
 #include "tests/support/small_scenes.h"

@@ -4,8 +4,8 @@
 #pragma once
 
 #include "kernels/lib/vector.h"
-#include "runtime/device/launch_observer.h"
 #include "methods/method.h"
+#include "runtime/device/launch_observer.h"
 #include "runtime/scene/scene_tables.h"
 #include "runtime/trace/tracer.h"
 

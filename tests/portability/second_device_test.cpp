@@ -1,9 +1,9 @@
 // The same kernels on a second OpenCL implementation for the CPU: images agree. Run by with_second_device.py, which
 // makes both implementations visible.
-#include "runtime/film/block_test.h"
-#include "runtime/io/load_scene.h"
 #include "methods/method.h"
 #include "planning/make_method.h"
+#include "runtime/film/block_test.h"
+#include "runtime/io/load_scene.h"
 #include "tests/support/render.h"
 #include "tests/support/test_name.h"
 

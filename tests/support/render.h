@@ -1,11 +1,11 @@
 // Rendering in process, and what tests ask of the images.
 #pragma once
 
+#include "methods/method.h"
+#include "planning/make_method.h"
 #include "runtime/device/device.h"
 #include "runtime/film/image.h"
 #include "runtime/film/metrics.h"
-#include "methods/method.h"
-#include "planning/make_method.h"
 #include "runtime/scene/scene.h"
 
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
 // What a stage is built from and what a launch passes to it.
 #include "runtime/wavefront/stage.h"
 
-#include "runtime/device/launch_observer.h"
 #include "methods/method.h"
 #include "planning/make_method.h"
+#include "runtime/device/launch_observer.h"
 #include "runtime/wavefront/table_layout.h"
 #include "tests/support/render.h"
 #include "tests/support/small_scenes.h"
