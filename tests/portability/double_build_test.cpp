@@ -26,13 +26,11 @@ using bench::CapturedLaunch;
 /// Rows that may differ visibly: where rounding decides otherwise (which lobe, which light, roulette), and where a
 /// value is the small difference of large ones (grazing angles, the tail of a narrow lobe).
 constexpr double visible = 1e-3, allowed_fraction = 5e-3;
-/// Half of all rows are at least this near, some ten roundings of float.
+/// Half of all rows of a kernel are at least this near, some ten roundings of float. A single launch may have ten rows,
+/// half of which happen to lie in the tail of a lobe.
 constexpr double allowed_median = 2e-6;
 /// Less than this is nothing: the tail of a narrow lobe goes below what float holds, and double still holds it.
 constexpr double negligible = 1e-30;
-/// The same where a stage finds the vertex first and then evaluates a rough lobe towards the light: the rounding of the
-/// position turns that direction, and the tail of a lobe of roughness 0.1 changes by a hundred times as much.
-constexpr double allowed_median_of_lobes = 2e-5;
 /// Smaller values of these columns differ by the rounding of what is added to them. A point of a light in the plane of
 /// which the vertex lies is seen at an angle that is rounding alone, and so is what arrives from there; the ends of a
 /// short connection are rounded as those of a long one.
@@ -172,9 +170,6 @@ class DoubleBuild : public ::testing::TestWithParam<DoubleCase> {
         const auto far = errors.end() - std::upper_bound(errors.begin(), errors.end(), visible);
         std::vector<double> &total = figures[name];
         total.insert(total.end(), errors.begin(), errors.end());
-        const bool has_lobe = name.starts_with("shade") && name.find(" rough") != std::string::npos &&
-                              (name.ends_with("-> shadow") || name.ends_with("-> event"));
-        EXPECT_LE(errors[(errors.size() - 1) / 2], has_lobe ? allowed_median_of_lobes : allowed_median) << name;
         EXPECT_LE(double(far), std::max(3.0, allowed_fraction * double(errors.size())))
             << name << ": rows of " << errors.size();
     }
@@ -227,12 +222,13 @@ class DoubleBuild : public ::testing::TestWithParam<DoubleCase> {
         return has_gain && gain < negligible;
     }
 
-    void print_figures() {
+    void check_medians() {
         for (auto &[name, errors] : figures) {
             std::sort(errors.begin(), errors.end());
             const auto at = [&](double part) { return errors[std::size_t(part * double(errors.size() - 1))]; };
             std::printf("  %-44s median %.1e  99 %% %.1e  99.9 %% %.1e  of %zu rows\n", name.c_str(), at(0.5), at(0.99),
                         at(0.999), errors.size());
+            EXPECT_LE(at(0.5), allowed_median) << name;
         }
     }
 
@@ -261,7 +257,7 @@ TEST_P(DoubleBuild, AgreesWithTheFloatBuildInEveryStage) {
             ++stages;
         }
     EXPECT_GE(stages, 9u);
-    print_figures();
+    check_medians();
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, DoubleBuild,
