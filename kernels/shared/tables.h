@@ -128,7 +128,8 @@
     REAL(light_path, power_r, "flux along the ray if there were this light path alone, W")                             \
     REAL(light_path, power_g, "")                                                                                      \
     REAL(light_path, power_b, "")                                                                                      \
-    REAL(light_path, start, "the largest of its three fluxes where it began, for Russian roulette")
+    REAL(light_path, start, "the largest of its three fluxes where it began, for Russian roulette")                    \
+    UINT(light_path, vertex, "only with TRAIT_LIGHT_VERTICES: record of its newest vertex (light_vertex.h)")
 
 /* A photon: where a light path met a surface, whichever table it is in. */
 #define GRADUS_PHOTON_COLUMNS_OF(table, REAL, UINT)                                                                    \
@@ -145,7 +146,8 @@
     REAL(table, normal_y, "")                                                                                          \
     REAL(table, normal_z, "")                                                                                          \
     UINT(table, slot, "number of its light path among those traced with it")                                           \
-    UINT(table, depth, "edges from the light: 1 for what arrives directly")
+    UINT(table, depth, "edges from the light: 1 for what arrives directly")                                            \
+    UINT(table, before, "only with TRAIT_LIGHT_VERTICES: record of the vertex that it came from (light_vertex.h)")
 
 /* All photons of a pass, by light path and along each, whatever the batches. */
 #define GRADUS_PHOTON_COLUMNS(REAL, UINT) GRADUS_PHOTON_COLUMNS_OF(photon, REAL, UINT)

@@ -3,6 +3,7 @@
  * and a photon's place is that of its light path and its ordinal.
  *
  * As in the partition, each work-item of photons_count and photons_place has PARTITION_CHUNK of the `rows` slots. */
+//! traits: TRAIT_LIGHT_VERTICES
 #include "kernels/lib/vector.h"
 #include "kernels/shared/stage.h"
 
@@ -78,4 +79,7 @@ STAGE photons_gather(uint count, uint first, uint first_slot, uint new_photon_ro
     SET_RGB(photon, power, row, flux);
     AT_UINT(photon, slot, row) = first_slot + AT_UINT(new_photon, slot, from);
     AT_UINT(photon, depth, row) = AT_UINT(new_photon, depth, from);
+#if TRAIT_LIGHT_VERTICES
+    AT_UINT(photon, before, row) = AT_UINT(new_photon, before, from);
+#endif
 }
