@@ -141,7 +141,7 @@ Seen watch(const char *method, const Scene &scene, const RenderOptions &options)
             return found == launch.arguments.end() ? 0 : std::get<std::uint32_t>(found->second.value);
         };
         const TableSizes sizes = {number("capacity"), number("slots"), number("pixels"), number("crop_width"),
-                                  number("own_rows")};
+                                  number("own_rows"), number("photon_rows"), number("new_photon_rows"), number("pair_rows")};
         for (const auto &[name, argument] : launch.arguments) {
             const auto *buffer = std::get_if<Buffer>(&argument.value);
             const TableLayout *layout = table_layout(name);
