@@ -132,7 +132,7 @@ void Stages::build(Session &session, const Tables &tables) {
         stage.bound_.assign(stage.kernels_.size(), tables.version());
         for (Kernel &kernel : stage.kernels_)
             stage.changing_.push_back(kernel.valid() ? bind_arguments(kernel, stage.declaration_, session, tables)
-                                                        : std::vector<std::string>());
+                                                     : std::vector<std::string>());
     }
     warm(session);
 }
@@ -167,6 +167,13 @@ void Stages::set(const std::string &number, std::uint32_t value) {
         for (Kernel &kernel : stage.kernels_)
             if (kernel.valid())
                 kernel.set(number, value);
+}
+
+void Stages::set_real(const std::string &name, double value) {
+    for (Stage &stage : stages_)
+        for (Kernel &kernel : stage.kernels_)
+            if (kernel.valid())
+                kernel.set_real(name, value);
 }
 
 std::vector<StageTime> Stages::times() const {

@@ -58,7 +58,7 @@ class Stage {
 
     StageDeclaration declaration_;
     const Tables *tables_ = nullptr;
-    std::vector<Kernel> kernels_; ///< by kind; without kinds, one
+    std::vector<Kernel> kernels_;      ///< by kind; without kinds, one
     std::vector<std::uint64_t> bound_; ///< by kernel: Tables::version() when tables that change were bound last
     std::vector<std::vector<std::string>> changing_; ///< by kernel: its arguments that are such tables
 };
@@ -74,6 +74,8 @@ class Stages {
 
     /// Gives all kernels that ask for it another value of a number of the session.
     void set(const std::string &number, std::uint32_t value);
+    /// The same for a real.
+    void set_real(const std::string &name, double value);
 
     /// What the kernels took so far, stage by stage in the order of their declaration.
     std::vector<StageTime> times() const;
