@@ -132,7 +132,7 @@ void Stages::build(Session &session, const Tables &tables) {
         stage.bound_.assign(stage.kernels_.size(), tables.version());
         for (Kernel &kernel : stage.kernels_)
             stage.changing_.push_back(kernel.valid() ? bind_arguments(kernel, stage.declaration_, session, tables)
-                                                        : std::vector<std::string>());
+                                                     : std::vector<std::string>());
     }
     warm(session);
 }

@@ -58,7 +58,7 @@ class Stage {
 
     StageDeclaration declaration_;
     const Tables *tables_ = nullptr;
-    std::vector<Kernel> kernels_; ///< by kind; without kinds, one
+    std::vector<Kernel> kernels_;      ///< by kind; without kinds, one
     std::vector<std::uint64_t> bound_; ///< by kernel: Tables::version() when tables that change were bound last
     std::vector<std::vector<std::string>> changing_; ///< by kernel: its arguments that are such tables
 };

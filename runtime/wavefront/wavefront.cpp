@@ -77,8 +77,8 @@ void Wavefront::trace() {
         connections = {&(*tables_)["shadow"], rows, vertices_, shadow_origin_x, shadow_direction_x, shadow_open};
     const TraceCounts counts =
         trace_segments(session_.tracer, tables_->precision(),
-                       {&(*tables_)["ray"], rows, rays(), ray_origin_x, ray_direction_x, ray_primitive},
-                       connections, session_.trace_seconds);
+                       {&(*tables_)["ray"], rows, rays(), ray_origin_x, ray_direction_x, ray_primitive}, connections,
+                       session_.trace_seconds);
     session_.rays["extension"] += counts.extension;
     session_.rays["shadow"] += counts.shadow;
 }
