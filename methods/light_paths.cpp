@@ -22,15 +22,16 @@ constexpr std::uint64_t most_photons = 1u << 31; // tables are numbered with 32 
 // Where light hardly reaches a surface.
 constexpr double most_paths_a_pass = 4e6;
 
-// Russian roulette from the first vertex on.
-constexpr std::uint32_t roulette_from = 1, no_roulette = 0xFFFFFFFFu;
+// Russian roulette is played from the first vertex on, so that photons are of like power, unless the scene asks for
+// none: by a depth that no path has.
+constexpr std::uint32_t roulette_from = 1, no_roulette = 0xFFFFFFFFu, beyond_all_paths = 1u << 16;
 
 std::vector<std::uint32_t> gathers_by_material(const Scene &scene, double roughness) {
     std::vector<std::uint32_t> gathers;
     for (const Bsdf &bsdf : material_records(scene))
-        gathers.push_back(!is_rough(bsdf, roughness)               ? gathers_nowhere
+        gathers.push_back(!is_rough(bsdf, roughness)              ? gathers_nowhere
                           : bsdf_kind_traits(bsdf.kind).transmits ? gathers_around
-                                                                   : gathers_in_front);
+                                                                  : gathers_in_front);
     return gathers;
 }
 
@@ -50,12 +51,16 @@ StageDeclaration gather_stage() {
 
 /// The tables of light paths in flight and of their photons before they are in order.
 TableList own_tables(const Wavefront &paths) {
-    // Room for two photons a light path of a pass; more is made where it is needed.
-    constexpr std::uint32_t photons = 2 * batches_a_pass;
+    // Photons a light path; more room is made where it is needed. By slots, for their columns are written side by side.
+    constexpr std::uint32_t photons = 2;
     return joined(paths.ray_tables(),
                   {{.name = "light_path", .columns = light_path_columns, .alternates = true},
-                   {.name = "new_photon", .multiple = photons, .columns = new_photon_columns, .grows = true},
-                   {.name = "photon_order", .multiple = photons, .is_uint = true, .grows = true},
+                   {.name = "new_photon",
+                    .rows = RowsOf::slot,
+                    .multiple = photons,
+                    .columns = new_photon_columns,
+                    .grows = true},
+                   {.name = "photon_order", .rows = RowsOf::slot, .multiple = photons, .is_uint = true, .grows = true},
                    {.name = "photon_place", .rows = RowsOf::slot, .is_uint = true},
                    {.name = "photon_chunk", .rows = RowsOf::chunk, .multiple = batches_a_pass, .is_uint = true},
                    {.name = "photon_total", .rows = RowsOf::one, .is_uint = true}});
@@ -89,7 +94,7 @@ LightPaths::LightPaths(Session &session, Stages &consumers, const Scene &scene, 
 
     // The numbers that our kernels know are not those of the consumers'.
     const auto numbers = session.numbers;
-    const bool plays_roulette = session.numbers.at("roulette_depth") != no_roulette;
+    const bool plays_roulette = session.numbers.at("roulette_depth") < beyond_all_paths;
     session.numbers["capacity"] = batch;
     session.numbers["slots"] = own_->rows().slots;
     session.numbers["light_roulette_depth"] = plays_roulette ? roulette_from : no_roulette;
@@ -188,9 +193,9 @@ std::uint32_t LightPaths::put_in_order(std::uint32_t first_slot, std::uint32_t c
         consumers_.set("photon_rows", std::uint32_t(tables_->rows_of("photon")));
     }
     gather_.bind("photon", (*tables_)["photon"]);
-    gather_.run(photons, {{"first", stored},
-                          {"first_slot", first_slot},
-                          {"photon_rows", std::uint32_t(tables_->rows_of("photon"))}});
+    gather_.run(
+        photons,
+        {{"first", stored}, {"first_slot", first_slot}, {"photon_rows", std::uint32_t(tables_->rows_of("photon"))}});
     return photons;
 }
 
@@ -199,8 +204,7 @@ void LightPaths::make_room(std::uint64_t rows) {
         return;
     if (rows > most_photons)
         throw Error(ExitCode::device, "light paths leave more photons than there can be; ask for a smaller batch");
-    const std::uint64_t paths = own_->rows().paths;
-    const auto multiple = std::uint32_t((rows + rows / 2 + paths - 1) / paths);
+    const auto multiple = std::uint32_t((rows + rows / 2) / own_->rows().slots + 1);
     own_->grow("new_photon", multiple);
     own_->grow("photon_order", multiple);
     stages_.set("new_photon_rows", std::uint32_t(own_->rows_of("new_photon")));

@@ -73,8 +73,7 @@ STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint ma
     turned = r_abs(wi.z * v3_dot(point.geometric, next)) / r_max(cosines, R(1e-12));
 #endif
     const rgb scattered = rgb_mul(arriving, rgb_scale(s.weight, turned));
-    const real survival =
-        edges >= light_roulette_depth ? r_min(rgb_max(scattered) / beginning, R(0.95)) : R(1);
+    const real survival = edges >= light_roulette_depth ? r_min(rgb_max(scattered) / beginning, R(0.95)) : R(1);
     /* One edge more, and at least one to the camera. */
     const int alive = edges + 2u <= max_depth && s.pdf > R(0) && rgb_max(scattered) > R(0) && u.d < survival;
     const rgb goes_on = rgb_scale(scattered, R(1) / (alive ? survival : R(1)));
