@@ -23,8 +23,9 @@ constexpr std::uint64_t most_photons = 1u << 31; // tables are numbered with 32 
 // Where light hardly reaches a surface.
 constexpr double most_paths_a_pass = 4e6;
 
-// Russian roulette from the first vertex on.
-constexpr std::uint32_t roulette_from = 1, no_roulette = 0xFFFFFFFFu;
+// Russian roulette is played from the first vertex on, so that photons are of like power, unless the scene asks for
+// none: by a depth that no path has.
+constexpr std::uint32_t roulette_from = 1, no_roulette = 0xFFFFFFFFu, beyond_all_paths = 1u << 16;
 
 bool has_vertices(const Session &session) { return session.has("TRAIT_LIGHT_VERTICES"); }
 
@@ -60,14 +61,18 @@ StageDeclaration gather_stage() {
 
 /// The tables of light paths in flight and of their photons before they are in order.
 TableList own_tables(const Session &session, const Wavefront &paths) {
-    // Room for two photons a light path of a pass; more is made where it is needed.
-    constexpr std::uint32_t photons = 2 * batches_a_pass;
+    // Photons a light path; more room is made where it is needed. By slots, for their columns are written side by side.
+    constexpr std::uint32_t photons = 2;
     return joined(paths.ray_tables(),
                   {{.name = "light_path",
                     .columns = std::uint32_t(has_vertices(session) ? light_path_columns : light_path_vertex),
                     .alternates = true},
-                   {.name = "new_photon", .multiple = photons, .columns = new_photon_columns, .grows = true},
-                   {.name = "photon_order", .multiple = photons, .is_uint = true, .grows = true},
+                   {.name = "new_photon",
+                    .rows = RowsOf::slot,
+                    .multiple = photons,
+                    .columns = new_photon_columns,
+                    .grows = true},
+                   {.name = "photon_order", .rows = RowsOf::slot, .multiple = photons, .is_uint = true, .grows = true},
                    {.name = "photon_place", .rows = RowsOf::slot, .is_uint = true},
                    {.name = "photon_chunk", .rows = RowsOf::chunk, .multiple = batches_a_pass, .is_uint = true},
                    {.name = "photon_total", .rows = RowsOf::one, .is_uint = true}});
@@ -100,7 +105,7 @@ LightPaths::LightPaths(Session &session, Stages &consumers, const Scene &scene, 
 
     // The numbers that our kernels know are not those of the consumers'.
     const auto numbers = session.numbers;
-    const bool plays_roulette = session.numbers.at("roulette_depth") != no_roulette;
+    const bool plays_roulette = session.numbers.at("roulette_depth") < beyond_all_paths;
     session.numbers["capacity"] = batch;
     session.numbers["slots"] = own_->rows().slots;
     session.numbers["light_roulette_depth"] = plays_roulette ? roulette_from : no_roulette;
@@ -228,8 +233,7 @@ void LightPaths::make_room(std::uint64_t rows) {
         return;
     if (rows > most_photons)
         throw Error(ExitCode::device, "light paths leave more photons than there can be; ask for a smaller batch");
-    const std::uint64_t paths = own_->rows().paths;
-    const auto multiple = std::uint32_t((rows + rows / 2 + paths - 1) / paths);
+    const auto multiple = std::uint32_t((rows + rows / 2) / own_->rows().slots + 1);
     own_->grow("new_photon", multiple);
     own_->grow("photon_order", multiple);
     stages_.set("new_photon_rows", std::uint32_t(own_->rows_of("new_photon")));

@@ -102,6 +102,8 @@ PhotonMapper::PhotonMapper(Device &device, const Scene &scene, const RenderOptio
       add_(stages_.add({.name = "gather_add", .numbers = {"first"}})), film_(session_, stages_) {
     if (session_.scene.light_count == 0)
         throw Error(ExitCode::usage, "there is no light in the scene, and so no photon to gather");
+    const std::vector<std::uint32_t> kinds = material_kinds(scene, options.gather_roughness);
+    session_.scene_buffers.emplace_back(device, "material_kind", kinds.data(), kinds.size() * sizeof(kinds[0]));
     total_ = std::uint64_t(session_.pixels()) * session_.settings.samples_per_pixel;
     allocate();
 }

@@ -59,8 +59,7 @@ GRADUS_FN light_emission emission_from_direction(rgb irradiance, vec3 towards, v
     const point2 disk = warp_uniform_disk(place.x, place.y);
     light_emission e;
     e.direction = v3_neg(towards);
-    e.origin = v3_mad(
-        center, radius, frame_to_world(frame_from_normal(towards), v3(disk.x, disk.y, R(1))));
+    e.origin = v3_mad(center, radius, frame_to_world(frame_from_normal(towards), v3(disk.x, disk.y, R(1))));
     e.power = rgb_scale(irradiance, GRADUS_PI * radius * radius);
     return e;
 }
@@ -118,8 +117,8 @@ GRADUS_FN light_emission emission_sampling(GRADUS_GLOBAL const real *lights, GRA
     e = emission_from_triangle(value, p, e1, LIGHT_V3(light, e2), offset, on_light, away);
 #endif
 #if TRAIT_LIGHT_SPHERE
-    e = light_emission_select(IS_LIGHT_KIND(sphere),
-                              emission_from_sphere(value, p, e1.x, e1.y, offset, on_light, away), e);
+    e = light_emission_select(IS_LIGHT_KIND(sphere), emission_from_sphere(value, p, e1.x, e1.y, offset, on_light, away),
+                              e);
 #endif
 #if TRAIT_LIGHT_POINT
     e = light_emission_select(IS_LIGHT_KIND(point), emission_from_point(value, p, away), e);
@@ -129,8 +128,8 @@ GRADUS_FN light_emission emission_sampling(GRADUS_GLOBAL const real *lights, GRA
                               e);
 #endif
 #if TRAIT_LIGHT_CONSTANT
-    e = light_emission_select(IS_LIGHT_KIND(constant),
-                              emission_from_constant(value, center, radius, on_light, away), e);
+    e = light_emission_select(IS_LIGHT_KIND(constant), emission_from_constant(value, center, radius, on_light, away),
+                              e);
 #endif
     return e;
 }

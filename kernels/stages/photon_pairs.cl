@@ -12,6 +12,17 @@
 #include "kernels/lib/photon_grid.h"
 #include "kernels/shared/stage.h"
 
+/* Photons that are tested at once before any is listed. */
+#define PHOTON_BLOCK 32u
+
+/* 1 where the photon in row i counts. All is computed, for most photons that are looked at are near. */
+#define SQUARED(i, axis)                                                                                               \
+    ((AT(photon_sorted, position_##axis, i) - at.axis) * (AT(photon_sorted, position_##axis, i) - at.axis))
+#define COUNTS(i)                                                                                                      \
+    ((SQUARED(i, x) + SQUARED(i, y) + SQUARED(i, z) <= squared) &                                                      \
+     (v3_dot(AT_V3(photon_sorted, normal, i), normal) > PHOTON_LEAST_FACING) &                                         \
+     (AT_UINT(photon_sorted, depth, i) <= deepest) & (photon_line_sorted[i] == line))
+
 STAGE photon_pairs(uint count, uint first, uint from, uint capacity, uint photon_rows, PHOTON_GRID, real grid_reach,
                    __global const real *gather, __global const real *photon_sorted,
                    __global const uint *photon_line_sorted, __global const uint *photon_first
@@ -41,10 +52,9 @@ STAGE photon_pairs(uint count, uint first, uint from, uint capacity, uint photon
     const uint z0 = photon_cell(at.z - reach, grid.low.z, grid.inverse_edge, grid.last_z);
     const uint z1 = photon_cell(at.z + reach, grid.low.z, grid.inverse_edge, grid.last_z);
 #if LIST
-    /* Wraps below the window, which the comparison takes for beyond it. */
-    uint to = pair_chunk_first[place / PAIR_CHUNK] + pair_offset[place] - window_first;
-#endif
-#if !LIST
+    /* Where the next pair goes, less where the window begins: below 0 before it. */
+    int to = (int)(pair_chunk_first[place / PAIR_CHUNK] + pair_offset[place] - window_first);
+#else
     uint found = 0;
 #endif
     for (uint z = z0; z <= z1; ++z)
@@ -52,27 +62,30 @@ STAGE photon_pairs(uint count, uint first, uint from, uint capacity, uint photon
             const uint line = photon_line(y, z, grid_last_y);
             const uint key = photon_line_key(line, line_stride, line_shift);
             const uint end = photon_first[key + x1 + 1u];
-            for (uint i = photon_first[key + x0]; i < end; ++i) {
-                const real dx = AT(photon_sorted, position_x, i) - at.x;
-                const real dy = AT(photon_sorted, position_y, i) - at.y;
-                const real dz = AT(photon_sorted, position_z, i) - at.z;
-                const real facing = AT(photon_sorted, normal_x, i) * normal.x +
-                                    AT(photon_sorted, normal_y, i) * normal.y +
-                                    AT(photon_sorted, normal_z, i) * normal.z;
-                const int counts = (dx * dx + dy * dy + dz * dz <= squared) & (facing > PHOTON_LEAST_FACING) &
-                                   (AT_UINT(photon_sorted, depth, i) <= deepest) & (photon_line_sorted[i] == line);
 #if LIST
-                if (counts) {
-                    if (to < window_pairs) {
-                        pair_gather[to] = row;
-                        pair_photon[to] = i;
-                    }
-                    ++to;
+            /* A block at a time, first which count, then which these are, then to the list: the first and the last
+             * loop become vectors, and none has a branch that nobody can foresee. */
+            for (uint begin = photon_first[key + x0]; begin < end; begin += PHOTON_BLOCK) {
+                const uint rows = min(end - begin, PHOTON_BLOCK);
+                uint counts[PHOTON_BLOCK], near[PHOTON_BLOCK];
+                for (uint k = 0; k < rows; ++k)
+                    counts[k] = COUNTS(begin + k) ? 1u : 0u;
+                int found = 0;
+                for (uint k = 0; k < rows; ++k) {
+                    near[found] = begin + k;
+                    found += (int)counts[k];
                 }
-#else
-                found += counts ? 1u : 0u;
-#endif
+                const int low = max(-to, 0), high = min(found, (int)window_pairs - to);
+                for (int k = low; k < high; ++k) {
+                    pair_gather[to + k] = row;
+                    pair_photon[to + k] = near[k];
+                }
+                to += found;
             }
+#else
+            for (uint i = photon_first[key + x0]; i < end; ++i)
+                found += COUNTS(i) ? 1u : 0u;
+#endif
         }
 #if !LIST
     pair_count[place] = found;

@@ -285,11 +285,11 @@ SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits) {
 }
 
 std::size_t table_bytes(const SceneTables &t) {
-    return 4 * (t.triangles.size() + t.triangle_normals.size() + t.triangle_tangents.size() + t.spheres.size() +
-                t.materials.size() + t.lights.size() + t.camera.size() + t.primitive_material.size() +
-                t.primitive_light.size() + t.primitive_bin.size() + t.primitive_back_bin.size() +
-                t.material_back.size() + t.light_kinds.size() + t.light_alias.size() + t.emissions.size() +
-                t.emission_alias.size());
+    return 4 *
+           (t.triangles.size() + t.triangle_normals.size() + t.triangle_tangents.size() + t.spheres.size() +
+            t.materials.size() + t.lights.size() + t.camera.size() + t.primitive_material.size() +
+            t.primitive_light.size() + t.primitive_bin.size() + t.primitive_back_bin.size() + t.material_back.size() +
+            t.light_kinds.size() + t.light_alias.size() + t.emissions.size() + t.emission_alias.size());
 }
 
 } // namespace gradus

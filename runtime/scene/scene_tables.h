@@ -22,7 +22,7 @@ struct SceneTables {
     std::vector<std::uint32_t> emission_alias;
     std::vector<std::string> kinds; ///< the BSDF kinds of the scene: kind k has the bins 1 + 2 k and 2 + 2 k
     std::uint32_t triangle_count = 0, light_count = 0, environment_light = 0;
-    float scene_diameter = 1; ///< longer than any segment within the scene; of a sphere that holds it
+    float scene_diameter = 1;               ///< longer than any segment within the scene; of a sphere that holds it
     std::array<float, 3> scene_center = {}; ///< of that sphere
 };
 
