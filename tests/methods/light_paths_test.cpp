@@ -192,6 +192,22 @@ void add_ball(SceneMaker &maker, const Bsdf &bsdf, bool smooth_mesh) {
 
 void add_lamp(SceneMaker &maker) { maker.lamp({0, 2.5f, 0}, 2, 2, 1, maker.material(diffuse(0))); }
 
+void add_upward_lamp(SceneMaker &maker) {
+    maker.parallelogram({-0.9f, 0.6f, -0.2f}, {0, 0, 0.4f}, {0.4f, 0, 0}, maker.material(diffuse(0)),
+                        maker.emitter(Emitter::Kind::area, {1, 1, 1}));
+}
+
+/// A card above the floor at that height, glass with its front up and all else with its front down, with shading
+/// normals 27 degrees off its own.
+void add_card(SceneMaker &maker, float height, const Bsdf &bsdf) {
+    const bool is_up = bsdf.kind == BsdfKind::dielectric;
+    const Vector3 along_x{2.4f, 0, 0}, along_z{0, 0, 2.4f};
+    maker.parallelogram({-1.2f, height, -1.2f}, is_up ? along_z : along_x, is_up ? along_x : along_z,
+                        maker.material(bsdf));
+    const Vector3 normal = to_float(normalize({0.5, is_up ? 1.0 : -1.0, 0}));
+    maker.scene.meshes.back().normals.assign(4, normal);
+}
+
 Bsdf paint() { return diffuse(0.8); }
 
 const Agreement agreements[] = {
@@ -208,6 +224,10 @@ const Agreement agreements[] = {
          add_lamp(maker);
          maker.parallelogram({-1.5f, 1, -1.5f}, {0, 0, 3}, {3, 0, 0}, maker.material(glass(1.5)));
      }},
+    // A lamp that shines upwards, and a card above it whose normals all lean to one side: nothing averages out.
+    {"card_turned", [](SceneMaker &maker) { add_upward_lamp(maker), add_card(maker, 1.6f, paint()); }},
+    {"metal_card_turned", [](SceneMaker &maker) { add_upward_lamp(maker), add_card(maker, 1.6f, rough_metal(0.4)); }},
+    {"in_glass_turned", [](SceneMaker &maker) { add_lamp(maker), add_card(maker, 1, glass(1.5)); }},
     {"lights",
      [](SceneMaker &maker) {
          add_lamp(maker), add_ball(maker, paint(), false);
