@@ -319,5 +319,95 @@ TEST(LightPathsOf, AnyBatchAreTheSame) {
     EXPECT_FALSE(LightPathsCase(scene, options).trace(first, count) == photons);
 }
 
+// Who samples lights himself gets all photons but the direct ones, the same ones.
+TEST(LightPathsOf, LightsSampledElsewhereLeaveNoDirectPhotons) {
+    const Scene scene = room_of_everything();
+    constexpr std::uint32_t count = 5'000;
+    std::vector<Photon> all = LightPathsCase(scene).trace(0, count);
+    const std::size_t direct = std::erase_if(all, [](const Photon &photon) { return photon.depth == 1; });
+    EXPECT_GT(direct, 0u);
+    EXPECT_TRUE(LightPathsCase(scene, {}, LightPaths::Direct::left_out).trace(0, count) == all);
+}
+
+// Photons lie on rough surfaces alone, and on the side where they count.
+TEST(LightPathsOf, AnySceneLeavePhotonsWhereTheyAreGathered) {
+    const Scene scene = room_of_everything();
+    RenderOptions options;
+    std::size_t found[3] = {};
+    for (const double roughness : {0.01, 0.05, 0.5}) {
+        options.gather_roughness = roughness;
+        const auto on_sphere = [&](const Photon &photon, std::size_t number) {
+            const Sphere &sphere = scene.spheres[number];
+            return std::fabs(std::hypot(photon.position[0] - sphere.center.x, photon.position[1] - sphere.center.y,
+                                        photon.position[2] - sphere.center.z) -
+                             sphere.radius) < 1e-4;
+        };
+        for (std::size_t &count : found)
+            count = 0;
+        bool is_inside_glass = false;
+        for (const Photon &photon : LightPathsCase(scene, options).trace(0, 50'000)) {
+            const double side =
+                photon.wi[0] * photon.normal[0] + photon.wi[1] * photon.normal[1] + photon.wi[2] * photon.normal[2];
+            for (std::size_t number = 0; number < 3; ++number)
+                found[number] += on_sphere(photon, number);
+            if (on_sphere(photon, 2))
+                is_inside_glass |= side < 0;
+            else
+                ASSERT_GT(side, 0);
+        }
+        EXPECT_EQ(found[0], 0u) << "smooth glass";
+        EXPECT_EQ(found[1] > 0, roughness <= 0.02) << "metal of roughness 0.02";
+        EXPECT_EQ(found[2] > 0, roughness <= 0.3) << "glass of roughness 0.3";
+        EXPECT_EQ(is_inside_glass, roughness <= 0.3);
+    }
+}
+
+// About a million by default, as a pilot says that is the same for all batches; else what is asked for, and the table
+// of photons grows.
+TEST(LightPathsOf, APassAreAsManyAsStoreAMillionPhotons) {
+    const Scene scene = room_of_everything();
+    RenderOptions options;
+    LightPathsCase light(scene, options);
+    const std::uint32_t count = light.paths.paths_a_pass();
+    EXPECT_EQ(light.paths.light_paths(), 0u);
+    EXPECT_NEAR(double(light.trace(0, count).size()), 1e6, 5e4);
+    options.batch_size = 4096;
+    EXPECT_EQ(LightPathsCase(scene, options).paths.paths_a_pass(), count);
+    options.photons = 3000;
+    LightPathsCase few(scene, options);
+    EXPECT_EQ(few.paths.paths_a_pass(), 3000u);
+    std::vector<Photon> more = light.trace(5, 20'000);
+    ASSERT_GT(more.size(), 3300u); // what there was room for at first
+    EXPECT_TRUE(few.trace(5, 20'000) == more);
+}
+
+TEST(LightPathsOf, ADarkSceneAreNone) {
+    SceneMaker maker = black_floor();
+    LightPathsCase dark(maker.scene);
+    EXPECT_EQ(dark.trace(0, 1000).size(), 0u);
+    maker.lamp({0, 1, 0}, 1, 1, 1, 0);
+    maker.scene.settings.max_depth = 1; // an edge from the light and one to the camera are two
+    EXPECT_EQ(LightPathsCase(maker.scene).trace(0, 1000).size(), 0u);
+    maker.scene.settings.max_depth = 2;
+    EXPECT_GT(LightPathsCase(maker.scene).trace(0, 1000).size(), 0u);
+}
+
+// Double and float trace the same light paths but for rounding.
+TEST(LightPathsOf, DoublePrecisionAreTheSameButForRounding) {
+    SceneMaker maker(4, 1);
+    maker.cube(maker.material(diffuse(0.6)), -1, true);
+    maker.lamp({0, 0.9f, 0}, 0.5f, 0.25f, 1, maker.material(diffuse(0.5)));
+    maker.scene.settings.rr_depth = 5;
+    const Scene &scene = maker.scene;
+    RenderOptions options;
+    constexpr std::uint32_t count = 100'000;
+    const auto power = [](const Photon &) { return 1.0; };
+    const Spread single = flux(LightPathsCase(scene, options).trace(0, count), count, power);
+    options.precision = Precision::double_;
+    const Spread wide = flux(LightPathsCase(scene, options).trace(0, count), count, power);
+    EXPECT_NEAR(single.mean, wide.mean, single.standard_error);
+    EXPECT_NE(single.mean, wide.mean);
+}
+
 } // namespace
 } // namespace gradus::testing
