@@ -53,7 +53,7 @@
 #define GRADUS_CHAIN_EVENT_COLUMNS(REAL, UINT)                                                                         \
     REAL(chain_event, half_x, "microfacet normal in the vertex's own frame, on the normal's side; 0 where specular")   \
     REAL(chain_event, half_y, "")                                                                                      \
-    UINT(chain_event, kind, "its BSDF kind with kind_is_dirac; event_reflects")
+    UINT(chain_event, kind, "its BSDF kind with kind_is_rough, kind_is_dirac; and event_...")
 
 /* A walk that goes on. Rows are dense, the longest chains first. Two of these tables alternate. */
 #define GRADUS_WALK_COLUMNS(REAL, UINT)                                                                                \
@@ -97,7 +97,16 @@
     REAL(walk_beam, direction_s_z, "")                                                                                 \
     REAL(walk_beam, direction_t_x, "")                                                                                 \
     REAL(walk_beam, direction_t_y, "")                                                                                 \
-    REAL(walk_beam, direction_t_z, "")
+    REAL(walk_beam, direction_t_z, "")                                                                                 \
+    REAL(walk_beam, first_x, "the first vertex of this step")                                                          \
+    REAL(walk_beam, first_y, "")                                                                                       \
+    REAL(walk_beam, first_z, "")                                                                                       \
+    REAL(walk_beam, first_s_x, "its changes")                                                                          \
+    REAL(walk_beam, first_s_y, "")                                                                                     \
+    REAL(walk_beam, first_s_z, "")                                                                                     \
+    REAL(walk_beam, first_t_x, "")                                                                                     \
+    REAL(walk_beam, first_t_y, "")                                                                                     \
+    REAL(walk_beam, first_t_z, "")
 
 /* The last segment of a chain that has arrived, from origin along direction to distance 1. */
 #define GRADUS_WALK_LINK_COLUMNS(REAL, UINT)                                                                           \
@@ -131,8 +140,11 @@
 #define ROWS_OF_walk_beam chain_rows
 #define ROWS_OF_walk_link chain_rows
 
-/* chain_event_kind holds this beside the kind: it mirrors; else it refracts, or lets pass. */
-#define event_reflects 0x400u
+/* What chain_event_kind holds beside the kind. */
+#define event_reflects 0x400u /* it mirrors; else it refracts, or lets pass */
+#define event_behind 0x800u   /* it is met from behind its normal */
+#define event_unknown 0x1000u /* its half vector is not known */
+#define event_kind_mask 0x3FFu
 
 /* What becomes of a walk. OUTCOME(name, what is said of it). Where the steps run out, it is why the last one was not
  * taken. */
