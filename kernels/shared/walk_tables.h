@@ -1,7 +1,7 @@
 /* The tables of manifold walks (runtime/wavefront/manifold_walk.h): columns alone, for kernels/shared/tables.h.
  *
- * A chain has a fixed start y_b, `length` vertices y_b+1 ... y_s-1 that are not rough, and an end y_s, which is to move
- * to its target. Vertex k = 0 ... length - 1 of chain r is row k * chain_rows + r of the tables of vertices. */
+ * A chain has a fixed start y_b, `inner` vertices y_b+1 ... y_s-1 that are not rough, and an end y_s, which is to move
+ * to its target. Vertex k = 0 ... inner - 1 of chain r is row k * chain_rows + r of the tables of vertices. */
 #ifndef GRADUS_SHARED_WALK_TABLES_H
 #define GRADUS_SHARED_WALK_TABLES_H
 
@@ -28,7 +28,7 @@
     REAL(chain, target_normal_y, "")                                                                                   \
     REAL(chain, target_normal_z, "")                                                                                   \
     REAL(chain, target_offset, "how far rays start off the surface there")                                             \
-    UINT(chain, length, "vertices between start and end; 0: nothing is asked")
+    UINT(chain, inner, "vertices between start and end; 0: nothing is asked")
 
 #define GRADUS_CHAIN_VERTEX_COLUMNS(REAL, UINT)                                                                        \
     REAL(chain_vertex, position_x, "")                                                                                 \

@@ -8,7 +8,7 @@ STAGE walk_turn(uint count, uint chain_rows, __global const real *chain, __globa
     if (row >= count)
         return;
     const int has_arrived = AT_UINT(walked, outcome, row) == walk_arrived;
-    const uint number = AT_UINT(chain, length, row);
+    const uint number = AT_UINT(chain, inner, row);
 #define COPY_V3(to, from)                                                                                              \
     AT_IN(back_chain, chain, to##_x, row) = AT(chain, from##_x, row);                                                  \
     AT_IN(back_chain, chain, to##_y, row) = AT(chain, from##_y, row);                                                  \
@@ -22,7 +22,7 @@ STAGE walk_turn(uint count, uint chain_rows, __global const real *chain, __globa
     AT_IN(back_chain, chain, start_offset, row) = AT(chain, start_offset, row);
     AT_IN(back_chain, chain, end_offset, row) = AT(chain, target_offset, row);
     AT_IN(back_chain, chain, target_offset, row) = AT(chain, end_offset, row);
-    AT_UINT_IN(back_chain, chain, length, row) = has_arrived ? number : 0u;
+    AT_UINT_IN(back_chain, chain, inner, row) = has_arrived ? number : 0u;
 }
 
 STAGE walk_turn_vertices(uint count, uint chain_rows, uint chain_vertices, __global const real *walked_vertex,

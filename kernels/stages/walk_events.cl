@@ -14,7 +14,7 @@ STAGE walk_events(uint count, uint unit, uint chain_rows, uint chain_vertices, _
     const size_t row = work_item();
     if (row >= count)
         return;
-    const uint k = (uint)get_global_id(2), number = AT_UINT(chain, length, row);
+    const uint k = (uint)get_global_id(2), number = AT_UINT(chain, inner, row);
     const size_t at = (size_t)k * chain_rows + row;
     const int is_vertex = k < number, is_last = k + 1u >= number;
     const uint stored = AT_UINT(chain_vertex, primitive, at);

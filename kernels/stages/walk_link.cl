@@ -9,7 +9,7 @@ STAGE walk_link(uint count, uint chain_rows, uint chain_vertices, __global const
     if (row >= count)
         return;
     const int has_arrived = AT_UINT(walked, outcome, row) == walk_arrived;
-    const uint number = AT_UINT(chain, length, row);
+    const uint number = AT_UINT(chain, inner, row);
     const size_t last = (size_t)(has_arrived ? number - 1u : 0u) * chain_rows + row;
     const vec3 from = AT_V3(walked_vertex, position, last), target = AT_V3(chain, target, row);
     const vec3 normal = AT_V3(chain, target_normal, row);

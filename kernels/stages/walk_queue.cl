@@ -8,7 +8,7 @@ STAGE walk_queue(uint count, uint chain_rows, uint chain_vertices, uint most_ver
     const size_t row = work_item();
     if (row >= count)
         return;
-    const uint number = AT_UINT(chain, length, row);
+    const uint number = AT_UINT(chain, inner, row);
     const int is_asked = number > 0u, fits = number <= most_vertices;
     AT_UINT(walk, chain, row) = (uint)row;
     AT_UINT(walk, steps, row) = 0u;
