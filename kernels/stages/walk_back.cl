@@ -37,7 +37,7 @@ STAGE walk_turn_vertices(uint count, uint chain_rows, uint chain_vertices, __glo
     AT_UINT_IN(back_vertex, chain_vertex, primitive, at) = AT_UINT(walked_vertex, primitive, at);
 }
 
-STAGE walk_return(uint count, uint chain_rows, uint chain_vertices, real walk_back_tolerance,
+STAGE walk_return(uint count, uint chain_rows, uint chain_vertices, real walk_back_tolerance, real walk_floor,
                   __global const real *chain, __global const real *chain_vertex, __global real *walked,
                   __global const real *back_walked, __global const real *back_walked_vertex) {
     const size_t row = work_item();
@@ -47,7 +47,7 @@ STAGE walk_return(uint count, uint chain_rows, uint chain_vertices, real walk_ba
     const vec3 here = AT_V3(chain_vertex, position, row);
     const vec3 there = AT_V3_IN(back_walked_vertex, walked_vertex, position, row);
     const vec3 off = v3_sub(there, here), way = v3_sub(here, AT_V3(chain, start, row));
-    const real tolerance = walk_back_tolerance * walk_back_tolerance * v3_dot(way, way);
-    const int is_back = back == walk_arrived && v3_dot(off, off) <= tolerance;
+    const real tolerance = walk_back_tolerance * r_sqrt(v3_dot(way, way)) + walk_floor * AT(chain, target_offset, row);
+    const int is_back = back == walk_arrived && v3_dot(off, off) <= tolerance * tolerance;
     AT_UINT(walked, outcome, row) = outcome == walk_arrived && !is_back ? walk_back : outcome;
 }

@@ -129,7 +129,12 @@ walk_follow
     const real miss = v3_dot(wanted, wanted), stray = r_after(v3_dot(strayed, strayed), miss);
 
     /* Accept or halve. */
-    const real tolerance = walk_tolerance * reach + rounding, base_tolerance = walk_back_tolerance * reach + rounding;
+    /* The first vertex is known to rounding, which the chain magnifies on the way to the end. */
+    const real magnified = (v3_dot(end_s, end_s) + v3_dot(end_t, end_t)) /
+                           r_max(v3_dot(first_s, first_s) + v3_dot(first_t, first_t), R(1e-30));
+    const real floor_here = rounding * r_sqrt(r_max(magnified, R(1)));
+    const real tolerance = walk_tolerance * reach + floor_here;
+    const real base_tolerance = walk_back_tolerance * reach + floor_here;
     const int lands = follows & meets & (reach > R(0)) & step.is_valid;
     const int is_nearer = miss < AT(walk, miss, row);
     const int is_base = replays ? stray <= base_tolerance * base_tolerance : 1;

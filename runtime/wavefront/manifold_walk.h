@@ -16,7 +16,8 @@ struct WalkSettings {
     std::uint32_t most_vertices = 8; ///< between start and end of a chain: what there is room for
     std::uint32_t steps = 5;         ///< tried at most, those that are halved counted in (Hua et al. 2017)
     /// An end has arrived at this distance from its target, over the length of the chain's last segment: the angle by
-    /// which its last half vector is wrong. Beside that it may be off by what rounding does to its coordinates.
+    /// which its last half vector is wrong. Beside that it may be off by what rounding does to the coordinates of the
+    /// first vertex, magnified as the chain does.
     double tolerance = 1e-5;
     bool comes_back = true; ///< walks count as arrived only where the walk back comes back: shifts need that
     /// Then, how far the first vertex may come back from where it was, over the length of the first segment.
