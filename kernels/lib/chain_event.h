@@ -68,14 +68,16 @@ GRADUS_FN vertex_event vertex_event_of(vec3 wi, vec3 n, real half_x, real half_y
     const real root = r_sqrt(r_max(root_squared, R(0)));
     const real sum = r_max(cosine + root, R(1e-3));
     e.along = reflects ? R(2) * cosine : -contrast * e.inverse_eta / sum;
-    e.slope = reflects ? R(2) : -e.along / r_max(root, R(1e-3));
     e.wo = v3_sub(v3_scale(e.m, e.along), v3_scale(wi, e.inverse_eta));
     const real cosine_out = reflects ? cosine : root * e.inverse_eta;
     e.turn = e.along * e.along / r_max(cosine_out, R(1e-6));
+    /* r_after: divisions of like terms would be packed (kernels/lib/ordered.h). */
+    e.slope = reflects ? R(2) : r_after(-e.along, e.turn) / r_max(root, R(1e-3));
     const real least = reflects ? GRADUS_HALF_VECTOR_GRAZING_REFLECTED : GRADUS_HALF_VECTOR_GRAZING_REFRACTED;
     const real in_side = v3_dot(wi, n) * e.side, out_side = r_after(v3_dot(e.wo, n), in_side) * e.side;
-    e.is_valid = (in_side > R(0)) & (reflects ? out_side > R(0) : out_side < R(0)) & (cosine > least) &
-                 (cosine_out > least) & (reflects | shift_ior_is_valid(ior));
+    const real smallest = r_min(cosine, cosine_out); /* one comparison: two would be packed */
+    e.is_valid = (in_side > R(0)) & (reflects ? out_side > R(0) : out_side < R(0)) & (smallest > least) &
+                 (reflects | shift_ior_is_valid(ior));
     return e;
 }
 
