@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 namespace gradus {
 
@@ -124,6 +125,8 @@ GradientPathTracer::GradientPathTracer(Device &device, const Scene &scene, const
     const std::vector<std::uint32_t> kinds = material_kinds(scene, options.shift_threshold);
     session_.scene_buffers.emplace_back(device, "material_kind", kinds.data(), kinds.size() * sizeof(kinds[0]));
     total_ = session_.pixels() * session_.settings.samples_per_pixel;
+    if (options.threads != 1)
+        compilers_ = keep_compilers(device);
     allocate();
 }
 
@@ -365,9 +368,12 @@ bool GradientPathTracer::render_batch() {
         return false;
     const auto start = std::chrono::steady_clock::now();
     if (!solver_ && !solver_compiled_.valid()) // with one thread, once it is needed
-        solver_compiled_ = std::async(options_.threads == 1 ? std::launch::deferred : std::launch::async, [this] {
-            PoissonSolver::compile(session_.device, poisson_options(options_, session_.settings.samples_per_pixel));
-        });
+        solver_compiled_ = std::async(
+            options_.threads == 1 ? std::launch::deferred : std::launch::async,
+            [this, compilers = std::exchange(compilers_, nullptr)]() mutable {
+                PoissonSolver::compile(session_.device, poisson_options(options_, session_.settings.samples_per_pixel));
+                compilers.reset();
+            });
     if (!direct_edges_ && session_.max_depth() != 0 && !session_.settings.hide_emitters)
         direct_edges_ =
             sample_direct_edges(session_.scene, session_.film, session_.tracer, options_.seed,

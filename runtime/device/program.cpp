@@ -239,6 +239,8 @@ void observe_launches(Device &device, LaunchObserver observer) {
     device.implementation().observer = std::move(observer);
 }
 
+std::shared_ptr<void> keep_compilers(Device &device) { return compile_workers(device.implementation()); }
+
 void finish(Device &device) {
     opencl_call("waiting for the device", [&] { device.implementation().queue.finish(); });
 }
