@@ -110,7 +110,7 @@ void Stages::build(Session &session, const Tables &tables) {
                 const bool is_dirac = bsdf_kind_is_dirac(kinds[k]);
                 request.name = fmt::format("{} {}", declaration.name, kinds[k]);
                 request.definitions["BSDF"] = kinds[k];
-                request.definitions["BSDF_IS_DIRAC"] = is_dirac ? "1" : "0";
+                request.definitions["BSDF_IS_DIRAC"] = fmt::format("{:d}", is_dirac);
             }
             requests.push_back(request);
             places.push_back(&stage.kernels_[k]);
