@@ -117,7 +117,7 @@ GradientPathTracer::GradientPathTracer(Device &device, const Scene &scene, const
       shade_with_offsets_(stages_.add(shade_stage(true))), shade_(stages_.add(shade_stage(false))),
       advance_(stages_.add(advance_stage("advance", "0", true))),
       advance_apart_(stages_.add(advance_stage("advance apart", "1", session_.has("TRAIT_APART")))),
-      join_(stages_.add({.name = "join", .by_kind = true, .numbers = {"first", "keeps"}})),
+      join_(stages_.add({.name = "join", .by_kind = true, .dirac_alike = true, .numbers = {"first", "keeps"}})),
       count_(stages_.add(count_stage())), combine_(stages_.add({.name = "gradient_combine", .strict = true})),
       film_(session_, stages_),
       accumulate_(stages_.add({.name = "gradient_accumulate", .strict = true, .numbers = {"first_slot", "frames"}})),
@@ -199,6 +199,8 @@ void GradientPathTracer::allocate() {
     strip_frames_ = static_cast<std::uint32_t>(std::max<std::uint64_t>(paths / session_.pixels(), 1));
     strip_rows_ = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(paths / width, 1, height));
     const bool is_whole = strip_rows_ == height;
+    if (is_whole)
+        carry_.leave_out();
     // A strip has the rows beside it too, as far as there are any.
     const std::uint32_t slots = is_whole ? strip_frames_ * session_.pixels() : (strip_rows_ + 2) * width;
     tables_.emplace(session_.device, list, table_rows(session_, batch, slots), options_.precision);
