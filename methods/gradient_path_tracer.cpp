@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 namespace gradus {
 
@@ -116,7 +117,7 @@ GradientPathTracer::GradientPathTracer(Device &device, const Scene &scene, const
       shade_with_offsets_(stages_.add(shade_stage(true))), shade_(stages_.add(shade_stage(false))),
       advance_(stages_.add(advance_stage("advance", "0", true))),
       advance_apart_(stages_.add(advance_stage("advance apart", "1", session_.has("TRAIT_APART")))),
-      join_(stages_.add({.name = "join", .by_kind = true, .numbers = {"first", "keeps"}})),
+      join_(stages_.add({.name = "join", .by_kind = true, .dirac_alike = true, .numbers = {"first", "keeps"}})),
       count_(stages_.add(count_stage())), combine_(stages_.add({.name = "gradient_combine", .strict = true})),
       film_(session_, stages_),
       accumulate_(stages_.add({.name = "gradient_accumulate", .strict = true, .numbers = {"first_slot", "frames"}})),
@@ -124,6 +125,8 @@ GradientPathTracer::GradientPathTracer(Device &device, const Scene &scene, const
     const std::vector<std::uint32_t> kinds = material_kinds(scene, options.shift_threshold);
     session_.scene_buffers.emplace_back(device, "material_kind", kinds.data(), kinds.size() * sizeof(kinds[0]));
     total_ = session_.pixels() * session_.settings.samples_per_pixel;
+    if (options.threads != 1)
+        compilers_ = keep_compilers(device);
     allocate();
 }
 
@@ -196,6 +199,8 @@ void GradientPathTracer::allocate() {
     strip_frames_ = static_cast<std::uint32_t>(std::max<std::uint64_t>(paths / session_.pixels(), 1));
     strip_rows_ = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(paths / width, 1, height));
     const bool is_whole = strip_rows_ == height;
+    if (is_whole)
+        carry_.leave_out();
     // A strip has the rows beside it too, as far as there are any.
     const std::uint32_t slots = is_whole ? strip_frames_ * session_.pixels() : (strip_rows_ + 2) * width;
     tables_.emplace(session_.device, list, table_rows(session_, batch, slots), options_.precision);
@@ -365,9 +370,12 @@ bool GradientPathTracer::render_batch() {
         return false;
     const auto start = std::chrono::steady_clock::now();
     if (!solver_ && !solver_compiled_.valid()) // with one thread, once it is needed
-        solver_compiled_ = std::async(options_.threads == 1 ? std::launch::deferred : std::launch::async, [this] {
-            PoissonSolver::compile(session_.device, poisson_options(options_, session_.settings.samples_per_pixel));
-        });
+        solver_compiled_ = std::async(
+            options_.threads == 1 ? std::launch::deferred : std::launch::async,
+            [this, compilers = std::exchange(compilers_, nullptr)]() mutable {
+                PoissonSolver::compile(session_.device, poisson_options(options_, session_.settings.samples_per_pixel));
+                compilers.reset();
+            });
     if (!direct_edges_ && session_.max_depth() != 0 && !session_.settings.hide_emitters)
         direct_edges_ =
             sample_direct_edges(session_.scene, session_.film, session_.tracer, options_.seed,

@@ -96,6 +96,7 @@ class GradientPathTracer final : public Method {
     std::optional<std::vector<DirectPixel>> direct_edges_; ///< once sampled: a restart needs no others
     std::uint64_t edge_rays_ = 0;
     std::unique_ptr<PoissonSolver> solver_;
+    std::shared_ptr<void> compilers_;   ///< from before the stages' kernels are compiled until the solver's are
     std::future<void> solver_compiled_; ///< while the first samples render
 };
 
