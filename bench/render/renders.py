@@ -8,6 +8,7 @@ import dataclasses
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import time
@@ -128,6 +129,14 @@ def compare(gradus, image, reference, *options):
         "--json", record, *options)
     compared = json.loads(record.read_text())
     return {**compared["images"][0], "reference_relative_mse": compared["reference_relative_mse"]}
+
+
+def known_methods(gradus):
+    """The methods that this program has, as its help lists them."""
+    listed = re.search(r"--method\s+TEXT:\{([^}]*)\}", run(gradus, "render", "--help"))
+    if not listed:
+        sys.exit(f"{gradus}: its help lists no methods")
+    return listed.group(1).split(",")
 
 
 def reconstruction_seconds(gradus, image):
