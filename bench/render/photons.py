@@ -32,8 +32,6 @@ import plotting  # noqa: E402
 import renders  # noqa: E402
 from pythons import find_python  # noqa: E402
 
-SCENES = ["metal-ring", "metal-ring-soft", "torus-smooth-glass-soft", "slab-and-ball-soft", "lamp-in-egg-soft",
-          "cornell-box-glossy"]
 PICTURE_SCENE = "torus-smooth-glass-soft"
 METHODS = ["pt", "sppm", "gpm"]
 PARTS = ["curves", "rates", "pictures"]
@@ -77,7 +75,7 @@ def median_of(turns):
 
 
 def measure_rates(arguments, methods, python):
-    scene = renders.shared_cornell_box()
+    scene = renders.shared_scene("cornell-box-256")
     if not scene.file.exists():
         scene = renders.Scene("cornell-box", renders.ROOT / "scenes" / "cornell-box.xml", 256, 256)
     found = {"scene": scene.name, "methods": {}}
@@ -147,7 +145,8 @@ def draw_pictures(arguments, pyplot, scene, methods):
 
 def main():
     parser = argparse.ArgumentParser(description="photon methods: error against time, rates, pictures at equal time")
-    parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"names in tests/references ({' '.join(SCENES)})")
+    parser.add_argument("scenes", nargs="*", metavar="SCENE",
+                        help=f"names in tests/references ({' '.join(renders.PHOTON_SCENES)})")
     parser.add_argument("--quick", action="store_true", help="one scene, short times, one seed, unless given")
     parser.add_argument("--method", nargs="+", default=METHODS, help=f"as gradus render takes it ({' '.join(METHODS)})")
     parser.add_argument("--parts", nargs="+", choices=PARTS, default=PARTS)
@@ -163,7 +162,8 @@ def main():
     arguments.picture = arguments.json.with_name("photon-pictures.png")
     if not arguments.gradus.exists():
         sys.exit(f"{arguments.gradus}: no such program; build it, or name it with --gradus")
-    scenes = [renders.find_scene(name) for name in arguments.scenes or ([PICTURE_SCENE] if arguments.quick else SCENES)]
+    names = arguments.scenes or ([PICTURE_SCENE] if arguments.quick else renders.PHOTON_SCENES)
+    scenes = [renders.find_scene(name) for name in names]
     without = [scene.name for scene in scenes if not scene.reference]
     if without:
         parser.error(f"no reference of {', '.join(without)}")
