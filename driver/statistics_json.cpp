@@ -69,6 +69,8 @@ nlohmann::json statistics_to_json(const RenderRecord &record, const Statistics &
                    {"interrupted", record.interrupted},
                    {"samples", statistics.samples},
                    {"samples_per_second", rate(double(statistics.samples))},
+                   {"light_paths", statistics.light_paths},
+                   {"photons", statistics.photons},
                    {"stages", stages},
                    {"rays", rays},
                    {"rays_per_second", rate(double(ray_count))},

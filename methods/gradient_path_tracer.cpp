@@ -19,13 +19,8 @@ using namespace lib_float;
 
 namespace {
 
-/// Whether offset paths may reconnect there.
-bool is_rough(const Bsdf &bsdf, double threshold) {
-    const BsdfKindTraits &kind = bsdf_kind_traits(bsdf.kind);
-    return !kind.is_dirac && (!kind.has_roughness || std::min(bsdf.alpha_u, bsdf.alpha_v) >= threshold);
-}
-
-/// By material record, the kind with what `kind` in kernels/shared/tables.h says of it.
+/// By material record, the kind with what `kind` in kernels/shared/tables.h says of it. Offset paths reconnect at rough
+/// ones.
 std::vector<std::uint32_t> material_kinds(const Scene &scene, double threshold) {
     std::vector<std::uint32_t> kinds;
     for (const Bsdf &bsdf : material_records(scene))

@@ -29,6 +29,8 @@ struct RenderOptions : SessionOptions {
     /// They do not over ways shorter than eight times the distance of base and offset vertex, or than this share of the
     /// scene's diameter if that is less (kernels/lib/reconnectable.h); 0: over any.
     double shift_distance = 0;
+    std::uint64_t photons = 0;      ///< light paths a pass, photon methods; 0: as many as leave about a million photons
+    double gather_roughness = 0.05; ///< photons are kept, and gathered, at surfaces of this roughness (alpha) or more
     /// Called before the method `auto` renders a pilot, with its samples a pixel.
     std::function<void(std::uint64_t)> on_pilot;
 };

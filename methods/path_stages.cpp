@@ -56,7 +56,12 @@ void run_shade(Stage &shade, const Hits &hits, Range rows, std::size_t kind) {
     shade.run_kind(kind, rows.count, {{"first", hits.place(rows.first)}, {"to", rows.first}});
 }
 
-Statistics collected(Statistics s, const Session &session, const Stages &stages) {
+bool is_rough(const Bsdf &bsdf, double threshold) {
+    const BsdfKindTraits &kind = bsdf_kind_traits(bsdf.kind);
+    return !kind.is_dirac && (!kind.has_roughness || std::min(bsdf.alpha_u, bsdf.alpha_v) >= threshold);
+}
+
+Statistics collected(Statistics s, const Session &session, const Stages &stages, const std::vector<StageTime> &more) {
     s.rays = session.rays;
     s.compile_seconds = session.compile_seconds;
     std::uint64_t traced = 0;
@@ -64,6 +69,7 @@ Statistics collected(Statistics s, const Session &session, const Stages &stages)
         traced += count;
     s.stages = stages.times();
     s.stages.insert(s.stages.begin() + (s.stages.empty() ? 0 : 1), {"trace", session.trace_seconds, traced, 0});
+    s.stages.insert(s.stages.end(), more.begin(), more.end());
     double known = 0;
     for (const StageTime &row : s.stages)
         known += row.seconds;

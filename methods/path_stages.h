@@ -4,6 +4,7 @@
 #include "runtime/wavefront/wavefront.h"
 
 #include <cstdint>
+#include <vector>
 
 namespace gradus {
 
@@ -26,7 +27,12 @@ void run_on_places(Stage &stage, const Hits &hits, Range rows);
 /// The new vertices of one BSDF kind.
 void run_shade(Stage &shade, const Hits &hits, Range rows, std::size_t kind);
 
-/// `counted` with what session and stages know: rays, seconds by stage and of compiling, memory.
-Statistics collected(Statistics counted, const Session &session, const Stages &stages);
+/// Whether a surface counts as rough: not Dirac, and of this roughness (alpha) or more where it has one.
+bool is_rough(const Bsdf &bsdf, double threshold);
+
+/// `counted` with what session and stages know: rays, seconds by stage and of compiling, memory. `more`: what other
+/// stages took.
+Statistics collected(Statistics counted, const Session &session, const Stages &stages,
+                     const std::vector<StageTime> &more = {});
 
 } // namespace gradus

@@ -45,7 +45,7 @@ void run(const Arguments &arguments) {
                               {"platform", device.description().platform},
                               {"threads", arguments.threads},
                               {"repeats", arguments.repeats}};
-    for (const char *part : {"floor", "specialisation", "order"})
+    for (const char *part : {"floor", "specialisation", "order", "light-paths"})
         if (arguments.parts.contains(part))
             results[part] = nlohmann::json::array();
     for (const std::string &text : arguments.scenes) {
@@ -60,6 +60,10 @@ void run(const Arguments &arguments) {
         }
         if (arguments.parts.contains("specialisation"))
             results["specialisation"].push_back(measure_specialisation(settings, compared));
+        if (arguments.parts.contains("light-paths"))
+            for (const bool roulette : {false, true})
+                results["light-paths"].push_back(measure_light_paths(
+                    settings, load_job(s.path, s.width, s.height, arguments.samples_per_pixel, roulette)));
         if (arguments.parts.contains("order"))
             results["order"].push_back(measure_ray_order(settings, compared));
         std::fflush(stdout);
@@ -74,8 +78,8 @@ int main(int argc, char **argv) {
     CLI::App app("Render benchmarks in one process. Every figure is a ratio, the median of --repeats turns",
                  "gradus-bench-render");
     app.add_option("SCENES", arguments.scenes, "SCENE.xml:WxH")->required();
-    app.add_option("--parts", arguments.parts, "Any of floor, specialisation, order")
-        ->check(CLI::IsMember({"floor", "specialisation", "order"}))
+    app.add_option("--parts", arguments.parts, "Any of floor, specialisation, order, light-paths")
+        ->check(CLI::IsMember({"floor", "specialisation", "order", "light-paths"}))
         ->delimiter(',');
     app.add_option("--spp", arguments.samples_per_pixel, "Samples a pixel")->capture_default_str();
     app.add_option("--repeats", arguments.repeats, "Turns")->check(CLI::Range(1, 1000))->capture_default_str();

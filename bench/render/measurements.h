@@ -13,6 +13,9 @@ nlohmann::json measure_floor(const Settings &settings, const Job &job);
 /// Kernels compiled for the scene against kernels with every trait on: time, and the largest difference of the images.
 nlohmann::json measure_specialisation(const Settings &settings, const Job &job);
 
+/// Light paths alone: how many a second, and their time over that of Embree on the same rays.
+nlohmann::json measure_light_paths(const Settings &settings, const Job &job);
+
 /// Orders in which rays are traced.
 nlohmann::json measure_ray_order(const Settings &settings, const Job &job);
 

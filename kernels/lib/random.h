@@ -58,8 +58,14 @@ GRADUS_FN random4 random_draw(uint key_0, uint key_1, uint dimension) {
     return u;
 }
 
-/* Dimensions of a path: the camera draws once, then each vertex twice. */
+/* Light paths are numbered as samples of this pixel, which is none. */
+#define random_pixel_of_lights 0xFFFFFFFEu
+
+/* Dimensions of a path: the camera draws once, then each vertex twice. A light path connects to no light, so what
+ * connections would draw at its first vertex is free for its beginning. */
 #define random_dimension_camera 0u
+#define random_dimension_emission 0u
+#define random_dimension_leaving 1u
 #define random_dimension_light(depth) (1u + 2u * (depth))
 #define random_dimension_scatter(depth) (2u + 2u * (depth))
 

@@ -67,6 +67,11 @@
     FIELD(light, inverse_area, "triangles and spheres; for the density of hits")                                       \
     FIELD(light, offset, "how far connections end before the surface")
 
+/* How light paths choose among the lights. */
+#define GRADUS_EMISSION_FIELDS(FIELD)                                                                                  \
+    FIELD(emission, alias_threshold, "a draw below it keeps this light, above it takes its alias")                     \
+    FIELD(emission, probability, "with which light paths begin at the light: half by power, half shared by emitters")
+
 #define GRADUS_CAMERA_FIELDS(FIELD)                                                                                    \
     FIELD(camera, origin_x, "")                                                                                        \
     FIELD(camera, origin_y, "")                                                                                        \
@@ -91,6 +96,7 @@ enum normals_field { GRADUS_TRIANGLE_NORMALS_FIELDS(GRADUS_RECORD_INDEX) normals
 enum triangle_tangent_field { GRADUS_TRIANGLE_TANGENT_FIELDS(GRADUS_RECORD_INDEX) triangle_tangent_stride };
 enum sphere_field { GRADUS_SPHERE_FIELDS(GRADUS_RECORD_INDEX) sphere_stride };
 enum light_field { GRADUS_LIGHT_FIELDS(GRADUS_RECORD_INDEX) light_stride };
+enum emission_field { GRADUS_EMISSION_FIELDS(GRADUS_RECORD_INDEX) emission_stride };
 enum camera_field { GRADUS_CAMERA_FIELDS(GRADUS_RECORD_INDEX) camera_stride };
 #undef GRADUS_RECORD_INDEX
 

@@ -118,6 +118,43 @@
     REAL(splat, value_g, "")                                                                                           \
     REAL(splat, value_b, "")
 
+/* Light paths (methods/light_paths.h). The state of each; two of these tables alternate. */
+#define GRADUS_LIGHT_PATH_COLUMNS(REAL, UINT)                                                                          \
+    UINT(light_path, slot, "its place in its pass")                                                                    \
+    UINT(light_path, key_0, "random numbers: hash of seed and the light path's number")                                \
+    UINT(light_path, key_1, "")                                                                                        \
+    UINT(light_path, depth, "edges so far, the one in `ray` not counted: 0 for the ray that leaves the light")         \
+    UINT(light_path, stored, "photons that it has left so far")                                                        \
+    REAL(light_path, power_r, "flux along the ray if there were this light path alone, W")                             \
+    REAL(light_path, power_g, "")                                                                                      \
+    REAL(light_path, power_b, "")                                                                                      \
+    REAL(light_path, start, "the largest of its three fluxes where it began, for Russian roulette")
+
+/* A photon: where a light path met a surface, whichever table it is in. */
+#define GRADUS_PHOTON_COLUMNS_OF(table, REAL, UINT)                                                                    \
+    REAL(table, position_x, "")                                                                                        \
+    REAL(table, position_y, "")                                                                                        \
+    REAL(table, position_z, "")                                                                                        \
+    REAL(table, wi_x, "unit vector to the vertex before, world frame")                                                 \
+    REAL(table, wi_y, "")                                                                                              \
+    REAL(table, wi_z, "")                                                                                              \
+    REAL(table, power_r, "flux that arrives if there were this light path alone, W; shared out among all of them")     \
+    REAL(table, power_g, "")                                                                                           \
+    REAL(table, power_b, "")                                                                                           \
+    REAL(table, normal_x, "geometric normal, unit, on the side that the material calls front")                         \
+    REAL(table, normal_y, "")                                                                                          \
+    REAL(table, normal_z, "")                                                                                          \
+    UINT(table, slot, "number of its light path among those traced with it")                                           \
+    UINT(table, depth, "edges from the light: 1 for what arrives directly")
+
+/* All photons of a pass, by light path and along each, whatever the batches. */
+#define GRADUS_PHOTON_COLUMNS(REAL, UINT) GRADUS_PHOTON_COLUMNS_OF(photon, REAL, UINT)
+
+/* Those of some light paths in the order in which they came. */
+#define GRADUS_NEW_PHOTON_COLUMNS(REAL, UINT)                                                                          \
+    GRADUS_PHOTON_COLUMNS_OF(new_photon, REAL, UINT)                                                                   \
+    UINT(new_photon, ordinal, "photons that its light path left before it; photon_none where it is none itself")
+
 /* Gradient-domain path tracing only, from here on. A base path has four offset paths, j = 0 to 3: through the pixel to
  * the right, left, below and above (gradient_neighbour in kernels/lib/gradient.h). Tables of offset paths have the
  * offset j of row r at row j * capacity + r. */
@@ -269,6 +306,9 @@
     TABLE(feature, GRADUS_FEATURE_COLUMNS)                                                                             \
     TABLE(film, GRADUS_FILM_COLUMNS)                                                                                   \
     TABLE(feature_film, GRADUS_FEATURE_FILM_COLUMNS)                                                                   \
+    TABLE(light_path, GRADUS_LIGHT_PATH_COLUMNS)                                                                       \
+    TABLE(photon, GRADUS_PHOTON_COLUMNS)                                                                               \
+    TABLE(new_photon, GRADUS_NEW_PHOTON_COLUMNS)                                                                       \
     TABLE(primary, GRADUS_PRIMARY_COLUMNS)                                                                             \
     TABLE(primary_vertex, GRADUS_PRIMARY_VERTEX_COLUMNS)                                                               \
     TABLE(vertex, GRADUS_VERTEX_COLUMNS)                                                                               \
@@ -300,6 +340,14 @@ GRADUS_COLUMN_ENUM(splat, GRADUS_SPLAT_COLUMNS) /* its rows are its writer's */
 
 /* A splat_pixel that is none: the row is left out. */
 #define splat_none 0xFFFFFFFFu
+
+/* A new_photon_ordinal that is none: the row is left out. */
+#define photon_none 0xFFFFFFFFu
+
+/* material_gathers, by material record: which surfaces keep photons, and where camera paths look for them. */
+#define gathers_nowhere 0u  /* too smooth */
+#define gathers_in_front 1u /* what arrives from behind is absorbed */
+#define gathers_around 2u   /* on both sides */
 
 /* Values of ray_primitive that are no primitive. */
 #define ray_escaped 0xFFFFFFFFu /* traced, and nothing was hit */
@@ -369,6 +417,9 @@ GRADUS_LIB_END
 #define ROWS_OF_film pixels
 #define ROWS_OF_feature_film pixels
 #define ROWS_OF_splat splat_rows
+#define ROWS_OF_light_path capacity
+#define ROWS_OF_photon photon_rows
+#define ROWS_OF_new_photon new_photon_rows
 #define ROWS_OF_primary slots
 #define ROWS_OF_primary_vertex slots
 #define ROWS_OF_vertex capacity

@@ -20,6 +20,7 @@ constexpr double pi = 3.14159265358979323846;
 constexpr float offset_scale = 0x1p-18f;
 
 Vector3 operator-(Vector3 a, Vector3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+Vector3 operator+(Vector3 a, Vector3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 Vector3 operator*(float s, Vector3 a) { return {s * a.x, s * a.y, s * a.z}; }
 Vector3 cross(Vector3 a, Vector3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
 double length(Vector3 a) { return std::sqrt(double(a.x) * a.x + double(a.y) * a.y + double(a.z) * a.z); }
@@ -38,6 +39,7 @@ struct Bounds {
         low = {std::min(low.x, p.x - r), std::min(low.y, p.y - r), std::min(low.z, p.z - r)};
         high = {std::max(high.x, p.x + r), std::max(high.y, p.y + r), std::max(high.z, p.z + r)};
     }
+    Vector3 center() const { return high.x >= low.x ? low + 0.5f * (high - low) : Vector3{}; }
     double radius() const { return high.x >= low.x ? std::max(0.5 * length(high - low), 1e-6) : 1; }
 };
 
@@ -57,12 +59,14 @@ Bounds scene_bounds(const Scene &scene) {
 struct LightBuilder {
     SceneTables &tables;
     std::vector<LightPower> powers;
+    std::vector<LightPower> emitted; ///< what light paths begin with, which is known of lights at infinity too
     bool has_environment = false;
 
     /// A new light; returns its number and its record.
     std::uint32_t add(light_kind kind, Rgb value, LightPower power, float *&record) {
         const std::size_t number = powers.size();
         powers.push_back(power);
+        emitted.push_back({power.power, power.emitter, false});
         tables.light_kinds.push_back(kind);
         tables.lights.resize((number + 1) * light_stride, 0.0f);
         record = &tables.lights[number * light_stride];
@@ -86,6 +90,13 @@ struct LightBuilder {
             tables.lights[i * light_stride + light_alias_threshold] = alias.threshold[i];
         }
         tables.light_alias = alias.alias;
+        const AliasTable emission = make_alias_table(light_weights(emitted));
+        tables.emissions.resize(emitted.size() * emission_stride);
+        for (std::size_t i = 0; i < emitted.size(); ++i) {
+            tables.emissions[i * emission_stride + emission_probability] = emission.probability[i];
+            tables.emissions[i * emission_stride + emission_alias_threshold] = emission.threshold[i];
+        }
+        tables.emission_alias = emission.alias;
     }
 };
 
@@ -199,6 +210,7 @@ void add_other_lights(const Scene &scene, double radius, SceneTables &tables, Li
         if (emitter.kind == Emitter::Kind::constant) {
             tables.environment_light =
                 lights.add(light_kind_constant, emitter.value, {pi * value * disk, number, true}, record);
+            lights.emitted.back().power = 4 * pi * value * disk; // from all directions
             lights.has_environment = true;
         } else if (emitter.kind == Emitter::Kind::point) {
             lights.add(light_kind_point, emitter.value, {4 * pi * value, number, false}, record);
@@ -248,7 +260,7 @@ std::vector<Bsdf> material_records(const Scene &scene) {
 SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits) {
     SceneTables tables;
     tables.kinds = bsdf_kinds(scene);
-    LightBuilder lights{tables, {}, false};
+    LightBuilder lights{tables, {}, {}, false};
     for (const Shape &shape : scene.shapes)
         if (shape.kind == Shape::Kind::mesh)
             add_mesh(scene, shape, traits, tables, lights);
@@ -256,8 +268,10 @@ SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits) {
     for (const Shape &shape : scene.shapes)
         if (shape.kind == Shape::Kind::sphere)
             add_sphere(scene, shape, tables, lights);
-    const double radius = scene_bounds(scene).radius();
+    const Bounds bounds = scene_bounds(scene);
+    const double radius = bounds.radius();
     tables.scene_diameter = static_cast<float>(2.02 * radius);
+    tables.scene_center = {bounds.center().x, bounds.center().y, bounds.center().z};
     add_other_lights(scene, radius, tables, lights);
     lights.finish();
     add_materials(scene, tables);
@@ -271,10 +285,11 @@ SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits) {
 }
 
 std::size_t table_bytes(const SceneTables &t) {
-    return 4 * (t.triangles.size() + t.triangle_normals.size() + t.triangle_tangents.size() + t.spheres.size() +
-                t.materials.size() + t.lights.size() + t.camera.size() + t.primitive_material.size() +
-                t.primitive_light.size() + t.primitive_bin.size() + t.primitive_back_bin.size() +
-                t.material_back.size() + t.light_kinds.size() + t.light_alias.size());
+    return 4 *
+           (t.triangles.size() + t.triangle_normals.size() + t.triangle_tangents.size() + t.spheres.size() +
+            t.materials.size() + t.lights.size() + t.camera.size() + t.primitive_material.size() +
+            t.primitive_light.size() + t.primitive_bin.size() + t.primitive_back_bin.size() + t.material_back.size() +
+            t.light_kinds.size() + t.light_alias.size() + t.emissions.size() + t.emission_alias.size());
 }
 
 } // namespace gradus

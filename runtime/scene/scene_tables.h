@@ -4,6 +4,7 @@
 #include "runtime/scene/scene.h"
 #include "runtime/scene/traits.h"
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -16,9 +17,13 @@ struct SceneTables {
     std::vector<std::uint32_t> primitive_material, primitive_light, primitive_bin, primitive_back_bin;
     std::vector<std::uint32_t> material_back;            ///< by material record: the record of its back
     std::vector<std::uint32_t> light_kinds, light_alias; ///< by light
+    /// By light, what light paths choose by: records of kernels/shared/scene_records.h, and the alias.
+    std::vector<float> emissions;
+    std::vector<std::uint32_t> emission_alias;
     std::vector<std::string> kinds; ///< the BSDF kinds of the scene: kind k has the bins 1 + 2 k and 2 + 2 k
     std::uint32_t triangle_count = 0, light_count = 0, environment_light = 0;
-    float scene_diameter = 1; ///< longer than any segment within the scene
+    float scene_diameter = 1;               ///< longer than any segment within the scene; of a sphere that holds it
+    std::array<float, 3> scene_center = {}; ///< of that sphere
 };
 
 /// Lays out the scene for these traits. `film_width` and `film_height` are those of the full film.

@@ -71,6 +71,8 @@ std::vector<Buffer> make_scene_buffers(Device &device, const SceneTables &t, Pre
     numbers("material_back", t.material_back);
     numbers("light_kinds", t.light_kinds);
     numbers("light_alias", t.light_alias);
+    reals("emissions", t.emissions);
+    numbers("emission_alias", t.emission_alias);
     return buffers;
 }
 
@@ -101,6 +103,9 @@ Session::Session(Device &session_device, const Scene &s, const SessionOptions &s
     set_divisor(*this, "pixels", "pixels", pixels());
     set_divisor(*this, "width", "crop_width", film.crop_width);
     reals["scene_diameter"] = scene.scene_diameter;
+    reals["scene_center_x"] = scene.scene_center[0];
+    reals["scene_center_y"] = scene.scene_center[1];
+    reals["scene_center_z"] = scene.scene_center[2];
 }
 
 std::uint32_t Session::max_depth() const {

@@ -23,10 +23,10 @@ KernelRequest request_of(const StageDeclaration &declaration) {
     return request;
 }
 
-/// Sets what is the same for all launches, and lists the arguments that are alternating tables.
+/// Sets what is the same for all launches, and lists the arguments that are tables which change.
 std::vector<std::string> bind_arguments(Kernel &kernel, const StageDeclaration &declaration, const Session &session,
                                         const Tables &tables) {
-    std::vector<std::string> provided = declaration.numbers, alternating;
+    std::vector<std::string> provided = declaration.numbers, changing;
     provided.push_back("count");
     for (const std::string &number : provided)
         kernel.set(number, 0);
@@ -34,13 +34,13 @@ std::vector<std::string> bind_arguments(Kernel &kernel, const StageDeclaration &
     const auto asks_for = [&](const std::string &name) {
         return std::find(arguments.begin(), arguments.end(), name) != arguments.end();
     };
-    tables.for_each([&](const std::string &name, const Buffer &buffer, bool alternates) {
+    tables.for_each([&](const std::string &name, const Buffer &buffer, bool changes) {
         if (!asks_for(name))
             return;
         kernel.bind(name, buffer);
         provided.push_back(name);
-        if (alternates)
-            alternating.push_back(name);
+        if (changes)
+            changing.push_back(name);
     });
     for (const auto &[argument, table] : declaration.tables) {
         kernel.bind(argument, tables[table]);
@@ -61,7 +61,7 @@ std::vector<std::string> bind_arguments(Kernel &kernel, const StageDeclaration &
     for (const std::string &argument : arguments)
         if (std::find(provided.begin(), provided.end(), argument) == provided.end())
             throw std::logic_error(fmt::format("stage {}: nobody provides the argument {}", kernel.name(), argument));
-    return alternating;
+    return changing;
 }
 
 } // namespace
@@ -78,12 +78,12 @@ void Stage::launch(std::size_t kind, std::uint32_t count, std::uint32_t planes, 
     if (!kernels_[number].valid())
         return;
     Kernel &kernel = kernels_[number];
-    if (bound_[number] != tables_->newest()) {
+    if (bound_[number] != tables_->version()) {
         tables_->for_each([&](const std::string &name, const Buffer &buffer, bool) {
-            if (std::find(alternating_[number].begin(), alternating_[number].end(), name) != alternating_[number].end())
+            if (std::find(changing_[number].begin(), changing_[number].end(), name) != changing_[number].end())
                 kernel.bind(name, buffer);
         });
-        bound_[number] = tables_->newest();
+        bound_[number] = tables_->version();
     }
     kernel.set("count", count);
     for (const auto &[name, value] : numbers)
@@ -140,10 +140,10 @@ void Stages::build(Session &session, const Tables &tables) {
     for (std::size_t i = 0; i < built.size(); ++i)
         places[i].first->kernels_[places[i].second] = built[i];
     for (Stage &stage : stages_) {
-        stage.bound_.assign(stage.kernels_.size(), tables.newest());
+        stage.bound_.assign(stage.kernels_.size(), tables.version());
         for (Kernel &kernel : stage.kernels_)
-            stage.alternating_.push_back(kernel.valid() ? bind_arguments(kernel, stage.declaration_, session, tables)
-                                                        : std::vector<std::string>());
+            stage.changing_.push_back(kernel.valid() ? bind_arguments(kernel, stage.declaration_, session, tables)
+                                                     : std::vector<std::string>());
     }
     warm(session);
 }

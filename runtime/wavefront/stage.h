@@ -64,8 +64,8 @@ class Stage {
     const Tables *tables_ = nullptr;
     std::vector<Kernel> kernels_;
     std::vector<std::size_t> kernel_of_; ///< by kind; without kinds, one
-    std::vector<int> bound_;             ///< by kernel: Tables::newest() when alternating tables were bound last
-    std::vector<std::vector<std::string>> alternating_; ///< by kernel: its arguments that are alternating tables
+    std::vector<std::uint64_t> bound_;   ///< by kernel: Tables::version() when tables that change were bound last
+    std::vector<std::vector<std::string>> changing_; ///< by kernel: its arguments that are such tables
 };
 
 /// All stages of a method: what builds them, warms them up and reads their times.

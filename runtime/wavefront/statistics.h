@@ -38,6 +38,8 @@ struct Statistics {
     std::map<std::string, std::uint64_t> shifts;   ///< by what became of them, gradient-domain methods
     std::map<std::string, double> compile_seconds; ///< by kernel; empty where all came from a cache
     std::uint64_t samples = 0;                     ///< paths begun
+    std::uint64_t light_paths = 0;                 ///< begun, methods that trace them
+    std::uint64_t photons = 0;                     ///< that these left
     std::uint64_t non_finite = 0;                  ///< samples left out because they were NaN or infinite
     double render_seconds = 0;                     ///< spent in render_batch()
     std::uint64_t device_bytes = 0;                ///< allocated on the device

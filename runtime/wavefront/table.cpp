@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <stdexcept>
 
 namespace gradus {
@@ -44,12 +45,12 @@ std::uint64_t table_bytes(const TableDeclaration &table, const TableRows &rows, 
 }
 
 Tables::Tables(Device &device, const TableList &list, const TableRows &rows, Precision precision)
-    : rows_(rows), precision_(precision) {
+    : device_(device), rows_(rows), precision_(precision) {
     for (const TableDeclaration &table : list) {
         if (table.columns == 0)
             continue;
         Entry &entry = tables_[table.name];
-        entry.alternates = table.alternates;
+        entry.declaration = table;
         for (int i = 0; i <= int(table.alternates); ++i) {
             entry.buffer[i] = Buffer(device, table.name, table_bytes(table, rows, precision));
             if (table.is_cleared)
@@ -67,11 +68,33 @@ const Tables::Entry &Tables::entry(const std::string &name) const {
 
 const Buffer &Tables::operator[](const std::string &name) const {
     const Entry &found = entry(name);
-    return found.buffer[found.alternates ? newest_ : 0];
+    return found.buffer[found.declaration.alternates ? newest_ : 0];
 }
 
 Buffer &Tables::operator[](const std::string &name) {
     return const_cast<Buffer &>(static_cast<const Tables &>(*this)[name]);
+}
+
+std::uint64_t Tables::rows_of(const std::string &name) const {
+    const TableDeclaration &table = entry(name).declaration;
+    return rows_.of(table.rows) * table.multiple;
+}
+
+void Tables::grow(const std::string &name, std::uint32_t multiple) {
+    Entry &entry = tables_.at(name);
+    if (!entry.declaration.grows || entry.declaration.alternates)
+        throw std::logic_error("the table " + name + " does not grow");
+    const std::size_t element = element_bytes(entry.declaration, precision_), before = rows_of(name) * element;
+    entry.declaration.multiple = multiple;
+    const std::size_t after = rows_of(name) * element;
+    Buffer grown(device_, name, table_bytes(entry.declaration, rows_, precision_));
+    {
+        const auto from = entry.buffer[0].map(Access::read), to = grown.map(Access::write);
+        for (std::size_t column = 0; column < entry.declaration.columns; ++column)
+            std::memcpy(to.as<char>() + column * after, from.as<char>() + column * before, std::min(before, after));
+    }
+    entry.buffer[0] = std::move(grown);
+    ++grown_;
 }
 
 void Tables::release_all_but(const std::vector<std::string> &kept) {

@@ -26,6 +26,7 @@ struct TableDeclaration {
     bool is_uint = false;    ///< all columns are uint; else elements are `real`, and a uint lies in a real's place
     bool alternates = false; ///< there are two: `name` is the newest, `name`_old the one before
     bool is_cleared = false; ///< kernels may read rows that nobody wrote
+    bool grows = false;      ///< Tables::grow() may give it more rows
 };
 
 using TableList = std::vector<TableDeclaration>;
@@ -60,19 +61,27 @@ class Tables {
     Buffer &operator[](const std::string &name);
     const Buffer &operator[](const std::string &name) const;
 
+    /// Gives a table that grows `multiple` in place of its declaration's, and keeps its content. Waits for the device.
+    void grow(const std::string &name, std::uint32_t multiple);
+    /// Rows of a table.
+    std::uint64_t rows_of(const std::string &name) const;
+
     /// Lets go of the memory of all tables but these; kernels may not be launched any more.
     void release_all_but(const std::vector<std::string> &kept);
 
     /// Of those that alternate, the newest becomes the old one.
     void exchange() { newest_ = 1 - newest_; }
     int newest() const { return newest_; }
+    /// Another number whenever a table that may change has become another buffer.
+    std::uint64_t version() const { return 2 * grown_ + std::uint64_t(newest_); }
 
-    /// Calls visit(argument, buffer, alternates) for what kernels may name, as it is now.
+    /// Calls visit(argument, buffer, changes) for what kernels may name, as it is now.
     template <class Visit>
     void for_each(Visit visit) const {
         for (const auto &[name, table] : tables_) {
-            visit(name, table.buffer[table.alternates ? newest_ : 0], table.alternates);
-            if (table.alternates)
+            const bool alternates = table.declaration.alternates;
+            visit(name, table.buffer[alternates ? newest_ : 0], alternates || table.declaration.grows);
+            if (alternates)
                 visit(name + "_old", table.buffer[1 - newest_], true);
         }
     }
@@ -80,13 +89,15 @@ class Tables {
   private:
     struct Entry {
         Buffer buffer[2];
-        bool alternates = false;
+        TableDeclaration declaration;
     };
     const Entry &entry(const std::string &name) const;
+    Device &device_;
     std::map<std::string, Entry> tables_;
     TableRows rows_;
     Precision precision_;
     int newest_ = 0;
+    std::uint64_t grown_ = 0;
 };
 
 /// Slots of a pass of so many paths, a few more than those. Kernels write many columns of these tables at once, at rows

@@ -12,7 +12,8 @@ namespace {
 #define GRADUS_UINT_COLUMN(table, column, text) {#column, true},
 #define GRADUS_LAYOUT(table, COLUMNS)                                                                                  \
     {#table, {{COLUMNS(GRADUS_REAL_COLUMN, GRADUS_UINT_COLUMN)}, [](const TableSizes &sizes) -> std::size_t {          \
-                  [[maybe_unused]] const auto [capacity, slots, pixels, crop_width, own_rows] = sizes;                 \
+                  [[maybe_unused]] const auto [capacity, slots, pixels, crop_width, own_rows, photon_rows,             \
+                                               new_photon_rows] = sizes;                                               \
                   return ROWS_OF_##table;                                                                              \
               }}},
 

@@ -41,10 +41,15 @@ Wavefront::Wavefront(Session &session, Stages &stages, const BinLayout &layout,
 
 TableList Wavefront::tables() const {
     const std::uint32_t path_columns_used = session_.has("TRAIT_REFRACTION") ? path_columns : path_eta;
+    TableList list = ray_tables();
+    list.push_back({.name = "path", .columns = path_columns_used, .alternates = true});
+    list.push_back({.name = "shadow", .columns = shadow_columns});
+    return list;
+}
+
+TableList Wavefront::ray_tables() const {
     const std::uint32_t bins = layout_.bins();
     return {{.name = "ray", .columns = ray_columns, .alternates = true},
-            {.name = "path", .columns = path_columns_used, .alternates = true},
-            {.name = "shadow", .columns = shadow_columns},
             {.name = "bin", .is_uint = true},
             {.name = "index", .is_uint = true},
             {.name = "chunk_offset", .rows = RowsOf::chunk, .columns = bins, .is_uint = true},
@@ -67,10 +72,12 @@ Range Wavefront::refill(std::uint32_t &slot) {
 
 void Wavefront::trace() {
     const std::size_t rows = tables_->rows().paths;
+    SegmentTable connections; // stays empty where paths are connected to no light
+    if (tables_->has("shadow"))
+        connections = {&(*tables_)["shadow"], rows, vertices_, shadow_origin_x, shadow_direction_x, shadow_open};
     const TraceCounts counts =
         trace_segments(session_.tracer, tables_->precision(),
-                       {&(*tables_)["ray"], rows, rays(), ray_origin_x, ray_direction_x, ray_primitive},
-                       {&(*tables_)["shadow"], rows, vertices_, shadow_origin_x, shadow_direction_x, shadow_open},
+                       {&(*tables_)["ray"], rows, rays(), ray_origin_x, ray_direction_x, ray_primitive}, connections,
                        session_.trace_seconds);
     session_.rays["extension"] += counts.extension;
     session_.rays["shadow"] += counts.shadow;

@@ -72,6 +72,8 @@ class Wavefront {
 
     /// The tables of paths in flight.
     TableList tables() const;
+    /// Those of rays alone: for who keeps the state of paths himself and connects none to lights.
+    TableList ray_tables() const;
     /// To be called once they are allocated.
     void attach(Tables &tables);
 

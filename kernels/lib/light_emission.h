@@ -1,0 +1,138 @@
+/* How light leaves a light: a ray chosen by the light's own distribution, and the flux that it stands for: radiance
+ * times cosine over the density of choosing the ray, which is by area and solid angle; by solid angle for points; by
+ * area across the direction for lights at infinity, whose rays start from a disk as wide as a sphere that holds the
+ * scene, and beyond it (Veach 1997, 8.3.2.2; Pharr et al. 2016, 16.1.2). For all of them the density is that of the
+ * light but for a factor, so the flux is the light's whole power whichever ray is chosen. Units: watts. */
+#ifndef GRADUS_LIB_LIGHT_EMISSION_H
+#define GRADUS_LIB_LIGHT_EMISSION_H
+//! traits: TRAIT_LIGHT_TRIANGLE TRAIT_LIGHT_SPHERE TRAIT_LIGHT_POINT TRAIT_LIGHT_DIRECTIONAL TRAIT_LIGHT_CONSTANT
+#include "kernels/lib/light_sampling.h"
+
+GRADUS_LIB_BEGIN
+
+typedef struct {
+    vec3 origin;    /* already moved off the surface */
+    vec3 direction; /* unit vector */
+    rgb power;
+} light_emission;
+
+/* Leaves a surface that emits the same radiance everywhere and in all directions of its front. */
+GRADUS_FN light_emission emission_from_surface(rgb radiance, vec3 point, vec3 normal, real area, real offset, real u1,
+                                               real u2) {
+    light_emission e;
+    e.direction = v3_normalize(frame_to_world(frame_from_normal(normal), warp_cosine_hemisphere(u1, u2)));
+    e.origin = v3_mad(point, offset, normal);
+    e.power = rgb_scale(radiance, GRADUS_PI * area);
+    return e;
+}
+
+/* place: where on the light; leaving: the direction. */
+GRADUS_FN light_emission emission_from_triangle(rgb radiance, vec3 p0, vec3 e1, vec3 e2, real offset, point2 place,
+                                                point2 leaving) {
+    const point2 b = warp_uniform_triangle(place.x, place.y);
+    const vec3 parallelogram = v3_cross(e1, e2);
+    const real length = r_sqrt(v3_dot(parallelogram, parallelogram));
+    const vec3 normal = v3_scale(parallelogram, R(1) / r_max(length, R(1e-30)));
+    const vec3 point = v3_mad(v3_mad(p0, b.x, e1), b.y, e2);
+    return emission_from_surface(radiance, point, normal, R(0.5) * length, offset, leaving.x, leaving.y);
+}
+
+/* facing is 1 or -1. */
+GRADUS_FN light_emission emission_from_sphere(rgb radiance, vec3 center, real radius, real facing, real offset,
+                                              point2 place, point2 leaving) {
+    const vec3 outward = warp_uniform_sphere(place.x, place.y);
+    return emission_from_surface(radiance, v3_mad(center, radius, outward), v3_scale(outward, facing),
+                                 R(4) * GRADUS_PI * radius * radius, offset, leaving.x, leaving.y);
+}
+
+GRADUS_FN light_emission emission_from_point(rgb intensity, vec3 point, point2 leaving) {
+    light_emission e;
+    e.direction = warp_uniform_sphere(leaving.x, leaving.y);
+    e.origin = point;
+    e.power = rgb_scale(intensity, R(4) * GRADUS_PI);
+    return e;
+}
+
+/* A ray that comes from the direction `towards`, anywhere across the sphere that holds the scene. `irradiance`: what
+ * arrives from there on a plane across it. */
+GRADUS_FN light_emission emission_from_direction(rgb irradiance, vec3 towards, vec3 center, real radius, point2 place) {
+    const point2 disk = warp_uniform_disk(place.x, place.y);
+    light_emission e;
+    e.direction = v3_neg(towards);
+    e.origin = v3_mad(center, radius, frame_to_world(frame_from_normal(towards), v3(disk.x, disk.y, R(1))));
+    e.power = rgb_scale(irradiance, GRADUS_PI * radius * radius);
+    return e;
+}
+
+/* The constant environment, uniform over the directions. */
+GRADUS_FN light_emission emission_from_constant(rgb radiance, vec3 center, real radius, point2 place, point2 leaving) {
+    return emission_from_direction(rgb_scale(radiance, R(4) * GRADUS_PI), warp_uniform_sphere(leaving.x, leaving.y),
+                                   center, radius, place);
+}
+
+GRADUS_FN light_emission light_emission_select(int first, light_emission a, light_emission b) {
+    light_emission e;
+    e.origin = v3_select(first, a.origin, b.origin);
+    e.direction = v3_select(first, a.direction, b.direction);
+    e.power = rgb_select(first, a.power, b.power);
+    return e;
+}
+
+#define EMISSION_FIELD(index, field) OF_LIGHT(emissions, index, emission_stride, emission_##field *(size_t)unit)
+
+/* A ray of one of the lights, whose probability its power is divided by. As in light_sampling() every kind that the
+ * scene has is computed, and the one chosen is kept. u: choice.a and .b the light, .c and .d the place; leaving.a and
+ * .b the direction. */
+GRADUS_FN light_emission emission_sampling(GRADUS_GLOBAL const real *lights, GRADUS_GLOBAL const uint *light_kinds,
+                                           GRADUS_GLOBAL const real *emissions,
+                                           GRADUS_GLOBAL const uint *emission_alias, uint light_count, vec3 center,
+                                           real radius, uint unit, random4 choice, random4 leaving) {
+    (void)light_kinds, (void)center, (void)radius;
+    const uint column = min((uint)(choice.a * (real)light_count), light_count - 1u);
+    const uint light =
+        choice.b < EMISSION_FIELD(column, alias_threshold) ? column : OF_LIGHT(emission_alias, column, 1u, 0u);
+    const rgb value =
+        rgb_scale(rgb3(LIGHT_FIELD(light, value_r), LIGHT_FIELD(light, value_g), LIGHT_FIELD(light, value_b)),
+                  R(1) / EMISSION_FIELD(light, probability));
+    const vec3 p = LIGHT_V3(light, p);
+#if TRAIT_LIGHT_TRIANGLE || TRAIT_LIGHT_SPHERE
+    const vec3 e1 = LIGHT_V3(light, e1);
+    const real offset = LIGHT_FIELD(light, offset);
+#endif
+    uint kind = 0u;
+#if LIGHT_KINDS > 1
+    kind = OF_LIGHT(light_kinds, light, 1u, 0u);
+#endif
+    (void)kind;
+    point2 on_light, away;
+    on_light.x = choice.c;
+    on_light.y = choice.d;
+    away.x = leaving.a;
+    away.y = leaving.b;
+    light_emission e;
+    e.origin = p;
+    e.direction = v3(R(0), R(0), R(1));
+    e.power = rgb_gray(R(0));
+#if TRAIT_LIGHT_TRIANGLE
+    e = emission_from_triangle(value, p, e1, LIGHT_V3(light, e2), offset, on_light, away);
+#endif
+#if TRAIT_LIGHT_SPHERE
+    e = light_emission_select(IS_LIGHT_KIND(sphere), emission_from_sphere(value, p, e1.x, e1.y, offset, on_light, away),
+                              e);
+#endif
+#if TRAIT_LIGHT_POINT
+    e = light_emission_select(IS_LIGHT_KIND(point), emission_from_point(value, p, away), e);
+#endif
+#if TRAIT_LIGHT_DIRECTIONAL
+    e = light_emission_select(IS_LIGHT_KIND(directional), emission_from_direction(value, p, center, radius, on_light),
+                              e);
+#endif
+#if TRAIT_LIGHT_CONSTANT
+    e = light_emission_select(IS_LIGHT_KIND(constant), emission_from_constant(value, center, radius, on_light, away),
+                              e);
+#endif
+    return e;
+}
+
+GRADUS_LIB_END
+#endif

@@ -1,0 +1,37 @@
+/* emit: begins one light path a row. Leaves its first ray, its random key and its power.
+ *
+ * Light paths take rows `first_row` on and slots `first_slot` on; the one of slot 0 has the 64-bit number
+ * `first_path_high`, `first_path_low`, by which its random numbers go. */
+#include "kernels/lib/light_emission.h"
+#include "kernels/shared/stage.h"
+
+STAGE emit(uint count, uint unit, uint capacity, uint slots, uint first_row, uint first_slot, uint first_path_low,
+           uint first_path_high, uint seed_low, uint seed_high, __global real *ray, __global real *light_path,
+           __global uint *photon_place, __global const real *lights, __global const uint *light_kinds,
+           __global const real *emissions, __global const uint *emission_alias, uint light_count, real scene_center_x,
+           real scene_center_y, real scene_center_z, real scene_diameter) {
+    const size_t i = work_item();
+    if (i >= count)
+        return;
+    const size_t row = first_row + i;
+    const uint slot = first_slot + (uint)i;
+    const uint low = first_path_low + slot;
+    const uint high = first_path_high + (low < first_path_low ? 1u : 0u);
+    const random_bits key = random_key(seed_low, seed_high, random_pixel_of_lights, low, high);
+    const random4 choice = random_draw(key.x, key.y, random_dimension_emission);
+    const random4 leaving = random_draw(key.x, key.y, random_dimension_leaving);
+    const light_emission emitted = emission_sampling(lights, light_kinds, emissions, emission_alias, light_count,
+                                                     v3(scene_center_x, scene_center_y, scene_center_z),
+                                                     R(0.5) * scene_diameter, unit, choice, leaving);
+    SET_V3(ray, origin, row, emitted.origin);
+    SET_V3(ray, direction, row, emitted.direction);
+    AT_UINT(ray, primitive, row) = ray_pending;
+    AT_UINT(light_path, slot, row) = slot;
+    AT_UINT(light_path, key_0, row) = key.x;
+    AT_UINT(light_path, key_1, row) = key.y;
+    AT_UINT(light_path, depth, row) = 0u;
+    AT_UINT(light_path, stored, row) = 0u;
+    SET_RGB(light_path, power, row, emitted.power);
+    AT(light_path, start, row) = rgb_max(emitted.power);
+    photon_place[slot] = 0u;
+}

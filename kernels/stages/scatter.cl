@@ -1,0 +1,91 @@
+/* scatter: the surface that each light path met, of one BSDF kind: the photon that it leaves there, and the direction
+ * in which it goes on. Light paths at places `first` on of `index` take rows `to` on of `light_path` and `ray`; kinds
+ * that are not Dirac write rows `to_photon` on of `new_photon`, with no ordinal where there is no photon.
+ *
+ * Power is scaled as importance's adjoint is: no squared index where light is refracted, but the ratio of shading and
+ * geometric cosines on both sides (Veach 1997, eq. 5.19), since what a shading normal turns is the BSDF and not the
+ * surface. A BSDF's sample has f |wo.ns| over its density; the path's power changes by f |wi.ns| / |wi.ng| |wo.ng|.
+ *
+ * Russian roulette goes by the power against that of the light path's beginning, so that photons are alike. */
+//! traits: TRAIT_SHADING_NORMALS
+#include "kernels/lib/bsdf.h"
+#include "kernels/lib/random.h"
+#include "kernels/lib/surface_point.h"
+#include "kernels/lib/vertex_frame.h"
+#include "kernels/shared/stage.h"
+
+STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint max_depth, uint light_roulette_depth,
+              __global const uint *index, __global const real *light_path_old, __global real *light_path,
+              __global const real *ray_old, __global real *ray, __global const real *triangles,
+              __global const real *triangle_normals, __global const real *triangle_tangents,
+              __global const real *spheres, uint triangle_count, __global const uint *primitive_material,
+              __global const uint *material_back, __global const real *materials
+#if !BSDF_IS_DIRAC
+              ,
+              __global const uint *material_gathers, __global real *new_photon, __global uint *photon_place,
+              uint to_photon, uint new_photon_rows, uint first_photon_depth, uint first_slot
+#endif
+) {
+    const size_t i = work_item();
+    if (i >= count)
+        return;
+    const uint old = index[first + i];
+    const size_t row = to + i;
+    const vec3 from = AT_V3_IN(ray_old, ray, origin, old), direction = AT_V3_IN(ray_old, ray, direction, old);
+    const uint slot = AT_UINT_IN(light_path_old, light_path, slot, old);
+    const uint key_0 = AT_UINT_IN(light_path_old, light_path, key_0, old);
+    const uint key_1 = AT_UINT_IN(light_path_old, light_path, key_1, old);
+    const uint before = AT_UINT_IN(light_path_old, light_path, depth, old);
+    const uint left_before = AT_UINT_IN(light_path_old, light_path, stored, old);
+    const rgb arriving = AT_RGB_IN(light_path_old, light_path, power, old);
+    const real beginning = AT_IN(light_path_old, light_path, start, old);
+    const surface_point point =
+        surface_point_of(triangles, triangle_normals, triangle_tangents, spheres, unit, triangle_count,
+                         primitive_material, material_back, AT_UINT_IN(ray_old, ray, primitive, old), from, direction);
+    const material m = material_load(materials, point.material, unit);
+    const frame axes = surface_frame(point.shading, point.along, m);
+    const vec3 wi = frame_to_local(axes, v3_neg(direction));
+    const uint edges = before + 1u;
+
+    uint left = left_before;
+#if !BSDF_IS_DIRAC
+    const uint gathers = material_gathers[point.material];
+    const int is_photon =
+        (edges >= first_photon_depth) & ((gathers == gathers_around) | ((gathers == gathers_in_front) & (wi.z > R(0))));
+    const size_t photon_row = to_photon + i;
+    SET_V3(new_photon, position, photon_row, point.position);
+    SET_V3(new_photon, wi, photon_row, v3_neg(direction));
+    SET_RGB(new_photon, power, photon_row, arriving);
+    SET_V3(new_photon, normal, photon_row, point.geometric);
+    AT_UINT(new_photon, slot, photon_row) = first_slot + slot;
+    AT_UINT(new_photon, depth, photon_row) = edges;
+    AT_UINT(new_photon, ordinal, photon_row) = is_photon ? left_before : photon_none;
+    left += is_photon ? 1u : 0u;
+    photon_place[slot] = left;
+#endif
+
+    const random4 u = random_draw(key_0, key_1, random_dimension_scatter(before));
+    const bsdf_sample s = PASTE(BSDF, _sample)(m, wi, u.a, u.b, u.c, transport_importance);
+    const vec3 next = v3_normalize(frame_to_world(axes, s.wo));
+    real turned = R(1);
+#if TRAIT_SHADING_NORMALS
+    const real cosines = r_abs(v3_dot(point.geometric, direction) * s.wo.z);
+    turned = r_abs(wi.z * v3_dot(point.geometric, next)) / r_max(cosines, R(1e-12));
+#endif
+    const rgb scattered = rgb_mul(arriving, rgb_scale(s.weight, turned));
+    const real survival = edges >= light_roulette_depth ? r_min(rgb_max(scattered) / beginning, R(0.95)) : R(1);
+    /* One edge more, and at least one to the camera. */
+    const int alive = edges + 2u <= max_depth && s.pdf > R(0) && rgb_max(scattered) > R(0) && u.d < survival;
+    const rgb goes_on = rgb_scale(scattered, R(1) / (alive ? survival : R(1)));
+    const vec3 origin = ray_origin(point.position, point.geometric, point.offset, next);
+    AT_UINT(light_path, slot, row) = slot;
+    AT_UINT(light_path, key_0, row) = key_0;
+    AT_UINT(light_path, key_1, row) = key_1;
+    AT_UINT(light_path, depth, row) = edges;
+    AT_UINT(light_path, stored, row) = left;
+    SET_RGB(light_path, power, row, goes_on);
+    AT(light_path, start, row) = beginning;
+    SET_V3(ray, origin, row, origin);
+    SET_V3(ray, direction, row, next);
+    AT_UINT(ray, primitive, row) = alive ? ray_pending : ray_none;
+}

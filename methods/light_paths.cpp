@@ -1,0 +1,221 @@
+#include "methods/light_paths.h"
+
+#include "kernels/shared/tables.h"
+#include "methods/path_stages.h"
+#include "runtime/error.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace gradus {
+
+using namespace lib_float;
+
+namespace {
+
+// The pilot: enough light paths to know the mean number of photons to a hundredth or so, few against a pass. Renders
+// count from 0 and do not come to its numbers.
+constexpr std::uint32_t pilot_paths = 1u << 14;
+constexpr std::uint64_t pilot_first = std::uint64_t(1) << 63;
+constexpr double photons_a_pass = 1e6;
+constexpr std::uint64_t most_photons = 1u << 31; // tables are numbered with 32 bits
+// Where light hardly reaches a surface.
+constexpr double most_paths_a_pass = 4e6;
+
+// Russian roulette is played from the first vertex on, so that photons are of like power, unless the scene asks for
+// none: by a depth that no path has.
+constexpr std::uint32_t roulette_from = 1, no_roulette = 0xFFFFFFFFu, beyond_all_paths = 1u << 16;
+
+std::vector<std::uint32_t> gathers_by_material(const Scene &scene, double roughness) {
+    std::vector<std::uint32_t> gathers;
+    for (const Bsdf &bsdf : material_records(scene))
+        gathers.push_back(!is_rough(bsdf, roughness)              ? gathers_nowhere
+                          : bsdf_kind_traits(bsdf.kind).transmits ? gathers_around
+                                                                  : gathers_in_front);
+    return gathers;
+}
+
+StageDeclaration photons_stage(const char *step, std::vector<std::string> numbers) {
+    return {.name = std::string("photons ") + step,
+            .file = "photons",
+            .entry = std::string("photons_") + step,
+            .definitions = {{"PARTITION_CHUNK", std::to_string(partition_chunk)}},
+            .numbers = std::move(numbers)};
+}
+
+StageDeclaration gather_stage() {
+    StageDeclaration stage = photons_stage("gather", {"first", "photon_rows"});
+    stage.tables = {{"photon", "new_photon"}}; // until it is known
+    return stage;
+}
+
+/// The tables of light paths in flight and of their photons before they are in order.
+TableList own_tables(const Wavefront &paths) {
+    // Photons a light path; more room is made where it is needed. By slots, for their columns are written side by side.
+    constexpr std::uint32_t photons = 2;
+    return joined(paths.ray_tables(),
+                  {{.name = "light_path", .columns = light_path_columns, .alternates = true},
+                   {.name = "new_photon",
+                    .rows = RowsOf::slot,
+                    .multiple = photons,
+                    .columns = new_photon_columns,
+                    .grows = true},
+                   {.name = "photon_order", .rows = RowsOf::slot, .multiple = photons, .is_uint = true, .grows = true},
+                   {.name = "photon_place", .rows = RowsOf::slot, .is_uint = true},
+                   {.name = "photon_chunk", .rows = RowsOf::chunk, .multiple = batches_a_pass, .is_uint = true},
+                   {.name = "photon_total", .rows = RowsOf::one, .is_uint = true}});
+}
+
+} // namespace
+
+LightPaths::LightPaths(Session &session, Stages &consumers, const Scene &scene, const RenderOptions &options,
+                       Direct direct)
+    : session_(session), consumers_(consumers), wanted_(options.photons),
+      first_photon_depth_(direct == Direct::photons ? 1 : 2),
+      emit_(stages_.add({.name = "emit",
+                         .is_wanted = session.scene.light_count > 0,
+                         .numbers = {"first_row", "first_slot", "first_path_low", "first_path_high"}})),
+      paths_(session, stages_, {.kinds = std::uint32_t(session.scene.kinds.size())}),
+      scatter_(
+          stages_.add({.name = "scatter", .by_kind = true, .numbers = {"first", "to", "to_photon", "first_slot"}})),
+      count_(stages_.add(photons_stage("count", {"rows"}))), scan_(stages_.add(photons_stage("scan", {"chunks"}))),
+      place_(stages_.add(photons_stage("place", {"rows"}))),
+      order_(stages_.add(photons_stage("order", {"first_slot"}))), gather_(stages_.add(gather_stage())) {
+    if (wanted_ > std::numeric_limits<std::int32_t>::max())
+        throw Error(ExitCode::usage, "there can be 2^31 - 1 light paths a pass at most");
+    const std::vector<std::uint32_t> gathers = gathers_by_material(scene, options.gather_roughness);
+    session.scene_buffers.emplace_back(session.device, "material_gathers", gathers.data(),
+                                       gathers.size() * sizeof(gathers[0]));
+    const TableList list = own_tables(paths_);
+    const std::uint32_t batch =
+        choose_batch_size(session.device, session.options.batch_size,
+                          wanted_ ? wanted_ : std::uint64_t(most_paths_a_pass), list, session.options.precision);
+    const std::uint32_t slots = batches_a_pass * batch;
+    own_.emplace(session.device, list, table_rows(session, batch, slots), session.options.precision);
+
+    // The numbers that our kernels know are not those of the consumers'.
+    const auto numbers = session.numbers;
+    const bool plays_roulette = session.numbers.at("roulette_depth") < beyond_all_paths;
+    session.numbers["capacity"] = batch;
+    session.numbers["slots"] = own_->rows().slots;
+    session.numbers["light_roulette_depth"] = plays_roulette ? roulette_from : no_roulette;
+    session.numbers["first_photon_depth"] = first_photon_depth_;
+    session.numbers["new_photon_rows"] = std::uint32_t(own_->rows_of("new_photon"));
+    stages_.build(session, *own_);
+    session.numbers = numbers;
+    session.numbers["photon_rows"] = 0; // attach() and trace() say it
+    paths_.attach(*own_);
+}
+
+TableList LightPaths::tables() const {
+    const double rows = wanted_ ? std::min(double(wanted_), 1.1 * photons_a_pass) : 1.1 * photons_a_pass;
+    return {{.name = "photon",
+             .rows = RowsOf::one,
+             .multiple = slot_rows(std::uint32_t(rows)),
+             .columns = photon_columns,
+             .grows = true}};
+}
+
+void LightPaths::attach(Tables &tables) {
+    tables_ = &tables;
+    session_.numbers["photon_rows"] = std::uint32_t(tables.rows_of("photon"));
+    consumers_.set("photon_rows", std::uint32_t(tables.rows_of("photon")));
+}
+
+std::uint32_t LightPaths::paths_a_pass() {
+    if (wanted_)
+        return std::uint32_t(wanted_);
+    if (paths_a_pass_ == 0) {
+        const double stored = trace(pilot_first, pilot_paths);
+        light_paths_ = photons_ = 0;
+        paths_a_pass_ =
+            std::uint32_t(std::clamp(photons_a_pass * pilot_paths / std::max(stored, 1.0), 1.0, most_paths_a_pass));
+    }
+    return paths_a_pass_;
+}
+
+std::uint32_t LightPaths::trace(std::uint64_t first_path, std::uint32_t count) {
+    std::uint32_t stored = 0;
+    const std::uint32_t pass = batches_a_pass * own_->rows().paths;
+    if (emit_.is_wanted() && session_.max_depth() > 1)
+        for (std::uint32_t done = 0; done < count; done += std::min(pass, count - done))
+            stored += trace_pass(first_path + done, done, std::min(pass, count - done), stored);
+    light_paths_ += count;
+    photons_ += stored;
+    return stored;
+}
+
+std::uint32_t LightPaths::trace_pass(std::uint64_t first_path, std::uint32_t first_slot, std::uint32_t count,
+                                     std::uint32_t stored) {
+    const std::vector<std::string> &kinds = session_.scene.kinds;
+    const std::uint64_t traced_before = session_.rays["extension"];
+    std::uint32_t found = 0; // rows of `new_photon`
+    paths_.begin_pass(count);
+    for (;;) {
+        std::uint32_t slot;
+        const Range fresh = paths_.refill(slot);
+        emit_.run(fresh.count, {{"first_row", fresh.first},
+                                {"first_slot", slot},
+                                {"first_path_low", std::uint32_t(first_path)},
+                                {"first_path_high", std::uint32_t(first_path >> 32)}});
+        if (!paths_.is_alive())
+            break;
+        paths_.trace();
+        const Hits &hits = paths_.partition();
+        make_room(std::uint64_t(found) + hits.count());
+        paths_.advance();
+        for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+            const Range rows = hits.kind(0, kind);
+            scatter_.run_kind(kind, rows.count,
+                              {{"first", hits.place(rows.first)},
+                               {"to", rows.first},
+                               {"to_photon", found},
+                               {"first_slot", first_slot}});
+            found += bsdf_kind_is_dirac(kinds[kind]) ? 0 : rows.count;
+        }
+    }
+    rays_ += session_.rays["extension"] - traced_before;
+    return put_in_order(first_slot, count, found, stored);
+}
+
+std::uint32_t LightPaths::put_in_order(std::uint32_t first_slot, std::uint32_t count, std::uint32_t found,
+                                       std::uint32_t stored) {
+    const std::uint32_t chunks = chunks_of(count);
+    count_.run(chunks, {{"rows", count}});
+    scan_.run(1, {{"chunks", chunks}});
+    std::uint32_t photons = 0;
+    Buffer::Reading reading = (*own_)["photon_total"].start_read(&photons, sizeof photons);
+    place_.run(chunks, {{"rows", count}});
+    order_.run(found, {{"first_slot", first_slot}});
+    reading.wait();
+    const std::uint64_t rows = std::uint64_t(stored) + photons;
+    if (rows > most_photons)
+        throw Error(ExitCode::device, "these are more photons a pass than there can be; ask for fewer light paths");
+    if (rows > tables_->rows_of("photon")) {
+        tables_->grow("photon", slot_rows(std::uint32_t(rows + rows / 4)));
+        consumers_.set("photon_rows", std::uint32_t(tables_->rows_of("photon")));
+    }
+    gather_.bind("photon", (*tables_)["photon"]);
+    gather_.run(photons, {{"first", stored}, {"photon_rows", std::uint32_t(tables_->rows_of("photon"))}});
+    return photons;
+}
+
+void LightPaths::make_room(std::uint64_t rows) {
+    if (rows <= own_->rows_of("new_photon"))
+        return;
+    if (rows > most_photons)
+        throw Error(ExitCode::device, "light paths leave more photons than there can be; ask for a smaller batch");
+    const auto multiple = std::uint32_t((rows + rows / 2) / own_->rows().slots + 1);
+    own_->grow("new_photon", multiple);
+    own_->grow("photon_order", multiple);
+    stages_.set("new_photon_rows", std::uint32_t(own_->rows_of("new_photon")));
+}
+
+std::vector<StageTime> LightPaths::times() const {
+    std::vector<StageTime> times = stages_.times();
+    for (StageTime &row : times)
+        row.name = "light paths, " + row.name;
+    return times;
+}
+
+} // namespace gradus

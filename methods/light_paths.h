@@ -1,0 +1,72 @@
+// Paths from the lights, for methods that gather photons: a second wavefront beside the camera's, with stages and
+// tables of its own. It leaves a photon wherever a light path meets a surface that is rough enough (Jensen 1996).
+//
+// Random numbers go by seed, the light path's number and the dimension; photons come in the order of light paths and
+// along each. So neither batches nor threads show in what is stored.
+#pragma once
+
+#include "methods/method.h"
+#include "runtime/wavefront/wavefront.h"
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace gradus {
+
+class LightPaths {
+  public:
+    /// Photons of depth 1, which lights send directly, are left out where the caller samples lights himself.
+    enum class Direct { photons, left_out };
+
+    /// Adds to the session the buffer `material_gathers` (kernels/shared/tables.h), by options.gather_roughness, which
+    /// those may ask for who gather. `consumers`: the stages that read photons; their kernels take `photon` and
+    /// `photon_rows`, which is its stride and changes as it grows.
+    LightPaths(Session &session, Stages &consumers, const Scene &scene, const RenderOptions &options, Direct direct);
+
+    /// For the consumers' tables: `photon`, which grows.
+    TableList tables() const;
+    /// To be called once these are allocated, before or after the consumers' stages are built.
+    void attach(Tables &tables);
+
+    /// Light paths a pass: those that the options ask for, or as many as store about a million photons. How many that
+    /// are is told by a pilot, the same for any batch, of light paths that no render reaches.
+    std::uint32_t paths_a_pass();
+
+    /// Traces the light paths of numbers first_path to first_path + count - 1 and stores their photons: rows 0 on of
+    /// `photon`. Returns how many there are. Each bears the power that it would have if its light path were the only
+    /// one: divide by `count`, or by all light paths of a render. Paths have at most max_depth - 1 edges, since the
+    /// camera's side has one at least.
+    std::uint32_t trace(std::uint64_t first_path, std::uint32_t count);
+
+    /// What all calls of trace() did, the pilot not counted in.
+    std::uint64_t light_paths() const { return light_paths_; }
+    std::uint64_t photons() const { return photons_; }
+    /// What the stages took, the pilot's launches counted in, and how many rays were traced.
+    std::vector<StageTime> times() const;
+    std::uint64_t rays() const { return rays_; }
+
+  private:
+    /// Those of [first, first + count), all of which have slots; their photons go behind `stored` others.
+    std::uint32_t trace_pass(std::uint64_t first_path, std::uint32_t first_slot, std::uint32_t count,
+                             std::uint32_t stored);
+    /// Of `found` new rows of `count` slots, from which come the photons that are returned.
+    std::uint32_t put_in_order(std::uint32_t first_slot, std::uint32_t count, std::uint32_t found,
+                               std::uint32_t stored);
+    /// For so many rows of `new_photon`.
+    void make_room(std::uint64_t rows);
+
+    Session &session_;
+    Stages &consumers_;
+    std::uint64_t wanted_;
+    std::uint32_t first_photon_depth_, paths_a_pass_ = 0;
+    Stages stages_;
+    Stage &emit_;
+    Wavefront paths_;
+    Stage &scatter_, &count_, &scan_, &place_, &order_, &gather_;
+    std::optional<Tables> own_;
+    Tables *tables_ = nullptr;
+    std::uint64_t light_paths_ = 0, photons_ = 0, rays_ = 0;
+};
+
+} // namespace gradus
