@@ -1,6 +1,7 @@
 #include "driver/method_request.h"
 #include "planning/make_method.h"
 
+#include "driver/photon_options.h"
 #include "driver/reconstruction_options.h"
 
 #include <CLI/CLI.hpp>
@@ -14,9 +15,10 @@ namespace gradus {
 void add_method_options(CLI::App &command, const Services &services, MethodRequest &request) {
     const char *group = "Method and machine";
     command
-        .add_option("--method", request.method,
-                    "Rendering method: pt, path tracing; gpt, gradient-domain path tracing; auto, whichever of them a "
-                    "short pilot render finds better")
+        .add_option(
+            "--method", request.method,
+            "Rendering method: pt, path tracing; gpt, gradient-domain path tracing; sppm, stochastic progressive "
+            "photon mapping; auto, whichever of pt and gpt a short pilot render finds better")
         ->check(CLI::IsMember(services.method_names()))
         ->capture_default_str()
         ->group(group);
@@ -63,6 +65,7 @@ void add_method_options(CLI::App &command, const Services &services, MethodReque
     add_shift_option("--shift-distance", request.options.shift_distance,
                      "Offset paths copy instead of reconnecting over ways shorter than this share of the scene's "
                      "diameter, or than eight times the distance of the two paths if that is less; 0: never");
+    add_photon_options(command, request.options);
     const char *measuring = "For measuring";
     command
         .add_option("--dump-kernels", request.options.dump_kernels, "Write the source of each kernel to this folder")

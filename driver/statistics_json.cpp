@@ -35,6 +35,15 @@ nlohmann::json choice_json(const MethodChoice &choice) {
             {"gain", choice.gain > 0 ? json(choice.gain) : json()}};
 }
 
+nlohmann::json gathering_json(const Statistics &statistics) {
+    const double points = double(statistics.gather_points);
+    const auto by_point = [points](double sum) { return points > 0 ? sum / points : 0.0; };
+    return {{"gather_points", statistics.gather_points},
+            {"pairs", statistics.photon_pairs},
+            {"photons_a_gather_point", by_point(double(statistics.photon_pairs))},
+            {"mean_radius", by_point(statistics.radius_sum)}};
+}
+
 nlohmann::json statistics_to_json(const RenderRecord &record, const Statistics &statistics) {
     using nlohmann::json;
     const double seconds = statistics.render_seconds;
@@ -71,6 +80,7 @@ nlohmann::json statistics_to_json(const RenderRecord &record, const Statistics &
                    {"samples_per_second", rate(double(statistics.samples))},
                    {"light_paths", statistics.light_paths},
                    {"photons", statistics.photons},
+                   {"gathering", gathering_json(statistics)},
                    {"stages", stages},
                    {"rays", rays},
                    {"rays_per_second", rate(double(ray_count))},

@@ -19,16 +19,6 @@ using namespace lib_float;
 
 namespace {
 
-/// By material record, the kind with what `kind` in kernels/shared/tables.h says of it. Offset paths reconnect at rough
-/// ones.
-std::vector<std::uint32_t> material_kinds(const Scene &scene, double threshold) {
-    std::vector<std::uint32_t> kinds;
-    for (const Bsdf &bsdf : material_records(scene))
-        kinds.push_back(bsdf_kind_number(bsdf) | (is_rough(bsdf, threshold) ? kind_is_rough : 0) |
-                        (bsdf_kind_is_dirac(bsdf_kind_name(bsdf)) ? kind_is_dirac : 0));
-    return kinds;
-}
-
 TraitMap gradient_traits(const Scene &scene, const RenderOptions &options) {
     const bool distance = options.all_traits || options.shift_distance > 0;
     bool apart = distance;

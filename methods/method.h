@@ -31,6 +31,15 @@ struct RenderOptions : SessionOptions {
     double shift_distance = 0;
     std::uint64_t photons = 0;      ///< light paths a pass, photon methods; 0: as many as leave about a million photons
     double gather_roughness = 0.05; ///< photons are kept, and gathered, at surfaces of this roughness (alpha) or more
+    bool direct_photons = false;    ///< lights' direct light at gather points by photons too, not by sampling lights
+    /// Photons are gathered in the first pass from so far: in widths of a pixel at the gather point or, if it is
+    /// `of_scene`, as a share of the scene's diameter.
+    struct GatherRadius {
+        double value = 2;
+        bool of_scene = false;
+    };
+    GatherRadius radius;
+    double radius_alpha = 0.9; ///< how slowly the radius shrinks, in (0, 1]; 1: not at all
     /// Called before the method `auto` renders a pilot, with its samples a pixel.
     std::function<void(std::uint64_t)> on_pilot;
 };

@@ -1,10 +1,14 @@
 #include "methods/path_stages.h"
 
+#include "kernels/shared/tables.h"
+
 #include <sys/resource.h>
 
 #include <algorithm>
 
 namespace gradus {
+
+using namespace lib_float;
 
 StageDeclaration camera_stage() {
     return {.name = "camera",
@@ -59,6 +63,14 @@ void run_shade(Stage &shade, const Hits &hits, Range rows, std::size_t kind) {
 bool is_rough(const Bsdf &bsdf, double threshold) {
     const BsdfKindTraits &kind = bsdf_kind_traits(bsdf.kind);
     return !kind.is_dirac && (!kind.has_roughness || std::min(bsdf.alpha_u, bsdf.alpha_v) >= threshold);
+}
+
+std::vector<std::uint32_t> material_kinds(const Scene &scene, double threshold) {
+    std::vector<std::uint32_t> kinds;
+    for (const Bsdf &bsdf : material_records(scene))
+        kinds.push_back(bsdf_kind_number(bsdf) | (is_rough(bsdf, threshold) ? kind_is_rough : 0) |
+                        (bsdf_kind_is_dirac(bsdf_kind_name(bsdf)) ? kind_is_dirac : 0));
+    return kinds;
 }
 
 Statistics collected(Statistics s, const Session &session, const Stages &stages, const std::vector<StageTime> &more) {

@@ -30,6 +30,10 @@ void run_shade(Stage &shade, const Hits &hits, Range rows, std::size_t kind);
 /// Whether a surface counts as rough: not Dirac, and of this roughness (alpha) or more where it has one.
 bool is_rough(const Bsdf &bsdf, double threshold);
 
+/// By material record, the kind with what `kind` in kernels/shared/tables.h says of it, surfaces being rough from this
+/// roughness on.
+std::vector<std::uint32_t> material_kinds(const Scene &scene, double threshold);
+
 /// `counted` with what session and stages know: rays, seconds by stage and of compiling, memory. `more`: what other
 /// stages took.
 Statistics collected(Statistics counted, const Session &session, const Stages &stages,

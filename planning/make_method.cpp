@@ -10,6 +10,7 @@
 #define GRADUS_METHODS(METHOD)                                                                                         \
     METHOD("pt", make_path_tracer)                                                                                     \
     METHOD("gpt", make_gradient_path_tracer)                                                                           \
+    METHOD("sppm", make_photon_mapper)                                                                                 \
     METHOD("auto", make_automatic_method)
 
 namespace gradus {

@@ -155,6 +155,29 @@
     GRADUS_PHOTON_COLUMNS_OF(new_photon, REAL, UINT)                                                                   \
     UINT(new_photon, ordinal, "photons that its light path left before it; photon_none where it is none itself")
 
+/* The photons of `photon`, cell by cell of a grid. */
+#define GRADUS_PHOTON_SORTED_COLUMNS(REAL, UINT)                                                                       \
+    GRADUS_PHOTON_COLUMNS_OF(photon_sorted, REAL, UINT)
+
+/* Where camera paths ended at a surface that is rough enough: photons near it are gathered there. */
+#define GRADUS_GATHER_COLUMNS(REAL, UINT)                                                                              \
+    UINT(gather, slot, "of its path: the row in `radiance`")                                                           \
+    UINT(gather, deepest, "edges that a photon's light path may have")                                                 \
+    REAL(gather, radius, "photons are gathered from so far")                                                           \
+    REAL(gather, throughput_r, "of the camera path, contribution over density")                                        \
+    REAL(gather, throughput_g, "")                                                                                     \
+    REAL(gather, throughput_b, "")                                                                                     \
+    REAL(gather, sum_r, "of the photons' f power, so far")                                                             \
+    REAL(gather, sum_g, "")                                                                                            \
+    REAL(gather, sum_b, "")                                                                                            \
+    GRADUS_SURFACE_VERTEX_COLUMNS(gather, REAL, UINT)
+
+/* What a pair of gather point and photon is worth: f power. The pair itself is in `pair_gather` and `pair_photon`. */
+#define GRADUS_PAIR_VALUE_COLUMNS(REAL, UINT)                                                                          \
+    REAL(pair_value, value_r, "")                                                                                      \
+    REAL(pair_value, value_g, "")                                                                                      \
+    REAL(pair_value, value_b, "")
+
 /* Gradient-domain path tracing only, from here on. A base path has four offset paths, j = 0 to 3: through the pixel to
  * the right, left, below and above (gradient_neighbour in kernels/lib/gradient.h). Tables of offset paths have the
  * offset j of row r at row j * capacity + r. */
@@ -309,6 +332,9 @@
     TABLE(light_path, GRADUS_LIGHT_PATH_COLUMNS)                                                                       \
     TABLE(photon, GRADUS_PHOTON_COLUMNS)                                                                               \
     TABLE(new_photon, GRADUS_NEW_PHOTON_COLUMNS)                                                                       \
+    TABLE(photon_sorted, GRADUS_PHOTON_SORTED_COLUMNS)                                                                 \
+    TABLE(gather, GRADUS_GATHER_COLUMNS)                                                                               \
+    TABLE(pair_value, GRADUS_PAIR_VALUE_COLUMNS)                                                                       \
     TABLE(primary, GRADUS_PRIMARY_COLUMNS)                                                                             \
     TABLE(primary_vertex, GRADUS_PRIMARY_VERTEX_COLUMNS)                                                               \
     TABLE(vertex, GRADUS_VERTEX_COLUMNS)                                                                               \
@@ -420,6 +446,9 @@ GRADUS_LIB_END
 #define ROWS_OF_light_path capacity
 #define ROWS_OF_photon photon_rows
 #define ROWS_OF_new_photon new_photon_rows
+#define ROWS_OF_photon_sorted photon_rows
+#define ROWS_OF_gather capacity
+#define ROWS_OF_pair_value pair_rows
 #define ROWS_OF_primary slots
 #define ROWS_OF_primary_vertex slots
 #define ROWS_OF_vertex capacity

@@ -1,6 +1,9 @@
 /* classify: says for each traced ray which bin its path goes to next (BinLayout in runtime/wavefront/wavefront.h).
  * bin_none drops paths that have ended.
  *
+ * GATHER: paths that meet a surface that is rough enough leave a gather point there, which is phase 1. Rows in
+ * [gathered_first, gathered_end) have left one: they end with the light that they find, if any (photon_mapper.h).
+ *
  * TRAIT_GRADIENT: rows below `shifting` have offset paths that are not connected, rows from `fresh` on begin; where
  * offset paths are at the next vertex decides the phase (gradient_path_tracer.h). */
 //! traits: TRAIT_ENVIRONMENT TRAIT_TWO_FACED TRAIT_GRADIENT TRAIT_APART
@@ -14,6 +17,11 @@ STAGE classify(uint count, uint unit, uint capacity, __global const real *ray, _
                ,
                __global const uint *primitive_back_bin, __global const real *triangles, __global const real *spheres,
                uint triangle_count
+#endif
+#if GATHER
+               ,
+               uint bins_of_phase, uint gathered_first, uint gathered_end, __global const uint *primitive_material,
+               __global const uint *material_back, __global const uint *material_gathers
 #endif
 #if TRAIT_GRADIENT
                ,
@@ -44,6 +52,19 @@ STAGE classify(uint count, uint unit, uint capacity, __global const real *ray, _
     hit_bin = behind ? back_bin : hit_bin;
 #endif
     uint escaped_bin = 0u;
+#if GATHER
+    const uint sided_material = primitive_material[present];
+    uint record = material_record(sided_material);
+#if TRAIT_TWO_FACED
+    const uint back = material_back[record];
+    record = (sided_material & material_two_sided) != 0u && behind ? back : record;
+#endif
+    const uint gathers = material_gathers[record] != gathers_nowhere ? 1u : 0u;
+    const uint emits = (hit_bin & 1u) == 0u ? 1u : 0u;
+    const int has_gathered = row >= gathered_first && row < gathered_end;
+    const uint onward_bin = hit_bin + 1u + gathers * bins_of_phase;
+    hit_bin = has_gathered ? (emits ? FOUND_BIN : bin_none) : onward_bin;
+#endif
 #if TRAIT_GRADIENT
     const int begins = row >= fresh, shifts = row < shifting;
     uint phase = begins ? PHASE_FIRST : shifts ? PHASE_JOINED : PHASE_LATER;

@@ -55,7 +55,8 @@ Sort::Sort(const Session &session, Stages &stages, const std::string &name, Rows
 TableList Sort::tables() const {
     TableList list;
     for (const char *table : {"_key", "_index", "_key_next", "_index_next"})
-        list.push_back({.name = name_ + table, .rows = rows_of_, .multiple = multiple_, .is_uint = true});
+        list.push_back(
+            {.name = name_ + table, .rows = rows_of_, .multiple = multiple_, .is_uint = true, .grows = true});
     list.push_back(
         {.name = name_ + "_place", .rows = RowsOf::one, .columns = most_chunks_ * largest_stride, .is_uint = true});
     list.push_back({.name = name_ + "_found", .rows = RowsOf::one, .columns = digit_values, .is_uint = true});
@@ -63,6 +64,12 @@ TableList Sort::tables() const {
 }
 
 void Sort::attach(Tables &tables) { tables_ = &tables; }
+
+void Sort::grow(std::uint32_t multiple) {
+    for (const char *table : {"_key", "_index", "_key_next", "_index_next"})
+        tables_->grow(name_ + table, multiple);
+    multiple_ = multiple;
+}
 
 const Buffer &Sort::keys() const { return (*tables_)[name_ + "_key"]; }
 const Buffer &Sort::index() const { return (*tables_)[name_ + "_index"]; }

@@ -27,6 +27,8 @@ class Sort {
     TableList tables() const;
     /// To be called once they are allocated.
     void attach(Tables &tables);
+    /// Makes room for `multiple` rows for each of `rows_of`; the result of run() is lost.
+    void grow(std::uint32_t multiple);
 
     /// Sorts rows [0, count) by `keys`, a uint a row, which stay as they are. Keys above `highest` all count as
     /// highest + 1 and come last. The lower `highest`, the less there is to do. Throws std::logic_error where there are

@@ -180,6 +180,13 @@ void Stages::set(const std::string &number, std::uint32_t value) {
                 kernel.set(number, value);
 }
 
+void Stages::set_real(const std::string &name, double value) {
+    for (Stage &stage : stages_)
+        for (Kernel &kernel : stage.kernels_)
+            if (kernel.valid())
+                kernel.set_real(name, value);
+}
+
 std::vector<StageTime> Stages::times() const {
     std::vector<StageTime> times;
     for (const Stage &stage : stages_)

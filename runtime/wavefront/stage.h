@@ -79,6 +79,8 @@ class Stages {
 
     /// Gives all kernels that ask for it another value of a number of the session.
     void set(const std::string &number, std::uint32_t value);
+    /// The same for a real.
+    void set_real(const std::string &name, double value);
 
     /// What the kernels took so far, stage by stage in the order of their declaration.
     std::vector<StageTime> times() const;

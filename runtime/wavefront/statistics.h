@@ -40,6 +40,9 @@ struct Statistics {
     std::uint64_t samples = 0;                     ///< paths begun
     std::uint64_t light_paths = 0;                 ///< begun, methods that trace them
     std::uint64_t photons = 0;                     ///< that these left
+    std::uint64_t gather_points = 0;               ///< where camera paths looked for photons
+    std::uint64_t photon_pairs = 0;                ///< of gather points and photons within their radius
+    double radius_sum = 0;                         ///< of all gather points, world units
     std::uint64_t non_finite = 0;                  ///< samples left out because they were NaN or infinite
     double render_seconds = 0;                     ///< spent in render_batch()
     std::uint64_t device_bytes = 0;                ///< allocated on the device

@@ -97,8 +97,8 @@ const Hits &Wavefront::partition(LaunchNumbers numbers) {
     return hits_;
 }
 
-void Wavefront::advance() {
-    vertices_ = hits_.count();
+void Wavefront::advance(std::uint32_t rows) {
+    vertices_ = rows;
     fresh_ = 0;
     tables_->exchange();
 }

@@ -95,7 +95,9 @@ class Wavefront {
     /// Ends the paths of all rows.
     void drop() { vertices_ = fresh_ = 0; }
     /// The rows that the partition found are the newest; tables that alternate are exchanged.
-    void advance();
+    void advance() { advance(hits_.count()); }
+    /// The same where only the first `rows` of them go on.
+    void advance(std::uint32_t rows);
 
     std::size_t kinds() const { return layout_.kinds; }
 

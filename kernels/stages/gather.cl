@@ -1,0 +1,58 @@
+/* gather: camera paths that met a surface that is rough enough leave a gather point there: paths at places `first` on
+ * of `index` in rows `to` on of `gather`.
+ *
+ * Photons are gathered from a disc whose radius goes with what a pixel covers there: `radius_slope` times the length of
+ * the path from the camera, within [radius_start, radius_most], times `radius_scale`, which shrinks from pass to pass;
+ * but at least `radius_least`.
+ *
+ * FEATURES: also leaves the features that the camera sees, in the place of `shade` (by BSDF kind). */
+//! traits: TRAIT_AOV
+#include "kernels/lib/bsdf.h"
+#include "kernels/lib/surface_point.h"
+#include "kernels/lib/vertex_frame.h"
+#include "kernels/shared/stage.h"
+
+STAGE gather(uint count, uint unit, uint first, uint to, uint capacity, uint max_depth, __global const uint *index,
+             __global const real *path_old, __global const real *ray_old, __global const real *travelled,
+             __global real *gather, __global const real *triangles, __global const real *triangle_normals,
+             __global const real *triangle_tangents, __global const real *spheres, uint triangle_count,
+             __global const uint *primitive_material, __global const uint *material_back,
+             __global const uint *material_kind, real radius_slope, real radius_start, real radius_most,
+             real radius_least, real radius_scale
+#if FEATURES
+             ,
+             __global const real *materials, __global real *feature, uint slots
+#endif
+) {
+    const size_t i = work_item();
+    if (i >= count)
+        return;
+    const uint old = index[first + i];
+    const size_t row = to + i;
+    const vec3 origin = AT_V3_IN(ray_old, ray, origin, old), direction = AT_V3_IN(ray_old, ray, direction, old);
+    const uint depth = AT_UINT_IN(path_old, path, depth, old), slot = AT_UINT_IN(path_old, path, slot, old);
+    const rgb throughput = AT_RGB_IN(path_old, path, throughput, old);
+    const surface_point point = surface_point_of(triangles, triangle_normals, triangle_tangents, spheres, unit,
+                                                 triangle_count, primitive_material, material_back,
+                                                 AT_UINT_IN(ray_old, ray, primitive, old), origin, direction);
+    const vec3 step = v3_sub(point.position, origin);
+    const real distance = r_sqrt(v3_dot(step, step));
+    const real before = travelled[slot];
+    const real length = distance + (depth > 0u ? before : R(0));
+    AT_UINT(gather, slot, row) = slot;
+    AT_UINT(gather, deepest, row) = max_depth - depth - 1u;
+    const real first_radius = r_clamp(length * radius_slope, radius_start, radius_most);
+    AT(gather, radius, row) = r_max(first_radius * radius_scale, radius_least);
+    SET_RGB(gather, throughput, row, throughput);
+    SET_RGB(gather, sum, row, rgb_gray(R(0)));
+    SET_SURFACE_VERTEX(gather, row, material_kind[point.material], point, direction)
+#if FEATURES
+    if (depth == 0u) {
+        const material m = material_load(materials, point.material, unit);
+        const rgb albedo = PASTE(BSDF, _albedo)(m);
+        SET_RGB(feature, albedo, slot, albedo);
+        SET_V3(feature, normal, slot, point.shading);
+        AT(feature, depth, slot) = distance;
+    }
+#endif
+}

@@ -1,0 +1,93 @@
+/* photon_pairs: which photons are near enough to a gather point to be gathered there: rows `first` + `from` on of
+ * `gather`. With LIST 0 it counts them into `pair_count`; with LIST 1 it lists those that lie in the window of the
+ * list, [window_first, window_first + window_pairs), as rows of `gather` and of `photon_sorted`. A gather point's pairs
+ * lie one after the other, in the order of the cells and, within a cell, of the photons.
+ *
+ * A photon counts where it is within the radius, on a surface that faces the same way (so that one side of a thin wall
+ * does not shine through to the other, and one wall not around a corner to the next), and where both paths together are
+ * not too long. Cells of lines that share keys hold strangers: these are of another line.
+ *
+ * The loops are of a length that is only known here, so work-items are not joined to vectors; what is done for each
+ * pair is done elsewhere (photon_evaluate). */
+#include "kernels/lib/photon_grid.h"
+#include "kernels/shared/stage.h"
+
+/* Photons that are tested at once before any is listed. */
+#define PHOTON_BLOCK 32u
+
+/* 1 where the photon in row i counts. All is computed, for most photons that are looked at are near. */
+#define SQUARED(i, axis)                                                                                               \
+    ((AT(photon_sorted, position_##axis, i) - at.axis) * (AT(photon_sorted, position_##axis, i) - at.axis))
+#define COUNTS(i)                                                                                                      \
+    ((SQUARED(i, x) + SQUARED(i, y) + SQUARED(i, z) <= squared) &                                                      \
+     (v3_dot(AT_V3(photon_sorted, normal, i), normal) > PHOTON_LEAST_FACING) &                                         \
+     (AT_UINT(photon_sorted, depth, i) <= deepest) & (photon_line_sorted[i] == line))
+
+STAGE photon_pairs(uint count, uint first, uint from, uint capacity, uint photon_rows, PHOTON_GRID, real grid_reach,
+                   __global const real *gather, __global const real *photon_sorted,
+                   __global const uint *photon_line_sorted, __global const uint *photon_first
+#if LIST
+                   ,
+                   uint window_first, uint window_pairs, __global const uint *pair_chunk_first,
+                   __global const uint *pair_offset, __global uint *pair_gather, __global uint *pair_photon
+#else
+                   ,
+                   __global uint *pair_count
+#endif
+) {
+    const uint item = (uint)work_item();
+    if (item >= count)
+        return;
+    const uint place = from + item, row = first + place;
+    const photon_grid grid = PHOTON_GRID_OF_ARGUMENTS;
+    const vec3 at = AT_V3(gather, position, row), normal = AT_V3(gather, geometric, row);
+    const real distance = AT(gather, radius, row), squared = distance * distance;
+    const uint deepest = AT_UINT(gather, deepest, row);
+    /* A little more than the radius, or rounding could leave out a cell. */
+    const real reach = distance * R(1.0001) + grid_reach;
+    const uint x0 = photon_cell(at.x - reach, grid.low.x, grid.inverse_edge, grid.last_x);
+    const uint x1 = photon_cell(at.x + reach, grid.low.x, grid.inverse_edge, grid.last_x);
+    const uint y0 = photon_cell(at.y - reach, grid.low.y, grid.inverse_edge, grid.last_y);
+    const uint y1 = photon_cell(at.y + reach, grid.low.y, grid.inverse_edge, grid.last_y);
+    const uint z0 = photon_cell(at.z - reach, grid.low.z, grid.inverse_edge, grid.last_z);
+    const uint z1 = photon_cell(at.z + reach, grid.low.z, grid.inverse_edge, grid.last_z);
+#if LIST
+    /* Where the next pair goes, less where the window begins: below 0 before it. */
+    int to = (int)(pair_chunk_first[place / PAIR_CHUNK] + pair_offset[place] - window_first);
+#else
+    uint found = 0;
+#endif
+    for (uint z = z0; z <= z1; ++z)
+        for (uint y = y0; y <= y1; ++y) {
+            const uint line = photon_line(y, z, grid_last_y);
+            const uint key = photon_line_key(line, line_stride, line_shift);
+            const uint end = photon_first[key + x1 + 1u];
+#if LIST
+            /* A block at a time, first which count, then which these are, then to the list: the first and the last
+             * loop become vectors, and none has a branch that nobody can foresee. */
+            for (uint begin = photon_first[key + x0]; begin < end; begin += PHOTON_BLOCK) {
+                const uint rows = min(end - begin, PHOTON_BLOCK);
+                uint counts[PHOTON_BLOCK], near[PHOTON_BLOCK];
+                for (uint k = 0; k < rows; ++k)
+                    counts[k] = COUNTS(begin + k) ? 1u : 0u;
+                int found = 0;
+                for (uint k = 0; k < rows; ++k) {
+                    near[found] = begin + k;
+                    found += (int)counts[k];
+                }
+                const int low = max(-to, 0), high = min(found, (int)window_pairs - to);
+                for (int k = low; k < high; ++k) {
+                    pair_gather[to + k] = row;
+                    pair_photon[to + k] = near[k];
+                }
+                to += found;
+            }
+#else
+            for (uint i = photon_first[key + x0]; i < end; ++i)
+                found += COUNTS(i) ? 1u : 0u;
+#endif
+        }
+#if !LIST
+    pair_count[place] = found;
+#endif
+}

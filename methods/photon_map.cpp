@@ -1,0 +1,157 @@
+#include "methods/photon_map.h"
+
+#include "kernels/shared/scene_records.h"
+#include "kernels/shared/tables.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gradus {
+
+using namespace lib_float;
+
+namespace {
+
+// Keys that photons are sorted by. More would not fit into the cache with all else.
+constexpr std::uint32_t key_bits = 21, most_keys = 1u << key_bits;
+// Cells along an axis: so lines have numbers of 30 bits.
+constexpr double most_cells = 1 << 15;
+// Positions are computed, and are off by some units in the last place of the largest coordinate.
+constexpr double rounding = 0x1p-20;
+
+constexpr const char *grown_uints[] = {"photon_key", "photon_line_of", "photon_line_sorted"};
+
+void set_grid(Session &session, const PhotonGrid &grid) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::string name(1, char('x' + axis));
+        session.reals["grid_low_" + name] = grid.low[axis];
+        session.numbers["grid_last_" + name] = grid.last[axis];
+    }
+    session.reals["grid_inverse_edge"] = grid.inverse_edge;
+    session.reals["grid_reach"] = grid.reach;
+    session.numbers["line_stride"] = grid.line_stride;
+    session.numbers["line_shift"] = grid.line_shift;
+}
+
+void set_grid(Stages &stages, const PhotonGrid &grid) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::string name(1, char('x' + axis));
+        stages.set_real("grid_low_" + name, grid.low[axis]);
+        stages.set("grid_last_" + name, grid.last[axis]);
+    }
+    stages.set_real("grid_inverse_edge", grid.inverse_edge);
+    stages.set_real("grid_reach", grid.reach);
+    stages.set("line_stride", grid.line_stride);
+    stages.set("line_shift", grid.line_shift);
+}
+
+StageDeclaration cells_stage(const char *entry, std::vector<std::string> numbers) {
+    return {.name = entry, .file = "photon_cells", .entry = entry, .strict = true, .numbers = std::move(numbers)};
+}
+
+} // namespace
+
+Box box_of(const SceneTables &tables) {
+    Box box;
+    box.low.fill(INFINITY);
+    box.high.fill(-INFINITY);
+    const auto add = [&](int axis, double from, double to) {
+        box.low[axis] = std::min(box.low[axis], from);
+        box.high[axis] = std::max(box.high[axis], to);
+    };
+    for (std::size_t i = 0; i < tables.triangle_count; ++i) {
+        const float *record = &tables.triangles[i * triangle_stride];
+        for (int axis = 0; axis < 3; ++axis) {
+            const double corner = record[triangle_p0_x + axis];
+            const double first = record[triangle_e1_x + axis], second = record[triangle_e2_x + axis];
+            add(axis, corner + std::min({0.0, first, second}), corner + std::max({0.0, first, second}));
+        }
+    }
+    for (std::size_t i = tables.triangle_count; i < tables.primitive_material.size(); ++i) {
+        const float *record = &tables.spheres[(i - tables.triangle_count) * sphere_stride];
+        for (int axis = 0; axis < 3; ++axis)
+            add(axis, double(record[sphere_center_x + axis]) - record[sphere_radius],
+                double(record[sphere_center_x + axis]) + record[sphere_radius]);
+    }
+    if (!(box.low[0] <= box.high[0]))
+        box = {};
+    return box;
+}
+
+PhotonGrid::PhotonGrid(const Box &box, double edge, std::uint32_t most) : low(box.low) {
+    double largest = 0, farthest = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        largest = std::max(largest, box.high[axis] - box.low[axis]);
+        farthest = std::max({farthest, std::fabs(box.low[axis]), std::fabs(box.high[axis])});
+    }
+    edge = std::max({edge, largest / (most_cells - 1), 1e-30});
+    inverse_edge = 1 / edge;
+    reach = farthest * rounding;
+    std::uint64_t cells = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        last[axis] = static_cast<std::uint32_t>((box.high[axis] - box.low[axis]) * inverse_edge);
+        cells *= last[axis] + 1;
+    }
+    if (cells <= most) {
+        line_stride = last[0] + 1;
+        line_shift = 0;
+        keys = static_cast<std::uint32_t>(cells);
+    } else { // Fibonacci hashing (Knuth 1998, 6.4), to half of the keys
+        std::uint32_t bits = 0;
+        while ((2ull << bits) <= most / 2)
+            ++bits;
+        line_stride = 0x9E3779B1u;
+        line_shift = 32 - bits;
+        keys = (1u << bits) + last[0];
+    }
+}
+
+PhotonMap::PhotonMap(Session &session, Stages &stages, std::uint32_t rows)
+    : stages_(stages), box_(box_of(session.scene)), rows_(rows),
+      sort_(session, stages, "photon_order", RowsOf::one, rows), cells_(stages.add(cells_stage("photon_cells", {}))),
+      copy_(stages.add(cells_stage("photon_copy", {}))), lines_(stages.add(cells_stage("photon_lines", {}))),
+      starts_(stages.add(cells_stage("photon_starts", {"photons", "keys"}))) {
+    set_grid(session, PhotonGrid(box_, 1, most_keys));
+}
+
+TableList PhotonMap::tables() const {
+    TableList list = sort_.tables();
+    list.push_back({.name = "photon_sorted",
+                    .rows = RowsOf::one,
+                    .multiple = rows_,
+                    .columns = photon_sorted_columns,
+                    .grows = true});
+    for (const char *name : grown_uints)
+        list.push_back({.name = name, .rows = RowsOf::one, .multiple = rows_, .is_uint = true, .grows = true});
+    list.push_back({.name = "photon_first", .rows = RowsOf::one, .columns = most_keys + 1, .is_uint = true});
+    return list;
+}
+
+void PhotonMap::attach(Tables &tables) {
+    tables_ = &tables;
+    sort_.attach(tables);
+}
+
+void PhotonMap::grow() {
+    const auto rows = static_cast<std::uint32_t>(tables_->rows_of("photon"));
+    if (rows == rows_)
+        return;
+    sort_.grow(rows);
+    tables_->grow("photon_sorted", rows);
+    for (const char *name : grown_uints)
+        tables_->grow(name, rows);
+    rows_ = rows;
+}
+
+void PhotonMap::build(std::uint32_t count, double edge) {
+    grow();
+    const PhotonGrid grid(box_, edge, most_keys);
+    set_grid(stages_, grid);
+    cells_.run(count);
+    sort_.run((*tables_)["photon_key"], count, grid.keys - 1);
+    copy_.run_planes(0, count, photon_columns);
+    lines_.run(count);
+    starts_.run(count + 1, {{"photons", count}, {"keys", grid.keys}});
+}
+
+} // namespace gradus
