@@ -45,6 +45,15 @@ StageDeclaration shift_stage(const Session &session) {
             .tables = {{"own_vertex", "primary_vertex"}}};
 }
 
+/// For vertices of one kind among several.
+StageDeclaration shift_alike_stage(const Session &session) {
+    StageDeclaration stage = shift_stage(session);
+    stage.file = "shift";
+    stage.by_kind = true;
+    stage.is_wanted = session.scene.kinds.size() > 1;
+    return stage;
+}
+
 StageDeclaration evaluate_stage(const Session &session) {
     return {.name = "evaluate",
             .by_kind = true,
@@ -67,14 +76,6 @@ StageDeclaration gradient_emission_stage(const char *name, const char *escaped, 
             .numbers = {"first", "stride"}};
 }
 
-StageDeclaration advance_stage(const char *name, const char *apart, bool is_wanted) {
-    return {.name = name,
-            .file = "advance",
-            .definitions = {{"APART", apart}},
-            .is_wanted = is_wanted,
-            .numbers = {"first", "to", "stride"}};
-}
-
 StageDeclaration count_stage() {
     return {.name = "shift count",
             .file = "shift_count",
@@ -91,8 +92,8 @@ GradientPathTracer::GradientPathTracer(Device &device, const Scene &scene, const
       connect_(stages_.add(connect_stage())),
       gradient_connect_(
           stages_.add({.name = "gradient_connect", .is_wanted = session_.samples_lights(), .numbers = {"first"}})),
-      shift_(stages_.add(shift_stage(session_))), evaluate_(stages_.add(evaluate_stage(session_))),
-      weigh_(stages_.add(weigh_stage())),
+      shift_(stages_.add(shift_stage(session_))), shift_alike_(stages_.add(shift_alike_stage(session_))),
+      evaluate_(stages_.add(evaluate_stage(session_))), weigh_(stages_.add(weigh_stage())),
       paths_(session_, stages_,
              {.escaped = escaped_bins, .phases = phases_.count, .kinds = std::uint32_t(session_.scene.kinds.size())},
              classify_definitions(), {"shifting", "fresh"}),
@@ -100,9 +101,10 @@ GradientPathTracer::GradientPathTracer(Device &device, const Scene &scene, const
       gradient_escape_(stages_.add(gradient_emission_stage("gradient escape", "1", session_.has("TRAIT_ENVIRONMENT")))),
       gradient_emission_(stages_.add(gradient_emission_stage("gradient emission", "0", session_.has_emission()))),
       shade_with_offsets_(stages_.add(shade_stage(true))), shade_(stages_.add(shade_stage(false))),
-      advance_(stages_.add(advance_stage("advance", "0", true))),
-      advance_apart_(stages_.add(advance_stage("advance apart", "1", session_.has("TRAIT_APART")))),
-      join_(stages_.add({.name = "join", .by_kind = true, .dirac_alike = true, .numbers = {"first", "keeps"}})),
+      advance_(stages_.add(
+          {.name = "advance", .is_wanted = session_.has("TRAIT_APART"), .numbers = {"first", "to", "stride"}})),
+      join_(stages_.add(
+          {.name = "join", .by_kind = true, .dirac_alike = true, .numbers = {"first", "to", "stride", "keeps"}})),
       count_(stages_.add(count_stage())), combine_(stages_.add({.name = "gradient_combine", .strict = true})),
       film_(session_, stages_),
       accumulate_(stages_.add({.name = "gradient_accumulate", .strict = true, .numbers = {"first_slot", "frames"}})),
@@ -170,7 +172,7 @@ TableList GradientPathTracer::tables() const {
             {.name = "offset_ray", .multiple = 4, .columns = with("TRAIT_APART", offset_ray_columns)},
             {.name = "offsets_state", .columns = with("TRAIT_APART", 1), .is_uint = true},
             {.name = "outcome", .rows = RowsOf::chunk, .columns = shift_outcomes, .is_uint = true, .is_cleared = true},
-            {.name = "carry", .rows = RowsOf::image_row, .columns = carry_columns, .is_cleared = true},
+            {.name = "carry", .rows = RowsOf::image_row, .columns = carry_columns},
             {.name = "gradient_film", .rows = RowsOf::pixel, .columns = gradient_film_columns, .is_cleared = true}};
 }
 
@@ -236,65 +238,67 @@ void GradientPathTracer::trace_primaries(const Strip &strip) {
     }
 }
 
+std::vector<GradientPathTracer::OwnVertices> GradientPathTracer::own_vertices() const {
+    const std::uint32_t after_first = std::min(phases_.apart, phases_.joined);
+    std::vector<OwnVertices> found = {{"primary_vertex", tables_->rows().slots, 1, newest_.phases(0, after_first),
+                                       phases_.first, phases_.first_mixed}};
+    if (const Range apart = newest_.phases(after_first, phases_.joined); apart.count > 0)
+        found.push_back({"offset_vertex", 4 * tables_->rows().paths, 0, apart, phases_.apart, phases_.apart_mixed});
+    return found;
+}
+
 /// Takes offset paths that are not connected along with their base paths, and adds the light sampled at their vertices.
 void GradientPathTracer::step_offset_paths() {
     const std::uint32_t stride = shifting();
     if (stride == 0)
         return;
-    const Range first = newest_.phases(0, std::min(phases_.apart, phases_.joined));
-    const Range apart = {first.count, stride - first.count};
-    const auto on_own_vertices = [&](Stage &stage, const auto &run) {
-        stage.bind("own_vertex", (*tables_)["primary_vertex"]);
-        run(first, 1u, tables_->rows().slots);
-        if (apart.count == 0)
-            return;
-        stage.bind("own_vertex", (*tables_)["offset_vertex"]);
-        run(apart, 0u, 4 * tables_->rows().paths);
-    };
-    on_own_vertices(shift_, [&](Range rows, std::uint32_t at_first, std::uint32_t own_rows) {
-        shift_.run(rows.count,
-                   {{"first", rows.first}, {"stride", stride}, {"at_first", at_first}, {"own_rows", own_rows}});
-    });
-    if (evaluate_.is_wanted()) {
-        evaluate_.bind("own_vertex", (*tables_)["primary_vertex"]);
-        evaluate(phases_.first, false, true);
-        evaluate(phases_.first_mixed, true, true);
-        if (apart.count > 0) {
-            evaluate_.bind("own_vertex", (*tables_)["offset_vertex"]);
-            evaluate(phases_.apart, false, false);
-            evaluate(phases_.apart_mixed, true, false);
-        }
-    }
+    const std::vector<OwnVertices> vertices = own_vertices();
+    for (const OwnVertices &own : vertices)
+        shift(own, stride);
     const std::size_t capacity = tables_->rows().paths;
-    SegmentTable rays;
+    SegmentTable rays,
+        links = {&(*tables_)["link"], 8 * capacity, 8 * stride, link_origin_x, link_direction_x, link_open, stride};
     if (tables_->has("offset_ray"))
-        rays = {&(*tables_)["offset_ray"], 4 * capacity,           4 * stride,
-                offset_ray_origin_x,       offset_ray_direction_x, offset_ray_primitive};
-    const TraceCounts counts =
-        trace_segments(session_.tracer, options_.precision, rays,
-                       {&(*tables_)["link"], 8 * capacity, 8 * stride, link_origin_x, link_direction_x, link_open},
-                       session_.trace_seconds);
+        rays = {&(*tables_)["offset_ray"], 4 * capacity,         4 * stride, offset_ray_origin_x,
+                offset_ray_direction_x,    offset_ray_primitive, stride};
+    const TraceCounts counts = trace_segments(session_.tracer, options_.precision, rays, links, session_.trace_seconds);
     session_.rays["offset"] += counts.extension + counts.shadow;
-    on_own_vertices(weigh_, [&](Range rows, std::uint32_t at_first, std::uint32_t own_rows) {
-        weigh_.run(rows.count,
-                   {{"first", rows.first}, {"stride", stride}, {"at_first", at_first}, {"own_rows", own_rows}});
-    });
+    for (const OwnVertices &own : vertices) {
+        weigh_.bind("own_vertex", (*tables_)[own.table]);
+        weigh_.run(
+            own.paths.count,
+            {{"first", own.paths.first}, {"stride", stride}, {"at_first", own.at_first}, {"own_rows", own.rows}});
+    }
 }
 
-/// Has the BSDF service answer for a phase: for each base path that kind's own service, or (`mixed`) all of them.
-void GradientPathTracer::evaluate(std::uint32_t phase, bool mixed, bool at_first) {
+/// Where all vertices of a base path's offset paths are of its own BSDF kind, `shift` evaluates that kind itself; else
+/// the BSDF services of all kinds answer what it asks.
+void GradientPathTracer::shift(const OwnVertices &own, std::uint32_t stride) {
+    for (Stage *stage : {&shift_, &shift_alike_, &evaluate_})
+        stage->bind("own_vertex", (*tables_)[own.table]);
+    const auto launch = [&](const auto &run, Range rows) {
+        run(rows.count,
+            LaunchNumbers{
+                {"first", rows.first}, {"stride", stride}, {"at_first", own.at_first}, {"own_rows", own.rows}});
+    };
+    const auto generally = [&](std::uint32_t count, LaunchNumbers numbers) { shift_.run(count, numbers); };
     const std::vector<std::string> &kinds = session_.scene.kinds;
-    const std::uint32_t own_rows = at_first ? tables_->rows().slots : 4 * tables_->rows().paths;
+    if (kinds.size() == 1)
+        return launch(generally, own.paths);
+    for (std::size_t kind = 0; kind < kinds.size(); ++kind)
+        launch([&](std::uint32_t count, LaunchNumbers numbers) { shift_alike_.run_kind(kind, count, numbers); },
+               newest_.kind(own.alike, kind));
+    const Range mixed = newest_.phase(own.mixed);
+    launch(generally, mixed);
     for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
-        const Range rows = mixed ? newest_.phase(phase) : newest_.kind(phase, kind);
         // No light connects to a specular vertex.
         const std::uint32_t first_line = bsdf_kind_is_dirac(kinds[kind]) || !session_.samples_lights() ? 4 : 0;
-        evaluate_.run_planes(kind, rows.count, 8 - first_line,
-                             {{"first", rows.first},
+        evaluate_.run_planes(kind, mixed.count, 8 - first_line,
+                             {{"first", mixed.first},
                               {"first_line", first_line},
-                              {"stride", shifting()},
-                              {"at_first", at_first},
-                              {"own_rows", own_rows}});
+                              {"stride", stride},
+                              {"at_first", own.at_first},
+                              {"own_rows", own.rows}});
     }
 }
 
@@ -332,22 +336,18 @@ void GradientPathTracer::shade(const Hits &next) {
 /// it was when they stepped.
 void GradientPathTracer::follow(const Hits &next, std::uint32_t stride) {
     const Range apart = next.phases(std::min(phases_.apart, phases_.joined), phases_.joined);
-    const Range joined = next.phase(phases_.joined);
-    const auto on_rows = [&](Stage &stage, Range rows) {
-        stage.run(rows.count, {{"first", next.place(rows.first)}, {"to", rows.first}, {"stride", stride}});
-        count_outcomes(rows);
-    };
-    on_rows(advance_apart_, apart);
-    on_rows(advance_, joined);
+    advance_.run(apart.count, {{"first", next.place(apart.first)}, {"to", apart.first}, {"stride", stride}});
     for (std::uint32_t phase : {phases_.apart, phases_.apart_mixed, phases_.joined})
         for (std::size_t kind = 0; phase < phases_.count && kind < paths_.kinds(); ++kind) {
             const Range rows = next.kind(phase, kind);
-            join_.run_kind(kind, rows.count, {{"first", rows.first}, {"keeps", phase != phases_.joined}});
+            join_.run_kind(kind, rows.count,
+                           {{"first", next.place(rows.first)},
+                            {"to", rows.first},
+                            {"stride", stride},
+                            {"keeps", phase != phases_.joined}});
         }
-}
-
-void GradientPathTracer::count_outcomes(Range rows) {
-    count_.run(chunks_of(rows.count), {{"first", rows.first}, {"rows", rows.count}});
+    const Range followed = next.phases(std::min(phases_.apart, phases_.joined), phases_.joined + 1);
+    count_.run(chunks_of(followed.count), {{"first", followed.first}, {"rows", followed.count}});
 }
 
 bool GradientPathTracer::render_batch() {

@@ -54,8 +54,6 @@ class Stage {
     /// Gives an argument another table than the one of its name, until it is bound again.
     void bind(const std::string &argument, const Buffer &buffer);
 
-    const StageDeclaration &declaration() const { return declaration_; }
-
   private:
     friend class Stages;
     void launch(std::size_t kind, std::uint32_t count, std::uint32_t planes, LaunchNumbers numbers);
