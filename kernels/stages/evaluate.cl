@@ -1,7 +1,7 @@
 /* evaluate: the BSDF service. Answers the requests of `shift` that concern vertices of one BSDF kind: base paths in
  * rows `first` on, plane by plane the lines of `evaluation` from `first_line` on: 0 to 3 light connections of offset
- * paths, 4 to 7 their steps. Requests at vertices of other kinds are left alone. All rows are computed, also those
- * without a request: their answers go nowhere.
+ * paths, 4 to 7 their steps. Requests at vertices of other kinds are left alone. All rows are computed, also those without a
+ * request: their answers go nowhere.
  *
  * What has no value asks the tracer nothing. */
 #include "kernels/lib/bsdf_evaluate.h"

@@ -192,6 +192,22 @@ void add_ball(SceneMaker &maker, const Bsdf &bsdf, bool smooth_mesh) {
 
 void add_lamp(SceneMaker &maker) { maker.lamp({0, 2.5f, 0}, 2, 2, 1, maker.material(diffuse(0))); }
 
+void add_upward_lamp(SceneMaker &maker) {
+    maker.parallelogram({-0.9f, 0.6f, -0.2f}, {0, 0, 0.4f}, {0.4f, 0, 0}, maker.material(diffuse(0)),
+                        maker.emitter(Emitter::Kind::area, {1, 1, 1}));
+}
+
+/// A card above the floor at that height, glass with its front up and all else with its front down, with shading
+/// normals 27 degrees off its own.
+void add_card(SceneMaker &maker, float height, const Bsdf &bsdf) {
+    const bool is_up = bsdf.kind == BsdfKind::dielectric;
+    const Vector3 along_x{2.4f, 0, 0}, along_z{0, 0, 2.4f};
+    maker.parallelogram({-1.2f, height, -1.2f}, is_up ? along_z : along_x, is_up ? along_x : along_z,
+                        maker.material(bsdf));
+    const Vector3 normal = to_float(normalize({0.5, is_up ? 1.0 : -1.0, 0}));
+    maker.scene.meshes.back().normals.assign(4, normal);
+}
+
 Bsdf paint() { return diffuse(0.8); }
 
 const Agreement agreements[] = {
@@ -208,6 +224,10 @@ const Agreement agreements[] = {
          add_lamp(maker);
          maker.parallelogram({-1.5f, 1, -1.5f}, {0, 0, 3}, {3, 0, 0}, maker.material(glass(1.5)));
      }},
+    // A lamp that shines upwards, and a card above it whose normals all lean to one side: nothing averages out.
+    {"card_turned", [](SceneMaker &maker) { add_upward_lamp(maker), add_card(maker, 1.6f, paint()); }},
+    {"metal_card_turned", [](SceneMaker &maker) { add_upward_lamp(maker), add_card(maker, 1.6f, rough_metal(0.4)); }},
+    {"in_glass_turned", [](SceneMaker &maker) { add_lamp(maker), add_card(maker, 1, glass(1.5)); }},
     {"lights",
      [](SceneMaker &maker) {
          add_lamp(maker), add_ball(maker, paint(), false);
@@ -297,6 +317,96 @@ TEST(LightPathsOf, AnyBatchAreTheSame) {
     }
     options.seed = 4;
     EXPECT_FALSE(LightPathsCase(scene, options).trace(first, count) == photons);
+}
+
+// Who samples lights himself gets all photons but the direct ones, the same ones.
+TEST(LightPathsOf, LightsSampledElsewhereLeaveNoDirectPhotons) {
+    const Scene scene = room_of_everything();
+    constexpr std::uint32_t count = 5'000;
+    std::vector<Photon> all = LightPathsCase(scene).trace(0, count);
+    const std::size_t direct = std::erase_if(all, [](const Photon &photon) { return photon.depth == 1; });
+    EXPECT_GT(direct, 0u);
+    EXPECT_TRUE(LightPathsCase(scene, {}, LightPaths::Direct::left_out).trace(0, count) == all);
+}
+
+// Photons lie on rough surfaces alone, and on the side where they count.
+TEST(LightPathsOf, AnySceneLeavePhotonsWhereTheyAreGathered) {
+    const Scene scene = room_of_everything();
+    RenderOptions options;
+    std::size_t found[3] = {};
+    for (const double roughness : {0.01, 0.05, 0.5}) {
+        options.gather_roughness = roughness;
+        const auto on_sphere = [&](const Photon &photon, std::size_t number) {
+            const Sphere &sphere = scene.spheres[number];
+            return std::fabs(std::hypot(photon.position[0] - sphere.center.x, photon.position[1] - sphere.center.y,
+                                        photon.position[2] - sphere.center.z) -
+                             sphere.radius) < 1e-4;
+        };
+        for (std::size_t &count : found)
+            count = 0;
+        bool is_inside_glass = false;
+        for (const Photon &photon : LightPathsCase(scene, options).trace(0, 50'000)) {
+            const double side =
+                photon.wi[0] * photon.normal[0] + photon.wi[1] * photon.normal[1] + photon.wi[2] * photon.normal[2];
+            for (std::size_t number = 0; number < 3; ++number)
+                found[number] += on_sphere(photon, number);
+            if (on_sphere(photon, 2))
+                is_inside_glass |= side < 0;
+            else
+                ASSERT_GT(side, 0);
+        }
+        EXPECT_EQ(found[0], 0u) << "smooth glass";
+        EXPECT_EQ(found[1] > 0, roughness <= 0.02) << "metal of roughness 0.02";
+        EXPECT_EQ(found[2] > 0, roughness <= 0.3) << "glass of roughness 0.3";
+        EXPECT_EQ(is_inside_glass, roughness <= 0.3);
+    }
+}
+
+// About a million by default, as a pilot says that is the same for all batches; else what is asked for, and the table
+// of photons grows.
+TEST(LightPathsOf, APassAreAsManyAsStoreAMillionPhotons) {
+    const Scene scene = room_of_everything();
+    RenderOptions options;
+    LightPathsCase light(scene, options);
+    const std::uint32_t count = light.paths.paths_a_pass();
+    EXPECT_EQ(light.paths.light_paths(), 0u);
+    EXPECT_NEAR(double(light.trace(0, count).size()), 1e6, 5e4);
+    options.batch_size = 4096;
+    EXPECT_EQ(LightPathsCase(scene, options).paths.paths_a_pass(), count);
+    options.photons = 3000;
+    LightPathsCase few(scene, options);
+    EXPECT_EQ(few.paths.paths_a_pass(), 3000u);
+    std::vector<Photon> more = light.trace(5, 20'000);
+    ASSERT_GT(more.size(), 3300u); // what there was room for at first
+    EXPECT_TRUE(few.trace(5, 20'000) == more);
+}
+
+TEST(LightPathsOf, ADarkSceneAreNone) {
+    SceneMaker maker = black_floor();
+    LightPathsCase dark(maker.scene);
+    EXPECT_EQ(dark.trace(0, 1000).size(), 0u);
+    maker.lamp({0, 1, 0}, 1, 1, 1, 0);
+    maker.scene.settings.max_depth = 1; // an edge from the light and one to the camera are two
+    EXPECT_EQ(LightPathsCase(maker.scene).trace(0, 1000).size(), 0u);
+    maker.scene.settings.max_depth = 2;
+    EXPECT_GT(LightPathsCase(maker.scene).trace(0, 1000).size(), 0u);
+}
+
+// Double and float trace the same light paths but for rounding.
+TEST(LightPathsOf, DoublePrecisionAreTheSameButForRounding) {
+    SceneMaker maker(4, 1);
+    maker.cube(maker.material(diffuse(0.6)), -1, true);
+    maker.lamp({0, 0.9f, 0}, 0.5f, 0.25f, 1, maker.material(diffuse(0.5)));
+    maker.scene.settings.rr_depth = 5;
+    const Scene &scene = maker.scene;
+    RenderOptions options;
+    constexpr std::uint32_t count = 100'000;
+    const auto power = [](const Photon &) { return 1.0; };
+    const Spread single = flux(LightPathsCase(scene, options).trace(0, count), count, power);
+    options.precision = Precision::double_;
+    const Spread wide = flux(LightPathsCase(scene, options).trace(0, count), count, power);
+    EXPECT_NEAR(single.mean, wide.mean, single.standard_error);
+    EXPECT_NE(single.mean, wide.mean);
 }
 
 } // namespace
