@@ -62,8 +62,11 @@ StageDeclaration evaluate_stage(const Session &session) {
             .tables = {{"own_vertex", "primary_vertex"}}};
 }
 
-StageDeclaration weigh_stage() {
-    return {.name = "weigh",
+StageDeclaration weigh_stage(const char *name, const char *at_first, bool is_wanted) {
+    return {.name = name,
+            .file = "weigh",
+            .definitions = {{"AT_FIRST", at_first}},
+            .is_wanted = is_wanted,
             .numbers = {"first", "stride", "at_first", "own_rows"},
             .tables = {{"own_vertex", "primary_vertex"}}};
 }
@@ -74,6 +77,14 @@ StageDeclaration gradient_emission_stage(const char *name, const char *escaped, 
             .definitions = {{"ESCAPED", escaped}},
             .is_wanted = is_wanted,
             .numbers = {"first", "stride"}};
+}
+
+StageDeclaration advance_stage(const char *name, const char *apart, bool is_wanted) {
+    return {.name = name,
+            .file = "advance",
+            .definitions = {{"APART", apart}},
+            .is_wanted = is_wanted,
+            .numbers = {"first", "to", "stride"}};
 }
 
 StageDeclaration count_stage() {
@@ -93,7 +104,8 @@ GradientPathTracer::GradientPathTracer(Device &device, const Scene &scene, const
       gradient_connect_(
           stages_.add({.name = "gradient_connect", .is_wanted = session_.samples_lights(), .numbers = {"first"}})),
       shift_(stages_.add(shift_stage(session_))), shift_alike_(stages_.add(shift_alike_stage(session_))),
-      evaluate_(stages_.add(evaluate_stage(session_))), weigh_(stages_.add(weigh_stage())),
+      evaluate_(stages_.add(evaluate_stage(session_))), weigh_(stages_.add(weigh_stage("weigh", "1u", true))),
+      weigh_apart_(stages_.add(weigh_stage("weigh apart", "0u", session_.has("TRAIT_APART")))),
       paths_(session_, stages_,
              {.escaped = escaped_bins, .phases = phases_.count, .kinds = std::uint32_t(session_.scene.kinds.size())},
              classify_definitions(), {"shifting", "fresh"}),
@@ -101,10 +113,9 @@ GradientPathTracer::GradientPathTracer(Device &device, const Scene &scene, const
       gradient_escape_(stages_.add(gradient_emission_stage("gradient escape", "1", session_.has("TRAIT_ENVIRONMENT")))),
       gradient_emission_(stages_.add(gradient_emission_stage("gradient emission", "0", session_.has_emission()))),
       shade_with_offsets_(stages_.add(shade_stage(true))), shade_(stages_.add(shade_stage(false))),
-      advance_(stages_.add(
-          {.name = "advance", .is_wanted = session_.has("TRAIT_APART"), .numbers = {"first", "to", "stride"}})),
-      join_(stages_.add(
-          {.name = "join", .by_kind = true, .dirac_alike = true, .numbers = {"first", "to", "stride", "keeps"}})),
+      advance_(stages_.add(advance_stage("advance", "0", true))),
+      advance_apart_(stages_.add(advance_stage("advance apart", "1", session_.has("TRAIT_APART")))),
+      join_(stages_.add({.name = "join", .by_kind = true, .dirac_alike = true, .numbers = {"first", "keeps"}})),
       count_(stages_.add(count_stage())), combine_(stages_.add({.name = "gradient_combine", .strict = true})),
       film_(session_, stages_),
       accumulate_(stages_.add({.name = "gradient_accumulate", .strict = true, .numbers = {"first_slot", "frames"}})),
@@ -264,10 +275,10 @@ void GradientPathTracer::step_offset_paths() {
     const TraceCounts counts = trace_segments(session_.tracer, options_.precision, rays, links, session_.trace_seconds);
     session_.rays["offset"] += counts.extension + counts.shadow;
     for (const OwnVertices &own : vertices) {
-        weigh_.bind("own_vertex", (*tables_)[own.table]);
-        weigh_.run(
-            own.paths.count,
-            {{"first", own.paths.first}, {"stride", stride}, {"at_first", own.at_first}, {"own_rows", own.rows}});
+        Stage &weigh = own.at_first ? weigh_ : weigh_apart_;
+        weigh.bind("own_vertex", (*tables_)[own.table]);
+        weigh.run(own.paths.count,
+                  {{"first", own.paths.first}, {"stride", stride}, {"at_first", own.at_first}, {"own_rows", own.rows}});
     }
 }
 
@@ -335,19 +346,19 @@ void GradientPathTracer::shade(const Hits &next) {
 /// Brings offset paths to the new vertices; those that are connected there take the base path's direction. `stride` as
 /// it was when they stepped.
 void GradientPathTracer::follow(const Hits &next, std::uint32_t stride) {
-    const Range apart = next.phases(std::min(phases_.apart, phases_.joined), phases_.joined);
-    advance_.run(apart.count, {{"first", next.place(apart.first)}, {"to", apart.first}, {"stride", stride}});
+    const std::uint32_t first_phase = std::min(phases_.apart, phases_.joined);
+    const auto advance = [&](Stage &stage, Range rows) {
+        stage.run(rows.count, {{"first", next.place(rows.first)}, {"to", rows.first}, {"stride", stride}});
+    };
+    advance(advance_apart_, next.phases(first_phase, phases_.joined));
+    advance(advance_, next.phase(phases_.joined));
+    const Range rows = next.phases(first_phase, phases_.joined + 1);
+    count_.run(chunks_of(rows.count), {{"first", rows.first}, {"rows", rows.count}});
     for (std::uint32_t phase : {phases_.apart, phases_.apart_mixed, phases_.joined})
         for (std::size_t kind = 0; phase < phases_.count && kind < paths_.kinds(); ++kind) {
-            const Range rows = next.kind(phase, kind);
-            join_.run_kind(kind, rows.count,
-                           {{"first", next.place(rows.first)},
-                            {"to", rows.first},
-                            {"stride", stride},
-                            {"keeps", phase != phases_.joined}});
+            const Range of_kind = next.kind(phase, kind);
+            join_.run_kind(kind, of_kind.count, {{"first", of_kind.first}, {"keeps", phase != phases_.joined}});
         }
-    const Range followed = next.phases(std::min(phases_.apart, phases_.joined), phases_.joined + 1);
-    count_.run(chunks_of(followed.count), {{"first", followed.first}, {"rows", followed.count}});
 }
 
 bool GradientPathTracer::render_batch() {

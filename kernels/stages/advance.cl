@@ -1,25 +1,53 @@
-/* advance: the vertices that offset paths of their own have come to, which their rays have met; their base paths have
- * taken rows `to` on from places `first` on of the index. */
+/* advance: offset paths follow their base paths, which have taken rows `to` on from places `first` on of the index:
+ * their state moves to the new rows. Those that reconnected to what they do not see have failed; so have all where the
+ * vertex is not rough and the path could only end there.
+ *
+ * APART: some have vertices of their own, which their rays have met. */
+//! traits: TRAIT_APART
 #include "kernels/lib/surface_point.h"
 #include "kernels/lib/vertex_frame.h"
 #include "kernels/shared/stage.h"
 
 STAGE advance(uint count, uint unit, uint first, uint to, uint stride, uint capacity, __global const uint *index,
-              __global const real *offset_old, __global const real *offset_ray, __global real *offset_vertex,
-              __global const real *triangles, __global const real *triangle_normals,
-              __global const real *triangle_tangents, __global const real *spheres, uint triangle_count,
-              __global const uint *primitive_material, __global const uint *material_back,
-              __global const uint *material_kind) {
+              __global const real *offset_old, __global real *offset, __global const real *link
+#if TRAIT_APART
+              ,
+              __global const real *vertex
+#endif
+#if APART
+              ,
+              __global const real *offset_ray, __global real *offset_vertex, __global const real *triangles,
+              __global const real *triangle_normals, __global const real *triangle_tangents,
+              __global const real *spheres, uint triangle_count, __global const uint *primitive_material,
+              __global const uint *material_back, __global const uint *material_kind
+#endif
+) {
     const size_t i = work_item();
     if (i >= count)
         return;
     const uint old = index[first + i];
     const size_t row = to + i;
+#if TRAIT_APART
+    const int is_rough = (AT_UINT(vertex, kind, row) & kind_is_rough) != 0u;
+#endif
 #pragma unroll
     for (uint j = 0; j < 4; ++j) {
         const size_t from = (size_t)j * capacity + old, at = (size_t)j * capacity + row;
         const real ratio = AT_IN(offset_old, offset, ratio, from);
+        const int open = AT_UINT(link, open, (size_t)(4u + j) * stride + old) != 0u;
+        int holds = open;
+#if TRAIT_APART
         const uint state = AT_UINT_IN(offset_old, offset, state, from);
+        holds = (open & is_rough) | (state != connection_recent);
+        AT_UINT(offset, state, at) = state;
+#endif
+        const real failed = shift_failed(open ? outcome_failed_kinds : outcome_failed_hidden);
+        AT(offset, ratio, at) = ratio < R(0) || holds ? ratio : failed;
+        const rgb value = AT_RGB_IN(offset_old, offset, value, from);
+        SET_RGB(offset, value, at, value);
+        const vec3 wi = AT_V3_IN(offset_old, offset, wi, from);
+        SET_V3(offset, wi, at, wi);
+#if APART
         const size_t sent = (size_t)j * stride + old;
         const uint primitive = AT_UINT(offset_ray, primitive, sent);
         const int is_hit = primitive < ray_first_special;
@@ -29,5 +57,6 @@ STAGE advance(uint count, uint unit, uint first, uint to, uint stride, uint capa
             material_back, is_hit ? primitive : 0u, AT_V3(offset_ray, origin, sent), direction);
         const int is_own = is_hit & (ratio >= R(0)) & (state < connection_recent);
         SET_SURFACE_VERTEX(offset_vertex, at, is_own ? material_kind[point.material] : kind_none, point, direction)
+#endif
     }
 }

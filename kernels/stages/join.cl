@@ -1,15 +1,10 @@
-/* join: offset paths follow their base paths, which have taken rows `to` on from places `first` on of the index and
- * stand at vertices of kind BSDF. Those that reconnected to what they do not see have failed; so have all where the
- * vertex is not rough and the path could only end there.
- *
- * What those gain and become that stand at the base path's vertex, since they have just connected or did so before:
- * this runs after `shade`, before the light is known to be seen, so `evaluation` keeps what they would gain, for
- * `gradient_connect` or `weigh`.
+/* join: what offset paths gain and become that stand at the base path's vertex, one of kind BSDF (rows `first` on),
+ * since they have just connected or did so before. Runs after `shade`, before the light is known to be seen:
+ * `evaluation` keeps what they would gain, for `gradient_connect` or `weigh`.
  *
  * They take the base path's direction, and all that follows is the same for both. Where that is so of all, what came
  * before is kept by slot, and the base path goes on with a throughput of its own: later stages are the path tracer's
  * and know nothing of offset paths. TRAIT_APART, `keeps`: some are at vertices of their own, so all stay in `offset`.
- * There `shift_count` finds in any case what became of them.
  *
  * Russian roulette goes by the brightest of them all. */
 //! traits: TRAIT_REFRACTION TRAIT_APART SAMPLES_LIGHTS
@@ -19,8 +14,7 @@
 #include "kernels/lib/vertex_frame.h"
 #include "kernels/shared/stage.h"
 
-STAGE join(uint count, uint unit, uint first, uint to, uint stride, uint capacity, uint slots, uint roulette_depth,
-           __global const uint *index, __global const real *offset_old, __global const real *link,
+STAGE join(uint count, uint unit, uint first, uint capacity, uint slots, uint roulette_depth,
            __global const real *vertex, __global const real *event, __global real *path, __global real *ray,
            __global real *shadow, __global real *offset, __global real *shift, __global real *evaluation,
            __global real *prefix, __global real *difference, __global const real *materials
@@ -32,8 +26,7 @@ STAGE join(uint count, uint unit, uint first, uint to, uint stride, uint capacit
     const size_t i = work_item();
     if (i >= count)
         return;
-    const uint old = index[first + i];
-    const size_t row = to + i;
+    const size_t row = first + i;
     const uint slot = AT_UINT(path, slot, row), depth = AT_UINT(path, depth, row);
 #if !BSDF_IS_DIRAC
     const material m = material_load(materials, AT_UINT(vertex, material, row), unit);
@@ -52,34 +45,22 @@ STAGE join(uint count, uint unit, uint first, uint to, uint stride, uint capacit
 #endif
     const rgb throughput = AT_RGB(path, throughput, row);
     real brightest = rgb_max(throughput);
-#if TRAIT_APART
-    const int is_rough = (AT_UINT(vertex, kind, row) & kind_is_rough) != 0u;
-#endif
 #pragma unroll
     for (uint j = 0; j < 4; ++j) {
-        const size_t from = (size_t)j * capacity + old, at = (size_t)j * capacity + row;
-        const real ratio_before = AT_IN(offset_old, offset, ratio, from);
-        const int open = AT_UINT(link, open, (size_t)(4u + j) * stride + old) != 0u;
-        int holds = open;
-#if TRAIT_APART
-        const uint state = AT_UINT_IN(offset_old, offset, state, from);
-        holds = (open & is_rough) | (state != connection_recent);
-        AT_UINT(offset, state, at) = state;
-#endif
-        const real failed = shift_failed(open ? outcome_failed_kinds : outcome_failed_hidden);
-        const real ratio = ratio_before < R(0) || holds ? ratio_before : failed;
-        const rgb so_far = AT_RGB_IN(offset_old, offset, value, from);
+        const size_t at = (size_t)j * capacity + row;
+        const real ratio = AT(offset, ratio, at);
+        const rgb so_far = AT_RGB(offset, value, at);
         /* Selected, not scaled: where there is no offset path, its direction is anything. */
         const int is_there = ratio >= R(0);
         int is_own = 0;
 #if TRAIT_APART
-        is_own = is_there & (state < connection_recent);
+        is_own = is_there & (AT_UINT(offset, state, at) < connection_recent);
 #endif
 #if BSDF_IS_DIRAC
         /* Only those that are fully connected come to a Dirac vertex. */
         const real change = R(1);
 #else
-        const vec3 wi = frame_to_local(axes, AT_V3_IN(offset_old, offset, wi, from));
+        const vec3 wi = frame_to_local(axes, AT_V3(offset, wi, at));
 #if SAMPLES_LIGHTS
         const bsdf_value f_light = PASTE(BSDF, _evaluate)(m, wi, to_light, transport_radiance);
         const rgb gain = rgb_select(is_there, rgb_mul(rgb_mul(so_far, arriving), f_light.value), rgb_gray(R(0)));
@@ -103,19 +84,19 @@ STAGE join(uint count, uint unit, uint first, uint to, uint stride, uint capacit
         const real merged_ratio = is_there ? ratio * change : ratio;
         const rgb value = rgb_select(is_own, so_far, merged);
         brightest = r_max(brightest, rgb_max(value));
-        AT(offset, ratio, at) = is_own ? ratio : merged_ratio;
 #if TRAIT_APART
         if (keeps) {
             SET_RGB(offset, value, at, value);
+            AT(offset, ratio, at) = is_own ? ratio : merged_ratio;
         }
 #endif
-        const size_t to_slot = (size_t)j * slots + slot;
+        const size_t to = (size_t)j * slots + slot;
 #if TRAIT_APART
         if (!keeps)
 #endif
         {
-            SET_RGB(difference, throughput, to_slot, merged);
-            AT(difference, ratio, to_slot) = merged_ratio;
+            SET_RGB(difference, throughput, to, merged);
+            AT(difference, ratio, to) = merged_ratio;
         }
     }
 #if SAMPLES_LIGHTS && !BSDF_IS_DIRAC
@@ -154,8 +135,8 @@ STAGE join(uint count, uint unit, uint first, uint to, uint stride, uint capacit
         SET_RGB(prefix, throughput, slot, rgb_scale(throughput, inverse));
 #pragma unroll
         for (uint j = 0; j < 4; ++j) {
-            const size_t to_slot = (size_t)j * slots + slot;
-            SCALE_RGB(difference, throughput, to_slot, inverse);
+            const size_t to = (size_t)j * slots + slot;
+            SCALE_RGB(difference, throughput, to, inverse);
         }
     }
     SET_RGB(path, throughput, row, left);

@@ -48,6 +48,16 @@ GRADUS_CLONES void make_keys(const KeyInput &input, std::size_t count, std::uint
     }
 }
 
+/// Puts each row where its key says; `places` are those of the next ones.
+template <std::uint32_t lines>
+void place(const RowLines &rows, const std::uint16_t *__restrict keys, std::uint32_t *__restrict places,
+           std::uint32_t *__restrict sorted) {
+    const std::size_t count = rows.end - rows.begin;
+    for (std::size_t i = 0; i < count; ++i)
+        for (std::uint32_t line = 0; line < lines; ++line)
+            sorted[places[keys[line * count + i]]++] = static_cast<std::uint32_t>(rows.begin + line * rows.apart + i);
+}
+
 } // namespace
 
 RayOrdering::RayOrdering(const std::array<float, 3> &low, const std::array<float, 3> &high) : low_(low) {
@@ -90,17 +100,18 @@ const std::vector<std::uint32_t> &RayOrdering::sort(const SegmentColumns &rays, 
     }
     // One more key than there are, for the rows that are not wanted: no branch is needed for them.
     count_.assign(key_count + 2, 0);
-    for (const std::uint16_t key : keys_)
-        ++count_[key + 1u];
+    for (std::size_t i = 0; i < keys_.size(); ++i)
+        ++count_[keys_[i] + 1u];
     for (std::uint32_t key = 1; key <= key_count; ++key)
         count_[key] += count_[key - 1];
     for (std::uint32_t octant = 1; octant <= 8; ++octant)
         groups_.push_back(count_[octant * octant_keys]);
     const std::size_t wanted_count = count_[key_count];
     sorted_.resize(keys_.size());
-    for (std::size_t i = 0; i < count; ++i)
-        for (std::size_t line = 0; line < rows.lines; ++line)
-            sorted_[count_[keys_[line * count + i]]++] = static_cast<std::uint32_t>(rows.begin + line * rows.apart + i);
+    if (rows.lines == 1)
+        place<1>(rows, keys_.data(), count_.data(), sorted_.data());
+    else
+        place<4>(rows, keys_.data(), count_.data(), sorted_.data());
     sorted_.resize(wanted_count);
     return sorted_;
 }

@@ -26,7 +26,7 @@ struct SegmentColumns {
 /// Some rows [begin, end) and, line by line, those `apart` rows further on, which belong to them.
 struct RowLines {
     std::size_t begin, end;
-    std::uint32_t lines = 1;
+    std::uint32_t lines = 1; ///< or 4
     std::size_t apart = 0;
 };
 

@@ -180,7 +180,8 @@ TEST(TablesOfARender, AreThoseThatTheSceneAsksFor) {
     options.aov = true;
     const Seen smooth = watch("gpt", room({testing::mirror(), testing::rough_glass(0.2, 1.5)}), options);
     EXPECT_THAT(smooth.tables, IsSupersetOf({"offset_vertex", "offset_ray", "feature", "feature_film"}));
-    EXPECT_THAT(smooth.stages, IsSupersetOf({"advance apart", "evaluate diffuse", "evaluate conductor"}));
+    EXPECT_THAT(smooth.stages, IsSupersetOf({"advance apart", "weigh apart", "shift diffuse", "shift conductor",
+                                             "evaluate diffuse", "evaluate conductor"}));
 }
 
 TEST(TablesOfARender, TakeNoMemoryThatTheSceneDoesNotAskFor) {
