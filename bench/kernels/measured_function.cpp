@@ -304,6 +304,72 @@ MeasuredFunction copied_shift(const std::string &name, const std::string &entry)
     return f;
 }
 
+/// One vertex of a chain, with the derivatives that walks and their Jacobians are made of.
+MeasuredFunction chain_vertex() {
+    MeasuredFunction f{
+        "chain vertex",
+        "kernels/measure/chain.cl",
+        "measure_chain",
+        {},
+        6,
+        {{"spread", 0, 1, 1e-2, false, true}, {"turn", 1, 1, 1e-2, false, true}, {"direction", 2, 3, 0, true, true}},
+        5,
+        {},
+        {},
+        {}};
+    const auto draw = [](double most_tilt, double least_contrast) {
+        const auto cases = std::make_shared<testing::ShiftCases>(4, 0.01);
+        return [=](Random &random) {
+            const auto near = [&](const testing::LongVector &v, double most) {
+                return testing::normalized(v + (long double)(most * uniform(random)) * cases->draw_direction());
+            };
+            const testing::LongVector direction = cases->draw_direction();
+            const testing::LongVector geometric = near((long double)(sign(random)) * direction, most_tilt);
+            std::vector<double> row;
+            append(row, direction);
+            append(row, geometric);
+            append(row, near(geometric, 0.2));
+            append(row, near((long double)(sign(random)) * direction, 0.8));
+            const double contrast = least_contrast + 0.5 * uniform(random);
+            const double ior = uniform(random) < 0.5 ? 1 + contrast : 1 / (1 + contrast);
+            row.insert(row.end(), {0.2 * uniform(random), 0.2 * uniform(random), sign(random), ior,
+                                   2 * uniform(random) - 1, 0.5 + uniform(random), 0.5 + uniform(random)});
+            for (double &value : row)
+                value = rounded(value);
+            return row;
+        };
+    };
+    f.domains = {{"inside", draw(0.7, 0.1), true},
+                 {"grazing, near total reflection", draw(2, 0.1), true},
+                 {"index ratio near 1", draw(0.7, 1e-3), true}};
+    // Cases that fail make way for the one before. The end's plane is within 0.7 of the way to it.
+    f.adjust = [](Columns &columns, const Columns &results) {
+        for (std::size_t i = 1; i < columns.front().size(); ++i) {
+            const bool fails = results[5][i] == 0;
+            for (std::vector<double> &column : columns)
+                column[i] = fails ? column[i - 1] : column[i];
+            if (fails)
+                continue;
+            std::array<double, 3> plane{};
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                plane[axis] = results[2 + axis][i] + 0.7 * columns[9 + axis][i];
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                columns[9 + axis][i] = rounded(plane[axis] / std::hypot(plane[0], plane[1], plane[2]));
+        }
+    };
+    // Near total reflection rounding is divided by the square of the cosine against the microfacet, which is within 0.3
+    // of the normal.
+    f.is_edge = [](const Columns &columns, std::size_t i) {
+        double in = 0;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            in += columns[axis][i] * columns[6 + axis][i];
+        in = std::max(std::fabs(in) - 0.3, 0.0);
+        const double ior = columns[15][i];
+        return columns[14][i] < 0 && in * in - std::fabs(ior * ior - 1) < 0.1;
+    };
+    return f;
+}
+
 } // namespace
 
 std::vector<MeasuredFunction> measured_functions(const std::vector<std::string> &kinds) {
@@ -314,7 +380,7 @@ std::vector<MeasuredFunction> measured_functions(const std::vector<std::string> 
     for (MeasuredFunction &f : std::vector<MeasuredFunction>{
              fresnel_of_dielectrics(), fresnel_of_conductors(), microfacet("ggx"), microfacet("beckmann"), warps(),
              reconnection(), copied_shift("half-vector copy", "measure_half_vector"),
-             copied_shift("specular copy", "measure_specular")})
+             copied_shift("specular copy", "measure_specular"), chain_vertex()})
         functions.push_back(std::move(f));
     return functions;
 }

@@ -15,15 +15,15 @@ typedef struct {
     GRADUS_NOT_IN_REGISTERS
 } surface_point;
 
-GRADUS_FN surface_point surface_point_of(GRADUS_GLOBAL const real *triangles,
+/* Where a ray in that direction has met the primitive. */
+GRADUS_FN surface_point surface_point_at(GRADUS_GLOBAL const real *triangles,
                                          GRADUS_GLOBAL const real *triangle_normals,
                                          GRADUS_GLOBAL const real *triangle_tangents, GRADUS_GLOBAL const real *spheres,
                                          uint unit, uint triangle_count, GRADUS_GLOBAL const uint *primitive_material,
-                                         GRADUS_GLOBAL const uint *material_back, uint primitive, vec3 origin,
+                                         GRADUS_GLOBAL const uint *material_back, uint primitive, primitive_hit hit,
                                          vec3 direction) {
-    (void)triangle_normals, (void)triangle_tangents, (void)material_back;
+    (void)triangle_normals, (void)triangle_tangents, (void)material_back, (void)direction;
     surface_point point;
-    const primitive_hit hit = primitive_hit_of(triangles, spheres, unit, triangle_count, primitive, origin, direction);
     vec3 shading = hit.normal;
 #if TRAIT_SHADING_NORMALS
     const uint smooth = TRIANGLE_OF(primitive);
@@ -60,6 +60,18 @@ GRADUS_FN surface_point surface_point_of(GRADUS_GLOBAL const real *triangles,
     point.offset = primitive_offset(triangles, spheres, unit, triangle_count, primitive);
     point.material = material_index;
     return point;
+}
+
+GRADUS_FN surface_point surface_point_of(GRADUS_GLOBAL const real *triangles,
+                                         GRADUS_GLOBAL const real *triangle_normals,
+                                         GRADUS_GLOBAL const real *triangle_tangents, GRADUS_GLOBAL const real *spheres,
+                                         uint unit, uint triangle_count, GRADUS_GLOBAL const uint *primitive_material,
+                                         GRADUS_GLOBAL const uint *material_back, uint primitive, vec3 origin,
+                                         vec3 direction) {
+    return surface_point_at(triangles, triangle_normals, triangle_tangents, spheres, unit, triangle_count,
+                            primitive_material, material_back, primitive,
+                            primitive_hit_of(triangles, spheres, unit, triangle_count, primitive, origin, direction),
+                            direction);
 }
 
 GRADUS_LIB_END

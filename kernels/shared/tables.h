@@ -9,6 +9,7 @@
 #ifndef GRADUS_SHARED_TABLES_H
 #define GRADUS_SHARED_TABLES_H
 #include "kernels/shared/compat.h"
+#include "kernels/shared/walk_tables.h"
 
 /* The segment that each path sends out next. Positions in world units; the direction has unit length. */
 #define GRADUS_RAY_COLUMNS(REAL, UINT)                                                                                 \
@@ -349,7 +350,8 @@
     TABLE(prefix, GRADUS_PREFIX_COLUMNS)                                                                               \
     TABLE(difference, GRADUS_DIFFERENCE_COLUMNS)                                                                       \
     TABLE(carry, GRADUS_CARRY_COLUMNS)                                                                                 \
-    TABLE(gradient_film, GRADUS_GRADIENT_FILM_COLUMNS)
+    TABLE(gradient_film, GRADUS_GRADIENT_FILM_COLUMNS)                                                                 \
+    GRADUS_WALK_TABLES(TABLE)
 
 GRADUS_LIB_BEGIN
 
@@ -430,6 +432,10 @@ GRADUS_COLUMN_ENUM(splat, GRADUS_SPLAT_COLUMNS) /* its rows are its writer's */
 
 #define GRADUS_OUTCOME_INDEX(name, text) outcome_##name,
 enum shift_outcome_number { GRADUS_SHIFT_OUTCOMES(GRADUS_OUTCOME_INDEX) shift_outcomes };
+#undef GRADUS_OUTCOME_INDEX
+
+#define GRADUS_OUTCOME_INDEX(name, text) walk_##name,
+enum walk_outcome_number { GRADUS_WALK_OUTCOMES(GRADUS_OUTCOME_INDEX) walk_outcomes };
 #undef GRADUS_OUTCOME_INDEX
 
 GRADUS_LIB_END

@@ -58,6 +58,11 @@ BOUNDS = {
     ("half-vector copy", "Jacobian"): 1e-4,
     ("half-vector copy", "direction"): 1e-4,
     ("specular copy", "direction"): 1e-5,
+    # Some thirty roundings of terms of order 1, which cancel down to the floor of 0.01.
+    ("chain vertex", "spread"): 2e-4,
+    # The half vector's cosine is at least 0.3 there, and some ten roundings.
+    ("chain vertex", "turn"): 4e-6,
+    ("chain vertex", "direction"): 1e-6,
 }
 
 

@@ -1,0 +1,240 @@
+#include "runtime/wavefront/manifold_walk.h"
+
+#include "kernels/shared/tables.h"
+#include "runtime/wavefront/segments.h"
+
+#include <array>
+#include <stdexcept>
+
+namespace gradus {
+
+using namespace lib_float;
+
+namespace {
+
+/// Rounding of a position, over the offset of rays from its surface (scene_tables.cpp): in float 2^-21 of the largest
+/// coordinate, in double some bits more than that has.
+constexpr double floor_in_float = 0x1p-3, floor_in_double = 0x1p-30;
+
+const std::vector<std::string> chain_numbers = {"chain_rows", "chain_vertices"};
+
+std::vector<std::string> numbers_and(std::vector<std::string> more) {
+    more.insert(more.end(), chain_numbers.begin(), chain_numbers.end());
+    return more;
+}
+
+StageDeclaration walk_stage(const std::string &name, const char *file, const char *entry,
+                            std::vector<std::string> numbers,
+                            std::vector<std::pair<std::string, std::string>> tables = {}) {
+    return {.name = "walk " + name,
+            .file = file,
+            .entry = entry,
+            .numbers = numbers_and(std::move(numbers)),
+            .tables = std::move(tables)};
+}
+
+StageDeclaration follow_stage(bool lands) {
+    std::vector<std::string> numbers = {"first_row", "k", "replays"};
+    if (lands)
+        numbers.insert(numbers.end(), {"most_vertices", "most_steps"});
+    StageDeclaration stage =
+        walk_stage(lands ? "land" : "follow", "walk_follow", lands ? "walk_land" : "walk_follow", std::move(numbers));
+    stage.definitions = {{"LANDS", lands ? "1" : "0"}};
+    return stage;
+}
+
+StageDeclaration partition_stage(const char *step, std::vector<std::string> numbers) {
+    StageDeclaration stage = walk_stage(
+        step, "partition", "", std::move(numbers),
+        {{"bin", "walk_bin"}, {"chunk_offset", "walk_chunk"}, {"index", "walk_index"}, {"range", "walk_range"}});
+    stage.entry = std::string("partition_") + step;
+    stage.name = std::string("walk partition ") + step;
+    stage.definitions = {{"PARTITION_CHUNK", std::to_string(partition_chunk)}};
+    return stage;
+}
+
+StageDeclaration back_stage(const char *name, const char *entry, const WalkSettings &settings) {
+    StageDeclaration stage = walk_stage(name, "walk_back", entry, {});
+    stage.is_wanted = settings.comes_back;
+    return stage;
+}
+
+} // namespace
+
+/// The tables of the walk there, or of the walk back.
+struct ManifoldWalk::Side {
+    const char *chain, *vertex, *walked, *walked_vertex;
+};
+
+ManifoldWalk::ManifoldWalk(Session &session, Stages &stages, RowsOf rows_of, std::uint32_t multiple,
+                           const WalkSettings &settings)
+    : session_(session), rows_of_(rows_of), multiple_(multiple), settings_(settings),
+      events_(stages.add(walk_stage("events", "walk_events", "walk_events", {}))),
+      queue_(stages.add(walk_stage("queue", "walk_queue", "walk_queue", {"most_vertices"}))),
+      aim_(stages.add(walk_stage("aim", "walk_aim", "walk_aim", {}, {{"walk_old", "walk_next"}}))),
+      follow_(stages.add(follow_stage(false))), land_(stages.add(follow_stage(true))),
+      count_bins_(stages.add(partition_stage("count", {"bins", "rows"}))),
+      scan_(stages.add(partition_stage("scan", {"bins", "chunks"}))),
+      scatter_(stages.add(partition_stage("scatter", {"bins", "rows"}))),
+      link_(stages.add(walk_stage("link", "walk_link", "walk_link", {}))),
+      seen_(stages.add(walk_stage("seen", "walk_link", "walk_seen", {}))),
+      turn_(stages.add(back_stage("turn", "walk_turn", settings))),
+      turn_vertices_(stages.add(back_stage("turn vertices", "walk_turn_vertices", settings))),
+      return_(stages.add(back_stage("return", "walk_return", settings))),
+      count_(stages.add(walk_stage("count", "walk_count", "walk_count", {"rows"}))) {
+    if (settings.most_vertices == 0 || settings.most_vertices > partition_chunk)
+        throw std::logic_error("chains of walks have between 1 and 256 vertices");
+    session.reals["walk_tolerance"] = settings.tolerance;
+    session.reals["walk_back_tolerance"] = settings.back_tolerance;
+    session.reals["walk_floor"] = session.options.precision == Precision::double_ ? floor_in_double : floor_in_float;
+#define GRADUS_OUTCOME_COUNT(name, text) counts_[#name] = 0;
+    GRADUS_WALK_OUTCOMES(GRADUS_OUTCOME_COUNT)
+#undef GRADUS_OUTCOME_COUNT
+    counts_.erase("none");
+    counts_["steps"] = 0;
+}
+
+TableList ManifoldWalk::tables() const {
+    // Columns of vertices that the scene does not need are the last.
+    const std::uint32_t not_needed = session_.has("TRAIT_ANISOTROPIC")       ? 0
+                                     : session_.has("TRAIT_SHADING_NORMALS") ? 3
+                                                                             : 6;
+    const auto of = [&](const char *name, std::uint32_t columns, std::uint32_t vertices = 1) -> TableDeclaration {
+        return {
+            .name = name, .rows = rows_of_, .multiple = multiple_ * vertices, .columns = columns, .is_cleared = true};
+    };
+    const auto of_uints = [&](const char *name) -> TableDeclaration {
+        return {.name = name, .rows = rows_of_, .multiple = multiple_, .is_uint = true};
+    };
+    const std::uint32_t most = settings_.most_vertices;
+    TableList list = {of("chain", chain_columns),
+                      of("chain_vertex", chain_vertex_columns, most),
+                      of("chain_event", chain_event_columns, most),
+                      of("walked", walked_columns),
+                      of("walked_vertex", walked_vertex_columns - not_needed, most),
+                      of("walk", walk_columns),
+                      of("walk_next", walk_columns),
+                      of("walk_ray", walk_ray_columns),
+                      of("walk_beam", walk_beam_columns),
+                      of("walk_link", walk_link_columns)};
+    if (settings_.comes_back)
+        for (const TableDeclaration &table :
+             {of("back_chain", chain_columns), of("back_chain_vertex", chain_vertex_columns, most),
+              of("back_walked", walked_columns), of("back_walked_vertex", walked_vertex_columns - not_needed, most)})
+            list.push_back(table);
+    for (const char *name : {"walk_bin", "walk_index"})
+        list.push_back(of_uints(name));
+    list.push_back(
+        {.name = "walk_chunk", .rows = rows_of_, .multiple = multiple_, .columns = most, .is_uint = true}); // enough
+    list.push_back({.name = "walk_range", .rows = RowsOf::one, .columns = most + 1, .is_uint = true});
+    list.push_back({.name = "walk_found", .rows = RowsOf::one, .columns = walk_outcomes + 1, .is_uint = true});
+    return list;
+}
+
+void ManifoldWalk::attach(Tables &tables) {
+    tables_ = &tables;
+    chain_rows_ = static_cast<std::uint32_t>(tables.rows().of(rows_of_)) * multiple_;
+}
+
+void ManifoldWalk::run(std::uint32_t count) {
+    if (count > chain_rows_)
+        throw std::logic_error("more chains than walks have room for");
+    if (count == 0)
+        return;
+    const LaunchNumbers rows = {{"chain_rows", chain_rows_}, {"chain_vertices", chain_vertices()}};
+    walk({"chain", "chain_vertex", "walked", "walked_vertex"}, count);
+    link_.run(count, rows);
+    const TraceCounts traced = trace_segments(
+        session_.tracer, tables_->precision(), {},
+        {&(*tables_)["walk_link"], chain_rows_, count, walk_link_origin_x, walk_link_direction_x, walk_link_open},
+        session_.trace_seconds);
+    session_.rays["walk"] += traced.shadow;
+    seen_.run(count, rows);
+    if (settings_.comes_back) {
+        turn_.run(count, rows);
+        turn_vertices_.run_planes(0, count, settings_.most_vertices, rows);
+        walk({"back_chain", "back_chain_vertex", "back_walked", "back_walked_vertex"}, count);
+        return_.run(count, rows);
+    }
+    add_counts(count);
+}
+
+void ManifoldWalk::add_counts(std::uint32_t count) {
+    count_.run(walk_outcomes + 1, {{"rows", count}, {"chain_rows", chain_rows_}});
+    std::array<std::uint32_t, walk_outcomes + 1> found{};
+    (*tables_)["walk_found"].read(found.data(), sizeof found);
+#define GRADUS_OUTCOME_COUNT(name, text)                                                                               \
+    if (walk_##name != walk_none)                                                                                      \
+        counts_[#name] += found[walk_##name];
+    GRADUS_WALK_OUTCOMES(GRADUS_OUTCOME_COUNT)
+#undef GRADUS_OUTCOME_COUNT
+    counts_["steps"] += found[walk_outcomes];
+}
+
+void ManifoldWalk::bind(const Side &side) {
+    for (Stage *stage : {&events_, &queue_, &aim_, &follow_, &land_}) {
+        stage->bind("chain", (*tables_)[side.chain]);
+        stage->bind("chain_vertex", (*tables_)[side.vertex]);
+        stage->bind("walked", (*tables_)[side.walked]);
+        stage->bind("walked_vertex", (*tables_)[side.walked_vertex]);
+    }
+}
+
+/// Walks of one direction: their answers are in side.walked and side.walked_vertex.
+void ManifoldWalk::walk(const Side &side, std::uint32_t count) {
+    const std::uint32_t most = settings_.most_vertices;
+    bind(side);
+    const Buffer *newest = &(*tables_)["walk"], *oldest = &(*tables_)["walk_next"];
+    events_.run_planes(0, count, most, {{"chain_rows", chain_rows_}, {"chain_vertices", chain_vertices()}});
+    queue_.bind("walk", *newest);
+    queue_.run(count, {{"chain_rows", chain_rows_}, {"chain_vertices", chain_vertices()}, {"most_vertices", most}});
+    std::vector<std::uint32_t> longer = sort(count);
+    // The step of number 0 follows the chain as it is, on the primitives that it lies on.
+    for (std::uint32_t step = 0; step <= settings_.steps && longer[0] > 0; ++step) {
+        std::swap(newest, oldest);
+        aim_.bind("walk", *newest);
+        aim_.bind("walk_old", *oldest);
+        follow_.bind("walk", *newest);
+        land_.bind("walk", *newest);
+        aim_.run(longer[0], {{"chain_rows", chain_rows_}});
+        for (std::uint32_t k = 0; k < most && longer[k] > 0; ++k) {
+            if (step > 0)
+                trace(longer[k]);
+            follow_.run(longer[k + 1], {{"first_row", 0},
+                                        {"k", k},
+                                        {"replays", step == 0},
+                                        {"chain_rows", chain_rows_},
+                                        {"chain_vertices", chain_vertices()}});
+            land_.run(longer[k] - longer[k + 1], {{"first_row", longer[k + 1]},
+                                                  {"k", k},
+                                                  {"replays", step == 0},
+                                                  {"most_vertices", most},
+                                                  {"most_steps", settings_.steps},
+                                                  {"chain_rows", chain_rows_},
+                                                  {"chain_vertices", chain_vertices()}});
+        }
+        longer = sort(longer[0]);
+    }
+}
+
+/// Sorts the walks that go on: `longer[k]` of them have chains of more than k vertices, and those come first.
+std::vector<std::uint32_t> ManifoldWalk::sort(std::uint32_t rows) {
+    const std::uint32_t bins = settings_.most_vertices, chunks = chunks_of(rows);
+    count_bins_.run(chunks, {{"bins", bins}, {"rows", rows}});
+    scan_.run(1, {{"bins", bins}, {"chunks", chunks}});
+    std::vector<std::uint32_t> ranges(bins + 1);
+    Buffer::Reading reading = (*tables_)["walk_range"].start_read(ranges.data(), ranges.size() * sizeof(std::uint32_t));
+    scatter_.run(chunks, {{"bins", bins}, {"rows", rows}});
+    reading.wait();
+    return {ranges.rbegin(), ranges.rend()};
+}
+
+void ManifoldWalk::trace(std::uint32_t rows) {
+    const TraceCounts traced = trace_segments(
+        session_.tracer, tables_->precision(),
+        {&(*tables_)["walk_ray"], chain_rows_, rows, walk_ray_origin_x, walk_ray_direction_x, walk_ray_primitive}, {},
+        session_.trace_seconds);
+    session_.rays["walk"] += traced.extension;
+}
+
+} // namespace gradus
