@@ -44,7 +44,7 @@ StageDeclaration photons_stage(const char *step, std::vector<std::string> number
 }
 
 StageDeclaration gather_stage() {
-    StageDeclaration stage = photons_stage("gather", {"first", "first_slot"});
+    StageDeclaration stage = photons_stage("gather", {"first", "photon_rows"});
     stage.tables = {{"photon", "new_photon"}}; // until it is known
     return stage;
 }
@@ -76,10 +76,11 @@ LightPaths::LightPaths(Session &session, Stages &consumers, const Scene &scene, 
                          .is_wanted = session.scene.light_count > 0,
                          .numbers = {"first_row", "first_slot", "first_path_low", "first_path_high"}})),
       paths_(session, stages_, {.kinds = std::uint32_t(session.scene.kinds.size())}),
-      scatter_(stages_.add({.name = "scatter", .by_kind = true, .numbers = {"first", "to", "to_photon"}})),
+      scatter_(
+          stages_.add({.name = "scatter", .by_kind = true, .numbers = {"first", "to", "to_photon", "first_slot"}})),
       count_(stages_.add(photons_stage("count", {"rows"}))), scan_(stages_.add(photons_stage("scan", {"chunks"}))),
-      place_(stages_.add(photons_stage("place", {"rows"}))), order_(stages_.add(photons_stage("order", {}))),
-      gather_(stages_.add(gather_stage())) {
+      place_(stages_.add(photons_stage("place", {"rows"}))),
+      order_(stages_.add(photons_stage("order", {"first_slot"}))), gather_(stages_.add(gather_stage())) {
     if (wanted_ > std::numeric_limits<std::int32_t>::max())
         throw Error(ExitCode::usage, "there can be 2^31 - 1 light paths a pass at most");
     const std::vector<std::uint32_t> gathers = gathers_by_material(scene, options.gather_roughness);
@@ -100,7 +101,6 @@ LightPaths::LightPaths(Session &session, Stages &consumers, const Scene &scene, 
     session.numbers["light_roulette_depth"] = plays_roulette ? roulette_from : no_roulette;
     session.numbers["first_photon_depth"] = first_photon_depth_;
     session.numbers["new_photon_rows"] = std::uint32_t(own_->rows_of("new_photon"));
-    session.numbers["photon_rows"] = 0;
     stages_.build(session, *own_);
     session.numbers = numbers;
     session.numbers["photon_rows"] = 0; // attach() and trace() say it
@@ -167,7 +167,10 @@ std::uint32_t LightPaths::trace_pass(std::uint64_t first_path, std::uint32_t fir
         for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
             const Range rows = hits.kind(0, kind);
             scatter_.run_kind(kind, rows.count,
-                              {{"first", hits.place(rows.first)}, {"to", rows.first}, {"to_photon", found}});
+                              {{"first", hits.place(rows.first)},
+                               {"to", rows.first},
+                               {"to_photon", found},
+                               {"first_slot", first_slot}});
             found += bsdf_kind_is_dirac(kinds[kind]) ? 0 : rows.count;
         }
     }
@@ -183,7 +186,7 @@ std::uint32_t LightPaths::put_in_order(std::uint32_t first_slot, std::uint32_t c
     std::uint32_t photons = 0;
     Buffer::Reading reading = (*own_)["photon_total"].start_read(&photons, sizeof photons);
     place_.run(chunks, {{"rows", count}});
-    order_.run(found);
+    order_.run(found, {{"first_slot", first_slot}});
     reading.wait();
     const std::uint64_t rows = std::uint64_t(stored) + photons;
     if (rows > most_photons)
@@ -193,9 +196,7 @@ std::uint32_t LightPaths::put_in_order(std::uint32_t first_slot, std::uint32_t c
         consumers_.set("photon_rows", std::uint32_t(tables_->rows_of("photon")));
     }
     gather_.bind("photon", (*tables_)["photon"]);
-    gather_.run(
-        photons,
-        {{"first", stored}, {"first_slot", first_slot}, {"photon_rows", std::uint32_t(tables_->rows_of("photon"))}});
+    gather_.run(photons, {{"first", stored}, {"photon_rows", std::uint32_t(tables_->rows_of("photon"))}});
     return photons;
 }
 

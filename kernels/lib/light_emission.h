@@ -1,8 +1,8 @@
 /* How light leaves a light: a ray chosen by the light's own distribution, and the flux that it stands for: radiance
  * times cosine over the density of choosing the ray, which is by area and solid angle; by solid angle for points; by
  * area across the direction for lights at infinity, whose rays start from a disk as wide as a sphere that holds the
- * scene, and beyond it (Veach 1997, 8.3.2.2; Pharr et al. 2016, 16.1.2). For all of them the density is that of the
- * light but for a factor, so the flux is the light's whole power whichever ray is chosen. Units: watts. */
+ * scene, and outside it (Jensen 1996). For all of them the density is that of the light but for a factor, so the flux
+ * is the light's whole power, in watts, whichever ray is chosen. */
 #ifndef GRADUS_LIB_LIGHT_EMISSION_H
 #define GRADUS_LIB_LIGHT_EMISSION_H
 //! traits: TRAIT_LIGHT_TRIANGLE TRAIT_LIGHT_SPHERE TRAIT_LIGHT_POINT TRAIT_LIGHT_DIRECTIONAL TRAIT_LIGHT_CONSTANT

@@ -46,36 +46,26 @@ STAGE photons_place(uint count, uint rows, __global const uint *photon_chunk, __
     }
 }
 
-/* Which new photon goes to each place. */
-STAGE photons_order(uint count, uint new_photon_rows, __global const real *new_photon,
+/* Which new photon goes to each place. `first_slot`: light paths of before. */
+STAGE photons_order(uint count, uint first_slot, uint new_photon_rows, __global const real *new_photon,
                     __global const uint *photon_place, __global uint *photon_order) {
     const size_t i = work_item();
     if (i >= count)
         return;
     const uint before = AT_UINT(new_photon, ordinal, i);
     if (before != photon_none)
-        photon_order[photon_place[AT_UINT(new_photon, slot, i)] + before] = (uint)i;
+        photon_order[photon_place[AT_UINT(new_photon, slot, i) - first_slot] + before] = (uint)i;
 }
 
-#define TAKE_V3(column)                                                                                                \
-    {                                                                                                                  \
-        const vec3 taken = AT_V3(new_photon, column, from);                                                            \
-        SET_V3(photon, column, row, taken);                                                                            \
-    }
-
-/* `first` and `first_slot`: photons and light paths of before. */
-STAGE photons_gather(uint count, uint first, uint first_slot, uint new_photon_rows, uint photon_rows,
-                     __global const real *new_photon, __global const uint *photon_order, __global real *photon) {
+/* All columns that both tables have. `first`: photons of before. */
+STAGE photons_gather(uint count, uint first, uint new_photon_rows, uint photon_rows, __global const real *new_photon,
+                     __global const uint *photon_order, __global real *photon) {
     const size_t i = work_item();
     if (i >= count)
         return;
     const size_t row = first + i;
     const uint from = photon_order[i];
-    TAKE_V3(position)
-    TAKE_V3(wi)
-    TAKE_V3(normal)
-    const rgb flux = AT_RGB(new_photon, power, from);
-    SET_RGB(photon, power, row, flux);
-    AT_UINT(photon, slot, row) = first_slot + AT_UINT(new_photon, slot, from);
-    AT_UINT(photon, depth, row) = AT_UINT(new_photon, depth, from);
+#pragma unroll
+    for (size_t column = 0; column < photon_columns; ++column)
+        photon[column * photon_rows + row] = new_photon[column * new_photon_rows + from];
 }

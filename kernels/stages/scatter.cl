@@ -23,7 +23,7 @@ STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint ma
 #if !BSDF_IS_DIRAC
               ,
               __global const uint *material_gathers, __global real *new_photon, __global uint *photon_place,
-              uint to_photon, uint new_photon_rows, uint first_photon_depth
+              uint to_photon, uint new_photon_rows, uint first_photon_depth, uint first_slot
 #endif
 ) {
     const size_t i = work_item();
@@ -57,7 +57,7 @@ STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint ma
     SET_V3(new_photon, wi, photon_row, v3_neg(direction));
     SET_RGB(new_photon, power, photon_row, arriving);
     SET_V3(new_photon, normal, photon_row, point.geometric);
-    AT_UINT(new_photon, slot, photon_row) = slot;
+    AT_UINT(new_photon, slot, photon_row) = first_slot + slot;
     AT_UINT(new_photon, depth, photon_row) = edges;
     AT_UINT(new_photon, ordinal, photon_row) = is_photon ? left_before : photon_none;
     left += is_photon ? 1u : 0u;
