@@ -39,14 +39,14 @@ TEST_P(PhotonFurnace, IsAsBrightEverywhereAsItIs) {
     options.direct_photons = GetParam();
     options.photons = 20'000;
     std::vector<double> means;
-    for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
         options.seed = seed;
-        means.push_back(spread_of(render(furnace(diffuse(0.5), 2), options, "sppm").image).mean);
+        means.push_back(spread_of(render(furnace(diffuse(0.5), 4), options, "sppm").image).mean);
     }
     const Spread spread = spread_of(means);
     fmt::print("{}: {:.5f} +- {:.5f}\n", GetParam() ? "photons" : "sampling", spread.mean, spread.standard_error);
-    // 4 standard errors of 16 seeds: Student's t exceeds that once in 900 tests.
-    EXPECT_NEAR(spread.mean, 2, 4 * spread.standard_error);
+    // 5.4 standard errors of 8 seeds: Student's t exceeds that once in a thousand tests.
+    EXPECT_NEAR(spread.mean, 2, 5.4 * spread.standard_error);
     EXPECT_LT(spread.standard_error, 0.01) << "too noisy to tell";
 }
 
@@ -116,19 +116,19 @@ TEST(PhotonBias, OnASmoothFloorIsThatOfTheDiscAndGoesWithItsArea) {
     for (int i = 0; i < 3; ++i) {
         RenderOptions options = with_radius(radii[i] / diameter, true);
         options.direct_photons = true;
-        options.photons = 400'000;
+        options.photons = 1'000'000;
         std::vector<double> means;
-        for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+        for (std::uint64_t seed = 1; seed <= 6; ++seed) {
             options.seed = seed;
-            means.push_back(mean_of_middle(render(floor.scene(2), options, "sppm").image));
+            means.push_back(mean_of_middle(render(floor.scene(1), options, "sppm").image));
         }
         const Spread spread = spread_of(means);
         const double expected = floor.middle(radii[i]), exact = floor.middle(0);
         bias[i] = spread.mean / exact - 1;
         fmt::print("radius {}: {:.5f} +- {:.5f}, expected {:.5f}, exact {:.5f}\n", radii[i], spread.mean,
                    spread.standard_error, expected, exact);
-        // 5 standard errors of 12 seeds: Student's t exceeds that once in 2500 tests; and the quadrature of `middle`.
-        EXPECT_NEAR(spread.mean, expected, 5 * spread.standard_error + 2e-4 * exact);
+        // 6.9 standard errors of 6 seeds: Student's t exceeds that once in a thousand tests; and `middle`'s quadrature.
+        EXPECT_NEAR(spread.mean, expected, 6.9 * spread.standard_error + 2e-4 * exact);
         EXPECT_LT(spread.standard_error, 0.003 * exact) << "too noisy to tell";
     }
     fmt::print("bias {:.4f}, {:.4f}, {:.4f}\n", bias[0], bias[1], bias[2]);
@@ -139,7 +139,7 @@ TEST(PhotonBias, OnASmoothFloorIsThatOfTheDiscAndGoesWithItsArea) {
 // Beyond the border of a floor there are no photons: the bias is half of the light there, in a strip as wide as the
 // radius, so all the light that is lost goes with the radius.
 TEST(PhotonBias, AtTheBorderGoesWithTheRadius) {
-    SceneMaker maker(48, 2);
+    SceneMaker maker(48, 1);
     maker.look({0, 6, 0}, {0, 0, 0}, 30, {0, 0, 1});
     maker.floor(-1, 1, 1, maker.material(diffuse(1)));
     maker.directional_light({float(pi), float(pi), float(pi)}, {0, -1, 0});
@@ -151,9 +151,9 @@ TEST(PhotonBias, AtTheBorderGoesWithTheRadius) {
         const double radius = i == 0 ? 0.1 : 0.2;
         RenderOptions options = with_radius(radius / diameter, true);
         options.direct_photons = true;
-        options.photons = 400'000;
+        options.photons = 500'000;
         std::vector<double> means;
-        for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        for (std::uint64_t seed = 1; seed <= 5; ++seed) {
             options.seed = seed;
             means.push_back(spread_of(render(maker.scene, options, "sppm").image).mean);
         }
@@ -172,6 +172,7 @@ TEST(PhotonBias, AtTheBorderGoesWithTheRadius) {
 Scene thin_walls(bool outer) {
     SceneMaker maker(24, 2);
     maker.look({0, 0, -6}, {0, 0, 0}, 30);
+    maker.scene.settings.rr_depth = 5;
     const std::uint32_t gray = maker.material(diffuse(0.7));
     maker.cube(gray, -1, true);
     maker.sphere({0, 0, 0}, 0.2f, gray, maker.emitter(Emitter::Kind::area, {10, 10, 10}));
@@ -194,7 +195,8 @@ TEST(PhotonLeaks, DoNotPassThinWalls) {
                 ASSERT_EQ(value, 0) << "light from within";
         EXPECT_GT(outside.statistics.gather_points, 100u);
         // One sheet with its back to the camera: what it got from the front is not sent to the back.
-        for (const float value : render(thin_walls(false), options, "sppm").image.find("G")->values)
+        const Image sheet = render(thin_walls(false), options, "sppm").image;
+        for (const float value : sheet.find("G")->values)
             ASSERT_EQ(value, 0);
     }
 }
@@ -210,6 +212,10 @@ TEST_P(PathKinds, AreMadeOnceEach) {
     for (const int depth : {1, 2, 3, 4, 7}) {
         Scene scene = own_scene(std::string(name) + ".xml", 64, 48);
         scene.settings.max_depth = depth;
+        // What lights of no extent send through glass and mirrors photons find, and camera paths cannot.
+        std::erase_if(scene.emitters, [](const Emitter &emitter) {
+            return emitter.kind == Emitter::Kind::point || emitter.kind == Emitter::Kind::directional;
+        });
         RenderOptions options = with_radius(1, false);
         options.direct_photons = direct;
         options.photons = 150'000;
@@ -238,6 +244,9 @@ INSTANTIATE_TEST_SUITE_P(
         return test_name(std::string(std::get<0>(info.param)) + (std::get<1>(info.param) ? "_photons" : "_sampling"));
     });
 
+/// The materials are not among these scenes: their point and directional lights shine through glass onto the floor,
+/// which the reference's path tracer cannot find: 1.3 % of the image (PathKinds has them without these lights).
+///
 /// Per block of 16 x 16: what is left of the bias is no more than what a radius twice as large adds to it: that is the
 /// bias itself where it goes with the radius, and three times the bias where it goes with its square.
 class PhotonReference : public ::testing::TestWithParam<const char *> {};
@@ -281,8 +290,7 @@ TEST_P(PhotonReference, IsMetWithinTheBiasOfTheRadius) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Photons, PhotonReference,
-                         ::testing::Values("cornell-box", "door-ajar", "materials", "plates", "torus-rough-glass"),
-                         name_of_scene);
+                         ::testing::Values("cornell-box", "door-ajar", "plates", "torus-rough-glass"), name_of_scene);
 
 class PhotonInvariance : public ::testing::TestWithParam<const char *> {
   protected:

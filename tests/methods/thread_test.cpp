@@ -45,6 +45,8 @@ TEST_P(Threads, DoNotChangeTheImage) {
     const auto [scene, precision] = GetParam();
     for (const char *method : {"pt", "gpt"})
         expect_one_image(scene, {"--method", method, "--size", "96x72", "--spp", "4", "--precision", precision});
+    expect_one_image(
+        scene, {"--method", "sppm", "--size", "96x72", "--spp", "2", "--photons", "20000", "--precision", precision});
 }
 
 /// Enough samples for a pilot.

@@ -170,5 +170,18 @@ TEST_F(Oclgrind, ACropAndRussianRoulette) {
     render("door-ajar.xml", {"--size", "32x24", "--crop", "5,7,9,5", "--rr-depth", "2"});
 }
 
+// Photons by both estimators of direct light, with growing tables and several windows of pairs.
+TEST_F(Oclgrind, Photons) {
+    std::vector<std::string> expected = {"travel",       "gather",        "photon_cells",       "photon_copy",
+                                         "photon_lines", "photon_starts", "photon_pairs count", "photon_pairs list",
+                                         "pair_scan",    "pair_sum",      "gather_add"};
+    expected.push_back("photon_evaluate diffuse");
+    expected.push_back("photon_evaluate roughconductor_ggx");
+    EXPECT_THAT(render("materials.xml", {"--method", "sppm", "--size", "8x8", "--photons", "200", "--radius", "5%"}),
+                IsSupersetOf(expected));
+    render("cornell-box.xml",
+           {"--method", "sppm", "--size", "8x8", "--photons", "200", "--radius", "5%", "--direct", "photons", "--aov"});
+}
+
 } // namespace
 } // namespace gradus
