@@ -1,5 +1,6 @@
 #include "methods/light_paths.h"
 
+#include "kernels/shared/light_vertex.h"
 #include "kernels/shared/tables.h"
 #include "methods/path_stages.h"
 #include "runtime/error.h"
@@ -26,6 +27,8 @@ constexpr double most_paths_a_pass = 4e6;
 // none: by a depth that no path has.
 constexpr std::uint32_t roulette_from = 1, no_roulette = 0xFFFFFFFFu, beyond_all_paths = 1u << 16;
 
+bool has_vertices(const Session &session) { return session.has("TRAIT_LIGHT_VERTICES"); }
+
 std::vector<std::uint32_t> gathers_by_material(const Scene &scene, double roughness) {
     std::vector<std::uint32_t> gathers;
     for (const Bsdf &bsdf : material_records(scene))
@@ -43,6 +46,14 @@ StageDeclaration photons_stage(const char *step, std::vector<std::string> number
             .numbers = std::move(numbers)};
 }
 
+StageDeclaration scatter_stage() {
+    StageDeclaration stage = {
+        .name = "scatter", .by_kind = true, .numbers = {"first", "to", "to_photon", "first_slot", "to_vertex"}};
+    // Until they are known.
+    stage.tables = {{"light_vertices", "light_path"}, {"light_vertex_marks", "photon_order"}};
+    return stage;
+}
+
 StageDeclaration gather_stage() {
     StageDeclaration stage = photons_stage("gather", {"first", "photon_rows"});
     stage.tables = {{"photon", "new_photon"}}; // until it is known
@@ -50,11 +61,13 @@ StageDeclaration gather_stage() {
 }
 
 /// The tables of light paths in flight and of their photons before they are in order.
-TableList own_tables(const Wavefront &paths) {
+TableList own_tables(const Session &session, const Wavefront &paths) {
     // Photons a light path; more room is made where it is needed. By slots, for their columns are written side by side.
     constexpr std::uint32_t photons = 2;
     return joined(paths.ray_tables(),
-                  {{.name = "light_path", .columns = light_path_columns, .alternates = true},
+                  {{.name = "light_path",
+                    .columns = std::uint32_t(has_vertices(session) ? light_path_columns : light_path_vertex),
+                    .alternates = true},
                    {.name = "new_photon",
                     .rows = RowsOf::slot,
                     .multiple = photons,
@@ -76,17 +89,15 @@ LightPaths::LightPaths(Session &session, Stages &consumers, const Scene &scene, 
                          .is_wanted = session.scene.light_count > 0,
                          .numbers = {"first_row", "first_slot", "first_path_low", "first_path_high"}})),
       paths_(session, stages_, {.kinds = std::uint32_t(session.scene.kinds.size())}),
-      scatter_(
-          stages_.add({.name = "scatter", .by_kind = true, .numbers = {"first", "to", "to_photon", "first_slot"}})),
-      count_(stages_.add(photons_stage("count", {"rows"}))), scan_(stages_.add(photons_stage("scan", {"chunks"}))),
-      place_(stages_.add(photons_stage("place", {"rows"}))),
+      scatter_(stages_.add(scatter_stage())), count_(stages_.add(photons_stage("count", {"rows"}))),
+      scan_(stages_.add(photons_stage("scan", {"chunks"}))), place_(stages_.add(photons_stage("place", {"rows"}))),
       order_(stages_.add(photons_stage("order", {"first_slot"}))), gather_(stages_.add(gather_stage())) {
     if (wanted_ > std::numeric_limits<std::int32_t>::max())
         throw Error(ExitCode::usage, "there can be 2^31 - 1 light paths a pass at most");
     const std::vector<std::uint32_t> gathers = gathers_by_material(scene, options.gather_roughness);
     session.scene_buffers.emplace_back(session.device, "material_gathers", gathers.data(),
                                        gathers.size() * sizeof(gathers[0]));
-    const TableList list = own_tables(paths_);
+    const TableList list = own_tables(session, paths_);
     const std::uint32_t batch =
         choose_batch_size(session.device, session.options.batch_size,
                           wanted_ ? wanted_ : std::uint64_t(most_paths_a_pass), list, session.options.precision);
@@ -109,11 +120,23 @@ LightPaths::LightPaths(Session &session, Stages &consumers, const Scene &scene, 
 
 TableList LightPaths::tables() const {
     const double rows = wanted_ ? std::min(double(wanted_), 1.1 * photons_a_pass) : 1.1 * photons_a_pass;
-    return {{.name = "photon",
-             .rows = RowsOf::one,
-             .multiple = slot_rows(std::uint32_t(rows)),
-             .columns = photon_columns,
-             .grows = true}};
+    const bool with_vertices = has_vertices(session_);
+    const auto photons = slot_rows(std::uint32_t(rows));
+    TableList list = {{.name = "photon",
+                       .rows = RowsOf::one,
+                       .multiple = photons,
+                       .columns = std::uint32_t(with_vertices ? photon_columns : photon_before),
+                       .grows = true}};
+    if (with_vertices) { // records: one column
+        list.push_back(
+            {.name = "light_vertices", .rows = RowsOf::one, .multiple = photons * light_vertex_stride, .grows = true});
+        list.push_back({.name = "light_vertex_marks",
+                        .rows = RowsOf::one,
+                        .multiple = photons * light_vertex_mark_stride,
+                        .is_uint = true,
+                        .grows = true});
+    }
+    return list;
 }
 
 void LightPaths::attach(Tables &tables) {
@@ -136,6 +159,7 @@ std::uint32_t LightPaths::paths_a_pass() {
 
 std::uint32_t LightPaths::trace(std::uint64_t first_path, std::uint32_t count) {
     std::uint32_t stored = 0;
+    vertices_ = 0;
     const std::uint32_t pass = batches_a_pass * own_->rows().paths;
     if (emit_.is_wanted() && session_.max_depth() > 1)
         for (std::uint32_t done = 0; done < count; done += std::min(pass, count - done))
@@ -163,6 +187,7 @@ std::uint32_t LightPaths::trace_pass(std::uint64_t first_path, std::uint32_t fir
         paths_.trace();
         const Hits &hits = paths_.partition();
         make_room(std::uint64_t(found) + hits.count());
+        make_room_for_vertices(std::uint64_t(vertices_) + hits.count());
         paths_.advance();
         for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
             const Range rows = hits.kind(0, kind);
@@ -170,7 +195,9 @@ std::uint32_t LightPaths::trace_pass(std::uint64_t first_path, std::uint32_t fir
                               {{"first", hits.place(rows.first)},
                                {"to", rows.first},
                                {"to_photon", found},
-                               {"first_slot", first_slot}});
+                               {"first_slot", first_slot},
+                               {"to_vertex", vertices_}});
+            vertices_ += rows.count;
             found += bsdf_kind_is_dirac(kinds[kind]) ? 0 : rows.count;
         }
     }
@@ -209,6 +236,21 @@ void LightPaths::make_room(std::uint64_t rows) {
     own_->grow("new_photon", multiple);
     own_->grow("photon_order", multiple);
     stages_.set("new_photon_rows", std::uint32_t(own_->rows_of("new_photon")));
+}
+
+/// For so many records of vertices.
+void LightPaths::make_room_for_vertices(std::uint64_t records) {
+    if (!has_vertices(session_))
+        return;
+    if (records * light_vertex_stride > most_photons)
+        throw Error(ExitCode::device, "light paths have more vertices than there can be; ask for fewer of them");
+    if (records * light_vertex_stride > tables_->rows_of("light_vertices")) {
+        const auto more = std::uint32_t(records + records / 2);
+        tables_->grow("light_vertices", more * light_vertex_stride);
+        tables_->grow("light_vertex_marks", more * light_vertex_mark_stride);
+    }
+    scatter_.bind("light_vertices", (*tables_)["light_vertices"]);
+    scatter_.bind("light_vertex_marks", (*tables_)["light_vertex_marks"]);
 }
 
 std::vector<StageTime> LightPaths::times() const {

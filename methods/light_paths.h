@@ -24,7 +24,8 @@ class LightPaths {
     /// `photon_rows`, which is its stride and changes as it grows.
     LightPaths(Session &session, Stages &consumers, const Scene &scene, const RenderOptions &options, Direct direct);
 
-    /// For the consumers' tables: `photon`, which grows.
+    /// For the consumers' tables: `photon`, which grows. With TRAIT_LIGHT_VERTICES, a trait of the method, also the
+    /// vertices of all light paths (kernels/shared/light_vertex.h), which photons name.
     TableList tables() const;
     /// To be called once these are allocated, before or after the consumers' stages are built.
     void attach(Tables &tables);
@@ -55,11 +56,13 @@ class LightPaths {
                                std::uint32_t stored);
     /// For so many rows of `new_photon`.
     void make_room(std::uint64_t rows);
+    void make_room_for_vertices(std::uint64_t records);
 
     Session &session_;
     Stages &consumers_;
     std::uint64_t wanted_;
     std::uint32_t first_photon_depth_, paths_a_pass_ = 0;
+    std::uint32_t vertices_ = 0; ///< records of vertices that this call of trace() has left
     Stages stages_;
     Stage &emit_;
     Wavefront paths_;

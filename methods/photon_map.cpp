@@ -108,6 +108,7 @@ PhotonGrid::PhotonGrid(const Box &box, double edge, std::uint32_t most) : low(bo
 
 PhotonMap::PhotonMap(Session &session, Stages &stages, std::uint32_t rows)
     : stages_(stages), box_(box_of(session.scene)), rows_(rows),
+      columns_(session.has("TRAIT_LIGHT_VERTICES") ? photon_columns : photon_before),
       sort_(session, stages, "photon_order", RowsOf::one, rows), cells_(stages.add(cells_stage("photon_cells", {}))),
       copy_(stages.add(cells_stage("photon_copy", {}))), lines_(stages.add(cells_stage("photon_lines", {}))),
       starts_(stages.add(cells_stage("photon_starts", {"photons", "keys"}))) {
@@ -116,11 +117,8 @@ PhotonMap::PhotonMap(Session &session, Stages &stages, std::uint32_t rows)
 
 TableList PhotonMap::tables() const {
     TableList list = sort_.tables();
-    list.push_back({.name = "photon_sorted",
-                    .rows = RowsOf::one,
-                    .multiple = rows_,
-                    .columns = photon_sorted_columns,
-                    .grows = true});
+    list.push_back(
+        {.name = "photon_sorted", .rows = RowsOf::one, .multiple = rows_, .columns = columns_, .grows = true});
     for (const char *name : grown_uints)
         list.push_back({.name = name, .rows = RowsOf::one, .multiple = rows_, .is_uint = true, .grows = true});
     list.push_back({.name = "photon_first", .rows = RowsOf::one, .columns = most_keys + 1, .is_uint = true});
@@ -149,7 +147,7 @@ void PhotonMap::build(std::uint32_t count, double edge) {
     set_grid(stages_, grid);
     cells_.run(count);
     sort_.run((*tables_)["photon_key"], count, grid.keys - 1);
-    copy_.run_planes(0, count, photon_columns);
+    copy_.run_planes(0, count, columns_);
     lines_.run(count);
     starts_.run(count + 1, {{"photons", count}, {"keys", grid.keys}});
 }

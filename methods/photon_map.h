@@ -52,7 +52,7 @@ class PhotonMap {
   private:
     Stages &stages_;
     Box box_;
-    std::uint32_t rows_;
+    std::uint32_t rows_, columns_;
     Sort sort_;
     Stage &cells_, &copy_, &lines_, &starts_;
     Tables *tables_ = nullptr;

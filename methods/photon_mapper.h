@@ -15,20 +15,16 @@
 //   L X X* D S* E photons
 #pragma once
 
-#include "methods/light_paths.h"
+#include "methods/gather_paths.h"
 #include "methods/method.h"
-#include "methods/photon_map.h"
+#include "methods/pass_photons.h"
 #include "methods/photon_pairs.h"
 #include "runtime/wavefront/film.h"
-#include "runtime/wavefront/wavefront.h"
 
 #include <memory>
 #include <optional>
 
 namespace gradus {
-
-/// The square of the radius of pass `pass`, from 0 on, over that of the first: Knaus and Zwicker 2011, eq. 20.
-double radius_shrinkage(std::uint64_t pass, double alpha);
 
 class PhotonMapper final : public Method {
   public:
@@ -45,22 +41,13 @@ class PhotonMapper final : public Method {
 
   private:
     void allocate();
-    /// The photons of a pass, in order, and its radius.
-    void begin_pass(std::uint64_t pass);
-    void trace_camera_paths(std::uint32_t paths, std::uint32_t first_pixel, std::uint64_t pass);
-    /// The surfaces that the partition found are the newest vertices, and some of them gather points.
-    void step(const Hits &hits);
     void gather_photons(const Hits &hits);
 
     RenderOptions options_;
     Session session_;
-    bool has_smooth_; ///< surfaces that are no place to gather
     Stages stages_;
-    Stage &camera_, &connect_;
-    Wavefront paths_;
-    Stage &escape_, &emission_, &travel_, &gather_, &shade_;
-    LightPaths light_paths_;
-    PhotonMap map_;
+    GatherPaths paths_;
+    PassPhotons photons_;
     PhotonPairs pairs_;
     Stage &evaluate_, &add_;
     Film film_;
@@ -68,10 +55,6 @@ class PhotonMapper final : public Method {
 
     std::uint64_t total_ = 0, done_ = 0;
     std::uint32_t camera_paths_ = 0; ///< at once, but for the last of a pass
-    std::uint32_t paths_a_pass_ = 0; ///< light paths
-    std::uint64_t photons_of_pass_ = ~0ull;
-    double typical_radius_ = 0, largest_radius_ = 0; ///< of the first pass
-    Range gathered_;                                 ///< rows of paths that have left a gather point and look for light
     Statistics statistics_;
 };
 

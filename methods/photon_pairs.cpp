@@ -21,30 +21,37 @@ constexpr std::uint32_t pair_chunk = 64;
 // of a few hundred triangles is one.
 constexpr const char *least_facing = "R(0.1)";
 
-std::map<std::string, std::string> definitions(const char *list) {
-    return {{"LIST", list}, {"PAIR_CHUNK", std::to_string(pair_chunk) + "u"}, {"PHOTON_LEAST_FACING", least_facing}};
+std::map<std::string, std::string> definitions(const char *list, bool indexed) {
+    return {{"LIST", list},
+            {"GATHER_INDEXED", indexed ? "1" : "0"},
+            {"PAIR_CHUNK", std::to_string(pair_chunk) + "u"},
+            {"PHOTON_LEAST_FACING", least_facing}};
 }
 
 std::uint32_t chunks_for(std::uint32_t rows) { return (rows + pair_chunk - 1) / pair_chunk; }
 
 } // namespace
 
-PhotonPairs::PhotonPairs(Stages &stages)
-    : count_(stages.add({.name = "photon_pairs count",
-                         .file = "photon_pairs",
-                         .definitions = definitions("0"),
-                         .strict = true,
-                         .numbers = {"first", "from"}})),
-      scan_(stages.add({.name = "pair_scan", .definitions = definitions("0"), .numbers = {"first", "rows"}})),
+PhotonPairs::PhotonPairs(Stages &stages, bool indexed)
+    : indexed_(indexed), count_(stages.add({.name = "photon_pairs count",
+                                            .file = "photon_pairs",
+                                            .definitions = definitions("0", indexed),
+                                            .strict = true,
+                                            .numbers = {"first", "from"}})),
+      scan_(stages.add({.name = "pair_scan", .definitions = definitions("0", indexed), .numbers = {"first", "rows"}})),
       list_(stages.add({.name = "photon_pairs list",
                         .file = "photon_pairs",
-                        .definitions = definitions("1"),
+                        .definitions = definitions("1", indexed),
                         .strict = true,
                         .numbers = {"first", "from", "window_first", "window_pairs"}})),
-      sum_(stages.add({.name = "pair_sum",
-                       .definitions = definitions("0"),
-                       .strict = true,
-                       .numbers = {"first", "from", "window_first", "window_pairs"}})) {}
+      sum_(stages.add(sum_stage("pair_sum"))) {}
+
+StageDeclaration PhotonPairs::sum_stage(const char *name) const {
+    return {.name = name,
+            .definitions = definitions("0", indexed_),
+            .strict = true,
+            .numbers = {"first", "from", "window_first", "window_pairs"}};
+}
 
 TableList PhotonPairs::tables() const {
     TableList list;

@@ -23,7 +23,8 @@ struct PairWindow {
 class PhotonPairs {
   public:
     /// Declares the stages that list pairs and sum over them. `Session::numbers` gets "pair_rows" in attach().
-    PhotonPairs(Stages &stages);
+    /// indexed: find() is asked for places in the table `gather_index`, which has rows of `gather`, not for such rows.
+    PhotonPairs(Stages &stages, bool indexed = false);
 
     /// `pair_gather`, `pair_photon`, `pair_value` and what the search takes; all by the batch.
     TableList tables() const;
@@ -36,6 +37,9 @@ class PhotonPairs {
     /// has it. Calls `visit` for each window, which launches what works on pairs. Returns how many pairs there were.
     std::uint64_t find(Range rows, const std::function<void(const PairWindow &)> &visit);
 
+    /// For stages that sum over the pairs of a window as sum() does: its definitions and numbers.
+    StageDeclaration sum_stage(const char *name) const;
+
     /// Adds `pair_value` to the sums of the window's gather points.
     void sum(const PairWindow &window);
 
@@ -44,6 +48,7 @@ class PhotonPairs {
 
   private:
     double radius_sum_ = 0;
+    bool indexed_;
     Stage &count_, &scan_, &list_, &sum_;
     Tables *tables_ = nullptr;
 };

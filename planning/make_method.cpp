@@ -11,6 +11,7 @@
     METHOD("pt", make_path_tracer)                                                                                     \
     METHOD("gpt", make_gradient_path_tracer)                                                                           \
     METHOD("sppm", make_photon_mapper)                                                                                 \
+    METHOD("gpm", make_gradient_photon_mapper)                                                                         \
     METHOD("auto", make_automatic_method)
 
 namespace gradus {

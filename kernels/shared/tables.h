@@ -129,7 +129,8 @@
     REAL(light_path, power_r, "flux along the ray if there were this light path alone, W")                             \
     REAL(light_path, power_g, "")                                                                                      \
     REAL(light_path, power_b, "")                                                                                      \
-    REAL(light_path, start, "the largest of its three fluxes where it began, for Russian roulette")
+    REAL(light_path, start, "the largest of its three fluxes where it began, for Russian roulette")                    \
+    UINT(light_path, vertex, "only with TRAIT_LIGHT_VERTICES: record of its newest vertex (light_vertex.h)")
 
 /* A photon: where a light path met a surface, whichever table it is in. */
 #define GRADUS_PHOTON_COLUMNS_OF(table, REAL, UINT)                                                                    \
@@ -146,7 +147,8 @@
     REAL(table, normal_y, "")                                                                                          \
     REAL(table, normal_z, "")                                                                                          \
     UINT(table, slot, "number of its light path among those traced with it")                                           \
-    UINT(table, depth, "edges from the light: 1 for what arrives directly")
+    UINT(table, depth, "edges from the light: 1 for what arrives directly")                                            \
+    UINT(table, before, "only with TRAIT_LIGHT_VERTICES: record of the vertex that it came from (light_vertex.h)")
 
 /* All photons of a pass, by light path and along each, whatever the batches. */
 #define GRADUS_PHOTON_COLUMNS(REAL, UINT) GRADUS_PHOTON_COLUMNS_OF(photon, REAL, UINT)
@@ -178,6 +180,30 @@
     REAL(pair_value, value_r, "")                                                                                      \
     REAL(pair_value, value_g, "")                                                                                      \
     REAL(pair_value, value_b, "")
+
+/* Gradient-domain photon mapping only: gather points are in rows of slots, those of base paths in plane 0, those of
+ * their offset paths j in plane j + 1, strip_pixels rows apart. Their radius is 0 where a path has left none, and
+ * gather_absent where there is no neighbour. */
+
+/* Offset less base of each pair, weighted: that of offset j of pair i in row j * pair_rows + i. Without flux_scale. */
+#define GRADUS_PAIR_DIFFERENCE_COLUMNS(REAL, UINT)                                                                     \
+    REAL(pair_difference, value_r, "")                                                                                 \
+    REAL(pair_difference, value_g, "")                                                                                 \
+    REAL(pair_difference, value_b, "")
+
+/* Photons on their way to offset gather points: those in `moved_index`, in its order. */
+#define GRADUS_MOVED_COLUMNS(REAL, UINT)                                                                               \
+    REAL(moved, origin_x, "of the offset photon's last ray")                                                           \
+    REAL(moved, origin_y, "")                                                                                          \
+    REAL(moved, origin_z, "")                                                                                          \
+    REAL(moved, direction_x, "unit vector")                                                                            \
+    REAL(moved, direction_y, "")                                                                                       \
+    REAL(moved, direction_z, "")                                                                                       \
+    UINT(moved, primitive, "as in `ray`")                                                                              \
+    REAL(moved, power_r, "of the offset photon over the base's density, times the Jacobian")                           \
+    REAL(moved, power_g, "")                                                                                           \
+    REAL(moved, power_b, "")                                                                                           \
+    REAL(moved, ratio, "of both densities, times the Jacobian")
 
 /* Gradient-domain path tracing only, from here on. A base path has four offset paths, j = 0 to 3: through the pixel to
  * the right, left, below and above (gradient_neighbour in kernels/lib/gradient.h). Tables of offset paths have the
@@ -336,6 +362,8 @@
     TABLE(photon_sorted, GRADUS_PHOTON_SORTED_COLUMNS)                                                                 \
     TABLE(gather, GRADUS_GATHER_COLUMNS)                                                                               \
     TABLE(pair_value, GRADUS_PAIR_VALUE_COLUMNS)                                                                       \
+    TABLE(pair_difference, GRADUS_PAIR_DIFFERENCE_COLUMNS)                                                             \
+    TABLE(moved, GRADUS_MOVED_COLUMNS)                                                                                 \
     TABLE(primary, GRADUS_PRIMARY_COLUMNS)                                                                             \
     TABLE(primary_vertex, GRADUS_PRIMARY_VERTEX_COLUMNS)                                                               \
     TABLE(vertex, GRADUS_VERTEX_COLUMNS)                                                                               \
@@ -368,6 +396,9 @@ GRADUS_COLUMN_ENUM(splat, GRADUS_SPLAT_COLUMNS) /* its rows are its writer's */
 
 /* A splat_pixel that is none: the row is left out. */
 #define splat_none 0xFFFFFFFFu
+
+/* A gather_radius that says that there is no neighbour. */
+#define gather_absent R(-1)
 
 /* A new_photon_ordinal that is none: the row is left out. */
 #define photon_none 0xFFFFFFFFu
@@ -453,8 +484,10 @@ GRADUS_LIB_END
 #define ROWS_OF_photon photon_rows
 #define ROWS_OF_new_photon new_photon_rows
 #define ROWS_OF_photon_sorted photon_rows
-#define ROWS_OF_gather capacity
+#define ROWS_OF_gather gather_rows
 #define ROWS_OF_pair_value pair_rows
+#define ROWS_OF_pair_difference (4u * pair_rows)
+#define ROWS_OF_moved (4u * pair_rows)
 #define ROWS_OF_primary slots
 #define ROWS_OF_primary_vertex slots
 #define ROWS_OF_vertex capacity

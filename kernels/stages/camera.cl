@@ -2,7 +2,11 @@
  *
  * Paths take rows `first_row` on and slots `first_slot` on. Samples are numbered pixel first: number = sample * pixels
  * + pixel of the crop; slot 0 is pixel `first_pixel` of sample `first_sample`. Random numbers go by the pixel of the
- * full film, so that a crop equals the same part of the full image. */
+ * full film, so that a crop equals the same part of the full image.
+ *
+ * PLANES: gradient-domain photon mapping. Slots come in five planes of `strip_pixels`: the paths of the pixels, then
+ * their offset paths, which are those of the neighbours (gradient_neighbour in kernels/lib/gradient.h) with the pixel's
+ * own random numbers. */
 //! traits: TRAIT_FILTER_TENT TRAIT_FILTER_GAUSSIAN TRAIT_AOV TRAIT_SHARED_JITTER
 #include "kernels/lib/additive_sequence.h"
 #include "kernels/lib/begin_path.h"
@@ -29,13 +33,23 @@ STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ra
              ,
              __global real *feature
 #endif
+#if PLANES
+             ,
+             uint strip_pixels, uint strip_multiplier, uint strip_shift, uint crop_height, uint gather_rows,
+             __global real *gather, __global real *direct
+#endif
 ) {
     const size_t i = work_item();
     if (i >= count)
         return;
     const size_t row = first_row + i;
     const uint slot = first_slot + (uint)i;
+#if PLANES
+    const uint plane = divide(slot, strip_multiplier, strip_shift);
+    const uint number = first_pixel + slot - plane * strip_pixels;
+#else
     const uint number = first_pixel + slot;
+#endif
     const uint more_samples = divide(number, pixels_multiplier, pixels_shift);
     const uint pixel = number - more_samples * pixels;
     const uint sample_low = first_sample_low + more_samples;
@@ -56,13 +70,26 @@ STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ra
 #else
     const random4 u = random_draw(key.x, key.y, random_dimension_camera);
 #endif
+#if PLANES
+    const int is_offset = plane > 0u, is_across = plane - 1u < 2u;
+    const int step = (plane & 1u) != 0u ? 1 : -1;
+    const int to_x = (int)(x - crop_x) + (is_offset & is_across ? step : 0);
+    const int to_y = (int)line + (is_offset & !is_across ? step : 0);
+    const int exists = (to_x >= 0) & (to_y >= 0) & (to_x < (int)crop_width) & (to_y < (int)crop_height);
+    AT(gather, radius, slot) = exists ? R(0) : gather_absent;
+    SET_RGB_IN(direct, radiance, value, slot, rgb_gray(R(0)));
+    const real film_x = (real)(to_x + (int)crop_x) + R(0.5) + filter_offset(camera, unit, u.a);
+    const real film_y = (real)(to_y + (int)crop_y) + R(0.5) + filter_offset(camera, unit, u.b);
+#else
+    const int exists = 1;
     const real film_x = (real)x + R(0.5) + filter_offset(camera, unit, u.a);
     const real film_y = (real)y + R(0.5) + filter_offset(camera, unit, u.b);
+#endif
     const vec3 direction = camera_direction(camera, unit, film_x, film_y);
     const vec3 origin = FIELD_V3(camera, camera, 0, origin);
     SET_V3(ray, origin, row, origin);
     SET_V3(ray, direction, row, direction);
-    AT_UINT(ray, primitive, row) = ray_pending;
+    AT_UINT(ray, primitive, row) = exists ? ray_pending : ray_none;
 
     BEGIN_PATH(row, slot, key.x, key.y)
     SET_RGB(radiance, value, slot, rgb_gray(R(0)));

@@ -1,5 +1,7 @@
 /* emission: adds the light that a path finds at an emitting surface, weighted against light sampling: rows
- * index[first] on. Runs before `shade`. */
+ * index[first] on. Runs before `shade`.
+ *
+ * DIRECT_APART: what the camera sees of lights goes to `direct`. */
 //! traits: TRAIT_HIDE_EMITTERS
 #include "kernels/lib/light_found.h"
 #include "kernels/lib/mis.h"
@@ -8,7 +10,12 @@
 STAGE emission(uint count, uint unit, uint first, uint capacity, uint slots, __global const uint *index,
                __global const real *ray, __global const real *path, __global real *radiance,
                __global const real *triangles, __global const real *spheres, uint triangle_count,
-               __global const uint *primitive_light, __global const real *lights, uint light_count) {
+               __global const uint *primitive_light, __global const real *lights, uint light_count
+#if DIRECT_APART
+               ,
+               __global real *direct
+#endif
+) {
     const size_t i = work_item();
     if (i >= count)
         return;
@@ -26,5 +33,13 @@ STAGE emission(uint count, uint unit, uint first, uint capacity, uint slots, __g
 #endif
     const rgb throughput = AT_RGB(path, throughput, row);
     const rgb gained = rgb_mul(rgb_scale(found.radiance, weight), throughput);
+#if DIRECT_APART
+    const int is_seen = AT_UINT(path, depth, row) == 0u;
+    const rgb seen = rgb_add(AT_RGB_IN(direct, radiance, value, slot), rgb_select(is_seen, gained, rgb_gray(R(0))));
+    SET_RGB_IN(direct, radiance, value, slot, seen);
+    const rgb later = rgb_select(is_seen, rgb_gray(R(0)), gained);
+    ADD_RGB(radiance, value, slot, later);
+#else
     ADD_RGB(radiance, value, slot, gained);
+#endif
 }

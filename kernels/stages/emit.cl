@@ -2,7 +2,9 @@
  *
  * Light paths take rows `first_row` on and slots `first_slot` on; the one of slot 0 has the 64-bit number
  * `first_path_high`, `first_path_low`, by which its random numbers go. */
+//! traits: TRAIT_LIGHT_VERTICES
 #include "kernels/lib/light_emission.h"
+#include "kernels/shared/light_vertex.h"
 #include "kernels/shared/stage.h"
 
 STAGE emit(uint count, uint unit, uint capacity, uint slots, uint first_row, uint first_slot, uint first_path_low,
@@ -33,5 +35,8 @@ STAGE emit(uint count, uint unit, uint capacity, uint slots, uint first_row, uin
     AT_UINT(light_path, stored, row) = 0u;
     SET_RGB(light_path, power, row, emitted.power);
     AT(light_path, start, row) = rgb_max(emitted.power);
+#if TRAIT_LIGHT_VERTICES
+    AT_UINT(light_path, vertex, row) = light_vertex_none;
+#endif
     photon_place[slot] = 0u;
 }

@@ -1,10 +1,17 @@
-/* escape: adds the environment's light to the paths that left the scene: rows index[first] on. */
+/* escape: adds the environment's light to the paths that left the scene: rows index[first] on.
+ *
+ * DIRECT_APART: what the camera sees of it goes to `direct`. */
 //! traits: TRAIT_HIDE_EMITTERS
 #include "kernels/lib/mis.h"
 #include "kernels/shared/stage.h"
 
 STAGE escape(uint count, uint unit, uint first, uint capacity, uint slots, __global const uint *index,
-             __global const real *path, __global real *radiance, __global const real *lights, uint environment_light) {
+             __global const real *path, __global real *radiance, __global const real *lights, uint environment_light
+#if DIRECT_APART
+             ,
+             __global real *direct
+#endif
+) {
     const size_t i = work_item();
     if (i >= count)
         return;
@@ -15,10 +22,14 @@ STAGE escape(uint count, uint unit, uint first, uint capacity, uint slots, __glo
 #if TRAIT_HIDE_EMITTERS
     weight = AT_UINT(path, depth, row) > 0u ? weight : R(0);
 #endif
-    AT(radiance, value_r, slot) +=
-        weight * FIELD_OF(light, lights, environment_light, value_r) * AT(path, throughput_r, row);
-    AT(radiance, value_g, slot) +=
-        weight * FIELD_OF(light, lights, environment_light, value_g) * AT(path, throughput_g, row);
-    AT(radiance, value_b, slot) +=
-        weight * FIELD_OF(light, lights, environment_light, value_b) * AT(path, throughput_b, row);
+    const rgb gained = rgb_mul(rgb_scale(FIELD_RGB(light, lights, environment_light, value), weight), AT_RGB(path, throughput, row));
+#if DIRECT_APART
+    const int is_seen = AT_UINT(path, depth, row) == 0u;
+    const rgb seen = rgb_add(AT_RGB_IN(direct, radiance, value, slot), rgb_select(is_seen, gained, rgb_gray(R(0))));
+    SET_RGB_IN(direct, radiance, value, slot, seen);
+    const rgb later = rgb_select(is_seen, rgb_gray(R(0)), gained);
+    ADD_RGB(radiance, value, slot, later);
+#else
+    ADD_RGB(radiance, value, slot, gained);
+#endif
 }

@@ -5,6 +5,8 @@
  * the path from the camera, within [radius_start, radius_most], times `radius_scale`, which shrinks from pass to pass;
  * but at least `radius_least`.
  *
+ * BY_SLOT: in the rows of their slots instead.
+ *
  * FEATURES: also leaves the features that the camera sees, in the place of `shade` (by BSDF kind). */
 //! traits: TRAIT_AOV
 #include "kernels/lib/bsdf.h"
@@ -12,7 +14,7 @@
 #include "kernels/lib/vertex_frame.h"
 #include "kernels/shared/stage.h"
 
-STAGE gather(uint count, uint unit, uint first, uint to, uint capacity, uint max_depth, __global const uint *index,
+STAGE gather(uint count, uint unit, uint first, uint to, uint capacity, uint gather_rows, uint max_depth, __global const uint *index,
              __global const real *path_old, __global const real *ray_old, __global const real *travelled,
              __global real *gather, __global const real *triangles, __global const real *triangle_normals,
              __global const real *triangle_tangents, __global const real *spheres, uint triangle_count,
@@ -28,13 +30,18 @@ STAGE gather(uint count, uint unit, uint first, uint to, uint capacity, uint max
     if (i >= count)
         return;
     const uint old = index[first + i];
-    const size_t row = to + i;
     const vec3 origin = AT_V3_IN(ray_old, ray, origin, old), direction = AT_V3_IN(ray_old, ray, direction, old);
     const uint depth = AT_UINT_IN(path_old, path, depth, old), slot = AT_UINT_IN(path_old, path, slot, old);
     const rgb throughput = AT_RGB_IN(path_old, path, throughput, old);
     const surface_point point = surface_point_of(triangles, triangle_normals, triangle_tangents, spheres, unit,
                                                  triangle_count, primitive_material, material_back,
                                                  AT_UINT_IN(ray_old, ray, primitive, old), origin, direction);
+#if BY_SLOT
+    (void)to;
+    const size_t row = slot;
+#else
+    const size_t row = to + i;
+#endif
     const vec3 step = v3_sub(point.position, origin);
     const real distance = r_sqrt(v3_dot(step, step));
     const real before = travelled[slot];

@@ -2,7 +2,7 @@
  * power over the area of the disc and the number of light paths, `flux_scale` being 1 / (pi light paths). */
 #include "kernels/shared/stage.h"
 
-STAGE gather_add(uint count, uint first, uint capacity, uint slots, real flux_scale, __global const real *gather,
+STAGE gather_add(uint count, uint first, uint gather_rows, uint slots, real flux_scale, __global const real *gather,
                  __global real *radiance) {
     const size_t i = work_item();
     if (i >= count)

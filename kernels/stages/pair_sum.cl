@@ -1,15 +1,16 @@
 /* pair_sum: adds what the pairs in the window of the list are worth to the sums of their gather points, rows `first` +
  * `from` on of `gather`. They are added one by one in the order of the list, so that it does not matter where windows
  * begin. */
+#include "kernels/lib/gather_row.h"
 #include "kernels/shared/stage.h"
 
-STAGE pair_sum(uint count, uint first, uint from, uint window_first, uint window_pairs, uint capacity, uint pair_rows,
+STAGE pair_sum(uint count, uint first, uint from, uint window_first, uint window_pairs, uint gather_rows, uint pair_rows,
                __global const uint *pair_chunk_first, __global const uint *pair_offset, __global const uint *pair_count,
-               __global const real *pair_value, __global real *gather) {
+               __global const real *pair_value, __global real *gather GATHER_INDEX) {
     const uint item = (uint)work_item();
     if (item >= count)
         return;
-    const uint place = from + item, row = first + place;
+    const uint place = from + item, row = GATHER_ROW(first + place);
     const uint begin = pair_chunk_first[place / PAIR_CHUNK] + pair_offset[place];
     const uint window_end = window_first + window_pairs;
     const uint low = max(begin, window_first), high = min(begin + pair_count[place], window_end);

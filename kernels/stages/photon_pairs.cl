@@ -9,6 +9,7 @@
  *
  * The loops are of a length that is only known here, so work-items are not joined to vectors; what is done for each
  * pair is done elsewhere (photon_evaluate). */
+#include "kernels/lib/gather_row.h"
 #include "kernels/lib/photon_grid.h"
 #include "kernels/shared/stage.h"
 
@@ -23,9 +24,9 @@
      (v3_dot(AT_V3(photon_sorted, normal, i), normal) > PHOTON_LEAST_FACING) &                                         \
      (AT_UINT(photon_sorted, depth, i) <= deepest) & (photon_line_sorted[i] == line))
 
-STAGE photon_pairs(uint count, uint first, uint from, uint capacity, uint photon_rows, PHOTON_GRID, real grid_reach,
+STAGE photon_pairs(uint count, uint first, uint from, uint gather_rows, uint photon_rows, PHOTON_GRID, real grid_reach,
                    __global const real *gather, __global const real *photon_sorted,
-                   __global const uint *photon_line_sorted, __global const uint *photon_first
+                   __global const uint *photon_line_sorted, __global const uint *photon_first GATHER_INDEX
 #if LIST
                    ,
                    uint window_first, uint window_pairs, __global const uint *pair_chunk_first,
@@ -38,7 +39,7 @@ STAGE photon_pairs(uint count, uint first, uint from, uint capacity, uint photon
     const uint item = (uint)work_item();
     if (item >= count)
         return;
-    const uint place = from + item, row = first + place;
+    const uint place = from + item, row = GATHER_ROW(first + place);
     const photon_grid grid = PHOTON_GRID_OF_ARGUMENTS;
     const vec3 at = AT_V3(gather, position, row), normal = AT_V3(gather, geometric, row);
     const real distance = AT(gather, radius, row), squared = distance * distance;

@@ -3,6 +3,7 @@
  * and a photon's place is that of its light path and its ordinal.
  *
  * As in the partition, each work-item of photons_count and photons_place has PARTITION_CHUNK of the `rows` slots. */
+//! traits: TRAIT_LIGHT_VERTICES
 #include "kernels/lib/vector.h"
 #include "kernels/shared/stage.h"
 
@@ -66,6 +67,6 @@ STAGE photons_gather(uint count, uint first, uint new_photon_rows, uint photon_r
     const size_t row = first + i;
     const uint from = photon_order[i];
 #pragma unroll
-    for (size_t column = 0; column < photon_columns; ++column)
+    for (size_t column = 0; column < (TRAIT_LIGHT_VERTICES ? photon_columns : photon_before); ++column)
         photon[column * photon_rows + row] = new_photon[column * new_photon_rows + from];
 }

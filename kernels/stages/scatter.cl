@@ -6,12 +6,15 @@
  * geometric cosines on both sides (Veach 1997, eq. 5.19), since what a shading normal turns is the BSDF and not the
  * surface. A BSDF's sample has f |wo.ns| over its density; the path's power changes by f |wi.ns| / |wi.ng| |wo.ng|.
  *
- * Russian roulette goes by the power against that of the light path's beginning, so that photons are alike. */
-//! traits: TRAIT_SHADING_NORMALS
+ * Russian roulette goes by the power against that of the light path's beginning, so that photons are alike.
+ *
+ * TRAIT_LIGHT_VERTICES: leaves a record of each vertex, from `to_vertex` on, for who shifts photons. */
+//! traits: TRAIT_SHADING_NORMALS TRAIT_ANISOTROPIC TRAIT_LIGHT_VERTICES
 #include "kernels/lib/bsdf.h"
 #include "kernels/lib/random.h"
 #include "kernels/lib/surface_point.h"
 #include "kernels/lib/vertex_frame.h"
+#include "kernels/shared/light_vertex.h"
 #include "kernels/shared/stage.h"
 
 STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint max_depth, uint light_roulette_depth,
@@ -24,6 +27,10 @@ STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint ma
               ,
               __global const uint *material_gathers, __global real *new_photon, __global uint *photon_place,
               uint to_photon, uint new_photon_rows, uint first_photon_depth, uint first_slot
+#endif
+#if TRAIT_LIGHT_VERTICES
+              ,
+              __global real *light_vertices, __global uint *light_vertex_marks, uint to_vertex
 #endif
 ) {
     const size_t i = work_item();
@@ -46,6 +53,9 @@ STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint ma
     const frame axes = surface_frame(point.shading, point.along, m);
     const vec3 wi = frame_to_local(axes, v3_neg(direction));
     const uint edges = before + 1u;
+#if TRAIT_LIGHT_VERTICES
+    const uint vertex_before = AT_UINT_IN(light_path_old, light_path, vertex, old);
+#endif
 
     uint left = left_before;
 #if !BSDF_IS_DIRAC
@@ -59,6 +69,9 @@ STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint ma
     SET_V3(new_photon, normal, photon_row, point.geometric);
     AT_UINT(new_photon, slot, photon_row) = first_slot + slot;
     AT_UINT(new_photon, depth, photon_row) = edges;
+#if TRAIT_LIGHT_VERTICES
+    AT_UINT(new_photon, before, photon_row) = vertex_before;
+#endif
     AT_UINT(new_photon, ordinal, photon_row) = is_photon ? left_before : photon_none;
     left += is_photon ? 1u : 0u;
     photon_place[slot] = left;
@@ -78,6 +91,29 @@ STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint ma
     const int alive = edges + 2u <= max_depth && s.pdf > R(0) && rgb_max(scattered) > R(0) && u.d < survival;
     const rgb goes_on = rgb_scale(scattered, R(1) / (alive ? survival : R(1)));
     const vec3 origin = ray_origin(point.position, point.geometric, point.offset, next);
+#if TRAIT_LIGHT_VERTICES
+    const uint record = to_vertex + (uint)i;
+    SET_FIELD_V3(light_vertex, light_vertices, record, position, point.position);
+    SET_FIELD_V3(light_vertex, light_vertices, record, geometric, point.geometric);
+    const vec3 back = v3_neg(direction);
+    SET_FIELD_V3(light_vertex, light_vertices, record, wi, back);
+    FIELD_OF(light_vertex, light_vertices, record, power_r) = arriving.r;
+    FIELD_OF(light_vertex, light_vertices, record, power_g) = arriving.g;
+    FIELD_OF(light_vertex, light_vertices, record, power_b) = arriving.b;
+    FIELD_OF(light_vertex, light_vertices, record, offset) = point.offset;
+    FIELD_OF(light_vertex, light_vertices, record, pdf) = s.pdf;
+    FIELD_OF(light_vertex, light_vertices, record, survival) = survival;
+#if TRAIT_SHADING_NORMALS || TRAIT_ANISOTROPIC
+    SET_FIELD_V3(light_vertex, light_vertices, record, shading, point.shading);
+#endif
+#if TRAIT_ANISOTROPIC
+    SET_FIELD_V3(light_vertex, light_vertices, record, along, point.along);
+#endif
+    FIELD_OF(light_vertex_mark, light_vertex_marks, record, material) = point.material;
+    FIELD_OF(light_vertex_mark, light_vertex_marks, record, primitive) = AT_UINT_IN(ray_old, ray, primitive, old);
+    FIELD_OF(light_vertex_mark, light_vertex_marks, record, before) = vertex_before;
+    AT_UINT(light_path, vertex, row) = record;
+#endif
     AT_UINT(light_path, slot, row) = slot;
     AT_UINT(light_path, key_0, row) = key_0;
     AT_UINT(light_path, key_1, row) = key_1;

@@ -49,6 +49,7 @@ class PhotonSearch {
         list.push_back({.name = "gather", .columns = gather_columns, .is_cleared = true});
         tables_.emplace(device, list, TableRows{gather_points, gather_points, 16, 4, 1}, Precision::single);
         session_.numbers["capacity"] = gather_points;
+        session_.numbers["gather_rows"] = gather_points;
         session_.numbers["photon_rows"] = slot_rows(photons);
         session_.numbers["pair_rows"] = PhotonPairs::pair_rows(gather_points);
         stages_.build(session_, *tables_);

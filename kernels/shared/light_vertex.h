@@ -1,0 +1,55 @@
+/* What the shifts of photons ask of the vertices of light paths (kernels/stages/photon_*.cl): records in no order of
+ * their own, each of which knows the one before. They are accessed at random, so these are records and not columns. */
+#ifndef GRADUS_SHARED_LIGHT_VERTEX_H
+#define GRADUS_SHARED_LIGHT_VERTEX_H
+#include "kernels/shared/scene_records.h"
+
+#define GRADUS_LIGHT_VERTEX_FIELDS(FIELD)                                                                              \
+    FIELD(light_vertex, position_x, "")                                                                                \
+    FIELD(light_vertex, position_y, "")                                                                                \
+    FIELD(light_vertex, position_z, "")                                                                                \
+    FIELD(light_vertex, geometric_x, "geometric normal, unit, on the side that the material calls front")              \
+    FIELD(light_vertex, geometric_y, "")                                                                               \
+    FIELD(light_vertex, geometric_z, "")                                                                               \
+    FIELD(light_vertex, wi_x, "unit vector to the vertex before, world frame")                                         \
+    FIELD(light_vertex, wi_y, "")                                                                                      \
+    FIELD(light_vertex, wi_z, "")                                                                                      \
+    FIELD(light_vertex, power_r, "flux that arrives, as a photon's")                                                   \
+    FIELD(light_vertex, power_g, "")                                                                                   \
+    FIELD(light_vertex, power_b, "")                                                                                   \
+    FIELD(light_vertex, offset, "how far a new ray starts off the surface")                                            \
+    FIELD(light_vertex, pdf,                                                                                           \
+          "of the direction in which the path goes on, by solid angle; a specular one's probability")                  \
+    FIELD(light_vertex, survival, "probability with which Russian roulette let it")                                    \
+    FIELD(light_vertex, shading_x, "only with TRAIT_SHADING_NORMALS or TRAIT_ANISOTROPIC: on the side of geometric")   \
+    FIELD(light_vertex, shading_y, "")                                                                                 \
+    FIELD(light_vertex, shading_z, "")                                                                                 \
+    FIELD(light_vertex, along_x, "only with TRAIT_ANISOTROPIC: dp/du, any length")                                     \
+    FIELD(light_vertex, along_y, "")                                                                                   \
+    FIELD(light_vertex, along_z, "")
+
+/* The whole numbers of these records, in a table of their own. */
+#define GRADUS_LIGHT_VERTEX_MARKS(FIELD)                                                                               \
+    FIELD(light_vertex_mark, material, "record of the material on this side")                                          \
+    FIELD(light_vertex_mark, primitive, "")                                                                            \
+    FIELD(light_vertex_mark, before, "the record of the vertex before; light_vertex_none for the first surface")       \
+    FIELD(light_vertex_mark, padding, "to 16 bytes")
+
+GRADUS_LIB_BEGIN
+
+#define GRADUS_RECORD_INDEX(record, field, text) record##_##field,
+enum light_vertex_field { GRADUS_LIGHT_VERTEX_FIELDS(GRADUS_RECORD_INDEX) light_vertex_stride };
+enum light_vertex_mark_field { GRADUS_LIGHT_VERTEX_MARKS(GRADUS_RECORD_INDEX) light_vertex_mark_stride };
+#undef GRADUS_RECORD_INDEX
+
+/* The vertex before a light path's first surface: the light itself. */
+#define light_vertex_none 0xFFFFFFFFu
+
+GRADUS_LIB_END
+
+#define SET_FIELD_V3(record, array, index, field, value)                                                               \
+    FIELD_OF(record, array, index, field##_x) = (value).x;                                                             \
+    FIELD_OF(record, array, index, field##_y) = (value).y;                                                             \
+    FIELD_OF(record, array, index, field##_z) = (value).z
+
+#endif

@@ -1,0 +1,87 @@
+// Gradient-domain photon density estimation (Hua et al. 2017): photon mapping as in photon_mapper.h, and beside it the
+// differences to the four neighbours, from which the image is reconstructed.
+//
+// A path is a camera path to its gather point and a light path to a photon near it; both are shifted by themselves.
+//
+// The offset camera path is that of the neighbour with the base path's random numbers: in the space of these numbers it
+// has the base path's density and Jacobian 1, cannot fail, and is its own way back; and all that camera paths find on
+// their way, light samples included, is shifted by the same stages. (The paper copies half vectors, which does nearly
+// the same where a surface is smooth, but fails where an event differs or light is totally reflected.)
+//
+// A photon that counts at both gather points stays; one that does not is mirrored, and its last vertex sends it there
+// anew (kernels/lib/shift_photon.h). Who has no such shift counts for himself: where the last vertex is specular, the
+// light itself, or the gather points are of different BSDF kinds.
+#pragma once
+
+#include "methods/gather_paths.h"
+#include "methods/method.h"
+#include "methods/pass_photons.h"
+#include "methods/photon_pairs.h"
+#include "runtime/direct_light/direct_light.h"
+#include "runtime/wavefront/film.h"
+#include "runtime/wavefront/grouping.h"
+#include "solver/poisson_solver.h"
+
+#include <future>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace gradus {
+
+class GradientPhotonMapper final : public Method {
+  public:
+    /// Throws Error(ExitCode::usage) as PhotonMapper does.
+    GradientPhotonMapper(Device &device, const Scene &scene, const RenderOptions &options);
+
+    std::uint64_t total_samples() const override { return total_; }
+    std::uint64_t done_samples() const override { return done_; }
+    bool render_batch() override;
+    /// The channels of GradientPathTracer::image().
+    Image image() override { return make_image(options_.layers, false); }
+    Image last_image() override { return make_image(options_.layers, true); }
+    Statistics statistics() const override;
+
+    Tracer *tracer() override { return &session_.tracer; }
+
+  private:
+    /// Rows of the image that are rendered at once.
+    struct Strip {
+        std::uint32_t first = 0, rows = 0, pixels = 0;
+    };
+    void allocate();
+    TableList tables() const;
+    Strip next_strip() const;
+    void begin_strip(const Strip &strip);
+    void gather_photons(const Strip &strip);
+    void shift_photons(std::size_t kind, const PairWindow &window);
+    void add_to_film(const Strip &strip);
+    Image make_image(bool layers, bool last);
+
+    RenderOptions options_;
+    Session session_;
+    Stages stages_;
+    GatherPaths paths_;
+    PassPhotons photons_;
+    PhotonPairs pairs_;
+    Stage &bin_;
+    Grouping order_; ///< of gather points, by BSDF kind
+    Stage &evaluate_, &shift_;
+    Grouping moved_; ///< photons, by the kind of their last vertex
+    Stage &reconnect_, &arrive_, &sum_, &gradient_gather_, &combine_;
+    Film film_;
+    Stage &accumulate_, &carry_;
+    std::optional<Tables> tables_;
+
+    std::uint64_t total_ = 0, done_ = 0;
+    std::uint32_t strip_rows_ = 0; ///< but for the last strip
+    Statistics statistics_;
+    std::optional<std::vector<DirectPixel>> direct_edges_;
+    std::uint64_t edge_rays_ = 0;
+    std::unique_ptr<PoissonSolver> solver_;
+    std::future<void> solver_compiled_; ///< while the first samples render
+};
+
+std::unique_ptr<Method> make_gradient_photon_mapper(Device &device, const Scene &scene, const RenderOptions &options);
+
+} // namespace gradus

@@ -1,0 +1,122 @@
+#include "methods/pass_photons.h"
+
+#include "kernels/shared/scene_records.h"
+#include "methods/path_stages.h"
+#include "methods/seen_distance.h"
+#include "runtime/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace gradus {
+
+using namespace lib_float;
+
+namespace {
+
+// The largest radius where pixels say it, as a share of the scene's diameter: through a mirror or towards the horizon a
+// pixel may cover much.
+constexpr double largest_share = 0.05;
+// The least, of the scene's diameter or its distance from the origin: positions are not exact to much less.
+constexpr double least_share = 0x1p-18;
+// Edge of the grid's cells, in radii; measured.
+constexpr double cell_edge = 1;
+constexpr double most_radii_a_cell = 8;
+
+bool any_bsdf(const Scene &scene, double roughness, bool rough) {
+    bool found = false;
+    for_each_bsdf(scene, [&](const Bsdf &bsdf) { found = found || is_rough(bsdf, roughness) == rough; });
+    return found;
+}
+
+LightPaths::Direct direct_of(const RenderOptions &options) {
+    return options.direct_photons ? LightPaths::Direct::photons : LightPaths::Direct::left_out;
+}
+
+std::uint32_t photon_rows(const LightPaths &paths) { return paths.tables().front().multiple; }
+
+double length_of(const float *record, int field) {
+    return std::hypot(record[field], record[field + 1], record[field + 2]);
+}
+
+} // namespace
+
+double radius_shrinkage(std::uint64_t pass, double alpha) {
+    // The product of (k + alpha) / (k + 1) for k = 1 to pass.
+    const double n = double(pass);
+    return std::exp(std::lgamma(n + 1 + alpha) - std::lgamma(1 + alpha) - std::lgamma(n + 2));
+}
+
+bool has_gathering_surface(const Scene &scene, const RenderOptions &options) {
+    return any_bsdf(scene, options.gather_roughness, true);
+}
+
+bool has_smooth_surface(const Scene &scene, const RenderOptions &options) {
+    return any_bsdf(scene, options.gather_roughness, false);
+}
+
+const Scene &checked_for_gathering(const Scene &scene, const RenderOptions &options) {
+    if (!any_bsdf(scene, options.gather_roughness, true))
+        throw Error(ExitCode::usage, fmt::format("no surface is rough enough to gather photons at: roughness {} or "
+                                                 "more; --gather-roughness asks for less, --method pt for none",
+                                                 options.gather_roughness));
+    if (!(options.radius.value > 0) || !std::isfinite(options.radius.value))
+        throw Error(ExitCode::usage, "the radius to gather photons from must be above 0");
+    if (!(options.radius_alpha > 0 && options.radius_alpha <= 1))
+        throw Error(ExitCode::usage, "the radius shrinks by an alpha above 0 and up to 1");
+    return scene;
+}
+
+PassPhotons::PassPhotons(Session &session, Stages &stages, const Scene &scene, const RenderOptions &options)
+    : options_(options), stages_(stages), light_paths_(session, stages, scene, options, direct_of(options)),
+      map_(session, stages, photon_rows(light_paths_)) {
+    if (session.scene.light_count == 0)
+        throw Error(ExitCode::usage, "there is no light in the scene, and so no photon to gather");
+    set_radius(session);
+}
+
+void PassPhotons::set_radius(Session &session) {
+    const double diameter = session.scene.scene_diameter;
+    const Box box = box_of(session.scene);
+    double farthest = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        farthest = std::max({farthest, std::fabs(box.low[axis]), std::fabs(box.high[axis])});
+    const float *camera = session.scene.camera.data();
+    const double pixel = std::sqrt(length_of(camera, camera_right_x) * length_of(camera, camera_down_x));
+    const double slope = options_.radius.of_scene ? 0 : options_.radius.value * pixel;
+    const double start = options_.radius.of_scene ? options_.radius.value * diameter : 0;
+    largest_radius_ = options_.radius.of_scene ? start : largest_share * diameter;
+    typical_radius_ = std::clamp(slope * seen_distance(session), start, largest_radius_);
+    session.reals["radius_slope"] = slope;
+    session.reals["radius_start"] = start;
+    session.reals["radius_most"] = largest_radius_;
+    session.reals["radius_least"] = least_share * std::max(diameter, farthest);
+    session.reals["radius_scale"] = 1; // begin_pass() says it
+    session.reals["flux_scale"] = 1;   // once it is known how many light paths a pass has
+}
+
+TableList PassPhotons::tables() const { return joined(light_paths_.tables(), map_.tables()); }
+
+void PassPhotons::attach(Tables &tables) {
+    light_paths_.attach(tables);
+    map_.attach(tables);
+}
+
+void PassPhotons::begin(std::uint64_t pass) {
+    if (pass == pass_)
+        return;
+    if (paths_a_pass_ == 0) {
+        paths_a_pass_ = light_paths_.paths_a_pass();
+        stages_.set_real("flux_scale", std::numbers::inv_pi / double(paths_a_pass_));
+    }
+    const double scale = std::sqrt(radius_shrinkage(pass, options_.radius_alpha));
+    stages_.set_real("radius_scale", scale);
+    const std::uint32_t photons = light_paths_.trace(pass * paths_a_pass_, paths_a_pass_);
+    map_.build(photons, scale * std::max(cell_edge * typical_radius_, largest_radius_ / most_radii_a_cell));
+    pass_ = pass;
+}
+
+} // namespace gradus

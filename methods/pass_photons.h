@@ -1,0 +1,49 @@
+// The photons of a pass, and the radius that they are gathered from.
+#pragma once
+
+#include "methods/light_paths.h"
+#include "methods/method.h"
+#include "methods/photon_map.h"
+
+#include <cstdint>
+
+namespace gradus {
+
+/// The square of the radius of pass `pass`, from 0 on, over that of the first: Knaus and Zwicker 2011, eq. 20.
+double radius_shrinkage(std::uint64_t pass, double alpha);
+
+/// Whether surfaces are rough enough to gather at, and whether some are not.
+bool has_gathering_surface(const Scene &scene, const RenderOptions &options);
+bool has_smooth_surface(const Scene &scene, const RenderOptions &options);
+
+/// The scene itself. Throws Error(ExitCode::usage) where options or scene leave nothing to be gathered.
+const Scene &checked_for_gathering(const Scene &scene, const RenderOptions &options);
+
+class PassPhotons {
+  public:
+    /// Throws Error(ExitCode::usage) where there is no light. Sets the reals that `gather` reads (`radius_slope`...)
+    /// and `flux_scale`.
+    PassPhotons(Session &session, Stages &stages, const Scene &scene, const RenderOptions &options);
+
+    TableList tables() const;
+    /// To be called once these are allocated and before the stages are built,
+    void attach(Tables &tables);
+
+    /// Traces and sorts the photons of a pass, unless they are there.
+    void begin(std::uint64_t pass);
+
+    const LightPaths &light_paths() const { return light_paths_; }
+
+  private:
+    void set_radius(Session &session);
+
+    const RenderOptions options_;
+    Stages &stages_;
+    LightPaths light_paths_;
+    PhotonMap map_;
+    std::uint32_t paths_a_pass_ = 0; ///< light paths
+    std::uint64_t pass_ = ~0ull;
+    double typical_radius_ = 0, largest_radius_ = 0; ///< of the first pass
+};
+
+} // namespace gradus
