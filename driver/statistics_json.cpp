@@ -85,6 +85,7 @@ nlohmann::json statistics_to_json(const RenderRecord &record, const Statistics &
                    {"rays", rays},
                    {"rays_per_second", rate(double(ray_count))},
                    {"shifts", statistics.shifts},
+                   {"walks", statistics.walks},
                    {"non_finite", statistics.non_finite},
                    {"compile_seconds", {{"total", compile_total}, {"kernels", statistics.compile_seconds}}},
                    {"memory",

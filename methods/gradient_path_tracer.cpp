@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 namespace gradus {
 
@@ -44,6 +45,15 @@ StageDeclaration shift_stage(const Session &session) {
             .tables = {{"own_vertex", "primary_vertex"}}};
 }
 
+/// For vertices of one kind among several.
+StageDeclaration shift_alike_stage(const Session &session) {
+    StageDeclaration stage = shift_stage(session);
+    stage.file = "shift";
+    stage.by_kind = true;
+    stage.is_wanted = session.scene.kinds.size() > 1;
+    return stage;
+}
+
 StageDeclaration evaluate_stage(const Session &session) {
     return {.name = "evaluate",
             .by_kind = true,
@@ -52,8 +62,11 @@ StageDeclaration evaluate_stage(const Session &session) {
             .tables = {{"own_vertex", "primary_vertex"}}};
 }
 
-StageDeclaration weigh_stage() {
-    return {.name = "weigh",
+StageDeclaration weigh_stage(const char *name, const char *at_first, bool is_wanted) {
+    return {.name = name,
+            .file = "weigh",
+            .definitions = {{"AT_FIRST", at_first}},
+            .is_wanted = is_wanted,
             .numbers = {"first", "stride", "at_first", "own_rows"},
             .tables = {{"own_vertex", "primary_vertex"}}};
 }
@@ -90,8 +103,9 @@ GradientPathTracer::GradientPathTracer(Device &device, const Scene &scene, const
       connect_(stages_.add(connect_stage())),
       gradient_connect_(
           stages_.add({.name = "gradient_connect", .is_wanted = session_.samples_lights(), .numbers = {"first"}})),
-      shift_(stages_.add(shift_stage(session_))), evaluate_(stages_.add(evaluate_stage(session_))),
-      weigh_(stages_.add(weigh_stage())),
+      shift_(stages_.add(shift_stage(session_))), shift_alike_(stages_.add(shift_alike_stage(session_))),
+      evaluate_(stages_.add(evaluate_stage(session_))), weigh_(stages_.add(weigh_stage("weigh", "1u", true))),
+      weigh_apart_(stages_.add(weigh_stage("weigh apart", "0u", session_.has("TRAIT_APART")))),
       paths_(session_, stages_,
              {.escaped = escaped_bins, .phases = phases_.count, .kinds = std::uint32_t(session_.scene.kinds.size())},
              classify_definitions(), {"shifting", "fresh"}),
@@ -101,7 +115,7 @@ GradientPathTracer::GradientPathTracer(Device &device, const Scene &scene, const
       shade_with_offsets_(stages_.add(shade_stage(true))), shade_(stages_.add(shade_stage(false))),
       advance_(stages_.add(advance_stage("advance", "0", true))),
       advance_apart_(stages_.add(advance_stage("advance apart", "1", session_.has("TRAIT_APART")))),
-      join_(stages_.add({.name = "join", .by_kind = true, .numbers = {"first", "keeps"}})),
+      join_(stages_.add({.name = "join", .by_kind = true, .dirac_alike = true, .numbers = {"first", "keeps"}})),
       count_(stages_.add(count_stage())), combine_(stages_.add({.name = "gradient_combine", .strict = true})),
       film_(session_, stages_),
       accumulate_(stages_.add({.name = "gradient_accumulate", .strict = true, .numbers = {"first_slot", "frames"}})),
@@ -109,6 +123,8 @@ GradientPathTracer::GradientPathTracer(Device &device, const Scene &scene, const
     const std::vector<std::uint32_t> kinds = material_kinds(scene, options.shift_threshold);
     session_.scene_buffers.emplace_back(device, "material_kind", kinds.data(), kinds.size() * sizeof(kinds[0]));
     total_ = session_.pixels() * session_.settings.samples_per_pixel;
+    if (options.threads != 1)
+        compilers_ = keep_compilers(device);
     allocate();
 }
 
@@ -167,7 +183,7 @@ TableList GradientPathTracer::tables() const {
             {.name = "offset_ray", .multiple = 4, .columns = with("TRAIT_APART", offset_ray_columns)},
             {.name = "offsets_state", .columns = with("TRAIT_APART", 1), .is_uint = true},
             {.name = "outcome", .rows = RowsOf::chunk, .columns = shift_outcomes, .is_uint = true, .is_cleared = true},
-            {.name = "carry", .rows = RowsOf::image_row, .columns = carry_columns, .is_cleared = true},
+            {.name = "carry", .rows = RowsOf::image_row, .columns = carry_columns},
             {.name = "gradient_film", .rows = RowsOf::pixel, .columns = gradient_film_columns, .is_cleared = true}};
 }
 
@@ -181,6 +197,8 @@ void GradientPathTracer::allocate() {
     strip_frames_ = static_cast<std::uint32_t>(std::max<std::uint64_t>(paths / session_.pixels(), 1));
     strip_rows_ = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(paths / width, 1, height));
     const bool is_whole = strip_rows_ == height;
+    if (is_whole)
+        carry_.leave_out();
     // A strip has the rows beside it too, as far as there are any.
     const std::uint32_t slots = is_whole ? strip_frames_ * session_.pixels() : (strip_rows_ + 2) * width;
     tables_.emplace(session_.device, list, table_rows(session_, batch, slots), options_.precision);
@@ -231,65 +249,67 @@ void GradientPathTracer::trace_primaries(const Strip &strip) {
     }
 }
 
+std::vector<GradientPathTracer::OwnVertices> GradientPathTracer::own_vertices() const {
+    const std::uint32_t after_first = std::min(phases_.apart, phases_.joined);
+    std::vector<OwnVertices> found = {{"primary_vertex", tables_->rows().slots, 1, newest_.phases(0, after_first),
+                                       phases_.first, phases_.first_mixed}};
+    if (const Range apart = newest_.phases(after_first, phases_.joined); apart.count > 0)
+        found.push_back({"offset_vertex", 4 * tables_->rows().paths, 0, apart, phases_.apart, phases_.apart_mixed});
+    return found;
+}
+
 /// Takes offset paths that are not connected along with their base paths, and adds the light sampled at their vertices.
 void GradientPathTracer::step_offset_paths() {
     const std::uint32_t stride = shifting();
     if (stride == 0)
         return;
-    const Range first = newest_.phases(0, std::min(phases_.apart, phases_.joined));
-    const Range apart = {first.count, stride - first.count};
-    const auto on_own_vertices = [&](Stage &stage, const auto &run) {
-        stage.bind("own_vertex", (*tables_)["primary_vertex"]);
-        run(first, 1u, tables_->rows().slots);
-        if (apart.count == 0)
-            return;
-        stage.bind("own_vertex", (*tables_)["offset_vertex"]);
-        run(apart, 0u, 4 * tables_->rows().paths);
-    };
-    on_own_vertices(shift_, [&](Range rows, std::uint32_t at_first, std::uint32_t own_rows) {
-        shift_.run(rows.count,
-                   {{"first", rows.first}, {"stride", stride}, {"at_first", at_first}, {"own_rows", own_rows}});
-    });
-    if (evaluate_.is_wanted()) {
-        evaluate_.bind("own_vertex", (*tables_)["primary_vertex"]);
-        evaluate(phases_.first, false, true);
-        evaluate(phases_.first_mixed, true, true);
-        if (apart.count > 0) {
-            evaluate_.bind("own_vertex", (*tables_)["offset_vertex"]);
-            evaluate(phases_.apart, false, false);
-            evaluate(phases_.apart_mixed, true, false);
-        }
-    }
+    const std::vector<OwnVertices> vertices = own_vertices();
+    for (const OwnVertices &own : vertices)
+        shift(own, stride);
     const std::size_t capacity = tables_->rows().paths;
-    SegmentTable rays;
+    SegmentTable rays,
+        links = {&(*tables_)["link"], 8 * capacity, 8 * stride, link_origin_x, link_direction_x, link_open, stride};
     if (tables_->has("offset_ray"))
-        rays = {&(*tables_)["offset_ray"], 4 * capacity,           4 * stride,
-                offset_ray_origin_x,       offset_ray_direction_x, offset_ray_primitive};
-    const TraceCounts counts =
-        trace_segments(session_.tracer, options_.precision, rays,
-                       {&(*tables_)["link"], 8 * capacity, 8 * stride, link_origin_x, link_direction_x, link_open},
-                       session_.trace_seconds);
+        rays = {&(*tables_)["offset_ray"], 4 * capacity,         4 * stride, offset_ray_origin_x,
+                offset_ray_direction_x,    offset_ray_primitive, stride};
+    const TraceCounts counts = trace_segments(session_.tracer, options_.precision, rays, links, session_.trace_seconds);
     session_.rays["offset"] += counts.extension + counts.shadow;
-    on_own_vertices(weigh_, [&](Range rows, std::uint32_t at_first, std::uint32_t own_rows) {
-        weigh_.run(rows.count,
-                   {{"first", rows.first}, {"stride", stride}, {"at_first", at_first}, {"own_rows", own_rows}});
-    });
+    for (const OwnVertices &own : vertices) {
+        Stage &weigh = own.at_first ? weigh_ : weigh_apart_;
+        weigh.bind("own_vertex", (*tables_)[own.table]);
+        weigh.run(own.paths.count,
+                  {{"first", own.paths.first}, {"stride", stride}, {"at_first", own.at_first}, {"own_rows", own.rows}});
+    }
 }
 
-/// Has the BSDF service answer for a phase: for each base path that kind's own service, or (`mixed`) all of them.
-void GradientPathTracer::evaluate(std::uint32_t phase, bool mixed, bool at_first) {
+/// Where all vertices of a base path's offset paths are of its own BSDF kind, `shift` evaluates that kind itself; else
+/// the BSDF services of all kinds answer what it asks.
+void GradientPathTracer::shift(const OwnVertices &own, std::uint32_t stride) {
+    for (Stage *stage : {&shift_, &shift_alike_, &evaluate_})
+        stage->bind("own_vertex", (*tables_)[own.table]);
+    const auto launch = [&](const auto &run, Range rows) {
+        run(rows.count,
+            LaunchNumbers{
+                {"first", rows.first}, {"stride", stride}, {"at_first", own.at_first}, {"own_rows", own.rows}});
+    };
+    const auto generally = [&](std::uint32_t count, LaunchNumbers numbers) { shift_.run(count, numbers); };
     const std::vector<std::string> &kinds = session_.scene.kinds;
-    const std::uint32_t own_rows = at_first ? tables_->rows().slots : 4 * tables_->rows().paths;
+    if (kinds.size() == 1)
+        return launch(generally, own.paths);
+    for (std::size_t kind = 0; kind < kinds.size(); ++kind)
+        launch([&](std::uint32_t count, LaunchNumbers numbers) { shift_alike_.run_kind(kind, count, numbers); },
+               newest_.kind(own.alike, kind));
+    const Range mixed = newest_.phase(own.mixed);
+    launch(generally, mixed);
     for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
-        const Range rows = mixed ? newest_.phase(phase) : newest_.kind(phase, kind);
         // No light connects to a specular vertex.
         const std::uint32_t first_line = bsdf_kind_is_dirac(kinds[kind]) || !session_.samples_lights() ? 4 : 0;
-        evaluate_.run_planes(kind, rows.count, 8 - first_line,
-                             {{"first", rows.first},
+        evaluate_.run_planes(kind, mixed.count, 8 - first_line,
+                             {{"first", mixed.first},
                               {"first_line", first_line},
-                              {"stride", shifting()},
-                              {"at_first", at_first},
-                              {"own_rows", own_rows}});
+                              {"stride", stride},
+                              {"at_first", own.at_first},
+                              {"own_rows", own.rows}});
     }
 }
 
@@ -326,23 +346,19 @@ void GradientPathTracer::shade(const Hits &next) {
 /// Brings offset paths to the new vertices; those that are connected there take the base path's direction. `stride` as
 /// it was when they stepped.
 void GradientPathTracer::follow(const Hits &next, std::uint32_t stride) {
-    const Range apart = next.phases(std::min(phases_.apart, phases_.joined), phases_.joined);
-    const Range joined = next.phase(phases_.joined);
-    const auto on_rows = [&](Stage &stage, Range rows) {
+    const std::uint32_t first_phase = std::min(phases_.apart, phases_.joined);
+    const auto advance = [&](Stage &stage, Range rows) {
         stage.run(rows.count, {{"first", next.place(rows.first)}, {"to", rows.first}, {"stride", stride}});
-        count_outcomes(rows);
     };
-    on_rows(advance_apart_, apart);
-    on_rows(advance_, joined);
+    advance(advance_apart_, next.phases(first_phase, phases_.joined));
+    advance(advance_, next.phase(phases_.joined));
+    const Range rows = next.phases(first_phase, phases_.joined + 1);
+    count_.run(chunks_of(rows.count), {{"first", rows.first}, {"rows", rows.count}});
     for (std::uint32_t phase : {phases_.apart, phases_.apart_mixed, phases_.joined})
         for (std::size_t kind = 0; phase < phases_.count && kind < paths_.kinds(); ++kind) {
-            const Range rows = next.kind(phase, kind);
-            join_.run_kind(kind, rows.count, {{"first", rows.first}, {"keeps", phase != phases_.joined}});
+            const Range of_kind = next.kind(phase, kind);
+            join_.run_kind(kind, of_kind.count, {{"first", of_kind.first}, {"keeps", phase != phases_.joined}});
         }
-}
-
-void GradientPathTracer::count_outcomes(Range rows) {
-    count_.run(chunks_of(rows.count), {{"first", rows.first}, {"rows", rows.count}});
 }
 
 bool GradientPathTracer::render_batch() {
@@ -350,9 +366,12 @@ bool GradientPathTracer::render_batch() {
         return false;
     const auto start = std::chrono::steady_clock::now();
     if (!solver_ && !solver_compiled_.valid()) // with one thread, once it is needed
-        solver_compiled_ = std::async(options_.threads == 1 ? std::launch::deferred : std::launch::async, [this] {
-            PoissonSolver::compile(session_.device, poisson_options(options_, session_.settings.samples_per_pixel));
-        });
+        solver_compiled_ = std::async(
+            options_.threads == 1 ? std::launch::deferred : std::launch::async,
+            [this, compilers = std::exchange(compilers_, nullptr)]() mutable {
+                PoissonSolver::compile(session_.device, poisson_options(options_, session_.settings.samples_per_pixel));
+                compilers.reset();
+            });
     if (!direct_edges_ && session_.max_depth() != 0 && !session_.settings.hide_emitters)
         direct_edges_ =
             sample_direct_edges(session_.scene, session_.film, session_.tracer, options_.seed,

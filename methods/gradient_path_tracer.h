@@ -58,6 +58,16 @@ class GradientPathTracer final : public Method {
         std::uint32_t first = 0, rows = 0, frames = 1;
     };
 
+    /// Where offset paths that are not connected have their vertices (OWN_VERTEX in kernels/lib/gradient.h), and the
+    /// base paths that have such ones: all of those, and in which phases they are.
+    struct OwnVertices {
+        const char *table;
+        std::uint32_t rows; ///< of that table
+        std::uint32_t at_first;
+        Range paths;
+        std::uint32_t alike, mixed;
+    };
+
     static Phases phases_of(const Session &session);
     std::map<std::string, std::string> classify_definitions() const;
     TableList tables() const;
@@ -69,20 +79,21 @@ class GradientPathTracer final : public Method {
     /// The rows with offset paths that are not connected; they come first.
     std::uint32_t shifting() const { return newest_.phases(0, phases_.joined).count; }
     void step_offset_paths();
-    void evaluate(std::uint32_t phase, bool mixed, bool at_first);
+    std::vector<OwnVertices> own_vertices() const;
+    void shift(const OwnVertices &own, std::uint32_t stride);
     void find_emission(const Hits &next);
     void shade(const Hits &next);
     void follow(const Hits &next, std::uint32_t stride);
     /// `last`: lets go of batches and films as soon as they have been read.
     Image make_image(bool layers, bool last);
-    void count_outcomes(Range rows);
     void add_to_film(const Strip &strip);
 
     RenderOptions options_;
     Session session_;
     Phases phases_;
     Stages stages_;
-    Stage &camera_, &primary_, &begin_, &connect_, &gradient_connect_, &shift_, &evaluate_, &weigh_;
+    Stage &camera_, &primary_, &begin_, &connect_, &gradient_connect_, &shift_, &shift_alike_, &evaluate_, &weigh_,
+        &weigh_apart_;
     Wavefront paths_;
     Stage &escape_, &emission_, &gradient_escape_, &gradient_emission_, &shade_with_offsets_, &shade_, &advance_,
         &advance_apart_, &join_, &count_, &combine_;
@@ -96,6 +107,7 @@ class GradientPathTracer final : public Method {
     std::optional<std::vector<DirectPixel>> direct_edges_; ///< once sampled: a restart needs no others
     std::uint64_t edge_rays_ = 0;
     std::unique_ptr<PoissonSolver> solver_;
+    std::shared_ptr<void> compilers_;   ///< from before the stages' kernels are compiled until the solver's are
     std::future<void> solver_compiled_; ///< while the first samples render
 };
 

@@ -143,6 +143,55 @@ def icosphere(subdivisions):
     return positions, list(positions), triangles
 
 
+def egg(half_height, radius, blunt, rings, segments):
+    """An egg around the y axis, its blunt end down: at the angle a from the top, y is half_height cos(a), the distance
+    from the axis radius sin(a) (1 - blunt cos(a)). Normals are those of that surface, from its derivative."""
+    positions, normals, triangles = [(0.0, half_height, 0.0)], [(0.0, 1.0, 0.0)], []
+    for i in range(1, rings):
+        angle = math.pi * i / rings
+        sine, cosine = math.sin(angle), math.cos(angle)
+        distance, y = radius * sine * (1 - blunt * cosine), half_height * cosine
+        distance_slope = radius * (cosine - blunt * (cosine * cosine - sine * sine))
+        along_axis, outward = distance_slope, half_height * sine  # the profile's tangent, turned by a right angle
+        for j in range(segments):
+            around = 2 * math.pi * j / segments
+            positions.append((distance * math.cos(around), y, distance * math.sin(around)))
+            normals.append(normalized((outward * math.cos(around), along_axis, outward * math.sin(around))))
+    last = len(positions)
+    positions.append((0.0, -half_height, 0.0))
+    normals.append((0.0, -1.0, 0.0))
+    for j in range(segments):
+        n = (j + 1) % segments
+        triangles.append((0, 1 + n, 1 + j))
+        for i in range(rings - 2):
+            upper, lower = 1 + i * segments, 1 + (i + 1) * segments
+            triangles += [(upper + j, upper + n, lower + n), (upper + j, lower + n, lower + j)]
+        triangles.append((last, last - segments + j, last - segments + n))
+    return positions, normals, triangles
+
+
+def band(inner_radius, outer_radius, height, segments):
+    """A ring of rectangular cross-section around the y axis, standing on y = 0. Each of its four sides has vertices of
+    its own, so that the normals at them are exact."""
+    inner, outer = inner_radius, outer_radius
+    # Each side: two points (distance from the axis, y) of its profile, and the normal (outward, upward) there.
+    sides = [((outer, 0.0), (outer, height), (1.0, 0.0)), ((outer, height), (inner, height), (0.0, 1.0)),
+             ((inner, height), (inner, 0.0), (-1.0, 0.0)), ((inner, 0.0), (outer, 0.0), (0.0, -1.0))]
+    positions, normals, triangles = [], [], []
+    for start, end, (outward, upward) in sides:
+        first = len(positions)
+        for k in range(segments):
+            around = 2 * math.pi * k / segments
+            cosine, sine = math.cos(around), math.sin(around)
+            for distance, y in (start, end):
+                positions.append((distance * cosine, y, distance * sine))
+                normals.append((outward * cosine, upward, outward * sine))
+        for k in range(segments):
+            a, b = first + 2 * k, first + 2 * ((k + 1) % segments)
+            triangles += [(a, a + 1, b + 1), (a, b + 1, b)]
+    return positions, normals, triangles
+
+
 def star(points, outer_radius, inner_radius, half_thickness):
     """A star in the x-y plane with a bevelled front and back: (positions, faces of three or four indices)."""
     rim = []
@@ -234,6 +283,8 @@ def main():
 
     write_ply_binary(folder / "torus.ply", *torus(0.5, 0.19, 64, 32))
     write_ply_binary(folder / "block.ply", *block(0.86, 0.42, 0.86))
+    write_ply_binary(folder / "egg.ply", *egg(0.36, 0.27, 0.18, 36, 56))
+    write_ply_binary(folder / "band.ply", *band(0.52, 0.56, 0.34, 128))
     for count in (7, 14, 28):
         write_ply_binary(folder / f"holes-{count}.ply", *perforated_plane(count, 0.78))
     write_obj(folder / "star.obj", *star(5, 1.0, 0.45, 0.14))

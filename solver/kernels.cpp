@@ -12,7 +12,7 @@ struct Entry {
     Kernel Kernels::*kernel;
     const char *file, *name;
     bool weighted_only;
-    const char *definition = nullptr; ///< compiled with this macro as 1
+    const char *entry = nullptr; ///< in the file, where it is not the name
 };
 
 constexpr Entry entries[] = {
@@ -29,7 +29,7 @@ constexpr Entry entries[] = {
     {&Kernels::advance, "conjugate_gradient", "advance", false},
     {&Kernels::reduce, "sum", "reduce", false},
     {&Kernels::reduce_product, "sum", "reduce_products", false},
-    {&Kernels::reduce_two_products, "sum", "reduce_products", false, "SECOND_PRODUCT"},
+    {&Kernels::reduce_two_products, "sum", "reduce_products", false, "reduce_two_products"},
     {&Kernels::reduce_plane, "sum", "reduce_plane", false},
     {&Kernels::finish_sum, "sum", "finish_sum", false},
     {&Kernels::start, "input", "start", false},
@@ -70,10 +70,8 @@ Kernels::Kernels(Device &device, Precision precision, std::uint32_t channels, We
         if (entry.weighted_only && weights == Weights::uniform)
             continue;
         wanted.push_back(&entry);
-        KernelRequest request{entry.name, fmt::format("kernels/solver/{}.cl", entry.file), entry.name, {}};
-        if (entry.definition)
-            request.definitions.emplace(entry.definition, "1");
-        requests.push_back(std::move(request));
+        requests.push_back(
+            {entry.name, fmt::format("kernels/solver/{}.cl", entry.file), entry.entry ? entry.entry : entry.name, {}});
     }
     std::vector<Kernel> built = library.build(requests);
     for (std::size_t i = 0; i < wanted.size(); ++i)

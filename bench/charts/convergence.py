@@ -44,12 +44,12 @@ def headline(summaries, method="gpt"):
     return text
 
 
-def scene_title(scene, summaries):
-    entry = next((entry for entry in summaries if entry["scene"] == scene and entry["method"] == "gpt"), None)
+def scene_title(scene, summaries, method="gpt"):
+    entry = next((entry for entry in summaries if entry["scene"] == scene and entry["method"] == method), None)
     if not entry or not entry.get("time"):
         return scene
     time = entry["time"]
-    return f"{scene}: gpt {times(time['ratio'], time['at_least'])} time"
+    return f"{scene}: {method} {times(time['ratio'], time['at_least'])} time"
 
 
 def draw_scene(axes, methods, styles, floor, lowest):
@@ -72,8 +72,8 @@ def draw_scene(axes, methods, styles, floor, lowest):
     plotting.grid(axes)
 
 
-def draw(pyplot, results, metric="relmse"):
-    """The figure: a panel for each scene. metric: relmse or trimmed."""
+def draw(pyplot, results, metric="relmse", method="gpt"):
+    """The figure: a panel for each scene. metric: relmse or trimmed; method: the one that the titles are about."""
     by_scene = curves.curves(results["points"], metric)
     summaries = curves.summaries(results["points"], metric)
     floors = {scene["name"]: scene["reference_error"] for scene in results["scenes"]}
@@ -87,7 +87,7 @@ def draw(pyplot, results, metric="relmse"):
     for axes, (scene, methods) in zip(panels, by_scene.items()):
         lowest = min(entry["error"]["least"] for curve in methods.values() for entry in curve)
         draw_scene(axes, methods, styles, floors.get(scene, 0), lowest)
-        axes.set_title(scene_title(scene, summaries), fontsize=9.5)
+        axes.set_title(scene_title(scene, summaries, method), fontsize=9.5)
         axes.set_xlabel("seconds (rendering and reconstruction or denoising)", fontsize=7.5)
         axes.set_ylabel("relMSE" if metric == "relmse" else "relMSE, worst 0.1 % left out", fontsize=8)
         axes.tick_params(labelsize=7.5)
@@ -95,7 +95,7 @@ def draw(pyplot, results, metric="relmse"):
         axes.set_visible(False)
     handles = [pyplot.Line2D([], [], color=colour, marker=marker, linestyle=dashes, markersize=5)
                for colour, marker, dashes in styles.values()]
-    plotting.frame(figure, headline(summaries), handles, [plotting.METHOD_TEXTS.get(name, name) for name in styles],
+    plotting.frame(figure, headline(summaries, method), handles, [plotting.METHOD_TEXTS.get(name, name) for name in styles],
                    f"{plotting.machine_line(results)}\nmedian, least and largest of {results['seeds']} seeds; start, "
                    "loading and compiling left out", len(styles) if width > 10 else 2)
     return figure

@@ -71,6 +71,11 @@ def summary_rows(results, metric):
     return rows
 
 
+def number(value):
+    """A cell; empty where there is none."""
+    return "" if value is None else f"{value:.2f}"
+
+
 SUMMARY_HEADS = ["scene", "method", "slope", "time of pt / its own", "to relMSE", "relMSE of pt / its own", "at s",
                  "error against pt denoised"]
 
@@ -117,6 +122,32 @@ def add_pictures(report):
     about = report.read("pictures.json")
     if about and path.exists():
         report.add("The same time", page.picture(path, about["caption"]))
+
+
+def add_photons(report):
+    results = report.read("photons.json")
+    if not results:
+        return
+    methods = {point["method"] for point in results["points"]}
+    about = next((method for method in ("gpm", "sppm") if method in methods), "pt")
+    content = page.text("Scenes whose light comes through smooth glass or from polished metal, which paths from the "
+                        "camera find by chance alone. A method's bias by its radius counts as error.")
+    if results["points"]:
+        content += report.figure("photons", convergence.draw, results, method=about)
+        content += page.table(SUMMARY_HEADS, summary_rows(results, "relmse"))
+    picture = report.folder / "photon-pictures.png"
+    if results.get("pictures") and picture.exists():
+        content += page.picture(picture, results["pictures"]["caption"])
+    rates = results.get("rates", {})
+    if rates.get("methods"):
+        content += page.table(["method", "light paths a second", "over Mitsuba 3's particle tracer", "seconds a pass",
+                               "the survey's code / its own"],
+                              [[name, f"{own['light_paths_per_second']:.3g}", number(own.get("over_ptracer")),
+                                f"{own['seconds_a_pass']:.3g}", number(own.get("over_survey"))]
+                               for name, own in rates["methods"].items()])
+    for note in results["notes"]:
+        content += page.text(note)
+    report.add("Photons", content)
 
 
 def add_stages(report):
@@ -202,8 +233,8 @@ def main():
     output = arguments.output or arguments.folder / "report"
     output.mkdir(parents=True, exist_ok=True)
     report = Report(arguments.folder, output, plotting.pyplot())
-    for add in (add_convergence, add_pictures, add_holes, add_stages, add_floors, add_kernels, add_solver, add_log,
-                add_conditions):
+    for add in (add_convergence, add_pictures, add_photons, add_holes, add_stages, add_floors, add_kernels, add_solver,
+                add_log, add_conditions):
         add(report)
     for missing in report.missing:
         print(f"left out: {missing}")

@@ -25,13 +25,17 @@ METHODS = {
     "pt": (INK, "o", "-"),
     "gpt": (VERMILLION, "D", "-"),
     "auto": (PURPLE, "s", "-"),
+    "sppm": (SKY, "P", "-"),
+    "gpm": (ORANGE, "X", "-"),
     "denoised": (BLUE, "^", "--"),
     "mitsuba": (GREEN, "v", ":"),
 }
-OTHERS = [(ORANGE, "P", "-"), (SKY, "X", "-"), (GREY, "*", "-")]
+OTHERS = [(GREY, "*", "-"), (YELLOW, "p", "-"), (GREY, "h", "--")]
 METHOD_TEXTS = {
     "pt": "pt, path tracing",
     "gpt": "gpt, gradient-domain path tracing",
+    "sppm": "sppm, progressive photon mapping",
+    "gpm": "gpm, gradient-domain photon density estimation",
     "denoised": "pt, denoised (Open Image Denoise)",
     "mitsuba": "Mitsuba 3, path tracing",
 }

@@ -5,6 +5,7 @@
 #include "bench/write_results.h"
 #include "methods/method.h"
 #include "planning/make_method.h"
+#include "runtime/device/program.h"
 #include "runtime/scene/traits.h"
 
 #include <CLI/CLI.hpp>
@@ -32,6 +33,7 @@ void run(const Arguments &arguments) {
     using namespace gradus;
     using namespace gradus::bench;
     Device device(arguments.device, arguments.threads);
+    const std::shared_ptr<void> compilers = keep_compilers(device); // kernels are built one by one
     const bool quick = arguments.quick;
     Settings settings{device,
                       arguments.scene,

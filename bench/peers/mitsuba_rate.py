@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""Measures Mitsuba 3's path tracer on a scene: samples per second, as JSON on stdout.
+"""Measures Mitsuba 3's path tracer, or its particle tracer, on a scene: samples per second, as JSON on stdout.
 
-    PYTHON-WITH-MITSUBA bench/peers/mitsuba_rate.py SCENE.xml --size 512x512 --spp 64
+    PYTHON-WITH-MITSUBA bench/peers/mitsuba_rate.py SCENE.xml --size 512x512 --spp 64 [--integrator ptracer]
 
 Russian roulette is off. Loading and compiling are left out: a render of another seed comes first. A time ends when the
-image has been computed (evaluated and synchronised), not when it has been asked for. A sample is one path of a pixel.
+image has been computed (evaluated and synchronised), not when it has been asked for. A sample is one path of a
+pixel. Of the particle tracer it is one light path, as many of which are traced in all; it connects each of their
+vertices to the camera.
 """
 
 import argparse
@@ -32,7 +34,8 @@ def measure(mitsuba, arguments):
         drjit.set_thread_count(arguments.nthreads)
     width, height = arguments.size
     scene = mitsuba_setup.load_scene_at_size(mitsuba, arguments.scene, width, height, spp=arguments.spp)
-    integrator = mitsuba.load_dict({"type": "path", "max_depth": arguments.max_depth, "rr_depth": RR_DEPTH_OFF})
+    about = {"type": arguments.integrator, "max_depth": arguments.max_depth, "rr_depth": RR_DEPTH_OFF}
+    integrator = mitsuba.load_dict(about)
 
     def render(seed):
         started = time.perf_counter()
@@ -46,6 +49,7 @@ def measure(mitsuba, arguments):
     rates = [samples / render(seed) for seed in range(arguments.repeats)]
     return {
         "scene": str(arguments.scene),
+        "integrator": arguments.integrator,
         "width": width,
         "height": height,
         "spp": arguments.spp,
@@ -63,12 +67,13 @@ def measure(mitsuba, arguments):
 
 
 def main():
-    parser = argparse.ArgumentParser(description="measures Mitsuba 3's path tracer: samples per second, as JSON")
+    parser = argparse.ArgumentParser(description="measures Mitsuba 3: samples per second, as JSON")
     parser.add_argument("scene", type=pathlib.Path)
     parser.add_argument("--size", type=parse_size, default=(512, 512), metavar="WxH")
     parser.add_argument("--spp", type=int, default=64)
     parser.add_argument("--max-depth", type=int, default=13)
     parser.add_argument("--repeats", type=int, default=5)
+    parser.add_argument("--integrator", choices=["path", "ptracer"], default="path")
     parser.add_argument("--nthreads", type=int, default=0, help="processor threads; 0: all")
     mitsuba_setup.add_mitsuba_options(parser)
     arguments = parser.parse_args()

@@ -4,9 +4,10 @@
     python3 bench/render/convergence.py [SCENE ...] [--method pt gpt] [--spp 4 16 64] [--seconds 1 4] [--seeds 5]
     python3 bench/render/convergence.py --quick       # two scenes, few samples, two seeds
 
-SCENE is a name in tests/references, whose reference another renderer made; cornell-box-256, the Cornell box of
+SCENE is a name in tests/references, whose reference another renderer made; cornell-box-256 or torus-soft-256, of
 ../shared where that is present; or SCENE.xml:WxH, for which a reference is made once by path tracing with
---reference-spp samples and kept in build/bench/cache. Default: all that have a reference. A budget is a sample count
+--reference-spp samples and kept in build/bench/cache. Default: all that have a reference but those for photons, which
+render/photons.py measures. A budget is a sample count
 (--spp) or a time (--seconds).
 
 Rivals: `denoised`, our path tracing (with albedo and normal) through Open Image Denoise, whose time counts; `mitsuba`,
@@ -146,7 +147,7 @@ def print_summary(summaries):
 def main():
     parser = argparse.ArgumentParser(description="error against time")
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"of {', '.join(renders.scene_names())}, or "
-                        "SCENE.xml:WxH (default: all of the former)")
+                        "SCENE.xml:WxH (default: all of the former but those for photons)")
     parser.add_argument("--quick", action="store_true", help="few scenes, samples and seeds unless given")
     parser.add_argument("--gradus", type=pathlib.Path, default=renders.ROOT / "build" / "gradus")
     parser.add_argument("--method", nargs="+", default=["pt", "gpt"], help="as gradus render takes it (pt gpt)")
@@ -165,7 +166,7 @@ def main():
         arguments.spp = [] if arguments.seconds else QUICK_SPP if quick else FULL_SPP
     arguments.seeds = arguments.seeds or (2 if quick else 5)
     scenes = [renders.find_scene(name)
-              for name in arguments.scenes or (QUICK_SCENES if quick else renders.scene_names())]
+              for name in arguments.scenes or (QUICK_SCENES if quick else renders.usual_scenes())]
     budgets = [("samples", spp) for spp in arguments.spp] + [("seconds", time) for time in arguments.seconds]
     if not budgets:
         parser.error("no budget: give --spp or --seconds")

@@ -3,13 +3,15 @@
 
     python3 bench/render/gradient.py [SCENE ...] [--gradus build/gradus]
 
-SCENE is a name in tests/references, whose reference (of another renderer) is the truth; default: all. The methods
-take turns with seeds of their own. Prints, as medians: seconds of a sample of gpt over one of pt (the reconstruction
-left out); relMSE at equal samples, pt over gpt; and at equal time, pt being given as many more samples as its are
-cheaper (its relMSE falls by as much). Then what --method auto picked, in how many of the runs, the gain at equal time
-that it expected, and its regret: the relMSE at equal time, the pilot counted in, over that of the better of both (1: as
-good). It renders a pilot with --spp 80 or more; below it goes by a rule. Target: a cost of at most 2.2 on the Cornell
-box, 5 times less error at equal time on scenes of diffuse light, at most 1.1 times the error at equal samples on any.
+SCENE is a name in tests/references, whose reference (of another renderer) is the truth; default: all but those for
+photons. cornell-box-256 and torus-soft-256 are those of ../shared where that is present. The methods take turns with
+seeds of their own. Prints, as medians: seconds of a sample of gpt over one of pt (the reconstruction left out); relMSE
+at equal samples, pt over gpt; at equal time, pt being given as many more samples as its are cheaper (its relMSE falls
+by as much); and at equal time of the whole process, start, loading, reconstruction and writing counted in both. Then
+what --method auto picked, in how many of the runs, the gain at equal time that it expected, and its regret: the relMSE
+at equal time, the pilot counted in, over that of the better of both (1: as good). It renders a pilot with --spp 80 or
+more; below it goes by a rule. Target: a cost of at most 2.2 on the Cornell box, 5 times less error at equal time on
+scenes of diffuse light, at most 1.1 times the error at equal samples on any.
 """
 
 import argparse
@@ -18,33 +20,44 @@ import pathlib
 import statistics
 import sys
 import tempfile
+import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import renders  # noqa: E402
 
 
 def render(arguments, scene, method, seed, samples, folder):
-    """Seconds of rendering by sample of a pixel, the pilot counted in, relMSE, and what auto chose."""
+    """Seconds of rendering by sample of a pixel, the pilot counted in, relMSE, what auto chose, and the seconds of the
+    whole process."""
     image = pathlib.Path(folder) / "image.exr"
-    record = renders.render(arguments.gradus, scene, method, seed, image, samples=samples)
+    started = time.perf_counter()
+    record = renders.render(arguments.gradus, scene, method, seed, image, samples=samples, layers=False)
+    whole = time.perf_counter() - started
     choice = record.get("choice")
     seconds = record["render_seconds"] + (choice["pilot"]["seconds"] if choice else 0)
-    return seconds / samples, renders.compare(arguments.gradus, image, scene.reference)["relative_mse"], choice
+    return seconds / samples, renders.compare(arguments.gradus, image, scene.reference)["relative_mse"], choice, whole
+
+
+def equal_process_time(pt, gpt, samples):
+    """How many times less error gpt has where pt gets as many samples as fit into gpt's whole process. Each: (seconds
+    by sample, relMSE, ..., seconds of the process), medians."""
+    other_seconds = pt[-1] - pt[0] * samples  # of pt's process, beside rendering
+    return pt[1] * samples / ((gpt[-1] - other_seconds) / pt[0]) / gpt[1]
 
 
 def main():
     parser = argparse.ArgumentParser(description="gradient-domain path tracing against path tracing")
     parser.add_argument("scenes", nargs="*", metavar="SCENE",
-                        help="names in tests/references (default: all)")
+                        help="names in tests/references (default: all but those for photons)")
     parser.add_argument("--gradus", type=pathlib.Path, default=renders.ROOT / "build" / "gradus")
     parser.add_argument("--spp", type=int, default=64)
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--json", type=pathlib.Path, help="also write all figures to this file")
     arguments = parser.parse_args()
-    names = arguments.scenes or sorted(path.stem for path in renders.REFERENCES.glob("*.json"))
+    names = arguments.scenes or [name for name in renders.usual_scenes() if name not in renders.SHARED_SCENES]
     results = []
     print(f"{'scene':<20} {'cost':>6} {'relMSE pt':>11} {'gpt':>11} {'equal samples':>14} {'equal time':>11}"
-          f" {'auto':>9} {'expected':>9} {'regret':>7}")
+          f" {'of process':>11} {'auto':>9} {'expected':>9} {'regret':>7}")
     with tempfile.TemporaryDirectory() as folder:
         for name in names:
             scene = renders.find_scene(name)
@@ -58,15 +71,17 @@ def main():
                                for method in ("gpt", "auto"))
             error = {method: statistics.median(turn[1] for turn in measured) for method, measured in turns.items()}
             gain = error["pt"] / error["gpt"]
+            process = equal_process_time(*([statistics.median(turn[k] for turn in turns[method]) for k in (0, 1, 3)]
+                                           for method in ("pt", "gpt")), arguments.spp)
             choices = [turn[2] for turn in turns["auto"]]
             pick = statistics.mode(choice["method"] for choice in choices)
             agreed = sum(choice["method"] == pick for choice in choices)
             expected = statistics.median(choice["gain"] or 0 for choice in choices)
             regret = error["auto"] * cost_auto / min(error["pt"], error["gpt"] * cost)
             print(f"{name:<20} {cost:6.2f} {error['pt']:11.3e} {error['gpt']:11.3e} {gain:14.2f} {gain / cost:11.2f}"
-                  f" {pick:>5} {agreed}/{len(choices)} {expected:9.2f} {regret:7.2f}", flush=True)
+                  f" {process:11.2f} {pick:>5} {agreed}/{len(choices)} {expected:9.2f} {regret:7.2f}", flush=True)
             results.append({"scene": name, "cost": cost, "relmse": error, "equal_samples": gain,
-                            "equal_time": gain / cost, "turns": turns,
+                            "equal_time": gain / cost, "equal_process_time": process, "turns": turns,
                             "auto": {"pick": pick, "agreed": agreed, "expected": expected, "regret": regret}})
     if arguments.json:
         arguments.json.write_text(json.dumps(results, indent=2) + "\n")

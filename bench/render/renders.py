@@ -1,13 +1,14 @@
 """Renders by the program and their errors, for the benches that weigh one method against another.
 
-A scene is a name in tests/references, whose reference another renderer made; the Cornell box of `../shared`, where that
-folder is present; or SCENE.xml:WxH, which has no reference (references.py makes one).
+A scene is a name in tests/references, whose reference another renderer made; the Cornell box or the soft torus of
+`../shared`, where that folder is present; or SCENE.xml:WxH, which has no reference (references.py makes one).
 """
 
 import dataclasses
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import time
@@ -15,7 +16,12 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 REFERENCES = ROOT / "tests" / "references"
 SHARED = ROOT.parent / "shared"
-SHARED_CORNELL_BOX = "cornell-box-256"
+# Of ../shared, name: scene file, width, height, max depth, reference.
+SHARED_SCENES = {"cornell-box-256": ("cornell-box/scene.xml", 256, 256, 30, "cornell-box"),
+                 "torus-soft-256": ("torus/scene-soft.xml", 256, 192, 30, "torus-soft")}
+# Light that paths from the camera find by chance alone, so that their errors are those of another kind of scene.
+PHOTON_SCENES = ["metal-ring", "metal-ring-soft", "torus-smooth-glass-soft", "slab-and-ball-soft", "lamp-in-egg-soft",
+                 "cornell-box-glossy"]
 NO_ROULETTE = 1_000_000  # a depth at which no path begins with Russian roulette
 NO_GRADIENTS = 6  # gradus's exit code for an input image that does not fit
 
@@ -65,18 +71,22 @@ def default_jobs():
 
 def scene_names():
     """The scenes with a reference of another renderer."""
-    names = sorted(path.stem for path in REFERENCES.glob("*.json"))
-    if (SHARED / "scenes" / "cornell-box" / "scene.xml").exists():
-        names.append(SHARED_CORNELL_BOX)
-    return names
+    return (sorted(path.stem for path in REFERENCES.glob("*.json"))
+            + [name for name, (file, *_) in SHARED_SCENES.items() if (SHARED / "scenes" / file).exists()])
 
 
-def shared_cornell_box():
-    mean = SHARED / "references" / "cornell-box-mean.exr"
+def usual_scenes():
+    """Those of them that a bench of path tracing and gradients measures unless it is told which."""
+    return [name for name in scene_names() if name not in PHOTON_SCENES]
+
+
+def shared_scene(name):
+    file, width, height, max_depth, image = SHARED_SCENES[name]
+    mean = SHARED / "references" / f"{image}-mean.exr"
     reference = None
     if mean.exists():
-        reference = Reference(mean, mean.with_name("cornell-box-variance.exr"), 32768, "mitsuba 3.9")
-    return Scene(SHARED_CORNELL_BOX, SHARED / "scenes" / "cornell-box" / "scene.xml", 256, 256, 30, {}, reference)
+        reference = Reference(mean, mean.with_name(f"{image}-variance.exr"), 32768, "mitsuba 3.9")
+    return Scene(name, SHARED / "scenes" / file, width, height, max_depth, {}, reference)
 
 
 def find_scene(text):
@@ -89,7 +99,7 @@ def find_scene(text):
         return Scene(text, ROOT / about["scene"], about["width"], about["height"], about["max_depth"],
                      about["parameters"], reference)
     if text in scene_names():
-        return shared_cornell_box()
+        return shared_scene(text)
     path, _, size = text.rpartition(":")
     width, _, height = size.partition("x")
     if not path or not width.isdigit() or not height.isdigit():
@@ -104,13 +114,14 @@ def box_filter(scene):
     return ["-D", "rfilter=box"] if "$rfilter" in scene.file.read_text() else []
 
 
-def render(gradus, scene, method, seed, output, samples=None, seconds=None, aov=False, png=False, options=()):
-    """Renders so many samples a pixel, or so long, to `output` (.exr) and returns the statistics. The image of `gpt` has
-    the layers that it was reconstructed from. aov: with the layers albedo, normal, depth and variance; png: a picture
-    beside it, tone-mapped; options: more of `gradus render`."""
+def render(gradus, scene, method, seed, output, samples=None, seconds=None, aov=False, png=False, layers=True,
+           options=()):
+    """Renders so many samples a pixel, or so long, to `output` (.exr) and returns the statistics. layers: the image of
+    `gpt` has those that it was reconstructed from. aov: with the layers albedo, normal, depth and variance; png: a
+    picture beside it, tone-mapped; options: more of `gradus render`."""
     record = pathlib.Path(output).with_suffix(".json")
     command = [gradus, "render", scene.file, "-o", output, "--stats", record, "--quiet", "--method", method]
-    command += ["--layers", "--seed", seed, "--size", f"{scene.width}x{scene.height}"]
+    command += [*(["--layers"] if layers else []), "--seed", seed, "--size", f"{scene.width}x{scene.height}"]
     command += box_filter(scene)
     for name, value in scene.parameters.items():
         command += ["-D", f"{name}={value}"]
@@ -128,6 +139,14 @@ def compare(gradus, image, reference, *options):
         "--json", record, *options)
     compared = json.loads(record.read_text())
     return {**compared["images"][0], "reference_relative_mse": compared["reference_relative_mse"]}
+
+
+def known_methods(gradus):
+    """The methods that this program has, as its help lists them."""
+    listed = re.search(r"--method\s+TEXT:\{([^}]*)\}", run(gradus, "render", "--help"))
+    if not listed:
+        sys.exit(f"{gradus}: its help lists no methods")
+    return listed.group(1).split(",")
 
 
 def reconstruction_seconds(gradus, image):

@@ -56,7 +56,7 @@ GRADUS_FN bsdf_terms roughdielectric_terms(material m, vec3 wi, vec3 wo, int mod
     terms.pdf = is_valid ? pdf : R(0);
     /* The way back has the same half vector and the same P; its index ratio is 1 / eta, so its Jacobian lacks eta^2. */
     const real back = probability * density * jacobian / (eta * eta * area_to);
-    terms.pdf_reverse = is_valid & (from.z > R(0)) ? back : R(0);
+    terms.pdf_reverse = (is_valid & (from.z > R(0))) ? back : R(0);
     return terms;
 }
 

@@ -56,16 +56,18 @@ typedef struct {
     GRADUS_NOT_IN_REGISTERS
 } own_vertex_state;
 
-/* Offset j of the base path in `base_row`. */
-#if TRAIT_APART
-#define OWN_STATE(j, base_row, base_slot, pixel)                                                                       \
-    own_state(j, (uint)(base_row), base_slot, pixel, own_vertex, own_rows, at_first, primary_shift, crop_width,        \
-              crop_height, capacity, offset)
-#else
-#define OWN_STATE(j, base_row, base_slot, pixel)                                                                       \
-    own_state(j, (uint)(base_row), base_slot, pixel, own_vertex, own_rows, 1u, primary_shift, crop_width, crop_height, \
-              capacity, offset)
+/* A stage may be compiled for one of both. */
+#if !TRAIT_APART
+#undef AT_FIRST
+#define AT_FIRST 1u
+#elif !defined(AT_FIRST)
+#define AT_FIRST at_first
 #endif
+
+/* Offset j of the base path in `base_row`. */
+#define OWN_STATE(j, base_row, base_slot, pixel)                                                                       \
+    own_state(j, (uint)(base_row), base_slot, pixel, own_vertex, own_rows, AT_FIRST, primary_shift, crop_width,        \
+              crop_height, capacity, offset)
 GRADUS_FN own_vertex_state own_state(uint j, uint base_row, uint slot, film_pixel pixel,
                                      GRADUS_GLOBAL const real *own_vertex, uint own_rows, uint at_first,
                                      uint primary_shift, uint crop_width, uint crop_height, uint capacity,

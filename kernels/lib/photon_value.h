@@ -10,12 +10,13 @@
 /* f power, f without its cosine, at row `row` of `gather`; wo: to where the photon came from, world frame.
  *
  * A photon's flux is what arrives at the surface as it is, so the value |cos| of the BSDF, which is by the shading
- * normal, is divided by the cosine to the geometric normal (Veach 1997, 5.3). */
-#define PHOTON_VALUE(row, m, wo, power)                                                                                \
-    photon_value(m, VERTEX_FRAME(gather, row, m), AT_V3(gather, wi, row), AT_V3(gather, geometric, row), wo, power)
-GRADUS_FN rgb photon_value(material m, frame axes, vec3 wi, vec3 geometric, vec3 wo, rgb power) {
+ * normal, is divided by the cosine to `normal`, the geometric one where the photon landed (Veach 1997, 5.3): by the
+ * gather point's own, photons of a neighbouring facet would count by what that one is tilted. */
+#define PHOTON_VALUE(row, m, wo, normal, power)                                                                        \
+    photon_value(m, VERTEX_FRAME(gather, row, m), AT_V3(gather, wi, row), wo, normal, power)
+GRADUS_FN rgb photon_value(material m, frame axes, vec3 wi, vec3 wo, vec3 normal, rgb power) {
     const bsdf_value v = bsdf_evaluate(m, frame_to_local(axes, wi), frame_to_local(axes, wo));
-    const real cosine = r_abs(v3_dot(wo, geometric));
+    const real cosine = r_abs(v3_dot(wo, normal));
     /* A photon that grazes the surface carries no flux to speak of. */
     const real inverse = cosine > R(1e-6) ? R(1) / r_max(cosine, R(1e-6)) : R(0);
     return rgb_scale(rgb_mul(v.value, power), inverse);

@@ -15,6 +15,8 @@ typedef float real;
 #endif
 #define R(constant) ((real)(constant))
 
+#include "kernels/shared/builtins.h"
+
 #ifdef __OPENCL_VERSION__
 
 #define GRADUS_LIB_BEGIN
@@ -76,7 +78,7 @@ static inline __attribute__((unused)) float as_float(uint bits) {
 #endif
 
 /* The only built-ins that kernels/lib may call: each vectorises on every CPU implementation and is one
- * instruction on GPUs. Transcendental functions are in kernels/lib/approximation.h. */
+ * instruction on GPUs. They are declared in kernels/shared/builtins.h too. Transcendental functions are in kernels/lib/approximation.h. */
 #ifdef __OPENCL_VERSION__
 #define r_sqrt(x) sqrt((real)(x))
 #define r_abs(x) fabs((real)(x))

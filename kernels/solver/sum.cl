@@ -2,11 +2,10 @@
  * the precision. The error grows with the logarithm of the count. */
 #include "kernels/solver/grid.h"
 
-/* The first step of <a, b> and, with SECOND_PRODUCT, of <a, c>: `reduced` as by `reduce`, from the planes as they
- * lie in memory, borders and all, for those are zero; the
- * size of a plane is a multiple of SOLVER_REDUCTION * SOLVER_TILE. */
-SOLVE reduce_products(uint plane, uint channel_count, uint reduced_count, __global const real *a,
-                      __global const real *b, __global const real *c, __global real *reduced) {
+/* The first step of <a, b> and, with `has_second`, of <a, c>: `reduced` as by `reduce`, from the planes as they lie in
+ * memory, borders and all, for those are zero; the size of a plane is a multiple of SOLVER_REDUCTION * SOLVER_TILE. */
+GRADUS_FN void add_products(int has_second, uint plane, uint channel_count, uint reduced_count, __global const real *a,
+                            __global const real *b, __global const real *c, __global real *reduced) {
     const uint channel = (uint)get_group_id(1);
     const size_t i = get_global_id(0);
     const size_t first = (size_t)channel * plane;
@@ -15,14 +14,22 @@ SOLVE reduce_products(uint plane, uint channel_count, uint reduced_count, __glob
     for (uint k = 0; k < SOLVER_REDUCTION; ++k) {
         const size_t at = i + (size_t)k * reduced_count;
         sum += a[first + at] * b[first + at];
-#if SECOND_PRODUCT
-        second += a[first + at] * c[first + at];
-#endif
+        if (has_second)
+            second += a[first + at] * c[first + at];
     }
     reduced[(size_t)channel * reduced_count + i] = sum;
-#if SECOND_PRODUCT
-    reduced[(size_t)(channel_count + channel) * reduced_count + i] = second;
-#endif
+    if (has_second)
+        reduced[(size_t)(channel_count + channel) * reduced_count + i] = second;
+}
+
+SOLVE reduce_products(uint plane, uint channel_count, uint reduced_count, __global const real *a,
+                      __global const real *b, __global const real *c, __global real *reduced) {
+    add_products(0, plane, channel_count, reduced_count, a, b, c, reduced);
+}
+
+SOLVE reduce_two_products(uint plane, uint channel_count, uint reduced_count, __global const real *a,
+                          __global const real *b, __global const real *c, __global real *reduced) {
+    add_products(1, plane, channel_count, reduced_count, a, b, c, reduced);
 }
 
 /* The same for the sum of a, or of what of it is above zero. */

@@ -40,7 +40,6 @@ STAGE advance(uint count, uint unit, uint first, uint to, uint stride, uint capa
         const uint state = AT_UINT_IN(offset_old, offset, state, from);
         holds = (open & is_rough) | (state != connection_recent);
         AT_UINT(offset, state, at) = state;
-        AT(offset, pdf, at) = AT_IN(offset_old, offset, pdf, from);
 #endif
         const real failed = shift_failed(open ? outcome_failed_kinds : outcome_failed_hidden);
         AT(offset, ratio, at) = ratio < R(0) || holds ? ratio : failed;

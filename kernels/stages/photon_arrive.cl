@@ -1,7 +1,7 @@
-/* photon_arrive: offset photons have met a surface: places [0, count) of `moved_index`, of pairs of gather points of one
- * BSDF kind. Where one counts at the offset's gather point, and not at the base's, the shift back would find the base
- * photon: both paths are weighed against each other (Hua et al. 2017, eq. 11). Else the base path counts for itself,
- * as photon_shift has left it. */
+/* photon_arrive: offset photons have met a surface: places [0, count) of `moved_index`, of pairs of gather points of
+ * one BSDF kind. Where one counts at the offset's gather point, and not at the base's, the shift back would find the
+ * base photon: both paths are weighed against each other (Hua et al. 2017, eq. 11). Else the base path counts for
+ * itself, as photon_shift has left it. */
 #include "kernels/lib/moved_photon.h"
 #include "kernels/lib/photon_value.h"
 #include "kernels/lib/surface_point.h"
@@ -34,7 +34,7 @@ STAGE photon_arrive(uint count, uint unit, uint pairs, uint gather_rows, uint pa
     const material m = material_load(materials, AT_UINT(gather, material, at), unit);
     const real inverse = R(1) / offset_disc.radius;
     const rgb offset =
-        rgb_scale(rgb_mul(PHOTON_VALUE(at, m, v3_neg(direction), AT_RGB(moved, power, i)),
+        rgb_scale(rgb_mul(PHOTON_VALUE(at, m, v3_neg(direction), point.geometric, AT_RGB(moved, power, i)),
                           AT_RGB(gather, throughput, at)),
                   inverse * inverse);
     const size_t to = (size_t)j * pair_rows + pair;

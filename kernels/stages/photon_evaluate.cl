@@ -10,6 +10,7 @@ STAGE photon_evaluate(uint count, uint unit, uint gather_rows, uint photon_rows,
         return;
     const uint row = pair_gather[i], from = pair_photon[i];
     const material m = material_load(materials, AT_UINT(gather, material, row), unit);
-    const rgb value = PHOTON_VALUE(row, m, AT_V3(photon_sorted, wi, from), AT_RGB(photon_sorted, power, from));
+    const rgb value = PHOTON_VALUE(row, m, AT_V3(photon_sorted, wi, from), AT_V3(photon_sorted, normal, from),
+                                   AT_RGB(photon_sorted, power, from));
     SET_RGB(pair_value, value, i, value);
 }

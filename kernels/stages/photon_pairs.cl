@@ -9,8 +9,8 @@
  *
  * The loops are of a length that is only known here, so work-items are not joined to vectors; what is done for each
  * pair is done elsewhere (photon_evaluate). */
-#include "kernels/lib/photon_grid.h"
 #include "kernels/lib/gather_row.h"
+#include "kernels/lib/photon_grid.h"
 #include "kernels/shared/stage.h"
 
 /* Photons that are tested at once before any is listed. */

@@ -8,10 +8,9 @@
 
 STAGE photon_reconnect(uint count, uint unit, uint first, uint pairs, uint gather_rows, uint photon_rows,
                        uint pair_rows, uint strip_pixels, __global const uint *moved_index,
-                       __global const uint *pair_gather, __global const uint *pair_photon,
-                       __global const real *gather, __global const real *photon_sorted,
-                       __global const real *light_vertices, __global const uint *light_vertex_marks,
-                       __global const real *materials, __global real *moved) {
+                       __global const uint *pair_gather, __global const uint *pair_photon, __global const real *gather,
+                       __global const real *photon_sorted, __global const real *light_vertices,
+                       __global const uint *light_vertex_marks, __global const real *materials, __global real *moved) {
     const size_t i = work_item();
     if (i >= count)
         return;

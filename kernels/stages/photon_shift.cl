@@ -24,8 +24,8 @@ STAGE photon_shift(uint count, uint unit, uint gather_rows, uint photon_rows, ui
     const uint at = row + (j + 1u) * strip_pixels;
 
     const real base_radius = AT(gather, radius, row), inverse_base = R(1) / base_radius;
-    const rgb base = rgb_scale(rgb_mul(AT_RGB(pair_value, value, i), AT_RGB(gather, throughput, row)),
-                               inverse_base * inverse_base);
+    const rgb base =
+        rgb_scale(rgb_mul(AT_RGB(pair_value, value, i), AT_RGB(gather, throughput, row)), inverse_base * inverse_base);
     const real offset_radius = AT(gather, radius, at);
     const uint own_material = AT_UINT(gather, material, row);
     const int is_there = offset_radius > R(0);
@@ -39,10 +39,10 @@ STAGE photon_shift(uint count, uint unit, uint gather_rows, uint photon_rows, ui
 
     const material m = material_load(materials, offset_material, unit);
     const real inverse = R(1) / (is_there ? offset_radius : R(1));
-    const rgb offset = rgb_scale(rgb_mul(PHOTON_VALUE(at, m, AT_V3(photon_sorted, wi, from),
-                                                      AT_RGB(photon_sorted, power, from)),
-                                         AT_RGB(gather, throughput, at)),
-                                 inverse * inverse);
+    const rgb offset = rgb_scale(
+        rgb_mul(PHOTON_VALUE(at, m, AT_V3(photon_sorted, wi, from), photon_normal, AT_RGB(photon_sorted, power, from)),
+                AT_RGB(gather, throughput, at)),
+        inverse * inverse);
     const rgb alone = rgb_scale(base, offset_radius < R(0) ? R(0) : R(-1));
     const rgb difference = rgb_select(is_shared, rgb_scale(rgb_sub(offset, base), R(0.5)), alone);
     const size_t to = (size_t)j * pair_rows + i;

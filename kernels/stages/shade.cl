@@ -118,7 +118,9 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
     const int alive = can_go_on;
     const rgb left = scattered;
     AT(event, pdf, row) = s.pdf;
-    SET_RGB(event, weight, row, s.weight);
+#if BSDF_IS_DIRAC
+    SET_RGB(event, weight, row, s.weight); /* of others `join` knows it */
+#endif
 #else
     /* Mitsuba's rule: survive with the largest throughput, freed of the radiance scaling by eta^2, at most 0.95. */
     const real survival = depth + 1u >= roulette_depth ? r_min(rgb_max(scattered) * eta * eta, R(0.95)) : R(1);

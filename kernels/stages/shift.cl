@@ -12,7 +12,8 @@
  * The step fails where the next vertex would be seen from its other side, between a specular kind and one that is none,
  * and where the half-vector copy does.
  *
- * BSDF: where the scene has one kind, it is inlined, and what would be asked is answered at once. */
+ * BSDF: where all that is not connected is at vertices of one kind, it is inlined, and what would be asked is answered
+ * at once. */
 //! traits: TRAIT_SHIFT_DISTANCE TRAIT_ENVIRONMENT SAMPLES_LIGHTS
 #include "kernels/lib/bsdf_evaluate.h"
 #include "kernels/lib/gradient.h"
@@ -22,6 +23,13 @@
 #include "kernels/lib/scene_hit.h"
 #include "kernels/lib/shift_reconnection.h"
 #include "kernels/lib/shift_specular.h"
+
+/* Whether light may be sampled at the vertices. */
+#if defined(BSDF) && BSDF_IS_DIRAC
+#define MEETS_LIGHTS 0
+#else
+#define MEETS_LIGHTS SAMPLES_LIGHTS
+#endif
 
 STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint slots, __global const real *path,
             __global const real *ray, __global const real *vertex, __global const real *event, OWN_VERTEX, STRIP_PLACE,
@@ -66,7 +74,7 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
     const real pdf = AT(event, pdf, row);
     const int goes_on = (is_hit | is_escaped) & (pdf > R(0));
 #if TRAIT_APART
-    const int base_is_rough = (base_kind & kind_is_rough) != 0u, base_is_dirac = (base_kind & kind_is_dirac) != 0u;
+    const int base_is_rough = (base_kind & kind_is_rough) != 0u;
     const material base_material = material_load(materials, AT_UINT(vertex, material, row), unit);
     const frame base_axes = VERTEX_FRAME(vertex, row, base_material);
     const vec3 base_wi = frame_to_local(base_axes, AT_V3(vertex, wi, row));
@@ -77,7 +85,7 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
     const int reconnectable = is_escaped | is_reconnectable(next_kind, next_light);
 #endif
 
-#if SAMPLES_LIGHTS
+#if MEETS_LIGHTS
     /* The base path's light sample, made again. */
     const random4 u = random_draw(AT_UINT(path, key_0, row), AT_UINT(path, key_1, row),
                                   random_dimension_light(AT_UINT(path, depth, row) - 1u));
@@ -103,7 +111,11 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         const vec3 from = AT_V3(own_vertex, position, own.row);
         const vec3 geometric = AT_V3(own_vertex, geometric, own.row);
         const real from_offset = AT(own_vertex, offset, own.row);
+#ifdef BSDF
+        const int is_dirac = BSDF_IS_DIRAC;
+#else
         const int is_dirac = (kind & kind_is_dirac) != 0u;
+#endif
 #if TRAIT_APART || defined(BSDF)
         const material m = material_load(materials, AT_UINT(own_vertex, material, own.row), unit);
         const frame axes = VERTEX_FRAME(own_vertex, own.row, m);
@@ -112,7 +124,7 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
 
         /* The light sample. */
         int asks_light = 0;
-#if SAMPLES_LIGHTS
+#if MEETS_LIGHTS
         const vec3 to_point = v3_sub(light_point, from);
         const real point_distance_squared = r_max(v3_dot(to_point, to_point), R(1e-36));
         const vec3 to_point_unit = v3_scale(to_point, R(1) / r_sqrt(point_distance_squared));
@@ -159,7 +171,7 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         AT_UINT(link, open, (size_t)j * stride + row) = asks_light ? 1u : 0u;
 
         /* The step to the next vertex: the like computation, one after the other (kernels/lib/ordered.h). */
-#if SAMPLES_LIGHTS
+#if MEETS_LIGHTS
         const vec3 from_after = v3_after(from, cosine);
 #else
         const vec3 from_after = from;
@@ -176,13 +188,26 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         const int is_long = 1;
 #endif
         const int reconnects = both_rough & reconnectable & is_long;
-        const int alike = (kind != kind_none) & (is_dirac == base_is_dirac);
+#ifdef BSDF
+        const int alike = kind != kind_none;
+        const real ior = PASTE(bsdf_kind_, BSDF) == bsdf_kind_null ? R(1) : m.ior;
+#if BSDF_IS_DIRAC
+        const shifted_direction copied = shift_specular(base_wi, base_wo, wi, ior);
+#else
+        const shifted_direction copied = shift_half_vector(base_wi, base_wo, base_material.ior, wi, ior);
+#endif
+        const vec3 wo_copied = copied.wo;
+        const int copies = alike & copied.is_valid;
+        const real copy_jacobian = copied.jacobian;
+#else
+        const int alike = (kind != kind_none) & (is_dirac == ((base_kind & kind_is_dirac) != 0u));
         const real ior = kind_number(kind) == bsdf_kind_null ? R(1) : m.ior;
         const shifted_direction mirrored = shift_specular(base_wi, base_wo, wi, ior);
         const shifted_direction copied = shift_half_vector(base_wi, base_wo, base_material.ior, wi, ior);
         const vec3 wo_copied = v3_select(is_dirac, mirrored.wo, copied.wo);
         const int copies = alike & (is_dirac ? mirrored.is_valid : copied.is_valid);
         const real copy_jacobian = is_dirac ? mirrored.jacobian : copied.jacobian;
+#endif
         const vec3 own_direction = frame_to_world(axes, wo_copied);
         const vec3 own_unit =
             v3_scale(own_direction, R(1) / r_max(r_sqrt(v3_dot(own_direction, own_direction)), R(1e-15)));

@@ -26,15 +26,15 @@ STAGE walk_turn(uint count, uint chain_rows, __global const real *chain, __globa
 }
 
 STAGE walk_turn_vertices(uint count, uint chain_rows, uint chain_vertices, __global const real *walked_vertex,
-                         __global real *back_vertex) {
+                         __global real *back_chain_vertex) {
     const size_t row = work_item();
     if (row >= count)
         return;
     const size_t at = (size_t)get_global_id(2) * chain_rows + row;
-    AT_IN(back_vertex, chain_vertex, position_x, at) = AT(walked_vertex, position_x, at);
-    AT_IN(back_vertex, chain_vertex, position_y, at) = AT(walked_vertex, position_y, at);
-    AT_IN(back_vertex, chain_vertex, position_z, at) = AT(walked_vertex, position_z, at);
-    AT_UINT_IN(back_vertex, chain_vertex, primitive, at) = AT_UINT(walked_vertex, primitive, at);
+    AT_IN(back_chain_vertex, chain_vertex, position_x, at) = AT(walked_vertex, position_x, at);
+    AT_IN(back_chain_vertex, chain_vertex, position_y, at) = AT(walked_vertex, position_y, at);
+    AT_IN(back_chain_vertex, chain_vertex, position_z, at) = AT(walked_vertex, position_z, at);
+    AT_UINT_IN(back_chain_vertex, chain_vertex, primitive, at) = AT_UINT(walked_vertex, primitive, at);
 }
 
 STAGE walk_return(uint count, uint chain_rows, uint chain_vertices, real walk_back_tolerance, real walk_floor,

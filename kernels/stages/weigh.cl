@@ -9,7 +9,9 @@
  * Offset paths that reconnect stand at the base's next vertex, whether they see it or not: the light that it emits must
  * be weighed before the hidden ones fail (`gradient_emission`, `advance`). Those that copied have failed where their
  * ray met nothing, and, if they came from rough vertices like the base path, where both could reconnect: there the
- * shift back would. */
+ * shift back would.
+ *
+ * AT_FIRST: whether the rows are those at first vertices. */
 //! traits: TRAIT_SHIFT_DISTANCE
 #include "kernels/lib/gradient.h"
 #include "kernels/lib/reconnectable.h"
@@ -17,11 +19,11 @@
 #include "kernels/lib/weighted_difference.h"
 
 /* Sums begin at first vertices. */
-#if TRAIT_APART
+#if !AT_FIRST
 #define GATHER(table, at, sum)                                                                                         \
     {                                                                                                                  \
         const rgb before = AT_RGB(table, value, at);                                                                   \
-        const rgb after = rgb_add(rgb_select(at_first != 0u, rgb_gray(R(0)), before), sum);                            \
+        const rgb after = rgb_add(before, sum);                                                                        \
         SET_RGB(table, value, at, after);                                                                              \
     }
 #else

@@ -2,17 +2,24 @@
 
 #include "runtime/device/cache_folder.h"
 #include "runtime/device/framed_socket.h"
+#include "runtime/seconds_since.h"
 
 #include <fcntl.h>
 #include <poll.h>
 #include <spawn.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
+#include <chrono>
+#include <cmath>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <numeric>
@@ -49,10 +56,33 @@ std::vector<char *> pointers_to(std::vector<std::string> &texts) {
     return pointers;
 }
 
+/// Seconds after which it is looked at who is late.
+constexpr double slice = 0.5;
+
+/// Nobody above asks for warnings, and who waits so long wants to know for what.
+std::string told_late(const std::string &kernel, double limit) {
+    const std::string message =
+        fmt::format("kernel {}: the process that compiles it gave no answer in {:g} s (GRADUS_COMPILE_LIMIT); it was "
+                    "ended, and this one compiles the kernel",
+                    kernel, limit);
+    std::fputs(("gradus: warning: " + message + "\n").c_str(), stderr);
+    return message;
+}
+
+CompileAnswer received_answer(int socket) {
+    std::string message;
+    if (!receive_message(socket, message))
+        throw std::runtime_error("the worker ended");
+    return compile_answer(message);
+}
+
+} // namespace
+
 /// A process that compiles. Ended with this object.
-class Worker {
+class CompileWorker {
   public:
-    Worker(const fs::path &program, const fs::path &folder, std::uint32_t work_group_size) {
+    CompileWorker(const fs::path &program, const fs::path &folder, std::uint32_t work_group_size)
+        : work_group_size_(work_group_size) {
         // Each in a folder of its own: processes that share one of PoCL's disturb each other.
         static std::atomic<unsigned> number{0};
         folder_ = folder / ("worker-" + std::to_string(number++));
@@ -75,14 +105,25 @@ class Worker {
         posix_spawn_file_actions_destroy(&actions);
         close(pair[1]);
         socket_ = pair[0];
+        // One that hangs in the middle of a message.
+        const timeval limit = {static_cast<time_t>(std::ceil(compile_limit())), 0};
+        setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
+        setsockopt(socket_, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);
     }
-    ~Worker() { end(); }
-    Worker(const Worker &) = delete;
-    Worker &operator=(const Worker &) = delete;
+    ~CompileWorker() { end(); }
+    CompileWorker(const CompileWorker &) = delete;
+    CompileWorker &operator=(const CompileWorker &) = delete;
 
     bool lives() const { return process_ > 0; }
     int socket() const { return socket_; }
+    std::uint32_t work_group_size() const { return work_group_size_; }
+    /// False where it has died, or says what nobody asked.
+    bool is_ready() const {
+        pollfd state = {socket_, POLLIN, 0};
+        return lives() && poll(&state, 1, 0) == 0;
+    }
     std::optional<std::size_t> job; ///< what it is busy with
+    double seconds = 0;             ///< for how long
 
     void end() {
         if (socket_ >= 0)
@@ -96,19 +137,11 @@ class Worker {
     }
 
   private:
+    const std::uint32_t work_group_size_;
     pid_t process_ = -1;
     int socket_ = -1;
     fs::path folder_;
 };
-
-CompileAnswer received_answer(int socket) {
-    std::string message;
-    if (!receive_message(socket, message))
-        throw std::runtime_error("the worker ended");
-    return compile_answer(message);
-}
-
-} // namespace
 
 fs::path compile_worker_program() {
     if (const char *chosen = std::getenv("GRADUS_COMPILE"))
@@ -122,8 +155,28 @@ fs::path compile_worker_program() {
     return {};
 }
 
-void compile_in_processes(const std::vector<CompileJob> &jobs, std::uint32_t work_group_size, unsigned processes,
-                          const std::function<void(std::size_t, const CompileAnswer &)> &answered) {
+double compile_limit() {
+    const char *chosen = std::getenv("GRADUS_COMPILE_LIMIT");
+    const double seconds = chosen ? std::strtod(chosen, nullptr) : 0;
+    return seconds > 0 ? seconds : 120;
+}
+
+CompileWorkers::CompileWorkers() = default;
+CompileWorkers::~CompileWorkers() = default;
+
+std::unique_ptr<CompileWorker> CompileWorkers::idle_worker(std::uint32_t work_group_size) {
+    const std::lock_guard lock(mutex_);
+    for (auto worker = idle_.begin(); worker != idle_.end(); ++worker)
+        if ((*worker)->work_group_size() == work_group_size && (*worker)->is_ready()) {
+            std::unique_ptr<CompileWorker> taken = std::move(*worker);
+            idle_.erase(worker);
+            return taken;
+        }
+    return nullptr;
+}
+
+void CompileWorkers::compile(const std::vector<CompileJob> &jobs, std::uint32_t work_group_size, unsigned processes,
+                             const std::function<void(std::size_t, const CompileAnswer &)> &answered) {
     // The time to compile goes about with the length of the source. The longest first, so that all end together.
     std::vector<std::size_t> waiting(jobs.size());
     std::iota(waiting.begin(), waiting.end(), 0);
@@ -132,39 +185,50 @@ void compile_in_processes(const std::vector<CompileJob> &jobs, std::uint32_t wor
     });
 
     const fs::path program = compile_worker_program(), folder = private_folder();
-    std::vector<std::unique_ptr<Worker>> workers;
-    const auto give_job = [&](Worker &worker) {
+    std::vector<std::unique_ptr<CompileWorker>> workers;
+    const auto give_job = [&](CompileWorker &worker) {
+        worker.job.reset();
         if (waiting.empty() || !worker.lives())
-            return worker.end();
+            return;
         worker.job = waiting.back();
+        worker.seconds = 0;
         waiting.pop_back();
         send_message(worker.socket(), to_bytes(jobs[*worker.job])); // a failure is seen when it should answer
     };
     if (!program.empty() && !folder.empty())
         for (unsigned i = 0; i < std::min<std::size_t>(processes, jobs.size()); ++i) {
-            workers.push_back(std::make_unique<Worker>(program, folder, work_group_size));
+            std::unique_ptr<CompileWorker> worker = idle_worker(work_group_size);
+            workers.push_back(worker ? std::move(worker)
+                                     : std::make_unique<CompileWorker>(program, folder, work_group_size));
             give_job(*workers.back());
         }
 
+    const double limit = compile_limit();
     for (;;) {
         std::vector<pollfd> sockets;
-        std::vector<Worker *> polled;
-        for (const std::unique_ptr<Worker> &worker : workers)
-            if (worker->lives()) {
+        std::vector<CompileWorker *> polled;
+        for (const std::unique_ptr<CompileWorker> &worker : workers)
+            if (worker->lives() && worker->job) {
                 sockets.push_back({worker->socket(), POLLIN, 0});
                 polled.push_back(worker.get());
             }
         if (sockets.empty())
             break;
-        if (poll(sockets.data(), sockets.size(), -1) < 0)
-            continue; // a signal
+        const auto start = std::chrono::steady_clock::now();
+        const int ready = poll(sockets.data(), sockets.size(), int(1000 * slice));
+        // A process that was stopped for long has not waited for as long.
+        const double waited = std::min(seconds_since(start), slice);
         for (std::size_t i = 0; i < sockets.size(); ++i) {
-            if (sockets[i].revents == 0)
+            CompileWorker &worker = *polled[i];
+            worker.seconds += waited;
+            const bool is_late = worker.seconds > limit;
+            if (!is_late && (ready <= 0 || sockets[i].revents == 0)) // ready < 0: a signal
                 continue;
-            Worker &worker = *polled[i];
             const std::size_t job = *worker.job;
             CompileAnswer answer;
             try {
+                if (is_late)
+                    throw std::runtime_error(told_late(jobs[job].source.name, limit));
                 answer = received_answer(worker.socket());
                 give_job(worker); // before its answer is worked on here
             } catch (const std::runtime_error &error) {
@@ -176,6 +240,10 @@ void compile_in_processes(const std::vector<CompileJob> &jobs, std::uint32_t wor
     }
     for (const std::size_t job : waiting) // no worker was left
         answered(job, {});
+    const std::lock_guard lock(mutex_);
+    for (std::unique_ptr<CompileWorker> &worker : workers)
+        if (worker->lives())
+            idle_.push_back(std::move(worker));
 }
 
 } // namespace gradus

@@ -21,6 +21,7 @@
 namespace gradus {
 
 struct BuiltProgram;
+class CompileWorkers;
 
 /// Programs that were built for a device in this process, by source and options.
 struct BuiltPrograms {
@@ -37,9 +38,10 @@ struct Device::Implementation {
     unsigned compile_threads = 1; ///< programs that are compiled at a time
     std::uint64_t allocated_bytes = 0, peak_bytes = 0;
     BuiltPrograms built;
-    ProgramStore store;       ///< what other processes built
-    std::size_t compiled = 0; ///< programs that were not taken from there
-    LaunchObserver observer;  ///< empty: none
+    std::weak_ptr<CompileWorkers> compile_workers; ///< while somebody keeps them; built.mutex is for them too
+    ProgramStore store;                            ///< what other processes built
+    std::size_t compiled = 0;                      ///< programs that were not taken from there
+    LaunchObserver observer;                       ///< empty: none
 };
 
 struct FoundDevice {

@@ -4,6 +4,7 @@
 #include "runtime/device/launch_observer.h"
 #include "runtime/device/opencl.h"
 #include "runtime/device/program_builder.h"
+#include "runtime/device/program_code.h"
 #include "runtime/error.h"
 
 #include <fmt/format.h>
@@ -152,9 +153,10 @@ KernelLibrary::KernelLibrary(Device &device, TraitValues traits, Precision preci
 
 namespace {
 
-std::string options_for(const KernelRequest &request, const KernelSource &source, const TraitValues &traits,
-                        Precision precision, std::uint32_t work_group_size) {
-    std::string options = fmt::format("-cl-std=CL1.2 -cl-kernel-arg-info -D WORK_GROUP_SIZE={}", work_group_size);
+std::string options_for(const DeviceDescription &device, const KernelRequest &request, const KernelSource &source,
+                        const TraitValues &traits, Precision precision, std::uint32_t work_group_size) {
+    std::string options = fmt::format("-cl-std=CL1.2 -cl-kernel-arg-info -D WORK_GROUP_SIZE={}{}", work_group_size,
+                                      builtin_options(device));
     if (precision == Precision::double_)
         options += " -D GRADUS_DOUBLE";
     else
@@ -193,7 +195,8 @@ std::vector<Kernel> KernelLibrary::build(const std::vector<KernelRequest> &reque
         const auto [file, is_new] = files.try_emplace(request.file);
         if (is_new)
             file->second = kernel_source(request.file);
-        const std::string options = options_for(request, file->second, traits_, precision_, work_group_size());
+        const std::string options =
+            options_for(d.description, request, file->second, traits_, precision_, work_group_size());
         if (!dump_folder.empty())
             dump(dump_folder, request, options, file->second.text);
         sources.push_back({request.name, file->second.text, options});
@@ -235,6 +238,8 @@ std::vector<Kernel> KernelLibrary::build(const std::vector<KernelRequest> &reque
 void observe_launches(Device &device, LaunchObserver observer) {
     device.implementation().observer = std::move(observer);
 }
+
+std::shared_ptr<void> keep_compilers(Device &device) { return compile_workers(device.implementation()); }
 
 void finish(Device &device) {
     opencl_call("waiting for the device", [&] { device.implementation().queue.finish(); });

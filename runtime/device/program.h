@@ -94,6 +94,10 @@ class KernelLibrary {
     std::uint32_t work_group_size_;
 };
 
+/// While somebody holds what this returns, processes that compile kernels for the device wait for more after each
+/// build(). Else they end, and the next build() starts others.
+std::shared_ptr<void> keep_compilers(Device &device);
+
 /// Waits until the device has done all that was asked of it.
 void finish(Device &device);
 

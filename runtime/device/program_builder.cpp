@@ -148,13 +148,13 @@ class Builder {
         for (const Task &task : tasks)
             jobs.push_back({device_.description, sources_[task.index]});
         std::vector<Task> left;
-        compile_in_processes(jobs, work_group_size_, device_.compile_threads,
-                             [&](std::size_t i, const CompileAnswer &answer) {
-                                 if (answer.kind == CompileAnswer::Kind::does_not_compile)
-                                     throw Error(ExitCode::device, answer.content);
-                                 if (answer.kind == CompileAnswer::Kind::no_code || !take_answer(tasks[i], answer))
-                                     left.push_back(tasks[i]);
-                             });
+        compile_workers(device_)->compile(
+            jobs, work_group_size_, device_.compile_threads, [&](std::size_t i, const CompileAnswer &answer) {
+                if (answer.kind == CompileAnswer::Kind::does_not_compile)
+                    throw Error(ExitCode::device, answer.content);
+                if (answer.kind == CompileAnswer::Kind::no_code || !take_answer(tasks[i], answer))
+                    left.push_back(tasks[i]);
+            });
         return left;
     }
 
@@ -219,6 +219,14 @@ class Builder {
 };
 
 } // namespace
+
+std::shared_ptr<CompileWorkers> compile_workers(Device::Implementation &device) {
+    const std::lock_guard lock(device.built.mutex);
+    std::shared_ptr<CompileWorkers> workers = device.compile_workers.lock();
+    if (!workers)
+        device.compile_workers = workers = std::make_shared<CompileWorkers>();
+    return workers;
+}
 
 std::vector<Shared> obtain_programs(Device::Implementation &device, const std::vector<ProgramSource> &sources,
                                     std::uint32_t work_group_size, const ProgramReady &ready) {

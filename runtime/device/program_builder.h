@@ -14,6 +14,9 @@ namespace gradus {
 /// compile: 0 where it was not.
 using ProgramReady = std::function<void(std::size_t, double)>;
 
+/// The processes that compile for the device. They end when nobody has them any more.
+std::shared_ptr<CompileWorkers> compile_workers(Device::Implementation &device);
+
 /// One program for each source, equal ones shared. What is compiled goes into the device's store. Several threads may
 /// ask at once; none compiles what another one does. Throws Error with the compiler's log.
 std::vector<std::shared_ptr<const BuiltProgram>> obtain_programs(Device::Implementation &device,

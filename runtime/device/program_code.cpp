@@ -68,6 +68,11 @@ ProgramImage image_of(const BuiltProgram &program) {
     return {program.kernels, std::string(binaries.front().begin(), binaries.front().end())};
 }
 
+std::string builtin_options(const DeviceDescription &device) {
+    // _OPENCL_H_ is the include guard of clang's opencl-c.h; types are in another header.
+    return is_pocl_cpu(device) && device.driver.starts_with("3.1") ? " -D _OPENCL_H_ -D GRADUS_DECLARE_BUILTINS" : "";
+}
+
 std::string pocl_specialization(std::uint32_t work_group_size) {
     return fmt::format("{}-1-1-goffs0-smallgrid", work_group_size);
 }

@@ -48,6 +48,16 @@ GRADUS_CLONES void make_keys(const KeyInput &input, std::size_t count, std::uint
     }
 }
 
+/// Puts each row where its key says; `places` are those of the next ones.
+template <std::uint32_t lines>
+void place(const RowLines &rows, const std::uint16_t *__restrict keys, std::uint32_t *__restrict places,
+           std::uint32_t *__restrict sorted) {
+    const std::size_t count = rows.end - rows.begin;
+    for (std::size_t i = 0; i < count; ++i)
+        for (std::uint32_t line = 0; line < lines; ++line)
+            sorted[places[keys[line * count + i]]++] = static_cast<std::uint32_t>(rows.begin + line * rows.apart + i);
+}
+
 } // namespace
 
 RayOrdering::RayOrdering(const std::array<float, 3> &low, const std::array<float, 3> &high) : low_(low) {
@@ -58,45 +68,50 @@ RayOrdering::RayOrdering(const std::array<float, 3> &low, const std::array<float
 }
 
 const std::vector<std::uint32_t> &RayOrdering::sort(const SegmentColumns &rays, const std::uint32_t *state,
-                                                    std::uint32_t wanted, std::size_t begin, std::size_t end,
-                                                    RayOrder order) {
+                                                    std::uint32_t wanted, const RowLines &rows, RayOrder order) {
     groups_.assign(1, 0);
+    const std::size_t count = rows.end - rows.begin;
     if (order == RayOrder::none) {
         sorted_.clear();
-        for (std::size_t row = begin; row < end; ++row)
-            if (state[row] == wanted)
-                sorted_.push_back(static_cast<std::uint32_t>(row));
+        for (std::size_t row = rows.begin; row < rows.end; ++row)
+            for (std::size_t line = 0; line < rows.lines; ++line)
+                if (const std::size_t at = row + line * rows.apart; state[at] == wanted)
+                    sorted_.push_back(static_cast<std::uint32_t>(at));
         groups_.push_back(static_cast<std::uint32_t>(sorted_.size()));
         return sorted_;
     }
-    const std::size_t count = end - begin;
     const bool by_cell = order == RayOrder::cell;
     const std::uint32_t octant_keys = by_cell ? cell_count : 1, key_count = 8 * octant_keys;
-    keys_.resize(count);
+    keys_.resize(rows.lines * count);
     KeyInput input;
-    for (int axis = 0; axis < 3; ++axis) {
-        input.origin[axis] = rays.origin[axis] + begin;
-        input.direction[axis] = rays.direction[axis] + begin;
-        input.low[axis] = low_[axis];
-        input.scale[axis] = by_cell ? scale_[axis] : 0;
-    }
-    input.state = state + begin;
     input.octant_step = octant_keys;
     input.wanted = wanted;
     input.unwanted_key = key_count;
-    make_keys(input, count, keys_.data());
+    for (std::size_t line = 0; line < rows.lines; ++line) {
+        const std::size_t begin = rows.begin + line * rows.apart;
+        for (int axis = 0; axis < 3; ++axis) {
+            input.origin[axis] = rays.origin[axis] + begin;
+            input.direction[axis] = rays.direction[axis] + begin;
+            input.low[axis] = low_[axis];
+            input.scale[axis] = by_cell ? scale_[axis] : 0;
+        }
+        input.state = state + begin;
+        make_keys(input, count, keys_.data() + line * count);
+    }
     // One more key than there are, for the rows that are not wanted: no branch is needed for them.
     count_.assign(key_count + 2, 0);
-    for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t i = 0; i < keys_.size(); ++i)
         ++count_[keys_[i] + 1u];
     for (std::uint32_t key = 1; key <= key_count; ++key)
         count_[key] += count_[key - 1];
     for (std::uint32_t octant = 1; octant <= 8; ++octant)
         groups_.push_back(count_[octant * octant_keys]);
     const std::size_t wanted_count = count_[key_count];
-    sorted_.resize(count);
-    for (std::size_t i = 0; i < count; ++i)
-        sorted_[count_[keys_[i]]++] = static_cast<std::uint32_t>(begin + i);
+    sorted_.resize(keys_.size());
+    if (rows.lines == 1)
+        place<1>(rows, keys_.data(), count_.data(), sorted_.data());
+    else
+        place<4>(rows, keys_.data(), count_.data(), sorted_.data());
     sorted_.resize(wanted_count);
     return sorted_;
 }

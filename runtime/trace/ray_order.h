@@ -19,9 +19,19 @@ enum class RayOrder {
 struct SegmentColumns {
     const float *origin[3];
     const float *direction[3];
+    /// Of four lines of so many rows, row i of each is much like that of the others; 0: nothing is known.
+    std::size_t line = 0;
 };
 
-/// A counting sort of the rows of one chunk by a small key. Stable, so that the order never changes.
+/// Some rows [begin, end) and, line by line, those `apart` rows further on, which belong to them.
+struct RowLines {
+    std::size_t begin, end;
+    std::uint32_t lines = 1; ///< or 4
+    std::size_t apart = 0;
+};
+
+/// A counting sort of the rows of one chunk by a small key. Stable, so that the order never changes; rows that belong
+/// together are side by side before.
 class RayOrdering {
   public:
     /// `low` and `high` bound all ray origins.
@@ -29,9 +39,9 @@ class RayOrdering {
 
     static constexpr int cell_bits = 3; ///< along each axis
 
-    /// The rows of [begin, end) whose `state` equals `wanted`, in order; valid until the next call.
+    /// The rows whose `state` equals `wanted`, in order; valid until the next call.
     const std::vector<std::uint32_t> &sort(const SegmentColumns &rays, const std::uint32_t *state, std::uint32_t wanted,
-                                           std::size_t begin, std::size_t end, RayOrder order);
+                                           const RowLines &rows, RayOrder order);
 
     /// Places in the sorted rows at which a new octant begins, the end included; one range for RayOrder::none.
     const std::vector<std::uint32_t> &groups() const { return groups_; }

@@ -92,8 +92,8 @@ struct Tracer::Implementation {
 
     void add_triangles(const Scene &s);
     void add_spheres(const Scene &s);
-    std::uint64_t trace_extension(const RayColumns &ray, std::size_t begin, std::size_t end, RecordedRays *record);
-    std::uint64_t trace_shadow(const ShadowColumns &shadow, std::size_t begin, std::size_t end, RecordedRays *record);
+    std::uint64_t trace_extension(const RayColumns &ray, const RowLines &chunk_rows, RecordedRays *record);
+    std::uint64_t trace_shadow(const ShadowColumns &shadow, const RowLines &chunk_rows, RecordedRays *record);
     /// Runs task(0) to task(count - 1) on the threads that trace.
     template <class Task>
     void run(std::size_t count, const Task &task) {
@@ -281,11 +281,11 @@ void for_each_packet(const std::vector<std::uint32_t> &rows, const std::vector<s
 
 } // namespace
 
-std::uint64_t Tracer::Implementation::trace_extension(const RayColumns &ray, std::size_t begin, std::size_t end,
+std::uint64_t Tracer::Implementation::trace_extension(const RayColumns &ray, const RowLines &chunk_rows,
                                                       RecordedRays *record) {
     RayOrdering &ordering = orderings.local();
     const std::vector<std::uint32_t> &rows =
-        ordering.sort(ray, ray.primitive, ray_pending, begin, end, extension_order);
+        ordering.sort(ray, ray.primitive, ray_pending, chunk_rows, extension_order);
     RTCIntersectContext context = new_context(beams(extension_order));
     alignas(64) RTCRayHit16 packet;
     prepare(packet.ray);
@@ -307,10 +307,10 @@ std::uint64_t Tracer::Implementation::trace_extension(const RayColumns &ray, std
     return rows.size();
 }
 
-std::uint64_t Tracer::Implementation::trace_shadow(const ShadowColumns &shadow, std::size_t begin, std::size_t end,
+std::uint64_t Tracer::Implementation::trace_shadow(const ShadowColumns &shadow, const RowLines &chunk_rows,
                                                    RecordedRays *record) {
     RayOrdering &ordering = orderings.local();
-    const std::vector<std::uint32_t> &rows = ordering.sort(shadow, shadow.open, 1, begin, end, shadow_order);
+    const std::vector<std::uint32_t> &rows = ordering.sort(shadow, shadow.open, 1, chunk_rows, shadow_order);
     RTCIntersectContext context = new_context(beams(shadow_order));
     alignas(64) RTCRay16 packet;
     prepare(packet);
@@ -328,21 +328,41 @@ std::uint64_t Tracer::Implementation::trace_shadow(const ShadowColumns &shadow, 
     return rows.size();
 }
 
+namespace {
+
+/// Cuts `count` rows into chunks.
+class Chunks {
+  public:
+    Chunks(const SegmentColumns &columns, std::size_t count)
+        : count_(count), line_(columns.line > 0 ? columns.line : count), lines_(columns.line > 0 ? 4 : 1),
+          chunk_(chunk / lines_), of_line_((line_ + chunk_ - 1) / chunk_) {}
+    std::size_t size() const { return count_ == 0 ? 0 : count_ / (lines_ * line_) * of_line_; }
+    RowLines operator[](std::size_t number) const {
+        const std::size_t first = number / of_line_ * lines_ * line_, begin = number % of_line_ * chunk_;
+        return {first + begin, first + std::min(begin + chunk_, line_), lines_, line_};
+    }
+
+  private:
+    std::size_t count_, line_;
+    std::uint32_t lines_;
+    std::size_t chunk_, of_line_;
+};
+
+} // namespace
+
 TraceCounts Tracer::trace(const RayColumns &ray, std::size_t rays, const ShadowColumns &shadow, std::size_t shadows) {
     Implementation &im = *implementation_;
     const bool keep = im.record_interval > 0 && im.calls++ % im.record_interval == 0;
-    const std::size_t extension_tasks = (rays + chunk - 1) / chunk;
-    const std::size_t tasks = extension_tasks + (shadows + chunk - 1) / chunk;
+    const Chunks ray_chunks(ray, rays), shadow_chunks(shadow, shadows);
+    const std::size_t extension_tasks = ray_chunks.size(), tasks = extension_tasks + shadow_chunks.size();
     std::vector<RecordedRays> kept(keep ? tasks : 0);
     std::atomic<std::uint64_t> extension_count{0}, shadow_count{0};
     im.run(tasks, [&](std::size_t task) {
         RecordedRays *record = keep ? &kept[task] : nullptr;
-        if (task < extension_tasks) {
-            extension_count += im.trace_extension(ray, task * chunk, std::min(rays, (task + 1) * chunk), record);
-        } else {
-            const std::size_t begin = (task - extension_tasks) * chunk;
-            shadow_count += im.trace_shadow(shadow, begin, std::min(shadows, begin + chunk), record);
-        }
+        if (task < extension_tasks)
+            extension_count += im.trace_extension(ray, ray_chunks[task], record);
+        else
+            shadow_count += im.trace_shadow(shadow, shadow_chunks[task - extension_tasks], record);
     });
     if (keep)
         im.recorded.push_back(std::move(kept));

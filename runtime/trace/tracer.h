@@ -14,12 +14,12 @@ namespace gradus {
 
 /// The host's view of the columns of a ray table: see GRADUS_RAY_COLUMNS.
 struct RayColumns : SegmentColumns {
-    std::uint32_t *primitive; ///< in: ray_pending or ray_none; out: what was hit, or ray_escaped
+    std::uint32_t *primitive = nullptr; ///< in: ray_pending or ray_none; out: what was hit, or ray_escaped
 };
 
 /// The host's view of the columns of a shadow table: see GRADUS_SHADOW_COLUMNS.
 struct ShadowColumns : SegmentColumns {
-    std::uint32_t *open; ///< in: 1 asks for a trace; out: 1 if nothing lies before parameter 1
+    std::uint32_t *open = nullptr; ///< in: 1 asks for a trace; out: 1 if nothing lies before parameter 1
 };
 
 struct TraceCounts {
@@ -46,7 +46,7 @@ class Tracer {
     ~Tracer();
 
     /// Traces rows [0, rays) and [0, shadows), on all threads; returns how many were really traced. Which hit a ray
-    /// gets depends on the ray alone.
+    /// gets depends on the ray alone. Rows that are alike (SegmentColumns::line) go side by side.
     TraceCounts trace(const RayColumns &ray, std::size_t rays, const ShadowColumns &shadow, std::size_t shadows);
 
     /// Runs `work` on the parts [begin, end) of [0, count), on the threads that trace.

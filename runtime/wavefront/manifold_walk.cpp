@@ -119,7 +119,7 @@ TableList ManifoldWalk::tables() const {
                       of("walk_link", walk_link_columns)};
     if (settings_.comes_back)
         for (const TableDeclaration &table :
-             {of("back_chain", chain_columns), of("back_vertex", chain_vertex_columns, most),
+             {of("back_chain", chain_columns), of("back_chain_vertex", chain_vertex_columns, most),
               of("back_walked", walked_columns), of("back_walked_vertex", walked_vertex_columns - not_needed, most)})
             list.push_back(table);
     for (const char *name : {"walk_bin", "walk_index"})
@@ -153,7 +153,7 @@ void ManifoldWalk::run(std::uint32_t count) {
     if (settings_.comes_back) {
         turn_.run(count, rows);
         turn_vertices_.run_planes(0, count, settings_.most_vertices, rows);
-        walk({"back_chain", "back_vertex", "back_walked", "back_walked_vertex"}, count);
+        walk({"back_chain", "back_chain_vertex", "back_walked", "back_walked_vertex"}, count);
         return_.run(count, rows);
     }
     add_counts(count);

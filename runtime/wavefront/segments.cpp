@@ -17,6 +17,7 @@ class Segments {
         : view_(places.table->map(Access::read_write, precision == Precision::double_ ? Wait::now : wait)),
           rows_(places.count) {
         const std::size_t capacity = places.rows, rows = places.count;
+        columns.line = places.line;
         if (precision != Precision::double_) {
             float *reals = view_.as<float>();
             for (int axis = 0; axis < 3; ++axis) {
@@ -44,7 +45,7 @@ class Segments {
     Segments(const Segments &) = delete;
     Segments &operator=(const Segments &) = delete;
 
-    SegmentColumns columns;
+    SegmentColumns columns{};
     std::uint32_t *answer;
 
   private:

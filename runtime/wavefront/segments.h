@@ -16,6 +16,7 @@ struct SegmentTable {
     std::size_t rows = 0;          ///< of the table: how far its columns are apart
     std::uint32_t count = 0;
     int origin = 0, direction = 0, answer = 0; ///< the columns: the first of three, of three, the only one
+    std::uint32_t line = 0; ///< SegmentColumns::line
 };
 
 /// Finds what `rays` meet first (their answers: ray_pending before, a primitive or ray_escaped after), and whether

@@ -71,8 +71,11 @@ void Stage::bind(const std::string &argument, const Buffer &buffer) {
         kernel.bind(argument, buffer);
 }
 
-void Stage::launch(std::size_t number, std::uint32_t count, std::uint32_t planes, LaunchNumbers numbers) {
-    if (count == 0 || kernels_.empty() || !kernels_[number].valid())
+void Stage::launch(std::size_t kind, std::uint32_t count, std::uint32_t planes, LaunchNumbers numbers) {
+    if (count == 0 || kernels_.empty())
+        return;
+    const std::size_t number = kernel_of_[kind];
+    if (!kernels_[number].valid())
         return;
     Kernel &kernel = kernels_[number];
     if (bound_[number] != tables_->version()) {
@@ -96,25 +99,33 @@ Stage &Stages::add(StageDeclaration declaration) {
 void Stages::build(Session &session, const Tables &tables) {
     const std::vector<std::string> &kinds = session.scene.kinds;
     std::vector<KernelRequest> requests;
-    std::vector<Kernel *> places;
+    std::vector<std::pair<Stage *, std::size_t>> places; // by request
     for (Stage &stage : stages_) {
         const StageDeclaration &declaration = stage.declaration_;
         if (!declaration.is_wanted)
             continue;
         stage.tables_ = &tables;
-        const bool by_kind = declaration.by_kind;
-        stage.kernels_.resize(by_kind ? kinds.size() : 1);
-        for (std::size_t k = 0; k < stage.kernels_.size(); ++k) {
+        std::size_t count = 0, for_dirac = ~std::size_t(0);
+        for (std::size_t k = 0; k < (declaration.by_kind ? kinds.size() : 1); ++k) {
             KernelRequest request = request_of(declaration);
-            if (by_kind) {
-                const bool is_dirac = bsdf_kind_is_dirac(kinds[k]);
-                request.name = fmt::format("{} {}", declaration.name, kinds[k]);
-                request.definitions["BSDF"] = kinds[k];
-                request.definitions["BSDF_IS_DIRAC"] = std::to_string(int(is_dirac));
+            if (declaration.by_kind) {
+                const bool is_dirac = bsdf_kind_is_dirac(kinds[k]), shares = is_dirac && declaration.dirac_alike;
+                if (shares && for_dirac < count) {
+                    stage.kernel_of_.push_back(for_dirac);
+                    continue;
+                }
+                if (shares)
+                    for_dirac = count;
+                else
+                    request.definitions["BSDF"] = kinds[k];
+                request.name = fmt::format("{} {}", declaration.name, shares ? "dirac" : kinds[k]);
+                request.definitions["BSDF_IS_DIRAC"] = fmt::format("{:d}", is_dirac);
             }
             requests.push_back(request);
-            places.push_back(&stage.kernels_[k]);
+            places.push_back({&stage, count});
+            stage.kernel_of_.push_back(count++);
         }
+        stage.kernels_.resize(count);
     }
     KernelLibrary library(session.device, session.traits, session.options.precision, session.options.work_group_size);
     const std::vector<Kernel> built = library.build(
@@ -127,7 +138,7 @@ void Stages::build(Session &session, const Tables &tables) {
         },
         session.options.dump_kernels);
     for (std::size_t i = 0; i < built.size(); ++i)
-        *places[i] = built[i];
+        places[i].first->kernels_[places[i].second] = built[i];
     for (Stage &stage : stages_) {
         stage.bound_.assign(stage.kernels_.size(), tables.version());
         for (Kernel &kernel : stage.kernels_)

@@ -22,6 +22,8 @@ struct StageDeclaration {
     std::map<std::string, std::string> definitions = {};
     /// True: a kernel for each BSDF kind of the scene, compiled with BSDF and BSDF_IS_DIRAC.
     bool by_kind = false;
+    /// With by_kind: what the kernel does is the same for all Dirac kinds, so one serves them, compiled without BSDF.
+    bool dirac_alike = false;
     bool is_wanted = true; ///< false: nothing is built, and launches do nothing
     bool strict = false;   ///< never relaxed: what counts on rounding or on NaN
     /// The arguments that each launch passes, `count` apart.
@@ -37,6 +39,8 @@ class Stage {
   public:
     /// False where the scene or the method does without it.
     bool is_wanted() const { return !kernels_.empty(); }
+    /// Does without it, as if it had been declared so: before Stages::build().
+    void leave_out() { declaration_.is_wanted = false; }
     /// Launches the kernel on `count` work-items; on none, nothing happens.
     void run(std::uint32_t count, LaunchNumbers numbers = {}) { launch(0, count, 1, numbers); }
     /// The kernel of BSDF kind `kind`, a place in SceneTables::kinds.
@@ -50,16 +54,15 @@ class Stage {
     /// Gives an argument another table than the one of its name, until it is bound again.
     void bind(const std::string &argument, const Buffer &buffer);
 
-    const StageDeclaration &declaration() const { return declaration_; }
-
   private:
     friend class Stages;
     void launch(std::size_t kind, std::uint32_t count, std::uint32_t planes, LaunchNumbers numbers);
 
     StageDeclaration declaration_;
     const Tables *tables_ = nullptr;
-    std::vector<Kernel> kernels_;      ///< by kind; without kinds, one
-    std::vector<std::uint64_t> bound_; ///< by kernel: Tables::version() when tables that change were bound last
+    std::vector<Kernel> kernels_;
+    std::vector<std::size_t> kernel_of_; ///< by kind; without kinds, one
+    std::vector<std::uint64_t> bound_;   ///< by kernel: Tables::version() when tables that change were bound last
     std::vector<std::vector<std::string>> changing_; ///< by kernel: its arguments that are such tables
 };
 

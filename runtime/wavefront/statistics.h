@@ -36,6 +36,7 @@ struct Statistics {
     std::vector<StageTime> stages;                 ///< in the order in which a path meets them
     std::map<std::string, std::uint64_t> rays;     ///< by kind: "extension", "shadow"
     std::map<std::string, std::uint64_t> shifts;   ///< by what became of them, gradient-domain methods
+    std::map<std::string, std::uint64_t> walks;    ///< by what became of them, methods with manifold walks
     std::map<std::string, double> compile_seconds; ///< by kernel; empty where all came from a cache
     std::uint64_t samples = 0;                     ///< paths begun
     std::uint64_t light_paths = 0;                 ///< begun, methods that trace them

@@ -13,8 +13,8 @@ namespace {
 #define GRADUS_LAYOUT(table, COLUMNS)                                                                                  \
     {#table, {{COLUMNS(GRADUS_REAL_COLUMN, GRADUS_UINT_COLUMN)}, [](const TableSizes &sizes) -> std::size_t {          \
                   [[maybe_unused]] const auto [capacity, slots, pixels, crop_width, own_rows, photon_rows,             \
-                                               new_photon_rows, pair_rows, gather_rows, chain_rows,                    \
-                                               chain_vertices] = sizes;                                                \
+                                               new_photon_rows, pair_rows, gather_rows, chain_rows, chain_vertices] =  \
+                      sizes;                                                                                           \
                   return ROWS_OF_##table;                                                                              \
               }}},
 
@@ -25,6 +25,8 @@ const std::map<std::string, TableLayout> layouts = {GRADUS_TABLES(GRADUS_LAYOUT)
 const TableLayout *table_layout(const std::string &argument) {
     const std::string old = "_old";
     std::string table = argument.ends_with(old) ? argument.substr(0, argument.size() - old.size()) : argument;
+    if (table.starts_with("back_")) // of the walk back
+        table = table.substr(5);
     if (table == "direct") // columns of `radiance`
         table = "radiance";
     const auto found = layouts.find(table);

@@ -9,6 +9,8 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "bench" / "render"))
+import gradient  # noqa: E402
+import photons  # noqa: E402
 import references  # noqa: E402
 import renders  # noqa: E402
 
@@ -35,6 +37,23 @@ class FindScene(unittest.TestCase):
                 renders.find_scene(text)
 
 
+class KnownMethods(unittest.TestCase):
+    def of(self, line):
+        with tempfile.TemporaryDirectory() as folder:
+            program = pathlib.Path(folder) / "gradus"
+            program.write_text(f"#!/bin/sh\necho '{line}'\n")
+            program.chmod(0o755)
+            return renders.known_methods(program)
+
+    def test_are_those_of_the_help(self):
+        self.assertEqual(self.of("  --method TEXT:{pt,gpt,auto}=gpt"), ["pt", "gpt", "auto"])
+        self.assertEqual(self.of("  -m,--method TEXT:{sppm} ..."), ["sppm"])
+
+    def test_a_help_without_them_is_an_error(self):
+        with self.assertRaises(SystemExit):
+            self.of("  --seed UINT")
+
+
 class ReferenceKey(unittest.TestCase):
     def test_changes_with_what_changes_the_image(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -51,6 +70,29 @@ class ReferenceKey(unittest.TestCase):
             keys.add(references.key(scene, 16))
             self.assertEqual(len(keys), 7)
             self.assertEqual(references.key(scene, 16), references.key(scene, 16))
+
+
+class ProcessTime(unittest.TestCase):
+    def test_counts_what_both_need_beside_rendering(self):
+        # 64 samples of pt: 6.4 s of rendering, 1 s beside. Into gpt's 13.8 s go 128, and half of the error.
+        self.assertAlmostEqual(gradient.equal_process_time([0.1, 1.0, 7.4], [0.2, 0.5, 13.8], 64), 1.0)
+
+
+class PhotonRates(unittest.TestCase):
+    def record(self, seconds, light_paths):
+        return {"render_seconds": seconds, "spp": 4, "light_paths": light_paths, "photons": 8e6,
+                "stages": [{"name": "light paths, trace", "seconds": 0.5},
+                           {"name": "light paths, scatter", "seconds": 0.5}, {"name": "gather", "seconds": 3.0}]}
+
+    def test_are_those_of_one_render(self):
+        found = photons.rates_of(self.record(2, 3e6))
+        self.assertEqual(found, {"light_paths_per_second": 1.5e6, "light_paths_per_second_of_their_stages": 3e6,
+                                 "photons_a_pass": 2e6, "seconds_a_pass": 0.5})
+
+    def test_median(self):
+        turns = [photons.rates_of(self.record(seconds, 3e6)) for seconds in (1, 2, 8)]
+        self.assertEqual(photons.median_of(turns)["seconds_a_pass"], 0.5)
+        self.assertIsNone(photons.median_of(turns + [{**turns[0], "seconds_a_pass": None}])["seconds_a_pass"])
 
 
 if __name__ == "__main__":

@@ -66,6 +66,15 @@ def holes():
             "holes": [{"holes": 7, "alpha": 0.5, "gain": 5.375, "paper": 15}]}
 
 
+def photons():
+    own = convergence()
+    for point in own["points"]:
+        point["method"] = {"gpt": "gpm", "denoised": "sppm"}.get(point["method"], point["method"])
+    return {**own, "command": ["photons.py"], "notes": ["gbdpt: skipped"], "rates": {"methods": {
+        "gpm": {"light_paths_per_second": 2.5e6, "over_ptracer": 1.6, "seconds_a_pass": 0.25, "over_survey": 6.4},
+        "sppm": {"light_paths_per_second": 2e6, "seconds_a_pass": 0.125}}}}
+
+
 class Headline(unittest.TestCase):
     def of(self, *ratios, at_least=False):
         return chart.headline([{"scene": f"scene {number}", "method": "gpt",
@@ -102,15 +111,16 @@ class DrawOnly(unittest.TestCase):
 
     def test_everything(self):
         self.write("convergence.json", convergence())
+        self.write("photons.json", photons())
         self.write("profile.json", profile())
         self.write("kernels.json", kernels())
         self.write("floor.json", floor(1.25, 1.5))
         self.write("gradient-floor.json", floor(3))
         self.write("holes.json", holes())
         _, page = self.draw()
-        for name in ("convergence", "convergence-trimmed", "stages", "functions", "kernels"):
+        for name in ("convergence", "convergence-trimmed", "photons", "stages", "functions", "kernels"):
             self.assertTrue((self.folder / "report" / f"{name}.png").exists(), name)
-        self.assertEqual(page.count("<svg"), 5)
+        self.assertEqual(page.count("<svg"), 6)
         self.assertEqual(page.count("<svg"), page.count("</svg>"))
         for svg in re.findall(r"<svg.*?</svg>", page, re.DOTALL):
             xml.etree.ElementTree.fromstring(svg)
@@ -119,6 +129,9 @@ class DrawOnly(unittest.TestCase):
         self.assertIn("prefers-color-scheme: dark", page)
         self.assertIn("box &lt;1&gt;", page)
         self.assertIn("mitsuba: skipped", page)
+        self.assertIn("gbdpt: skipped", page)
+        self.assertIn("<td>gpm</td><td>2.5e+06</td><td>1.60</td><td>0.25</td><td>6.40</td>", page)
+        self.assertIn("<td>sppm</td><td>2e+06</td><td></td><td>0.125</td><td></td>", page)
         self.assertIn("a processor, 2 processors; a device", page)
         self.assertIn("<td>gpt</td><td>-1.00</td><td>5.00</td>", page)
         self.assertIn("<td>torus 8x8 4 spp</td><td>pt</td><td>1.25</td><td>0.62 to 2.50</td><td>1.5</td>", page)

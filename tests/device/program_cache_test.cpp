@@ -7,6 +7,7 @@
 
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -191,6 +192,52 @@ TEST_F(ProgramCache, CompilesItselfWhereNoWorkerDoes) {
         EXPECT_EQ(outcome.compiled, 1u) << worker;
         EXPECT_THAT(outcome.result, right) << worker;
     }
+}
+
+// One says nothing at all; the other stops within its answer.
+TEST_F(ProgramCache, CompilesItselfWhereAWorkerHangs) {
+    if (!is_pocl_cpu(Device().description()))
+        GTEST_SKIP() << "only PoCL has workers";
+    fs::create_directories(folder);
+    const std::string worker = folder / "worker";
+    for (const std::string does : {"", "printf '\\377\\0\\0\\0\\0\\0\\0\\0some' >&0; "}) {
+        std::ofstream(worker) << "#!/bin/sh\n" << does << "exec sleep 1000\n";
+        fs::permissions(worker, fs::perms::owner_all);
+        const Variable chosen("GRADUS_COMPILE", worker), limit("GRADUS_COMPILE_LIMIT", "1");
+        const auto start = std::chrono::steady_clock::now();
+        ::testing::internal::CaptureStderr();
+        const Outcome outcome = build_and_run();
+        const std::string said = ::testing::internal::GetCapturedStderr();
+        EXPECT_GE(std::chrono::steady_clock::now() - start, std::chrono::seconds(1)) << does;
+        EXPECT_EQ(outcome.compiled, 1u) << does;
+        EXPECT_THAT(outcome.result, right) << does;
+        EXPECT_EQ(said.find("kernel scan 4: the process that compiles it gave no answer in 1 s") != std::string::npos,
+                  does.empty())
+            << said;
+    }
+}
+
+TEST_F(ProgramCache, KeepsWorkersWhileTheyAreAskedFor) {
+    Device device;
+    if (!is_pocl_cpu(device.description()))
+        GTEST_SKIP() << "only PoCL has workers";
+    const auto workers = [] {
+        std::vector<std::string> found;
+        for (const auto &file : fs::directory_iterator(private_folder()))
+            if (file.path().filename().string().starts_with("worker"))
+                found.push_back(file.path().filename());
+        return found;
+    };
+    std::shared_ptr<void> kept = keep_compilers(device);
+    KernelLibrary(device, {}).build({scan_of(1)});
+    const std::vector<std::string> first = workers();
+    EXPECT_EQ(first.size(), 1u);
+    KernelLibrary(device, {}).build({scan_of(2)});
+    EXPECT_EQ(workers(), first);
+    kept.reset();
+    EXPECT_THAT(workers(), ::testing::IsEmpty());
+    KernelLibrary(device, {}).build({scan_of(4)});
+    EXPECT_THAT(workers(), ::testing::IsEmpty());
 }
 
 TEST_F(ProgramCache, CanBeOffOrOutOfReach) {

@@ -10,6 +10,7 @@ TEST(StatisticsJson, HoldsEveryFigure) {
     Statistics statistics;
     statistics.stages = {{"trace", 3, 400, 8}, {"shade", 1, 200, 4}};
     statistics.rays = {{"extension", 5000}, {"shadow", 3000}};
+    statistics.walks = {{"arrived", 70}, {"steps", 90}};
     statistics.compile_seconds = {{"shade", 0.5}, {"camera", 0.25}};
     statistics.samples = std::uint64_t(1) << 40;
     statistics.non_finite = 3;
@@ -31,6 +32,7 @@ TEST(StatisticsJson, HoldsEveryFigure) {
     EXPECT_EQ(json.at("rays").at("shadow").at("count"), 3000);
     EXPECT_EQ(json.at("rays").at("shadow").at("per_second"), 750);
     EXPECT_EQ(json.at("rays_per_second"), 2000);
+    EXPECT_EQ(json.at("walks").at("steps"), 90);
     EXPECT_EQ(json.at("samples").get<std::uint64_t>(), std::uint64_t(1) << 40);
     EXPECT_EQ(json.at("seed").get<std::uint64_t>(), ~std::uint64_t(0));
     EXPECT_EQ(json.at("non_finite"), 3);

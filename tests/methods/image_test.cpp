@@ -22,7 +22,9 @@ TEST_P(OwnReference, IsMet) { EXPECT_TRUE(renders_as_referenced(own_reference(Ge
 
 INSTANTIATE_TEST_SUITE_P(Image, OwnReference,
                          ::testing::Values("cornell-box", "torus-rough-glass", "plates", "holes-7", "holes-14",
-                                           "holes-28", "door-ajar", "materials"),
+                                           "holes-28", "door-ajar", "materials", "cornell-box-glossy",
+                                           "metal-ring-soft", "torus-smooth-glass-soft", "slab-and-ball-soft",
+                                           "lamp-in-egg-soft"),
                          name_of_scene);
 
 struct SharedCase {
@@ -102,6 +104,10 @@ INSTANTIATE_TEST_SUITE_P(
                                  Material &screen = material_named(scene, "screen-left");
                                  std::swap(screen.front, screen.back);
                              }},
+                      Defect{"caustic_3_percent_brighter", "slab-and-ball-soft",
+                             [](Scene &scene) { scale_emitters(scene, Emitter::Kind::area, 1.03f); }},
+                      Defect{"egg_of_denser_glass", "lamp-in-egg-soft",
+                             [](Scene &scene) { material_named(scene, "egg").front.ior *= 1.1f; }},
                       Defect{"sky_10_percent_darker", "plates",
                              [](Scene &scene) { scale_emitters(scene, Emitter::Kind::constant, 0.9f); }}),
     [](const auto &info) { return info.param.name; });

@@ -212,6 +212,10 @@ TEST_P(PathKinds, AreMadeOnceEach) {
     for (const int depth : {1, 2, 3, 4, 7}) {
         Scene scene = own_scene(std::string(name) + ".xml", 64, 48);
         scene.settings.max_depth = depth;
+        // What lights of no extent send through glass and mirrors photons find, and camera paths cannot.
+        std::erase_if(scene.emitters, [](const Emitter &emitter) {
+            return emitter.kind == Emitter::Kind::point || emitter.kind == Emitter::Kind::directional;
+        });
         RenderOptions options = with_radius(1, false);
         options.direct_photons = direct;
         options.photons = 150'000;
@@ -240,6 +244,9 @@ INSTANTIATE_TEST_SUITE_P(
         return test_name(std::string(std::get<0>(info.param)) + (std::get<1>(info.param) ? "_photons" : "_sampling"));
     });
 
+/// The materials are not among these scenes: their point and directional lights shine through glass onto the floor,
+/// which the reference's path tracer cannot find: 1.3 % of the image (PathKinds has them without these lights).
+///
 /// Per block of 16 x 16: what is left of the bias is no more than what a radius twice as large adds to it: that is the
 /// bias itself where it goes with the radius, and three times the bias where it goes with its square.
 class PhotonReference : public ::testing::TestWithParam<const char *> {};
@@ -283,8 +290,7 @@ TEST_P(PhotonReference, IsMetWithinTheBiasOfTheRadius) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Photons, PhotonReference,
-                         ::testing::Values("cornell-box", "door-ajar", "materials", "plates", "torus-rough-glass"),
-                         name_of_scene);
+                         ::testing::Values("cornell-box", "door-ajar", "plates", "torus-rough-glass"), name_of_scene);
 
 class PhotonInvariance : public ::testing::TestWithParam<const char *> {
   protected:

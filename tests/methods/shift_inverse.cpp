@@ -147,6 +147,8 @@ void ShiftInverter::on_launch(const Launch &launch) {
     }
     const Kept kept = {launch.request, launch.traits, launch.arguments};
     stages_.insert_or_assign(launch.request.name, kept);
+    if (launch.request.entry == "shift")
+        shift_ = kept.arguments;
     // Launches on nothing, by which a method warms its kernels, have tables without content.
     if (launch.request.entry == "weigh" && number(launch.arguments, "count") > 0)
         weighed_.push_back(kept);
@@ -161,8 +163,8 @@ std::vector<ShiftInverter::Base> ShiftInverter::arrivals(const Kept &weigh) cons
     const bool has_shading = weigh.traits.at("TRAIT_SHADING_NORMALS") != 0;
     const Buffer none(device_, "none", sizeof(float));
     const auto table = [&](const char *name, std::size_t rows) {
-        // `weigh` itself does not read the rays where none are apart.
-        const Arguments &arguments = weigh.arguments.contains(name) ? weigh.arguments : stages_.at("shift").arguments;
+        // `weigh` itself does not read the rays where none are apart; the last `shift` before it read them.
+        const Arguments &arguments = weigh.arguments.contains(name) ? weigh.arguments : shift_;
         const auto found = arguments.find(name);
         return HostTable(found == arguments.end() ? none : std::get<Buffer>(found->second.value), rows,
                          Precision::single);
@@ -320,7 +322,7 @@ void ShiftInverter::take_back(const Kept &weigh, const std::vector<Base> &bases)
         rays = {&offset_ray, 4 * rows, 4 * rows, offset_ray_origin_x, offset_ray_direction_x, offset_ray_primitive};
     trace_segments(tracer_, Precision::single, rays,
                    {&link, 8 * rows, 8 * rows, link_origin_x, link_direction_x, link_open}, seconds);
-    run("weigh", 1);
+    run(may_be_apart ? "weigh apart" : "weigh", 1);
     finish(device_);
 
     const HostTable after(offset, 4 * rows, Precision::single), links(link, 8 * rows, Precision::single),

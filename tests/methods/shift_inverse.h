@@ -58,6 +58,7 @@ class ShiftInverter {
     SceneTables tables_;
     Tracer tracer_;
     std::map<std::string, Kept> stages_; ///< the last launch of each kernel, by its name in the profile
+    Arguments shift_;                    ///< of the last launch of `shift`, whichever kernel
     std::map<std::string, Kernel> kernels_;
     std::vector<Kept> weighed_; ///< launches of `weigh` whose results nobody has looked at
     InverseShifts found_[2];

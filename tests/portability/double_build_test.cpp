@@ -79,6 +79,7 @@ class DoubleBuild : public ::testing::TestWithParam<DoubleCase> {
     }
     static Device &device() {
         static Device device;
+        static const std::shared_ptr<void> compilers = keep_compilers(device); // kernels are built one by one
         return device;
     }
 

@@ -35,6 +35,13 @@ REFERENCES = {
     "holes-28": ("holes.xml", 96, {"density": 28}, 16384),
     "door-ajar": ("door-ajar.xml", 96, {}, 24576),
     "materials": ("materials.xml", 96, {}, 32768),
+    "cornell-box-glossy": ("cornell-box-glossy.xml", 128, {}, 8192),
+    # Light that path tracing finds by chance alone: with lamps of the same power, but larger.
+    "metal-ring-soft": ("metal-ring.xml", 96, {"lamp": 0.24, "glow": 75}, 16384),
+    "torus-smooth-glass-soft": ("torus-smooth-glass.xml", 96, {"lamp": 0.6, "glow": 41.6667}, 16384),
+    "slab-and-ball-soft": ("slab-and-ball.xml", 96, {"lamp": 0.24, "glow": 56.25}, 16384),
+    "lamp-in-egg-soft": ("lamp-in-egg.xml", 96, {"lamp": 0.1, "glow": 15}, 12288),
+    "metal-ring": ("metal-ring.xml", 96, {}, 65536),
 }
 
 
@@ -65,6 +72,19 @@ def round_mantissa(values, bits):
     return raw.astype(numpy.uint32).view(numpy.float32)
 
 
+def halves_error(first, second):
+    """What two independent halves say of their mean: its relMSE, and the root mean square relative error of its means of
+    16 x 16 pixels."""
+    import numpy
+
+    mean = (first + second) / 2
+    relmse = ((first - second) ** 2 / 4 / (mean**2 + 0.001)).mean()
+    blocks = block_means(mean)
+    lit = blocks > 0
+    relative = (block_means(first) - block_means(second))[lit] / 2 / blocks[lit]
+    return float(relmse), float(numpy.sqrt((relative**2).mean()))
+
+
 def make_reference(mitsuba, name, arguments):
     import numpy
 
@@ -83,10 +103,12 @@ def make_reference(mitsuba, name, arguments):
     )
     started, seed = time.time(), arguments.seed
     mean = squares = blocks = block_squares = 0.0
+    halves = [0.0, 0.0]
     for batch in range(BATCHES):
         image, seed = render_batch(mitsuba, scene, spp_of_batch, seed, WIDTH * height)
         if not numpy.isfinite(image).all():
             raise RuntimeError(f"{name}: batch {batch} holds a value that is not finite")
+        halves[batch * 2 // BATCHES] += image / (BATCHES // 2)
         # Welford's update: no cancellation where the variance is far below the mean.
         difference = image - mean
         mean = mean + difference / (batch + 1)
@@ -95,8 +117,10 @@ def make_reference(mitsuba, name, arguments):
         blocks = blocks + block_difference / (batch + 1)
         block_squares = block_squares + block_difference * (block_means(image) - blocks)
     variance = squares / (BATCHES - 1) / BATCHES
-    block_error = numpy.sqrt(block_squares / (BATCHES - 1) / BATCHES) / blocks
+    lit = blocks > 0  # a block of shadow alone has no relative error
+    block_error = numpy.sqrt(block_squares / (BATCHES - 1) / BATCHES)[lit] / blocks[lit]
 
+    halves_relmse, halves_blocks = halves_error(*halves)
     arguments.output.mkdir(parents=True, exist_ok=True)
     mitsuba.Bitmap(mean.astype(numpy.float32)).write(str(arguments.output / f"{name}-mean.exr"))
     mitsuba.Bitmap(round_mantissa(variance, 8)).write(str(arguments.output / f"{name}-variance.exr"))
@@ -117,6 +141,8 @@ def make_reference(mitsuba, name, arguments):
         "relmse_of_mean": float(f"{(variance / (mean**2 + 0.001)).mean():.3g}"),
         "block_relative_error_median": float(f"{numpy.median(block_error):.3g}"),
         "block_relative_error_max": float(f"{block_error.max():.3g}"),
+        "halves_relmse": float(f"{halves_relmse:.3g}"),
+        "halves_block_relative_error": float(f"{halves_blocks:.3g}"),
         "renderer": f"mitsuba {mitsuba.__version__} {arguments.variant}",
     }
     (arguments.output / f"{name}.json").write_text(json.dumps(record, indent=2) + "\n")

@@ -1,6 +1,7 @@
 // The device under test, solving in one line, and how exact single precision can be.
 #pragma once
 
+#include "runtime/device/program.h"
 #include "solver/poisson_solver.h"
 #include "tests/support/poisson_reference.h"
 
@@ -38,6 +39,7 @@ constexpr double rounding = 0.5 * double(std::numeric_limits<float>::epsilon());
 inline Device &test_device() {
     const char *selector = std::getenv("GRADUS_TEST_DEVICE");
     static Device device(selector ? selector : "");
+    static const std::shared_ptr<void> compilers = keep_compilers(device); // many solvers, each with some new kernels
     return device;
 }
 

@@ -4,6 +4,7 @@
 #include "methods/method.h"
 #include "planning/make_method.h"
 #include "runtime/device/device.h"
+#include "runtime/device/program.h"
 #include "runtime/film/image.h"
 #include "runtime/film/metrics.h"
 #include "runtime/scene/scene.h"
@@ -22,6 +23,7 @@ namespace gradus::testing {
 /// The device that all renders of a process share.
 inline Device &shared_device() {
     static Device device("");
+    static const std::shared_ptr<void> compilers = keep_compilers(device); // many renders, each with some new kernels
     return device;
 }
 

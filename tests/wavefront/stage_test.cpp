@@ -140,9 +140,10 @@ Seen watch(const char *method, const Scene &scene, const RenderOptions &options)
             const auto found = launch.arguments.find(name);
             return found == launch.arguments.end() ? 0 : std::get<std::uint32_t>(found->second.value);
         };
-        const TableSizes sizes = {number("capacity"),        number("slots"),    number("pixels"),
-                                  number("crop_width"),      number("own_rows"), number("photon_rows"),
-                                  number("new_photon_rows"), number("pair_rows")};
+        const TableSizes sizes = {number("capacity"),        number("slots"),     number("pixels"),
+                                  number("crop_width"),      number("own_rows"),  number("photon_rows"),
+                                  number("new_photon_rows"), number("pair_rows"), number("chain_rows"),
+                                  number("chain_vertices")};
         for (const auto &[name, argument] : launch.arguments) {
             const auto *buffer = std::get_if<Buffer>(&argument.value);
             const TableLayout *layout = table_layout(name);
@@ -180,7 +181,8 @@ TEST(TablesOfARender, AreThoseThatTheSceneAsksFor) {
     options.aov = true;
     const Seen smooth = watch("gpt", room({testing::mirror(), testing::rough_glass(0.2, 1.5)}), options);
     EXPECT_THAT(smooth.tables, IsSupersetOf({"offset_vertex", "offset_ray", "feature", "feature_film"}));
-    EXPECT_THAT(smooth.stages, IsSupersetOf({"advance apart", "evaluate diffuse", "evaluate conductor"}));
+    EXPECT_THAT(smooth.stages, IsSupersetOf({"advance apart", "weigh apart", "shift diffuse", "shift conductor",
+                                             "evaluate diffuse", "evaluate conductor"}));
 }
 
 TEST(TablesOfARender, TakeNoMemoryThatTheSceneDoesNotAskFor) {

@@ -95,8 +95,11 @@ double share_that_comes_back(const char *name) {
     std::string text;
     for (const auto &[outcome, number] : counts)
         text += outcome == "steps" || number == 0 ? "" : " " + outcome + " " + std::to_string(number);
-    std::printf("  %s: %zu chains, %.2f steps;%s; a vertex came back off by %.1e at most\n", name, count,
-                double(counts.at("steps")) / double(counts.at("arrived")), text.c_str(), farthest);
+    std::printf(
+        "  %s: %zu chains, %.2f steps, %.2f million there and back a second;%s; a vertex came back off by %.1e at "
+        "most\n",
+        name, count, double(counts.at("steps")) / double(counts.at("arrived")), 1e-6 * double(count) / there.seconds,
+        text.c_str(), farthest);
     EXPECT_EQ(lost, 0u) << "walks whose way back does not arrive";
     EXPECT_EQ(elsewhere, 0u) << "walks whose way back ends elsewhere";
     EXPECT_EQ(not_finite, 0u);

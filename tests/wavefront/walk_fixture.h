@@ -6,9 +6,11 @@
 #include "tests/support/small_scenes.h"
 #include "tests/wavefront/chain_sampler.h"
 
+#include "runtime/seconds_since.h"
 #include "runtime/wavefront/host_table.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -55,13 +57,16 @@ class Walker {
         for (std::size_t first = 0; first < chains.size(); first += batch) {
             const std::size_t count = std::min(batch, chains.size() - first);
             put(chains, first, count);
+            const auto start = std::chrono::steady_clock::now();
             walk.run(std::uint32_t(count));
+            seconds += seconds_since(start);
             take(chains, first, count, results);
         }
         return results;
     }
 
     Session session;
+    double seconds = 0; ///< spent walking
 
   private:
     Stages stages_;

@@ -520,6 +520,8 @@ TEST(ManifoldWalkOf, CoarseFacetsFailOrArrive) {
     }
     EXPECT_GT(arrived, 200u);
     EXPECT_LT(arrived, 1900u);
+    // Steps over to another facet lead away, and are not taken.
+    EXPECT_GT(tally(results)["diverged"], 50u);
 }
 
 bool same_bits(const WalkResult &a, const WalkResult &b) {

@@ -1,0 +1,44 @@
+/* The built-in functions that kernels call, for a compiler that is kept from reading the header with all of OpenCL's:
+ * PoCL's clang reads 18,000 lines of overloads for each program, which takes six times as long as most kernels do
+ * (builtin_options() in runtime/device/program_code.h). The declarations are OpenCL 1.2's, 6.12. A call of any other
+ * built-in does not compile there. */
+#ifndef GRADUS_SHARED_BUILTINS_H
+#define GRADUS_SHARED_BUILTINS_H
+#if defined(__OPENCL_VERSION__) && defined(GRADUS_DECLARE_BUILTINS)
+
+#define GRADUS_BUILTIN __attribute__((overloadable, const))
+
+size_t GRADUS_BUILTIN get_global_id(uint);
+size_t GRADUS_BUILTIN get_global_size(uint);
+size_t GRADUS_BUILTIN get_group_id(uint);
+size_t GRADUS_BUILTIN get_local_id(uint);
+
+real GRADUS_BUILTIN sqrt(real);
+real GRADUS_BUILTIN fabs(real);
+real GRADUS_BUILTIN floor(real);
+int GRADUS_BUILTIN max(int, int);
+uint GRADUS_BUILTIN min(uint, uint);
+uint GRADUS_BUILTIN mul_hi(uint, uint);
+
+/* They read and write memory, so they are not const. */
+#define GRADUS_LOAD_OR_STORE __attribute__((overloadable))
+#define GRADUS_DECLARE_VECTORS(real8, real16)                                                                          \
+    real8 GRADUS_LOAD_OR_STORE __attribute__((pure)) vload8(size_t, const __global real *);                            \
+    real16 GRADUS_LOAD_OR_STORE __attribute__((pure)) vload16(size_t, const __global real *);                          \
+    void GRADUS_LOAD_OR_STORE vstore8(real8, size_t, __global real *);                                                 \
+    void GRADUS_LOAD_OR_STORE vstore16(real16, size_t, __global real *);
+#ifdef GRADUS_DOUBLE
+/* kernels/lib/approximation.h has no polynomials in double. */
+real GRADUS_BUILTIN exp(real);
+real GRADUS_BUILTIN log(real);
+real GRADUS_BUILTIN sinpi(real);
+real GRADUS_BUILTIN cospi(real);
+real GRADUS_BUILTIN erf(real);
+real GRADUS_BUILTIN erfc(real);
+GRADUS_DECLARE_VECTORS(double8, double16)
+#else
+GRADUS_DECLARE_VECTORS(float8, float16)
+#endif
+
+#endif
+#endif
