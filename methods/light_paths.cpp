@@ -60,10 +60,29 @@ StageDeclaration emit_stage(const Session &session) {
 }
 
 StageDeclaration scatter_stage() {
-    StageDeclaration stage =
-        with_vertices({.name = "scatter", .by_kind = true, .numbers = {"first", "to", "to_photon"}});
+    StageDeclaration stage = with_vertices({.name = "scatter",
+                                            .definitions = {{"LEAVES_PHOTONS", "1"}},
+                                            .by_kind = true,
+                                            .numbers = {"first", "to", "to_photon"}});
     stage.tables.insert(stage.tables.end(), {{"photon", "light_path"}, {"photon_origin", "light_path"}});
     return stage;
+}
+
+/// The first surface, where no photon is left.
+StageDeclaration scatter_first_stage(bool is_wanted) {
+    return with_vertices({.name = "scatter first",
+                          .file = "scatter",
+                          .definitions = {{"LEAVES_PHOTONS", "0"}},
+                          .by_kind = true,
+                          .is_wanted = is_wanted,
+                          .numbers = {"first", "to"}});
+}
+
+// Light paths that have met their first surface are a phase of their own where that leaves no photon.
+constexpr std::uint32_t first_phase = 1;
+
+BinLayout bin_layout(const Session &session, bool is_first_apart) {
+    return {.phases = is_first_apart ? 2u : 1u, .kinds = std::uint32_t(session.scene.kinds.size())};
 }
 
 StageDeclaration order_stage() {
@@ -93,11 +112,11 @@ TableList own_tables(const Session &session, const Wavefront &paths) {
 LightPaths::LightPaths(Session &session, Stages &consumers, const Scene &scene, const RenderOptions &options,
                        Direct direct)
     : session_(session), consumers_(consumers), wanted_(options.photons),
-      first_photon_depth_(direct == Direct::photons ? 1 : 2), emit_(stages_.add(emit_stage(session))),
-      paths_(session, stages_, {.kinds = std::uint32_t(session.scene.kinds.size())}),
-      scatter_(stages_.add(scatter_stage())), count_(stages_.add(photons_stage("count", {"rows"}))),
-      scan_(stages_.add(photons_stage("scan", {"chunks"}))), place_(stages_.add(photons_stage("place", {"rows"}))),
-      order_(stages_.add(order_stage())) {
+      layout_(bin_layout(session, direct == Direct::left_out)), emit_(stages_.add(emit_stage(session))),
+      paths_(session, stages_, layout_, {{"FRESH_APART", layout_.phases > 1 ? "1" : "0"}}, {"bins_of_phase", "fresh"}),
+      scatter_(stages_.add(scatter_stage())), scatter_first_(stages_.add(scatter_first_stage(layout_.phases > 1))),
+      count_(stages_.add(photons_stage("count", {"rows"}))), scan_(stages_.add(photons_stage("scan", {"chunks"}))),
+      place_(stages_.add(photons_stage("place", {"rows"}))), order_(stages_.add(order_stage())) {
     if (wanted_ > std::numeric_limits<std::int32_t>::max())
         throw Error(ExitCode::usage, "there can be 2^31 - 1 light paths a pass at most");
     const std::vector<std::uint32_t> gathers = gathers_by_material(scene, options.gather_roughness);
@@ -114,7 +133,6 @@ LightPaths::LightPaths(Session &session, Stages &consumers, const Scene &scene, 
     const bool plays_roulette = session.numbers.at("roulette_depth") < beyond_all_paths;
     session.numbers["capacity"] = batch;
     session.numbers["light_roulette_depth"] = plays_roulette ? roulette_from : no_roulette;
-    session.numbers["first_photon_depth"] = first_photon_depth_;
     session.numbers["photon_rows"] = 0; // attach() and trace() say it
     stages_.build(session, *own_);
     session.numbers = numbers;
@@ -198,7 +216,6 @@ std::uint32_t LightPaths::trace(std::uint64_t first_path, std::uint32_t count) {
 }
 
 void LightPaths::step_all(std::uint64_t first_path, std::uint32_t count) {
-    const std::vector<std::string> &kinds = session_.scene.kinds;
     paths_.begin_pass(count);
     for (;;) {
         std::uint32_t slot;
@@ -213,21 +230,28 @@ void LightPaths::step_all(std::uint64_t first_path, std::uint32_t count) {
         if (!paths_.is_alive())
             return;
         paths_.trace();
-        const Hits &hits = paths_.partition();
+        const Hits &hits = paths_.partition(
+            {{"bins_of_phase", std::uint32_t(2 * session_.scene.kinds.size())}, {"fresh", paths_.vertices()}});
         make_room(std::uint64_t(rows_) + hits.count());
         make_room_for_vertices(std::uint64_t(vertices_) + hits.count());
         paths_.advance();
-        for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
-            const Range rows = hits.kind(0, kind);
-            scatter_.run_kind(kind, rows.count,
-                              {{"first", hits.place(rows.first)},
-                               {"to", rows.first},
-                               {"to_photon", rows_},
-                               {"to_vertex", vertices_}});
-            vertices_ += has_vertices(session_) ? rows.count : 0;
-            rows_ += bsdf_kind_is_dirac(kinds[kind]) ? 0 : rows.count;
-        }
+        for (std::uint32_t phase = 0; phase < layout_.phases; ++phase)
+            for (std::size_t kind = 0; kind < layout_.kinds; ++kind)
+                scatter(hits, phase, kind);
     }
+}
+
+void LightPaths::scatter(const Hits &hits, std::uint32_t phase, std::size_t kind) {
+    const Range rows = hits.kind(phase, kind);
+    const std::uint32_t from = hits.place(rows.first);
+    if (phase == first_phase) {
+        scatter_first_.run_kind(kind, rows.count, {{"first", from}, {"to", rows.first}, {"to_vertex", vertices_}});
+    } else {
+        scatter_.run_kind(kind, rows.count,
+                          {{"first", from}, {"to", rows.first}, {"to_photon", rows_}, {"to_vertex", vertices_}});
+        rows_ += bsdf_kind_is_dirac(session_.scene.kinds[kind]) ? 0 : rows.count;
+    }
+    vertices_ += has_vertices(session_) ? rows.count : 0;
 }
 
 std::uint32_t LightPaths::put_in_order(std::uint32_t count) {
@@ -264,7 +288,7 @@ void LightPaths::make_room_for_vertices(std::uint64_t records) {
         tables_->grow("light_vertices", more * light_vertex_stride);
         tables_->grow("light_vertex_marks", more * light_vertex_mark_stride);
     }
-    for (Stage *stage : {&emit_, &scatter_}) {
+    for (Stage *stage : {&emit_, &scatter_, &scatter_first_}) {
         stage->bind("light_vertices", (*tables_)["light_vertices"]);
         stage->bind("light_vertex_marks", (*tables_)["light_vertex_marks"]);
     }

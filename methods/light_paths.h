@@ -51,6 +51,7 @@ class LightPaths {
 
   private:
     void step_all(std::uint64_t first_path, std::uint32_t count);
+    void scatter(const Hits &hits, std::uint32_t phase, std::size_t kind);
     /// The photons of `count` light paths. Returns how many there are.
     std::uint32_t put_in_order(std::uint32_t count);
     /// For so many rows of `photon`.
@@ -61,12 +62,13 @@ class LightPaths {
     Session &session_;
     Stages &consumers_;
     std::uint64_t wanted_;
-    std::uint32_t first_photon_depth_, paths_a_pass_ = 0;
+    BinLayout layout_;
+    std::uint32_t paths_a_pass_ = 0;
     std::uint32_t rows_ = 0, vertices_ = 0; ///< rows of `photon` and records of vertices that trace() has left
     Stages stages_;
     Stage &emit_;
     Wavefront paths_;
-    Stage &scatter_, &count_, &scan_, &place_, &order_;
+    Stage &scatter_, &scatter_first_, &count_, &scan_, &place_, &order_;
     std::optional<Tables> own_;
     Tables *tables_ = nullptr;
     std::uint64_t light_paths_ = 0, photons_ = 0, rays_ = 0;
