@@ -159,8 +159,7 @@
     UINT(new_photon, ordinal, "photons that its light path left before it; photon_none where it is none itself")
 
 /* The photons of `photon`, cell by cell of a grid. */
-#define GRADUS_PHOTON_SORTED_COLUMNS(REAL, UINT)                                                                       \
-    GRADUS_PHOTON_COLUMNS_OF(photon_sorted, REAL, UINT)
+#define GRADUS_PHOTON_SORTED_COLUMNS(REAL, UINT) GRADUS_PHOTON_COLUMNS_OF(photon_sorted, REAL, UINT)
 
 /* Where camera paths ended at a surface that is rough enough: photons near it are gathered there. */
 #define GRADUS_GATHER_COLUMNS(REAL, UINT)                                                                              \
