@@ -17,37 +17,78 @@ namespace {
 
 constexpr std::uint32_t planes = 5; // the paths of pixels, and four offset paths of each
 
-/// By material record, the place of its kind in SceneTables::kinds; bin_none for those whose direction is given, where
-/// photons do not come to another place.
+// Specular vertices that a photon may have come by one after the other, and still be shifted.
+constexpr std::uint32_t most_inner = 6;
+// Bins of photons that are moved: by the kind of their last vertex (first_kind_bin and on), those at the end of chains
+// before them, those straight from a light behind them.
+constexpr std::uint32_t chain_bin = 0, first_kind_bin = 1;
+
+bool has_specular(const Session &session) {
+    return std::any_of(session.scene.kinds.begin(), session.scene.kinds.end(), bsdf_kind_is_dirac);
+}
+
+/// By material record.
 std::vector<std::uint32_t> material_bins(const Scene &scene, const Session &session) {
     const std::vector<std::string> &kinds = session.scene.kinds;
     std::vector<std::uint32_t> bins;
     for (const Bsdf &bsdf : material_records(scene)) {
         const auto kind = std::find(kinds.begin(), kinds.end(), bsdf_kind_name(bsdf));
         const bool is_dirac = bsdf_kind_is_dirac(bsdf_kind_name(bsdf));
-        bins.push_back(is_dirac || kind == kinds.end() ? bin_none : std::uint32_t(kind - kinds.begin()));
+        bins.push_back(is_dirac || kind == kinds.end() ? chain_bin
+                                                       : first_kind_bin + std::uint32_t(kind - kinds.begin()));
     }
     return bins;
 }
+
+/// What is done by the kind of the vertex that light leaves, or where that is on a light.
+StageDeclaration leaving_stage(const char *name, bool is_light, bool is_wanted, std::vector<std::string> numbers) {
+    return {.name = std::string(name) + (is_light ? " light" : ""),
+            .file = name,
+            .definitions = {{"LAST_IS_LIGHT", is_light ? "1" : "0"}},
+            .by_kind = !is_light,
+            .is_wanted = is_wanted,
+            .numbers = std::move(numbers)};
+}
+
+const std::vector<std::string> leave_numbers = {"first", "pairs", "chain_rows", "chain_vertices", "leave_bin"};
+const std::vector<std::string> chain_numbers = {"first", "pairs", "chain_rows", "chain_vertices"};
 
 } // namespace
 
 GradientPhotonMapper::GradientPhotonMapper(Device &device, const Scene &scene, const RenderOptions &options)
     : options_(options),
       session_(device, checked_for_gathering(scene, options), options, {{"TRAIT_LIGHT_VERTICES", 1}}),
-      paths_(session_, stages_, scene, options, true), photons_(session_, stages_, scene, options),
+      paths_(session_, stages_, scene, options, true), photons_(session_, stages_, scene, options, 0.5),
       pairs_(stages_, true), bin_(stages_.add({.name = "gather_bin"})),
-      order_(stages_, "gather", std::uint32_t(session_.scene.kinds.size()), RowsOf::slot),
+      order_(stages_, "gather", first_kind_bin + std::uint32_t(session_.scene.kinds.size()), RowsOf::slot),
       evaluate_(stages_.add({.name = "photon_evaluate", .by_kind = true})),
       shift_(stages_.add({.name = "photon_shift", .by_kind = true})),
-      moved_(stages_, "moved", std::uint32_t(session_.scene.kinds.size()), RowsOf::path, 4 * PhotonPairs::pair_rows(1)),
-      reconnect_(stages_.add({.name = "photon_reconnect", .by_kind = true, .numbers = {"first", "pairs"}})),
+      moved_(stages_, "moved", light_bin() + 1, RowsOf::path, 4 * PhotonPairs::pair_rows(1)),
+      reconnect_(stages_.add(leaving_stage("photon_reconnect", false, true, {"first", "pairs"}))),
+      reconnect_light_(stages_.add(leaving_stage("photon_reconnect", true, true, {"first", "pairs"}))),
+      project_(
+          stages_.add({.name = "photon_project", .is_wanted = has_specular(session_), .numbers = {"first", "pairs"}})),
+      walk_(stages_.add({.name = "photon_walk", .is_wanted = has_specular(session_), .numbers = chain_numbers})),
+      leave_(stages_.add(leaving_stage("photon_leave", false, has_specular(session_), leave_numbers))),
+      leave_light_(stages_.add(leaving_stage("photon_leave", true, has_specular(session_), leave_numbers))),
+      pass_(stages_.add({.name = "photon_pass",
+                         .definitions = {{"LAST_KIND", "0"}},
+                         .by_kind = true,
+                         .is_wanted = has_specular(session_),
+                         .numbers = chain_numbers})),
+      end_(stages_.add({.name = "photon_pass end",
+                        .file = "photon_pass",
+                        .definitions = {{"LAST_KIND", "1"}},
+                        .is_wanted = has_specular(session_),
+                        .numbers = {"first", "chain_rows", "chain_vertices"}})),
       arrive_(stages_.add({.name = "photon_arrive", .by_kind = true, .numbers = {"pairs"}})),
       sum_(stages_.add(pairs_.sum_stage("pair_difference_sum"))),
       gradient_gather_(stages_.add({.name = "gradient_gather"})),
       combine_(stages_.add({.name = "gradient_combine", .strict = true})), film_(session_, stages_),
       accumulate_(stages_.add({.name = "gradient_accumulate", .strict = true, .numbers = {"first_slot", "frames"}})),
       carry_(stages_.add({.name = "gradient_carry", .numbers = {"first_slot"}})) {
+    if (has_specular(session_))
+        manifold_walk_.emplace(session_, stages_, RowsOf::path, 1, WalkSettings{.most_vertices = most_inner});
     const std::vector<std::uint32_t> bins = material_bins(scene, session_);
     session_.scene_buffers.emplace_back(device, "material_bin", bins.data(), bins.size() * sizeof(bins[0]));
     total_ = std::uint64_t(session_.pixels()) * session_.settings.samples_per_pixel;
@@ -61,6 +102,7 @@ TableList GradientPhotonMapper::tables() const {
             {.name = "difference", .rows = RowsOf::slot, .multiple = 4, .columns = difference_columns},
             {.name = "pair_difference", .multiple = 4 * pairs, .columns = pair_difference_columns},
             {.name = "moved", .multiple = 4 * pairs, .columns = moved_columns},
+            {.name = "moved_link", .columns = std::uint32_t(has_specular(session_) ? moved_link_columns : 0)},
             {.name = "carry", .rows = RowsOf::image_row, .columns = carry_columns, .is_cleared = true},
             {.name = "gradient_film", .rows = RowsOf::pixel, .columns = gradient_film_columns, .is_cleared = true}};
 }
@@ -68,6 +110,8 @@ TableList GradientPhotonMapper::tables() const {
 void GradientPhotonMapper::allocate() {
     TableList list = joined(joined(paths_.tables(), film_.tables()), joined(photons_.tables(), pairs_.tables()));
     list = joined(list, joined(joined(order_.tables(), moved_.tables()), tables()));
+    if (manifold_walk_)
+        list = joined(list, manifold_walk_->tables());
     const std::uint32_t width = session_.film.crop_width, height = session_.film.crop_height;
     const std::uint32_t batch = choose_batch_size(session_.device, options_.batch_size,
                                                   planes * std::uint64_t(session_.pixels()), list, options_.precision);
@@ -80,12 +124,17 @@ void GradientPhotonMapper::allocate() {
     session_.numbers["pair_rows"] = PhotonPairs::pair_rows(batch);
     set_divisor(session_, "strip", "strip_pixels", strip_rows_ * width);
     session_.numbers["strip_first"] = 0;
+    session_.numbers["chain_bin"] = chain_bin;
+    session_.numbers["light_bin"] = light_bin();
+    session_.numbers["most_inner"] = most_inner;
     photons_.attach(*tables_);
     stages_.build(session_, *tables_);
     paths_.attach(*tables_);
     pairs_.attach(*tables_);
     order_.attach(*tables_);
     moved_.attach(*tables_);
+    if (manifold_walk_)
+        manifold_walk_->attach(*tables_);
     film_.attach(*tables_);
 }
 
@@ -143,7 +192,7 @@ void GradientPhotonMapper::gather_photons(const Strip &strip) {
     order_.run(strip.pixels);
     const std::uint32_t most = tables_->rows().paths;
     for (std::uint32_t kind = 0; kind < paths_.kinds(); ++kind) {
-        const Range all = order_.bin(kind);
+        const Range all = order_.bin(first_kind_bin + kind);
         statistics_.gather_points += all.count;
         for (std::uint32_t from = 0; from < all.count; from += most)
             statistics_.photon_pairs +=
@@ -165,14 +214,66 @@ void GradientPhotonMapper::gather_photons(const Strip &strip) {
 void GradientPhotonMapper::shift_photons(std::size_t kind, const PairWindow &window) {
     shift_.run_planes(kind, window.pairs, 4);
     moved_.run(4 * window.pairs);
-    for (std::uint32_t last = 0; last < paths_.kinds(); ++last)
-        reconnect_.run_kind(last, moved_.bin(last).count, {{"first", moved_.bin(last).first}, {"pairs", window.pairs}});
+    move_chains(moved_.bin(chain_bin), window.pairs);
+    for (std::uint32_t last = 0; last < paths_.kinds(); ++last) {
+        const Range rows = moved_.bin(first_kind_bin + last);
+        reconnect_.run_kind(last, rows.count, {{"first", rows.first}, {"pairs", window.pairs}});
+    }
+    const Range lit = moved_.bin(light_bin());
+    reconnect_light_.run(lit.count, {{"first", lit.first}, {"pairs", window.pairs}});
     const TraceCounts counts = trace_segments(session_.tracer, options_.precision,
                                               {&(*tables_)["moved"], tables_->rows_of("moved"), moved_.count(),
                                                moved_origin_x, moved_direction_x, moved_primitive},
                                               {}, session_.trace_seconds);
     session_.rays["offset"] += counts.extension;
     arrive_.run_kind(kind, moved_.count(), {{"pairs", window.pairs}});
+}
+
+/// Photons at the end of chains of specular vertices, which walk to their new ends. They are first in `moved`; once
+/// walked, their rays need no tracing any more.
+void GradientPhotonMapper::move_chains(Range chains, std::uint32_t pairs) {
+    if (!manifold_walk_)
+        return;
+    const std::vector<std::string> &kinds = session_.scene.kinds;
+    const std::uint32_t room = tables_->rows().paths;
+    const std::uint32_t rows = manifold_walk_->chain_rows(), vertices = manifold_walk_->chain_vertices();
+    for (std::uint32_t done = 0; done < chains.count; done += room) {
+        const std::uint32_t count = std::min(room, chains.count - done), first = chains.first + done;
+        project_.run(count, {{"first", first}, {"pairs", pairs}});
+        const TraceCounts traced = trace_segments(
+            session_.tracer, options_.precision,
+            {&(*tables_)["moved"], tables_->rows_of("moved"), first + count, moved_origin_x, moved_direction_x,
+             moved_primitive},
+            {&(*tables_)["moved_link"], room, count, moved_link_origin_x, moved_link_direction_x, moved_link_open},
+            session_.trace_seconds);
+        session_.rays["offset"] += traced.extension + traced.shadow;
+        walk_.run(count, {{"first", first}, {"pairs", pairs}, {"chain_rows", rows}, {"chain_vertices", vertices}});
+        manifold_walk_->run(count);
+        for (std::uint32_t kind = 0; kind < kinds.size(); ++kind)
+            if (!bsdf_kind_is_dirac(kinds[kind]))
+                leave_.run_kind(kind, count,
+                                {{"first", first},
+                                 {"pairs", pairs},
+                                 {"chain_rows", rows},
+                                 {"chain_vertices", vertices},
+                                 {"leave_bin", first_kind_bin + kind}});
+        leave_light_.run(count, {{"first", first},
+                                 {"pairs", pairs},
+                                 {"chain_rows", rows},
+                                 {"chain_vertices", vertices},
+                                 {"leave_bin", light_bin()}});
+        for (std::uint32_t kind = 0; kind < kinds.size(); ++kind)
+            if (bsdf_kind_is_dirac(kinds[kind]))
+                pass_.run_kind(
+                    kind, count,
+                    {{"first", first}, {"pairs", pairs}, {"chain_rows", rows}, {"chain_vertices", vertices}});
+        end_.run(count, {{"first", first}, {"chain_rows", rows}, {"chain_vertices", vertices}});
+    }
+}
+
+/// The bin of photons straight from a light.
+std::uint32_t GradientPhotonMapper::light_bin() const {
+    return first_kind_bin + std::uint32_t(session_.scene.kinds.size());
 }
 
 void GradientPhotonMapper::add_to_film(const Strip &strip) {

@@ -9,8 +9,9 @@
 // the same where a surface is smooth, but fails where an event differs or light is totally reflected.)
 //
 // A photon that counts at both gather points stays; one that does not is mirrored, and its last vertex sends it there
-// anew (kernels/lib/shift_photon.h). Who has no such shift counts for himself: where the last vertex is specular, the
-// light itself, or the gather points are of different BSDF kinds.
+// anew (kernels/lib/shift_photon.h); where that is specular, a manifold walk brings the chain of such vertices there.
+// Who has no such shift counts for himself: where light comes from afar on its last or only a specular way, or the
+// gather points are of different BSDF kinds.
 #pragma once
 
 #include "methods/gather_paths.h"
@@ -20,6 +21,7 @@
 #include "runtime/direct_light/direct_light.h"
 #include "runtime/wavefront/film.h"
 #include "runtime/wavefront/grouping.h"
+#include "runtime/wavefront/manifold_walk.h"
 #include "solver/poisson_solver.h"
 
 #include <future>
@@ -55,6 +57,8 @@ class GradientPhotonMapper final : public Method {
     void begin_strip(const Strip &strip);
     void gather_photons(const Strip &strip);
     void shift_photons(std::size_t kind, const PairWindow &window);
+    void move_chains(Range chains, std::uint32_t pairs);
+    std::uint32_t light_bin() const;
     void add_to_film(const Strip &strip);
     Image make_image(bool layers, bool last);
 
@@ -68,7 +72,10 @@ class GradientPhotonMapper final : public Method {
     Grouping order_; ///< of gather points, by BSDF kind
     Stage &evaluate_, &shift_;
     Grouping moved_; ///< photons, by the kind of their last vertex
-    Stage &reconnect_, &arrive_, &sum_, &gradient_gather_, &combine_;
+    Stage &reconnect_, &reconnect_light_;
+    Stage &project_, &walk_, &leave_, &leave_light_, &pass_, &end_; ///< photons at the end of chains
+    std::optional<ManifoldWalk> manifold_walk_;
+    Stage &arrive_, &sum_, &gradient_gather_, &combine_;
     Film film_;
     Stage &accumulate_, &carry_;
     std::optional<Tables> tables_;

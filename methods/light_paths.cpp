@@ -46,12 +46,22 @@ StageDeclaration photons_stage(const char *step, std::vector<std::string> number
             .numbers = std::move(numbers)};
 }
 
-StageDeclaration scatter_stage() {
-    StageDeclaration stage = {
-        .name = "scatter", .by_kind = true, .numbers = {"first", "to", "to_photon", "first_slot", "to_vertex"}};
-    // Until they are known.
-    stage.tables = {{"light_vertices", "light_path"}, {"light_vertex_marks", "photon_order"}};
+/// Vertices go to tables of the consumers.
+StageDeclaration with_vertices(StageDeclaration stage) {
+    stage.numbers.push_back("to_vertex");
+    stage.tables = {{"light_vertices", "light_path"}, {"light_vertex_marks", "photon_order"}}; // until they are known
     return stage;
+}
+
+StageDeclaration emit_stage(const Session &session) {
+    return with_vertices({.name = "emit",
+                          .is_wanted = session.scene.light_count > 0,
+                          .numbers = {"first_row", "first_slot", "first_path_low", "first_path_high"}});
+}
+
+StageDeclaration scatter_stage() {
+    return with_vertices(
+        {.name = "scatter", .by_kind = true, .numbers = {"first", "to", "to_photon", "first_slot"}});
 }
 
 StageDeclaration gather_stage() {
@@ -85,9 +95,7 @@ LightPaths::LightPaths(Session &session, Stages &consumers, const Scene &scene, 
                        Direct direct)
     : session_(session), consumers_(consumers), wanted_(options.photons),
       first_photon_depth_(direct == Direct::photons ? 1 : 2),
-      emit_(stages_.add({.name = "emit",
-                         .is_wanted = session.scene.light_count > 0,
-                         .numbers = {"first_row", "first_slot", "first_path_low", "first_path_high"}})),
+      emit_(stages_.add(emit_stage(session))),
       paths_(session, stages_, {.kinds = std::uint32_t(session.scene.kinds.size())}),
       scatter_(stages_.add(scatter_stage())), count_(stages_.add(photons_stage("count", {"rows"}))),
       scan_(stages_.add(photons_stage("scan", {"chunks"}))), place_(stages_.add(photons_stage("place", {"rows"}))),
@@ -129,10 +137,10 @@ TableList LightPaths::tables() const {
                        .grows = true}};
     if (with_vertices) { // records: one column
         list.push_back(
-            {.name = "light_vertices", .rows = RowsOf::one, .multiple = photons * light_vertex_stride, .grows = true});
+            {.name = "light_vertices", .rows = RowsOf::one, .multiple = 3 * photons * light_vertex_stride, .grows = true});
         list.push_back({.name = "light_vertex_marks",
                         .rows = RowsOf::one,
-                        .multiple = photons * light_vertex_mark_stride,
+                        .multiple = 3 * photons * light_vertex_mark_stride,
                         .is_uint = true,
                         .grows = true});
     }
@@ -178,10 +186,13 @@ std::uint32_t LightPaths::trace_pass(std::uint64_t first_path, std::uint32_t fir
     for (;;) {
         std::uint32_t slot;
         const Range fresh = paths_.refill(slot);
+        make_room_for_vertices(std::uint64_t(vertices_) + fresh.count);
         emit_.run(fresh.count, {{"first_row", fresh.first},
                                 {"first_slot", slot},
                                 {"first_path_low", std::uint32_t(first_path)},
-                                {"first_path_high", std::uint32_t(first_path >> 32)}});
+                                {"first_path_high", std::uint32_t(first_path >> 32)},
+                                {"to_vertex", vertices_}});
+        vertices_ += fresh.count;
         if (!paths_.is_alive())
             break;
         paths_.trace();
@@ -249,8 +260,10 @@ void LightPaths::make_room_for_vertices(std::uint64_t records) {
         tables_->grow("light_vertices", more * light_vertex_stride);
         tables_->grow("light_vertex_marks", more * light_vertex_mark_stride);
     }
-    scatter_.bind("light_vertices", (*tables_)["light_vertices"]);
-    scatter_.bind("light_vertex_marks", (*tables_)["light_vertex_marks"]);
+    for (Stage *stage : {&emit_, &scatter_}) {
+        stage->bind("light_vertices", (*tables_)["light_vertices"]);
+        stage->bind("light_vertex_marks", (*tables_)["light_vertex_marks"]);
+    }
 }
 
 std::vector<StageTime> LightPaths::times() const {

@@ -14,6 +14,9 @@ typedef struct {
     vec3 origin;    /* already moved off the surface */
     vec3 direction; /* unit vector */
     rgb power;
+    vec3 normal; /* of the surface, on the side that emits; 0 for points */
+    int is_far;  /* at infinity */
+    GRADUS_NOT_IN_REGISTERS
 } light_emission;
 
 /* Leaves a surface that emits the same radiance everywhere and in all directions of its front. */
@@ -23,6 +26,8 @@ GRADUS_FN light_emission emission_from_surface(rgb radiance, vec3 point, vec3 no
     e.direction = v3_normalize(frame_to_world(frame_from_normal(normal), warp_cosine_hemisphere(u1, u2)));
     e.origin = v3_mad(point, offset, normal);
     e.power = rgb_scale(radiance, GRADUS_PI * area);
+    e.normal = normal;
+    e.is_far = 0;
     return e;
 }
 
@@ -50,6 +55,8 @@ GRADUS_FN light_emission emission_from_point(rgb intensity, vec3 point, point2 l
     e.direction = warp_uniform_sphere(leaving.x, leaving.y);
     e.origin = point;
     e.power = rgb_scale(intensity, R(4) * GRADUS_PI);
+    e.normal = v3(R(0), R(0), R(0));
+    e.is_far = 0;
     return e;
 }
 
@@ -61,6 +68,8 @@ GRADUS_FN light_emission emission_from_direction(rgb irradiance, vec3 towards, v
     e.direction = v3_neg(towards);
     e.origin = v3_mad(center, radius, frame_to_world(frame_from_normal(towards), v3(disk.x, disk.y, R(1))));
     e.power = rgb_scale(irradiance, GRADUS_PI * radius * radius);
+    e.normal = e.direction;
+    e.is_far = 1;
     return e;
 }
 
@@ -75,6 +84,8 @@ GRADUS_FN light_emission light_emission_select(int first, light_emission a, ligh
     e.origin = v3_select(first, a.origin, b.origin);
     e.direction = v3_select(first, a.direction, b.direction);
     e.power = rgb_select(first, a.power, b.power);
+    e.normal = v3_select(first, a.normal, b.normal);
+    e.is_far = first ? a.is_far : b.is_far;
     return e;
 }
 
@@ -113,6 +124,8 @@ GRADUS_FN light_emission emission_sampling(GRADUS_GLOBAL const real *lights, GRA
     e.origin = p;
     e.direction = v3(R(0), R(0), R(1));
     e.power = rgb_gray(R(0));
+    e.normal = e.direction;
+    e.is_far = 1;
 #if TRAIT_LIGHT_TRIANGLE
     e = emission_from_triangle(value, p, e1, LIGHT_V3(light, e2), offset, on_light, away);
 #endif

@@ -30,9 +30,9 @@
 
 /* The whole numbers of these records, in a table of their own. */
 #define GRADUS_LIGHT_VERTEX_MARKS(FIELD)                                                                               \
-    FIELD(light_vertex_mark, material, "record of the material on this side")                                          \
+    FIELD(light_vertex_mark, material, "record of the material on this side, or light_vertex_on_surface...")           \
     FIELD(light_vertex_mark, primitive, "")                                                                            \
-    FIELD(light_vertex_mark, before, "the record of the vertex before; light_vertex_none for the first surface")       \
+    FIELD(light_vertex_mark, before, "the record of the vertex before; light_vertex_none for the light itself")       \
     FIELD(light_vertex_mark, padding, "to 16 bytes")
 
 GRADUS_LIB_BEGIN
@@ -42,8 +42,13 @@ enum light_vertex_field { GRADUS_LIGHT_VERTEX_FIELDS(GRADUS_RECORD_INDEX) light_
 enum light_vertex_mark_field { GRADUS_LIGHT_VERTEX_MARKS(GRADUS_RECORD_INDEX) light_vertex_mark_stride };
 #undef GRADUS_RECORD_INDEX
 
-/* The vertex before a light path's first surface: the light itself. */
 #define light_vertex_none 0xFFFFFFFFu
+
+/* Materials of vertices on lights, which have no record: light that leaves a surface, a point, or comes from afar. */
+#define light_vertex_on_surface 0xFFFFFFFEu
+#define light_vertex_at_point 0xFFFFFFFDu
+#define light_vertex_far 0xFFFFFFFCu
+#define light_vertex_is_light(material) ((material) >= light_vertex_far)
 
 GRADUS_LIB_END
 

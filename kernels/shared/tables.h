@@ -204,6 +204,17 @@
     REAL(moved, power_b, "")                                                                                           \
     REAL(moved, ratio, "of both densities, times the Jacobian")
 
+/* Of photons at the end of chains, whether they are what their gather point's plane sees from above: a segment from
+ * origin along direction to distance 1. Row of the chain. */
+#define GRADUS_MOVED_LINK_COLUMNS(REAL, UINT)                                                                          \
+    REAL(moved_link, origin_x, "")                                                                                     \
+    REAL(moved_link, origin_y, "")                                                                                     \
+    REAL(moved_link, origin_z, "")                                                                                     \
+    REAL(moved_link, direction_x, "not normalised")                                                                    \
+    REAL(moved_link, direction_y, "")                                                                                  \
+    REAL(moved_link, direction_z, "")                                                                                  \
+    UINT(moved_link, open, "before tracing: 1 asks for a trace, 0 does not; after: 1 if nothing is in between")
+
 /* Gradient-domain path tracing only, from here on. A base path has four offset paths, j = 0 to 3: through the pixel to
  * the right, left, below and above (gradient_neighbour in kernels/lib/gradient.h). Tables of offset paths have the
  * offset j of row r at row j * capacity + r. */
@@ -363,6 +374,7 @@
     TABLE(pair_value, GRADUS_PAIR_VALUE_COLUMNS)                                                                       \
     TABLE(pair_difference, GRADUS_PAIR_DIFFERENCE_COLUMNS)                                                             \
     TABLE(moved, GRADUS_MOVED_COLUMNS)                                                                                 \
+    TABLE(moved_link, GRADUS_MOVED_LINK_COLUMNS)                                                                       \
     TABLE(primary, GRADUS_PRIMARY_COLUMNS)                                                                             \
     TABLE(primary_vertex, GRADUS_PRIMARY_VERTEX_COLUMNS)                                                               \
     TABLE(vertex, GRADUS_VERTEX_COLUMNS)                                                                               \
@@ -487,6 +499,7 @@ GRADUS_LIB_END
 #define ROWS_OF_pair_value pair_rows
 #define ROWS_OF_pair_difference (4u * pair_rows)
 #define ROWS_OF_moved (4u * pair_rows)
+#define ROWS_OF_moved_link capacity
 #define ROWS_OF_primary slots
 #define ROWS_OF_primary_vertex slots
 #define ROWS_OF_vertex capacity

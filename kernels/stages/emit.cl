@@ -11,7 +11,12 @@ STAGE emit(uint count, uint unit, uint capacity, uint slots, uint first_row, uin
            uint first_path_high, uint seed_low, uint seed_high, __global real *ray, __global real *light_path,
            __global uint *photon_place, __global const real *lights, __global const uint *light_kinds,
            __global const real *emissions, __global const uint *emission_alias, uint light_count, real scene_center_x,
-           real scene_center_y, real scene_center_z, real scene_diameter) {
+           real scene_center_y, real scene_center_z, real scene_diameter
+#if TRAIT_LIGHT_VERTICES
+           ,
+           __global real *light_vertices, __global uint *light_vertex_marks, uint to_vertex
+#endif
+) {
     const size_t i = work_item();
     if (i >= count)
         return;
@@ -36,7 +41,24 @@ STAGE emit(uint count, uint unit, uint capacity, uint slots, uint first_row, uin
     SET_RGB(light_path, power, row, emitted.power);
     AT(light_path, start, row) = rgb_max(emitted.power);
 #if TRAIT_LIGHT_VERTICES
-    AT_UINT(light_path, vertex, row) = light_vertex_none;
+    const uint record = to_vertex + (uint)i;
+    const vec3 none = v3(R(0), R(0), R(0));
+    SET_FIELD_V3(light_vertex, light_vertices, record, position, emitted.origin);
+    SET_FIELD_V3(light_vertex, light_vertices, record, geometric, emitted.normal);
+    SET_FIELD_V3(light_vertex, light_vertices, record, wi, none);
+    FIELD_OF(light_vertex, light_vertices, record, power_r) = emitted.power.r;
+    FIELD_OF(light_vertex, light_vertices, record, power_g) = emitted.power.g;
+    FIELD_OF(light_vertex, light_vertices, record, power_b) = emitted.power.b;
+    const int is_point = v3_dot(emitted.normal, emitted.normal) == R(0);
+    FIELD_OF(light_vertex, light_vertices, record, offset) = R(0);
+    FIELD_OF(light_vertex, light_vertices, record, pdf) =
+        GRADUS_INV_PI * (is_point ? R(0.25) : v3_dot(emitted.normal, emitted.direction));
+    FIELD_OF(light_vertex, light_vertices, record, survival) = R(1);
+    const uint of_near = is_point ? light_vertex_at_point : light_vertex_on_surface;
+    FIELD_OF(light_vertex_mark, light_vertex_marks, record, material) = emitted.is_far ? light_vertex_far : of_near;
+    FIELD_OF(light_vertex_mark, light_vertex_marks, record, primitive) = 0u;
+    FIELD_OF(light_vertex_mark, light_vertex_marks, record, before) = light_vertex_none;
+    AT_UINT(light_path, vertex, row) = record;
 #endif
     photon_place[slot] = 0u;
 }

@@ -17,7 +17,7 @@ constexpr double pi = std::numbers::pi;
 
 RenderOptions with_radius(double value, bool of_scene, double alpha = 1) {
     RenderOptions options;
-    options.radius = {value, of_scene};
+    options.radius = RenderOptions::GatherRadius{value, of_scene};
     options.radius_alpha = alpha;
     return options;
 }
@@ -403,7 +403,7 @@ TEST(PhotonErrors, SayWhatIsMissing) {
     dark.emitters.clear();
     EXPECT_THAT(error_of(dark, rougher), ::testing::HasSubstr("no light"));
     RenderOptions bad = rougher;
-    bad.radius.value = 0;
+    bad.radius = RenderOptions::GatherRadius{0, false};
     EXPECT_THAT(error_of(maker.scene, bad), ::testing::HasSubstr("radius"));
     bad = rougher;
     bad.radius_alpha = 0;

@@ -1,0 +1,79 @@
+/* Light paths that leave a vertex in another direction than they did. */
+#ifndef GRADUS_LIB_LIGHT_VERTEX_LEAVE_H
+#define GRADUS_LIB_LIGHT_VERTEX_LEAVE_H
+//! traits: TRAIT_SHADING_NORMALS TRAIT_ANISOTROPIC
+#include "kernels/lib/bsdf.h"
+#include "kernels/lib/vertex_frame.h"
+#include "kernels/shared/light_vertex.h"
+#include "kernels/shared/stage.h"
+
+#define VERTEX_REAL(field) FIELD_OF(light_vertex, light_vertices, record, field)
+#define VERTEX_V3(field) FIELD_V3(light_vertex, light_vertices, record, field)
+
+/* By solid angle at the vertex, over the density of the direction that the path took. */
+typedef struct {
+    rgb power; /* in the new direction; Russian roulette is that of the path */
+    real pdf;
+    int is_possible; /* and the way back, where the same is asked with the directions exchanged */
+    GRADUS_NOT_IN_REGISTERS
+} light_leaving;
+
+GRADUS_FN frame light_vertex_frame(GRADUS_GLOBAL const real *light_vertices, uint record, uint unit, material m) {
+    (void)m;
+#if TRAIT_SHADING_NORMALS || TRAIT_ANISOTROPIC
+    const vec3 shading = VERTEX_V3(shading);
+#else
+    const vec3 shading = VERTEX_V3(geometric);
+#endif
+#if TRAIT_ANISOTROPIC
+    return surface_frame(shading, VERTEX_V3(along), m);
+#else
+    return frame_from_normal(shading);
+#endif
+}
+
+/* direction: the one that it took; towards: the new one; unit vectors, world frame. Of a vertex of the kind BSDF, or,
+ * with LAST_IS_LIGHT, of one on a light that is not far away. */
+GRADUS_FN light_leaving light_vertex_leave(GRADUS_GLOBAL const real *light_vertices,
+                                           GRADUS_GLOBAL const uint *light_vertex_marks,
+                                           GRADUS_GLOBAL const real *materials, uint record, uint unit, vec3 direction,
+                                           vec3 towards) {
+    const vec3 geometric = VERTEX_V3(geometric);
+    const real cosine = v3_dot(geometric, direction), cosine_offset = v3_dot(geometric, towards);
+    const uint marked = FIELD_OF(light_vertex_mark, light_vertex_marks, record, material);
+    real turned = R(1);
+#if LAST_IS_LIGHT
+    (void)materials;
+    const int is_point = marked == light_vertex_at_point;
+    const int same_side = is_point | ((cosine > R(0)) & (cosine_offset > R(0)));
+    bsdf_value f;
+    f.pdf = GRADUS_INV_PI * (is_point ? R(0.25) : cosine_offset);
+    f.value = rgb_gray(f.pdf);
+#else
+    const int same_side = cosine * cosine_offset > R(0);
+    const material m = material_load(materials, marked, unit);
+    const frame axes = light_vertex_frame(light_vertices, record, unit, m);
+    const vec3 back = VERTEX_V3(wi);
+    const vec3 wi = frame_to_local(axes, back), wo = frame_to_local(axes, towards);
+#if BSDF_IS_DIRAC
+    const bsdf_value f = bsdf_value_none();
+    (void)wi, (void)wo;
+#else
+    const bsdf_value f = PASTE(BSDF, _evaluate)(m, wi, wo, transport_importance);
+#endif
+#if TRAIT_SHADING_NORMALS
+    /* As light paths are (scatter.cl). */
+    turned = r_abs(wi.z * cosine_offset) / r_max(r_abs(v3_dot(geometric, back) * wo.z), R(1e-12));
+#endif
+#endif
+    light_leaving leaving;
+    leaving.is_possible = same_side & (f.pdf > R(0)) & (rgb_max(f.value) > R(0));
+    const real inverse_pdf = R(1) / r_max(VERTEX_REAL(pdf), R(1e-30));
+    const rgb arriving = FIELD_RGB(light_vertex, light_vertices, record, power);
+    leaving.power =
+        rgb_scale(rgb_mul(arriving, f.value), inverse_pdf * turned / r_max(VERTEX_REAL(survival), R(1e-30)));
+    leaving.pdf = f.pdf * inverse_pdf;
+    return leaving;
+}
+
+#endif
