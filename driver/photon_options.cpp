@@ -20,7 +20,7 @@ std::optional<RenderOptions::GatherRadius> gather_radius(const std::string &text
 }
 
 void add_photon_options(CLI::App &command, RenderOptions &options) {
-    const char *group = "Photons (sppm)";
+    const char *group = "Photons (sppm, gpm)";
     command
         .add_option("--photons", options.photons,
                     "Light paths a pass, one pass a sample a pixel; 0: as many as leave about a million photons")
@@ -55,7 +55,7 @@ void add_photon_options(CLI::App &command, RenderOptions &options) {
             "with %, as a share of the scene's diameter")
         ->type_name("NUMBER|NUMBER%")
         ->check(CLI::Validator(complaint, ""))
-        ->default_str(fmt::format("{}", options.radius.value))
+        ->default_str("sppm: 2, gpm: 0.5")
         ->group(group);
     command
         .add_option("--radius-alpha", options.radius_alpha,

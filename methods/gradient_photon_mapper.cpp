@@ -50,7 +50,7 @@ StageDeclaration leaving_stage(const char *name, bool is_light, bool is_wanted, 
             .numbers = std::move(numbers)};
 }
 
-const std::vector<std::string> leave_numbers = {"first", "pairs", "chain_rows", "chain_vertices", "bin"};
+const std::vector<std::string> leave_numbers = {"first", "pairs", "chain_rows", "chain_vertices", "leave_bin"};
 const std::vector<std::string> chain_numbers = {"first", "pairs", "chain_rows", "chain_vertices"};
 
 } // namespace
@@ -58,7 +58,7 @@ const std::vector<std::string> chain_numbers = {"first", "pairs", "chain_rows", 
 GradientPhotonMapper::GradientPhotonMapper(Device &device, const Scene &scene, const RenderOptions &options)
     : options_(options),
       session_(device, checked_for_gathering(scene, options), options, {{"TRAIT_LIGHT_VERTICES", 1}}),
-      paths_(session_, stages_, scene, options, true), photons_(session_, stages_, scene, options),
+      paths_(session_, stages_, scene, options, true), photons_(session_, stages_, scene, options, 0.5),
       pairs_(stages_, true), bin_(stages_.add({.name = "gather_bin"})),
       order_(stages_, "gather", first_kind_bin + std::uint32_t(session_.scene.kinds.size()), RowsOf::slot),
       evaluate_(stages_.add({.name = "photon_evaluate", .by_kind = true})),
@@ -110,6 +110,8 @@ TableList GradientPhotonMapper::tables() const {
 void GradientPhotonMapper::allocate() {
     TableList list = joined(joined(paths_.tables(), film_.tables()), joined(photons_.tables(), pairs_.tables()));
     list = joined(list, joined(joined(order_.tables(), moved_.tables()), tables()));
+    if (manifold_walk_)
+        list = joined(list, manifold_walk_->tables());
     const std::uint32_t width = session_.film.crop_width, height = session_.film.crop_height;
     const std::uint32_t batch = choose_batch_size(session_.device, options_.batch_size,
                                                   planes * std::uint64_t(session_.pixels()), list, options_.precision);
@@ -254,12 +256,12 @@ void GradientPhotonMapper::move_chains(Range chains, std::uint32_t pairs) {
                                  {"pairs", pairs},
                                  {"chain_rows", rows},
                                  {"chain_vertices", vertices},
-                                 {"bin", first_kind_bin + kind}});
+                                 {"leave_bin", first_kind_bin + kind}});
         leave_light_.run(count, {{"first", first},
                                  {"pairs", pairs},
                                  {"chain_rows", rows},
                                  {"chain_vertices", vertices},
-                                 {"bin", light_bin()}});
+                                 {"leave_bin", light_bin()}});
         for (std::uint32_t kind = 0; kind < kinds.size(); ++kind)
             if (bsdf_kind_is_dirac(kinds[kind]))
                 pass_.run_kind(

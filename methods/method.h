@@ -35,10 +35,12 @@ struct RenderOptions : SessionOptions {
     /// Photons are gathered in the first pass from so far: in widths of a pixel at the gather point or, if it is
     /// `of_scene`, as a share of the scene's diameter.
     struct GatherRadius {
-        double value = 2;
+        double value = 1;
         bool of_scene = false;
     };
-    GatherRadius radius;
+    /// None: sppm's 2 widths, of which each photon's light is spread over many pixels, and gpm's 0.5, about a pixel:
+    /// there the reconstruction does so, and by the image.
+    std::optional<GatherRadius> radius;
     double radius_alpha = 0.9; ///< how slowly the radius shrinks, in (0, 1]; 1: not at all
     /// Called before the method `auto` renders a pilot, with its samples a pixel.
     std::function<void(std::uint64_t)> on_pilot;

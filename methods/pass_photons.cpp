@@ -63,22 +63,23 @@ const Scene &checked_for_gathering(const Scene &scene, const RenderOptions &opti
         throw Error(ExitCode::usage, fmt::format("no surface is rough enough to gather photons at: roughness {} or "
                                                  "more; --gather-roughness asks for less, --method pt for none",
                                                  options.gather_roughness));
-    if (!(options.radius.value > 0) || !std::isfinite(options.radius.value))
+    if (options.radius && !(options.radius->value > 0 && std::isfinite(options.radius->value)))
         throw Error(ExitCode::usage, "the radius to gather photons from must be above 0");
     if (!(options.radius_alpha > 0 && options.radius_alpha <= 1))
         throw Error(ExitCode::usage, "the radius shrinks by an alpha above 0 and up to 1");
     return scene;
 }
 
-PassPhotons::PassPhotons(Session &session, Stages &stages, const Scene &scene, const RenderOptions &options)
+PassPhotons::PassPhotons(Session &session, Stages &stages, const Scene &scene, const RenderOptions &options,
+                         double pixel_widths)
     : options_(options), stages_(stages), light_paths_(session, stages, scene, options, direct_of(options)),
       map_(session, stages, photon_rows(light_paths_)) {
     if (session.scene.light_count == 0)
         throw Error(ExitCode::usage, "there is no light in the scene, and so no photon to gather");
-    set_radius(session);
+    set_radius(session, options.radius.value_or(RenderOptions::GatherRadius{pixel_widths, false}));
 }
 
-void PassPhotons::set_radius(Session &session) {
+void PassPhotons::set_radius(Session &session, RenderOptions::GatherRadius radius) {
     const double diameter = session.scene.scene_diameter;
     const Box box = box_of(session.scene);
     double farthest = 0;
@@ -86,9 +87,9 @@ void PassPhotons::set_radius(Session &session) {
         farthest = std::max({farthest, std::fabs(box.low[axis]), std::fabs(box.high[axis])});
     const float *camera = session.scene.camera.data();
     const double pixel = std::sqrt(length_of(camera, camera_right_x) * length_of(camera, camera_down_x));
-    const double slope = options_.radius.of_scene ? 0 : options_.radius.value * pixel;
-    const double start = options_.radius.of_scene ? options_.radius.value * diameter : 0;
-    largest_radius_ = options_.radius.of_scene ? start : largest_share * diameter;
+    const double slope = radius.of_scene ? 0 : radius.value * pixel;
+    const double start = radius.of_scene ? radius.value * diameter : 0;
+    largest_radius_ = radius.of_scene ? start : largest_share * diameter;
     typical_radius_ = std::clamp(slope * seen_distance(session), start, largest_radius_);
     session.reals["radius_slope"] = slope;
     session.reals["radius_start"] = start;

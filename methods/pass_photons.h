@@ -21,9 +21,10 @@ const Scene &checked_for_gathering(const Scene &scene, const RenderOptions &opti
 
 class PassPhotons {
   public:
-    /// Throws Error(ExitCode::usage) where there is no light. Sets the reals that `gather` reads (`radius_slope`...)
-    /// and `flux_scale`.
-    PassPhotons(Session &session, Stages &stages, const Scene &scene, const RenderOptions &options);
+    /// pixel_widths: the radius where the options say none. Throws Error(ExitCode::usage) where there is no light. Sets
+    /// the reals that `gather` reads (`radius_slope`...) and `flux_scale`.
+    PassPhotons(Session &session, Stages &stages, const Scene &scene, const RenderOptions &options,
+                double pixel_widths);
 
     TableList tables() const;
     /// To be called once these are allocated and before the stages are built,
@@ -35,7 +36,7 @@ class PassPhotons {
     const LightPaths &light_paths() const { return light_paths_; }
 
   private:
-    void set_radius(Session &session);
+    void set_radius(Session &session, RenderOptions::GatherRadius radius);
 
     const RenderOptions options_;
     Stages &stages_;

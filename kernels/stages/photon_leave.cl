@@ -7,7 +7,7 @@
 #include "kernels/lib/photon_chain.h"
 
 STAGE photon_leave(uint count, uint unit, uint first, uint pairs, uint photon_rows, uint pair_rows, uint chain_bin,
-                   uint light_bin, uint most_inner, uint chain_rows, uint chain_vertices, uint bin,
+                   uint light_bin, uint most_inner, uint chain_rows, uint chain_vertices, uint leave_bin,
                    __global const uint *moved_index, __global const uint *pair_photon,
                    __global const real *photon_sorted, __global const real *light_vertices,
                    __global const uint *light_vertex_marks, __global const uint *material_bin,
@@ -26,7 +26,7 @@ STAGE photon_leave(uint count, uint unit, uint first, uint pairs, uint photon_ro
     const uint marked = FIELD_OF(light_vertex_mark, light_vertex_marks, record, material);
     const int is_light = light_vertex_is_light(marked);
     const uint own_bin = is_light ? light_bin : material_bin[is_light ? 0u : marked];
-    if (own_bin != bin || AT_UINT(walked, outcome, i) != walk_arrived)
+    if (own_bin != leave_bin || AT_UINT(walked, outcome, i) != walk_arrived)
         return;
     const vec3 start = VERTEX_V3(position);
     const vec3 was = v3_normalize(v3_sub(AT_V3(chain_vertex, position, i), start));

@@ -25,7 +25,7 @@ std::string name_of(const ::testing::TestParamInfo<PhotonCase> &info) {
 RenderOptions few_photons(bool direct_photons = false) {
     RenderOptions options;
     options.photons = 40'000;
-    options.radius = {3, false};
+    options.radius = RenderOptions::GatherRadius{3, false};
     options.direct_photons = direct_photons;
     return options;
 }
@@ -75,7 +75,9 @@ TEST_P(GradientPhotons, DifferencesAreThoseOfThePrimal) {
 INSTANTIATE_TEST_SUITE_P(Image, GradientPhotons,
                          ::testing::Values(PhotonCase{"cornell-box"}, PhotonCase{"cornell-box", true},
                                            PhotonCase{"torus-rough-glass"}, PhotonCase{"plates"},
-                                           PhotonCase{"door-ajar"}, PhotonCase{"materials"}),
+                                           PhotonCase{"door-ajar"}, PhotonCase{"materials"},
+                                           PhotonCase{"lamp-in-egg"}, PhotonCase{"slab-and-ball"},
+                                           PhotonCase{"metal-ring"}),
                          name_of);
 
 } // namespace
