@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <numeric>
 
 namespace gradus {
 
@@ -81,6 +82,9 @@ GradientPhotonMapper::GradientPhotonMapper(Device &device, const Scene &scene, c
                         .definitions = {{"LAST_KIND", "1"}},
                         .is_wanted = has_specular(session_),
                         .numbers = {"first", "chain_rows", "chain_vertices"}})),
+      count_(stages_.add({.name = "photon_count",
+                          .definitions = {{"PARTITION_CHUNK", std::to_string(partition_chunk)}},
+                          .numbers = {"first", "rows", "to"}})),
       arrive_(stages_.add({.name = "photon_arrive", .by_kind = true, .numbers = {"pairs"}})),
       sum_(stages_.add(pairs_.sum_stage("pair_difference_sum"))),
       gradient_gather_(stages_.add({.name = "gradient_gather"})),
@@ -103,6 +107,7 @@ TableList GradientPhotonMapper::tables() const {
             {.name = "pair_difference", .multiple = 4 * pairs, .columns = pair_difference_columns},
             {.name = "moved", .multiple = 4 * pairs, .columns = moved_columns},
             {.name = "moved_link", .columns = std::uint32_t(has_specular(session_) ? moved_link_columns : 0)},
+            {.name = "photon_found", .multiple = 2, .is_uint = true, .is_cleared = true},
             {.name = "carry", .rows = RowsOf::image_row, .columns = carry_columns, .is_cleared = true},
             {.name = "gradient_film", .rows = RowsOf::pixel, .columns = gradient_film_columns, .is_cleared = true}};
 }
@@ -227,6 +232,11 @@ void GradientPhotonMapper::shift_photons(std::size_t kind, const PairWindow &win
                                               {}, session_.trace_seconds);
     session_.rays["offset"] += counts.extension;
     arrive_.run_kind(kind, moved_.count(), {{"pairs", window.pairs}});
+    const Range chains = moved_.bin(chain_bin);
+    const std::uint32_t others = moved_.count() - chains.count;
+    count_.run(chunks_of(chains.count), {{"first", 0}, {"rows", chains.count}, {"to", 0}});
+    count_.run(chunks_of(others), {{"first", chains.count}, {"rows", others}, {"to", tables_->rows().paths}});
+    moved_photons_ += moved_.count();
 }
 
 /// Photons at the end of chains of specular vertices, which walk to their new ends. They are first in `moved`; once
@@ -287,11 +297,11 @@ void GradientPhotonMapper::add_to_film(const Strip &strip) {
 
 Image GradientPhotonMapper::make_image(bool layers, bool last) {
     if (last) // what a pass needs and the films do not
-        tables_->release_all_but({"film", "feature_film", "gradient_film"});
+        tables_->release_all_but({"film", "feature_film", "gradient_film", "photon_found"});
     statistics_.non_finite = 0;
     Image whole = film_.image(done_, statistics_.non_finite);
     if (last)
-        tables_->release_all_but({"gradient_film"});
+        tables_->release_all_but({"gradient_film", "photon_found"});
     if (solver_compiled_.valid())
         solver_compiled_.get();
     if (!solver_)
@@ -302,7 +312,7 @@ Image GradientPhotonMapper::make_image(bool layers, bool last) {
                                                              session_.film.crop_height, options_.precision, done_),
                               direct_edges_.value_or(std::vector<DirectPixel>()), options_, layers, [&] {
                                   if (last)
-                                      tables_->release_all_but({});
+                                      tables_->release_all_but({"photon_found"});
                               });
     if (last)
         solver_.reset();
@@ -316,6 +326,14 @@ Statistics GradientPhotonMapper::statistics() const {
     s.radius_sum = pairs_.radius_sum();
     s = collected(s, session_, stages_, photons_.light_paths().times());
     s.rays["edge"] = edge_rays_;
+    std::vector<std::uint32_t> found(2 * std::size_t(tables_->rows().paths));
+    (*tables_)["photon_found"].read(found.data(), found.size() * sizeof(found[0]));
+    const auto half = found.begin() + std::ptrdiff_t(found.size() / 2);
+    s.shifts["walked"] = std::accumulate(found.begin(), half, std::uint64_t(0));
+    s.shifts["reconnected"] = std::accumulate(half, found.end(), std::uint64_t(0));
+    s.shifts["failed"] = moved_photons_ - s.shifts["walked"] - s.shifts["reconnected"];
+    if (manifold_walk_)
+        s.walks = manifold_walk_->counts();
     return s;
 }
 

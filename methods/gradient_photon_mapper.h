@@ -75,13 +75,15 @@ class GradientPhotonMapper final : public Method {
     Stage &reconnect_, &reconnect_light_;
     Stage &project_, &walk_, &leave_, &leave_light_, &pass_, &end_; ///< photons at the end of chains
     std::optional<ManifoldWalk> manifold_walk_;
+    Stage &count_;
     Stage &arrive_, &sum_, &gradient_gather_, &combine_;
     Film film_;
     Stage &accumulate_, &carry_;
     std::optional<Tables> tables_;
 
     std::uint64_t total_ = 0, done_ = 0;
-    std::uint32_t strip_rows_ = 0; ///< but for the last strip
+    std::uint32_t strip_rows_ = 0;    ///< but for the last strip
+    std::uint64_t moved_photons_ = 0; ///< those that it was tried with
     Statistics statistics_;
     std::optional<std::vector<DirectPixel>> direct_edges_;
     std::uint64_t edge_rays_ = 0;

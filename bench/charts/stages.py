@@ -9,6 +9,9 @@ PARTS = [
     ("shift", "shifts"), ("evaluate", "shifts"), ("weigh", "shifts"), ("advance", "shifts"), ("join", "shifts"),
     ("gradient_begin", "shifts"), ("gradient_connect", "shifts"), ("gradient escape", "shifts"),
     ("gradient emission", "shifts"),
+    ("photon_shift", "shifts"), ("photon_reconnect", "shifts"), ("photon_arrive", "shifts"), ("photon_project", "shifts"),
+    ("photon_walk", "shifts"), ("photon_leave", "shifts"), ("photon_pass", "shifts"), ("moved", "shifts"),
+    ("walk", "shifts"), ("pair_difference", "shifts"), ("gradient_gather", "shifts"),
     ("accumulate", "film"), ("gradient_accumulate", "film"), ("gradient_combine", "film"),
 ]
 COLOURS = {

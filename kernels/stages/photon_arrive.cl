@@ -1,14 +1,14 @@
 /* photon_arrive: offset photons have met a surface: places [0, count) of `moved_index`, of pairs of gather points of
  * one BSDF kind. Where one counts at the offset's gather point, and not at the base's, the shift back would find the
  * base photon: both paths are weighed against each other (Hua et al. 2017, eq. 11). Else the base path counts for
- * itself, as photon_shift has left it. */
+ * itself, as photon_shift has left it, and `moved` forgets what was met. */
 #include "kernels/lib/moved_photon.h"
 #include "kernels/lib/photon_value.h"
 #include "kernels/lib/surface_point.h"
 
 STAGE photon_arrive(uint count, uint unit, uint pairs, uint gather_rows, uint pair_rows, uint strip_pixels,
                     __global const uint *moved_index, __global const uint *pair_gather, __global const real *gather,
-                    __global const real *moved, __global const real *materials, __global const real *triangles,
+                    __global real *moved, __global const real *materials, __global const real *triangles,
                     __global const real *triangle_normals, __global const real *triangle_tangents,
                     __global const real *spheres, uint triangle_count, __global const uint *primitive_material,
                     __global const uint *material_back, __global const uint *material_gathers,
@@ -42,4 +42,5 @@ STAGE photon_arrive(uint count, uint unit, uint pairs, uint gather_rows, uint pa
     const real weight = R(1) / (R(1) + AT(moved, ratio, i));
     const rgb difference = rgb_select(arrives, rgb_scale(rgb_add(offset, alone), weight), alone);
     SET_RGB(pair_difference, value, to, difference);
+    AT_UINT(moved, primitive, i) = arrives ? primitive : ray_none; /* for photon_count */
 }

@@ -183,5 +183,15 @@ TEST_F(Oclgrind, Photons) {
            {"--method", "sppm", "--size", "8x8", "--photons", "200", "--radius", "5%", "--direct", "photons", "--aov"});
 }
 
+// Photons shifted by reconnections and walks.
+TEST_F(Oclgrind, GradientsOfPhotons) {
+    EXPECT_THAT(render("lamp-in-egg.xml", {"--method", "gpm", "--size", "8x6", "--photons", "150", "--radius", "10%"}),
+                IsSupersetOf({"photon_shift diffuse", "photon_reconnect diffuse", "photon_arrive diffuse",
+                              "photon_project", "photon_walk", "photon_leave light", "photon_pass dielectric",
+                              "photon_pass end", "pair_difference_sum", "gradient_gather"}));
+    render("cornell-box.xml", {"--method", "gpm", "--size", "8x8", "--photons", "100", "--radius", "5%", "--direct",
+                               "photons", "--batch-size", "64"});
+}
+
 } // namespace
 } // namespace gradus
