@@ -6,7 +6,6 @@
  * but at least `radius_least`.
  *
  * FEATURES: also leaves the features that the camera sees, in the place of `shade` (by BSDF kind). */
-//! traits: TRAIT_AOV
 #include "kernels/lib/bsdf.h"
 #include "kernels/lib/surface_point.h"
 #include "kernels/lib/vertex_frame.h"

@@ -201,7 +201,7 @@ TEST_F(ProgramCache, CompilesItselfWhereAWorkerHangs) {
     fs::create_directories(folder);
     const std::string worker = folder / "worker";
     for (const std::string does : {"", "printf '\\377\\0\\0\\0\\0\\0\\0\\0some' >&0; "}) {
-        std::ofstream(worker) << "#!/bin/sh\n" << does << "exec sleep 1000\n";
+        std::ofstream(worker) << "#!/bin/sh\n" << does << "exec sleep 60\n";
         fs::permissions(worker, fs::perms::owner_all);
         const Variable chosen("GRADUS_COMPILE", worker), limit("GRADUS_COMPILE_LIMIT", "1");
         const auto start = std::chrono::steady_clock::now();
