@@ -9,6 +9,8 @@ PARTS = [
     ("shift", "shifts"), ("evaluate", "shifts"), ("weigh", "shifts"), ("advance", "shifts"), ("join", "shifts"),
     ("gradient_begin", "shifts"), ("gradient_connect", "shifts"), ("gradient escape", "shifts"),
     ("gradient emission", "shifts"),
+    ("light paths,", "photons"), ("photon", "photons"), ("pair_", "photons"), ("gather", "photons"),
+    ("travel", "photons"), ("walk", "shifts"),
     ("accumulate", "film"), ("gradient_accumulate", "film"), ("gradient_combine", "film"),
 ]
 COLOURS = {
@@ -17,6 +19,7 @@ COLOURS = {
     "camera": plotting.YELLOW,
     "shading": plotting.BLUE,
     "shifts": plotting.VERMILLION,
+    "photons": plotting.GREEN,
     "film": plotting.PURPLE,
     "reconstruction": plotting.INK,
     "other": plotting.GRID,
