@@ -98,7 +98,7 @@ PhotonMapper::PhotonMapper(Device &device, const Scene &scene, const RenderOptio
       shade_(stages_.add(wanted_if(shade_stage(false), has_smooth_ || !options.direct_photons))),
       light_paths_(session_, stages_, scene, options, direct_of(options)),
       map_(session_, stages_, photon_rows(light_paths_)), pairs_(stages_),
-      evaluate_(stages_.add({.name = "photon_evaluate", .by_kind = true})),
+      evaluate_(stages_.add({.name = "photon_evaluate", .by_kind = true, .dirac = DiracKinds::left_out})),
       add_(stages_.add({.name = "gather_add", .numbers = {"first"}})), film_(session_, stages_) {
     if (session_.scene.light_count == 0)
         throw Error(ExitCode::usage, "there is no light in the scene, and so no photon to gather");
