@@ -274,11 +274,9 @@ void GradientPhotonMapper::move_chains(Range chains, std::uint32_t pairs) {
                                  {"chain_rows", rows},
                                  {"chain_vertices", vertices},
                                  {"leave_bin", light_bin()}});
-        for (std::uint32_t kind = 0; kind < kinds.size(); ++kind)
-            if (bsdf_kind_is_dirac(kinds[kind]))
-                pass_.run_kind(
-                    kind, count,
-                    {{"first", first}, {"pairs", pairs}, {"chain_rows", rows}, {"chain_vertices", vertices}});
+        const auto specular = std::find_if(kinds.begin(), kinds.end(), bsdf_kind_is_dirac); // one serves them all
+        pass_.run_kind(std::size_t(specular - kinds.begin()), count,
+                       {{"first", first}, {"pairs", pairs}, {"chain_rows", rows}, {"chain_vertices", vertices}});
         end_.run(count, {{"first", first}, {"chain_rows", rows}, {"chain_vertices", vertices}});
     }
 }
