@@ -128,8 +128,10 @@ Device::Device(const std::string &selector, int threads) : implementation_(std::
     implementation_->description = chosen.description;
     implementation_->device = chosen.device;
     implementation_->store = ProgramStore(program_cache_folder());
-    implementation_->compile_threads =
-        threads > 0 ? static_cast<unsigned>(threads) : std::max(1u, std::thread::hardware_concurrency());
+    // The compiler of Oclgrind 21.10 is not safe for several threads.
+    implementation_->compile_threads = chosen.description.platform == "Oclgrind" ? 1u
+                                       : threads > 0                             ? static_cast<unsigned>(threads)
+                                                     : std::max(1u, std::thread::hardware_concurrency());
     opencl_call("opening the device " + chosen.description.name, [&] {
         implementation_->context = cl::Context(chosen.device);
         implementation_->queue = cl::CommandQueue(implementation_->context, chosen.device, CL_QUEUE_PROFILING_ENABLE);

@@ -261,9 +261,9 @@ TEST_P(DoubleBuild, AgreesWithTheFloatBuildInEveryStage) {
     check_medians();
 }
 
+// All stages of pt are among those of gpt, but for a camera with a place in the pixel of its own.
 INSTANTIATE_TEST_SUITE_P(Scenes, DoubleBuild,
-                         ::testing::Values(DoubleCase{"pt", "cornell-box"}, DoubleCase{"pt", "materials"},
-                                           DoubleCase{"pt", "plates"}, DoubleCase{"gpt", "cornell-box"},
+                         ::testing::Values(DoubleCase{"pt", "cornell-box"}, DoubleCase{"gpt", "cornell-box"},
                                            DoubleCase{"gpt", "materials"}, DoubleCase{"gpt", "plates"}),
                          [](const ::testing::TestParamInfo<DoubleCase> &info) {
                              return testing::test_name(fmt::format("{}_{}", info.param.method, info.param.scene));

@@ -3,7 +3,7 @@
 //
 // Three things are set so that oclgrind 21.10 itself works: kernels are compiled without optimisation and without
 // inlining (its checker of uninitialised memory does not know all instructions that these make), by one thread (its
-// compiler is not safe for several), hence --nthreads 1.
+// compiler is not safe for several), which Device sees to, and hence --nthreads 1 too.
 #include "tests/driver/child_process.h"
 
 #include <gmock/gmock.h>
@@ -50,13 +50,13 @@ class Oclgrind : public ProgramTest {
                                               "out.exr",
                                               "--stats",
                                               "out.json",
-                                              "--spp",
-                                              "2",
                                               "--nthreads",
                                               "1",
                                               "--quiet"};
         if (std::find(more.begin(), more.end(), "--method") == more.end())
             more.insert(more.end(), {"--method", "pt"});
+        if (std::find(more.begin(), more.end(), "--spp") == more.end())
+            more.insert(more.end(), {"--spp", "2"});
         arguments.insert(arguments.end(), more.begin(), more.end());
         const Outcome outcome = run(arguments);
         EXPECT_EQ(outcome.signal, 0);
@@ -127,9 +127,12 @@ TEST_F(Oclgrind, GradientsOfEveryMaterialAndLight) {
                                          "accumulate", "gradient_accumulate"};
     for (const std::string &kind : kinds) {
         expected.push_back("shade " + kind);
-        expected.push_back("shift " + kind);
         expected.push_back("evaluate " + kind);
     }
+    // On so few pixels neighbours are seldom of one kind. What `shift` does of its own is the same for all kinds but
+    // the Dirac ones, and `evaluate` has called their functions.
+    for (const std::string kind : {"diffuse", "dirac", "roughdielectric_beckmann"})
+        expected.push_back("shift " + kind);
     for (const std::string kind : {"diffuse", "dirac", "roughdielectric_ggx"})
         expected.push_back("join " + kind);
     EXPECT_THAT(render("materials.xml", {"--method", "gpt", "--norm", "L2", "--size", "8x8", "--batch-size", "64"}),
@@ -141,10 +144,10 @@ TEST_F(Oclgrind, GradientsOfOneMaterialAndLight) {
                 IsSupersetOf({"shift", "weigh", "advance", "join diffuse"}));
 }
 
-// In strips, one of them of another height than the others.
+// In strips of two rows, the last of one: passes are 256 paths, four batches.
 TEST_F(Oclgrind, GradientsInStripsOfACrop) {
-    render("door-ajar.xml", {"--method", "gpt", "--norm", "L2", "--size", "96x72", "--crop", "5,7,70,8", "--batch-size",
-                             "64", "--rr-depth", "2"});
+    render("door-ajar.xml", {"--method", "gpt", "--norm", "L2", "--size", "96x72", "--crop", "5,7,86,5", "--batch-size",
+                             "64", "--rr-depth", "2", "--spp", "1"});
 }
 
 TEST_F(Oclgrind, GradientsWithEveryTrait) {
