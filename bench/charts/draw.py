@@ -20,6 +20,7 @@ import curves  # noqa: E402
 import kernels  # noqa: E402
 import page  # noqa: E402
 import plotting  # noqa: E402
+import scaling  # noqa: E402
 import stages  # noqa: E402
 
 
@@ -145,6 +146,8 @@ def add_photons(report):
                               [[name, f"{own['light_paths_per_second']:.3g}", number(own.get("over_ptracer")),
                                 f"{own['seconds_a_pass']:.3g}", number(own.get("over_survey"))]
                                for name, own in rates["methods"].items()])
+    if results.get("scaling"):
+        content += report.figure("photon-scaling", scaling.draw, results)
     for note in results["notes"]:
         content += page.text(note)
     report.add("Photons", content)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Photon methods on scenes that path tracing finds hard: error against time, rates, pictures at equal time.
 
-    python3 bench/render/photons.py [SCENE ...] [--seconds 2 8 32] [--seeds 3] [--parts curves rates pictures]
+    python3 bench/render/photons.py [SCENE ...] [--seconds 2 8 32] [--seeds 3] [--parts curves rates scaling pictures]
 
 SCENE is a name in tests/references; default: those whose light comes through smooth glass or from polished metal. The
 methods are pt, sppm and gpm, or --method; what the program has not got is skipped with a note. All are given the same
@@ -11,6 +11,8 @@ curves: relMSE over seconds, as render/convergence.py measures them.
 rates: on the Cornell box, light paths a second over all of the rendering and over the stages of light paths alone, over
 those of Mitsuba 3's particle tracer; seconds a pass, as it comes and over what the survey's code takes for passes of a
 million stored photons, scaled to this machine by a path sample of Mitsuba 3 (0.45 us where that code was measured).
+scaling: on the Cornell box, seconds a pass over its photons and over its gather points, two decades of each, and the
+slopes of line fits.
 pictures: one scene, all methods at the longest time, with maps of the error.
 """
 
@@ -34,7 +36,7 @@ from pythons import find_python  # noqa: E402
 
 PICTURE_SCENE = "torus-smooth-glass-soft"
 METHODS = ["pt", "sppm", "gpm"]
-PARTS = ["curves", "rates", "pictures"]
+PARTS = ["curves", "rates", "scaling", "pictures"]
 
 # The survey's code, Cornell box of ../shared at 256x256, passes of 1 M stored photons, two cores: seconds a pass; and
 # Mitsuba 3's path tracer on that machine and scene, microseconds a sample.
@@ -108,6 +110,53 @@ def print_rates(rates):
               + f"; {own['photons_a_pass']:.3g} photons and {own['seconds_a_pass']:.3f} s a pass"
               + (f"; {own['over_ptracer']:.2f} times ptracer's rate; {own['over_survey']:.1f} times the survey's passes"
                  if "over_ptracer" in own else ""))
+
+
+# Light paths a pass, and the edge of the image in pixels: two decades of each. The other is held at the number named.
+SCALING_PATHS, PATHS_HELD = [20_000, 60_000, 200_000, 600_000, 2_000_000], 1_000_000
+SCALING_EDGES, EDGE_HELD = [64, 112, 208, 368, 640], 256
+SCALING_PASSES = 2
+
+
+def line_fit(points):
+    """Seconds = start + slope * number, by least squares of relative deviations: (start, slope, the largest relative
+    deviation)."""
+    weights = [1 / seconds**2 for _, seconds in points]
+    total = sum(weights)
+    mean = [sum(w * point[k] for w, point in zip(weights, points)) / total for k in (0, 1)]
+    slope = (sum(w * (x - mean[0]) * (y - mean[1]) for w, (x, y) in zip(weights, points))
+             / sum(w * (x - mean[0])**2 for w, (x, _) in zip(weights, points)))
+    start = mean[1] - slope * mean[0]
+    return start, slope, max(abs(start + slope * x - y) / y for x, y in points)
+
+
+def measure_scaling(arguments, methods):
+    """Seconds a pass against photons, and against gather points, whose radius stays the same share of the scene."""
+    found = {"scene": "cornell-box", "passes": SCALING_PASSES, "methods": {}}
+    file = renders.ROOT / "scenes" / "cornell-box.xml"
+
+    def seconds(method, edge, paths, image):
+        """And what the pass had: photons and gather points."""
+        scene = renders.Scene("cornell-box", file, edge, edge)
+        turns = [renders.render(arguments.gradus, scene, method, seed, image, samples=SCALING_PASSES, layers=False,
+                                options=["--photons", paths, "--radius", "0.6%"])
+                 for seed in range(1, arguments.turns + 1)]
+        return {"seconds": statistics.median(turn["render_seconds"] / turn["spp"] for turn in turns),
+                "photons": turns[0]["photons"] / turns[0]["spp"],
+                "gather_points": turns[0]["gathering"]["gather_points"] / turns[0]["spp"]}
+
+    with tempfile.TemporaryDirectory() as folder:
+        image = pathlib.Path(folder) / "image.exr"
+        for method in [method for method in methods if method in SURVEY_SECONDS]:
+            own = {"photons": [seconds(method, EDGE_HELD, paths, image) for paths in SCALING_PATHS],
+                   "gather_points": [seconds(method, edge, PATHS_HELD, image) for edge in SCALING_EDGES]}
+            for name in ("photons", "gather_points"):
+                start, slope, worst = line_fit([(point[name], point["seconds"]) for point in own[name]])
+                own[f"{name}_fit"] = {"start": start, "slope": slope, "largest_deviation": worst}
+                print(f"{method}: a pass takes {start * 1e3:.1f} ms + {slope * 1e9:.1f} ns a {name[:-1].replace('_', ' ')}"
+                      f", within {worst:.0%} from {own[name][0][name]:.3g} to {own[name][-1][name]:.3g}", flush=True)
+            found["methods"][method] = own
+    return found
 
 
 def draw_pictures(arguments, pyplot, scene, methods):
@@ -202,6 +251,9 @@ def main():
     if "rates" in arguments.parts:
         results["rates"] = measure_rates(arguments, methods, python)
         print_rates(results["rates"])
+        write()
+    if "scaling" in arguments.parts:
+        results["scaling"] = measure_scaling(arguments, methods)
         write()
     if pyplot:
         scene = next((scene for scene in scenes if scene.name == PICTURE_SCENE), scenes[0])

@@ -5,6 +5,9 @@
  * no atomics are needed (one costs 30 ns on PoCL) and the order is always the same. */
 #include "kernels/shared/stage.h"
 
+/* Rows that are looked at before any is placed. */
+#define PARTITION_BLOCK 32u
+
 STAGE partition_count(uint count, uint rows, uint bins, __global const uint *bin, __global uint *chunk_offset) {
     const uint chunk = (uint)work_item();
     if (chunk >= count)
@@ -41,12 +44,16 @@ STAGE partition_scatter(uint count, uint rows, uint bins, __global const uint *b
         return;
     const uint begin = chunk * PARTITION_CHUNK;
     const uint end = min(begin + PARTITION_CHUNK, rows);
-    for (uint row = begin; row < end; ++row) {
-        const uint b = bin[row];
-        const int is_kept = b < bins;
-        const uint at = (is_kept ? b : 0u) * count + chunk, place = chunk_offset[at];
-        /* The last place is free where a row is dropped. Whether one is nobody can foresee, so there is no branch. */
-        index[is_kept ? place : rows - 1u] = row;
-        chunk_offset[at] = place + (is_kept ? 1u : 0u);
+    /* A block at a time: first which rows are kept, then to their places. Whether one is nobody can foresee, so there
+     * is no branch on it. */
+    for (uint first = begin; first < end; first += PARTITION_BLOCK) {
+        const uint rows_of_block = min(end - first, PARTITION_BLOCK);
+        uint kept[PARTITION_BLOCK], found = 0;
+        for (uint k = 0; k < rows_of_block; ++k) {
+            kept[found] = first + k;
+            found += bin[first + k] < bins ? 1u : 0u;
+        }
+        for (uint k = 0; k < found; ++k)
+            index[chunk_offset[bin[kept[k]] * count + chunk]++] = kept[k];
     }
 }
