@@ -99,7 +99,7 @@ TEST(PhotonStability, AtTheLimitsOfTheRadius) {
 // In a furnace of a cube the disc loses what lies beyond its wall: of a square of side s, seen as a whole, the mean
 // over the disc of (s - |x|)(s - |y|) / s^2 is left, which is 1 - 8 r / (3 pi s) + r^2 / (2 pi s^2).
 TEST(PhotonStability, InCorners) {
-    SceneMaker maker(8, 2);
+    SceneMaker maker(16, 2);
     maker.look({0, 0, 0}, {0, 0, 1}, 90);
     maker.scene.settings.rr_depth = 5;
     maker.cube(maker.material(diffuse(0.5)), maker.emitter(Emitter::Kind::area, {1, 1, 1}), true);
