@@ -3,6 +3,7 @@
 #include "driver/scene_summary.h"
 #include "driver/standard_streams.h"
 #include "runtime/error.h"
+#include "runtime/scene/roughness.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -24,7 +25,13 @@ std::string counts(const std::map<std::string, std::uint64_t> &kinds) {
 
 std::string mebibytes(std::uint64_t bytes) { return fmt::format("{:.1f} MiB", double(bytes) / double(1 << 20)); }
 
-std::string summary_text(const Scene &scene, const SceneSummary &summary, const Traits &traits) {
+/// Where photon methods gather photons with --gather-roughness.
+std::string gathering_text(const GatheringSurfaces &surfaces, double roughness) {
+    return fmt::format("photons     gathered at {}; camera and light paths go on at {} (roughness {} or more)\n",
+                       counts(surfaces.gathered), counts(surfaces.passed), roughness);
+}
+
+std::string summary_text(const Scene &scene, const SceneSummary &summary, const Traits &traits, double roughness) {
     std::string text;
     const FilmSettings &film = scene.film;
     const auto [width, height] = image_size(film);
@@ -35,6 +42,7 @@ std::string summary_text(const Scene &scene, const SceneSummary &summary, const 
     text += fmt::format("bounds      ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n", low[0], low[1], low[2],
                         high[0], high[1], high[2]);
     text += fmt::format("materials   {}\n", counts(summary.materials));
+    text += gathering_text(gathering_surfaces(scene, roughness), roughness);
     text += fmt::format("emitters    {}\n", counts(summary.emitters));
     text += fmt::format("camera      perspective, {:.6g} degrees along {}\n", scene.camera.fov,
                         name_of(scene.camera.fov_axis));
@@ -56,7 +64,8 @@ std::string summary_text(const Scene &scene, const SceneSummary &summary, const 
     return text;
 }
 
-std::string summary_json(const Scene &scene, const SceneSummary &summary, const Traits &traits) {
+std::string summary_json(const Scene &scene, const SceneSummary &summary, const Traits &traits, double roughness) {
+    const GatheringSurfaces surfaces = gathering_surfaces(scene, roughness);
     const FilmSettings &film = scene.film;
     const auto [width, height] = image_size(film);
     nlohmann::json trait_object = nlohmann::json::object();
@@ -70,6 +79,7 @@ std::string summary_json(const Scene &scene, const SceneSummary &summary, const 
         {"vertices", summary.vertices},
         {"bounds", {{"lower", summary.lower}, {"upper", summary.upper}}},
         {"materials", summary.materials},
+        {"gathering", {{"roughness", roughness}, {"gathered_at", surfaces.gathered}, {"passed_at", surfaces.passed}}},
         {"emitters", summary.emitters},
         {"camera", {{"kind", "perspective"}, {"fov", scene.camera.fov}, {"fov_axis", name_of(scene.camera.fov_axis)}}},
         {"film",
@@ -99,17 +109,23 @@ void add_inspect_command(CLI::App &app, const Services &services, std::function<
     struct Arguments {
         SceneRequest scene;
         bool json = false;
+        double gather_roughness = RenderOptions().gather_roughness;
     };
     const auto arguments = std::make_shared<Arguments>();
     add_scene_options(command, arguments->scene);
     command.add_flag("--json", arguments->json, "Print JSON");
+    command
+        .add_option("--gather-roughness", arguments->gather_roughness,
+                    "Roughness (alpha) from which on photon methods gather photons at a surface")
+        ->check(CLI::Range(0.0, 1.0))
+        ->capture_default_str();
     command.callback([arguments, &services, &chosen] {
         chosen = [arguments, &services] {
             const Scene scene = load_requested_scene(arguments->scene, services, [](const std::string &warning) {
                 print_message("gradus: warning: " + warning + "\n");
             });
-            print_result(
-                (arguments->json ? summary_json : summary_text)(scene, summarize(scene), services.traits(scene)));
+            print_result((arguments->json ? summary_json : summary_text)(
+                scene, summarize(scene), services.traits(scene), arguments->gather_roughness));
             return static_cast<int>(ExitCode::success);
         };
     });

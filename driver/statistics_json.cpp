@@ -37,11 +37,20 @@ nlohmann::json choice_json(const MethodChoice &choice) {
 
 nlohmann::json gathering_json(const Statistics &statistics) {
     const double points = double(statistics.gather_points);
+    const auto mean_radius = [](const GatherRadii &radii) {
+        return radii.points > 0 ? radii.sum / double(radii.points) : 0.0;
+    };
     const auto by_point = [points](double sum) { return points > 0 ? sum / points : 0.0; };
     return {{"gather_points", statistics.gather_points},
             {"pairs", statistics.photon_pairs},
             {"photons_a_gather_point", by_point(double(statistics.photon_pairs))},
-            {"mean_radius", by_point(statistics.radius_sum)}};
+            {"mean_radius", by_point(statistics.radius_sum)},
+            {"mean_radius_of_first_pass", mean_radius(statistics.first_radii)},
+            {"mean_radius_of_last_pass", mean_radius(statistics.last_radii)},
+            {"relative_variance",
+             statistics.relative_variance ? nlohmann::json(*statistics.relative_variance) : nlohmann::json()},
+            {"gathered_at", statistics.surfaces.gathered},
+            {"passed_at", statistics.surfaces.passed}};
 }
 
 nlohmann::json statistics_to_json(const RenderRecord &record, const Statistics &statistics) {

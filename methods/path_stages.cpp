@@ -60,11 +60,6 @@ void run_shade(Stage &shade, const Hits &hits, Range rows, std::size_t kind) {
     shade.run_kind(kind, rows.count, {{"first", hits.place(rows.first)}, {"to", rows.first}});
 }
 
-bool is_rough(const Bsdf &bsdf, double threshold) {
-    const BsdfKindTraits &kind = bsdf_kind_traits(bsdf.kind);
-    return !kind.is_dirac && (!kind.has_roughness || std::min(bsdf.alpha_u, bsdf.alpha_v) >= threshold);
-}
-
 std::vector<std::uint32_t> material_kinds(const Scene &scene, double threshold) {
     std::vector<std::uint32_t> kinds;
     for (const Bsdf &bsdf : material_records(scene))

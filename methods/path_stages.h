@@ -1,6 +1,7 @@
 // What methods that trace paths from the camera share: the stages of the path tracer and how they are launched.
 #pragma once
 
+#include "runtime/scene/roughness.h"
 #include "runtime/wavefront/wavefront.h"
 
 #include <cstdint>
@@ -26,9 +27,6 @@ void begin_camera_paths(Stage &camera, Wavefront &paths, std::uint32_t first_pix
 void run_on_places(Stage &stage, const Hits &hits, Range rows);
 /// The new vertices of one BSDF kind.
 void run_shade(Stage &shade, const Hits &hits, Range rows, std::size_t kind);
-
-/// Whether a surface counts as rough: not Dirac, and of this roughness (alpha) or more where it has one.
-bool is_rough(const Bsdf &bsdf, double threshold);
 
 /// By material record, the kind with what `kind` in kernels/shared/tables.h says of it, surfaces being rough from this
 /// roughness on.

@@ -8,16 +8,37 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
+#include <string>
 
 namespace gradus {
 
 using namespace lib_float;
+
+namespace {
+
+/// Mean over pixels and colours of variance over R^2 + 0.001, which is the image's relMSE but for its bias: passes are
+/// independent samples of each pixel. Nothing where there are no variances.
+std::optional<double> relative_variance(const Image &image) {
+    double sum = 0;
+    for (const char *color : {"R", "G", "B"}) {
+        const Channel *mean = image.find(color), *variance = image.find(std::string("variance.") + color);
+        if (!variance || mean->values.empty())
+            return std::nullopt;
+        for (std::size_t i = 0; i < mean->values.size(); ++i)
+            sum += variance->values[i] / (double(mean->values[i]) * mean->values[i] + 0.001);
+    }
+    return sum / (3.0 * double(image.find("R")->values.size()));
+}
+
+} // namespace
 
 PhotonMapper::PhotonMapper(Device &device, const Scene &scene, const RenderOptions &options)
     : options_(options), session_(device, checked_for_gathering(scene, options), options, {}),
       paths_(session_, stages_, scene, options, false), photons_(session_, stages_, scene, options, 2), pairs_(stages_),
       evaluate_(stages_.add({.name = "photon_evaluate", .by_kind = true, .dirac = DiracKinds::left_out})),
       add_(stages_.add({.name = "gather_add", .numbers = {"first"}})), film_(session_, stages_) {
+    statistics_.surfaces = gathering_surfaces(scene, options.gather_roughness);
     total_ = std::uint64_t(session_.pixels()) * session_.settings.samples_per_pixel;
     allocate();
 }
@@ -53,12 +74,16 @@ bool PhotonMapper::render_batch() {
         if (tables_->has("feature"))
             (*tables_)["feature"].clear();
     } else {
+        if (first_pixel == 0)
+            statistics_.last_radii = {};
         photons_.begin(pass);
         paths_.trace(paths, first_pixel, pass, [this](const Hits &hits) { gather_photons(hits); });
     }
     film_.add(paths, first_pixel);
     finish(session_.device);
     done_ += paths;
+    if (pass == 0)
+        statistics_.first_radii = statistics_.last_radii;
     statistics_.samples += paths;
     statistics_.render_seconds += seconds_since(start);
     return done_ < total_;
@@ -67,18 +92,23 @@ bool PhotonMapper::render_batch() {
 void PhotonMapper::gather_photons(const Hits &hits) {
     for (std::size_t kind = 0; kind < paths_.kinds(); ++kind) {
         const Range rows = paths_.gather_points(hits, kind);
+        const double radii_before = pairs_.radius_sum();
         statistics_.gather_points += rows.count;
         statistics_.photon_pairs += pairs_.find(rows, [&](const PairWindow &window) {
             evaluate_.run_kind(kind, window.pairs);
             pairs_.sum(window);
         });
         add_.run(rows.count, {{"first", rows.first}});
+        statistics_.last_radii.points += rows.count;
+        statistics_.last_radii.sum += pairs_.radius_sum() - radii_before;
     }
 }
 
 Image PhotonMapper::image() {
     statistics_.non_finite = 0;
-    return film_.image(done_, statistics_.non_finite);
+    Image image = film_.image(done_, statistics_.non_finite);
+    statistics_.relative_variance = relative_variance(image);
+    return image;
 }
 
 Statistics PhotonMapper::statistics() const {

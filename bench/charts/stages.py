@@ -6,6 +6,9 @@ import plotting
 PARTS = [
     ("primary", "camera"), ("camera", "camera"),
     ("shade", "shading"),
+    ("light paths, ", "light paths"),
+    ("photon_shift", "shifts"), ("photon_reconnect", "shifts"), ("photon_arrive", "shifts"), ("walk", "walks"),
+    ("photon", "photons"), ("pair", "photons"), ("gather", "photons"), ("travel", "photons"), ("sort", "photons"),
     ("shift", "shifts"), ("evaluate", "shifts"), ("weigh", "shifts"), ("advance", "shifts"), ("join", "shifts"),
     ("gradient_begin", "shifts"), ("gradient_connect", "shifts"), ("gradient escape", "shifts"),
     ("gradient emission", "shifts"),
@@ -15,12 +18,16 @@ PARTS = [
     ("light paths,", "photons"), ("photon", "photons"), ("pair_", "photons"), ("gather", "photons"),
     ("travel", "photons"),
     ("accumulate", "film"), ("gradient_accumulate", "film"), ("gradient_combine", "film"),
+    ("gradient_gather", "film"), ("gradient_carry", "film"),
 ]
 COLOURS = {
     "Embree alone (floor)": plotting.GREY,
     "tracing beside Embree": plotting.SKY,
     "camera": plotting.YELLOW,
     "shading": plotting.BLUE,
+    "light paths": plotting.GREEN,
+    "photons": plotting.ORANGE,
+    "walks": "#7F5F3F",
     "shifts": plotting.VERMILLION,
     "photons": plotting.GREEN,
     "film": plotting.PURPLE,

@@ -1,6 +1,8 @@
 // What a render did, and what it took.
 #pragma once
 
+#include "runtime/scene/roughness.h"
+
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -31,6 +33,12 @@ struct StageTime {
     std::uint64_t launches = 0;
 };
 
+/// Radii that photons are gathered from.
+struct GatherRadii {
+    std::uint64_t points = 0; ///< gather points
+    double sum = 0;           ///< of theirs, world units
+};
+
 /// What a render did. Written as JSON beside the image.
 struct Statistics {
     std::vector<StageTime> stages;                 ///< in the order in which a path meets them
@@ -44,6 +52,9 @@ struct Statistics {
     std::uint64_t gather_points = 0;               ///< where camera paths looked for photons
     std::uint64_t photon_pairs = 0;                ///< of gather points and photons within their radius
     double radius_sum = 0;                         ///< of all gather points, world units
+    GatherRadii first_radii, last_radii;           ///< of the first pass and the last one begun
+    std::optional<double> relative_variance;       ///< of the image, from the spread of its passes, where it is known
+    GatheringSurfaces surfaces;                    ///< where photons are gathered and where not, photon methods
     std::uint64_t non_finite = 0;                  ///< samples left out because they were NaN or infinite
     double render_seconds = 0;                     ///< spent in render_batch()
     std::uint64_t device_bytes = 0;                ///< allocated on the device

@@ -13,6 +13,7 @@ import xml.etree.ElementTree
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "bench" / "charts"))
 import convergence as chart  # noqa: E402
+import stages as stages_chart  # noqa: E402
 
 MACHINE = {"processor": "a processor", "processors": 2, "load_before": 0.1, "date": "2026-01-01", "commit": "abc",
            "device": {"name": "a device"}}
@@ -159,6 +160,27 @@ class DrawOnly(unittest.TestCase):
         result = subprocess.run([str(part) for part in command], capture_output=True, text=True)
         self.assertNotEqual(result.returncode, 0)
         self.assertIn("no such folder", result.stdout + result.stderr)
+
+
+class PartsOfStages(unittest.TestCase):
+    """Each stage that a photon method has of its own is counted to a part of the chart. Their names: kernels/stages."""
+
+    def test_no_stage_of_photons_or_walks_is_other(self):
+        expected = {"light paths": ["light paths, emit", "light paths, scatter diffuse", "light paths, photons gather"],
+                    "walks": ["walk aim", "walk follow", "walk partition"],
+                    "shifts": ["photon_shift", "photon_reconnect diffuse", "photon_arrive", "shift diffuse"],
+                    "photons": ["photon_pairs list", "photon_evaluate diffuse", "pair_sum", "pair_difference_sum",
+                                "gather_add", "gather_bin", "travel", "photon_order begin"],
+                    "film": ["gradient_gather", "gradient_combine", "accumulate"]}
+        for part, names in expected.items():
+            for name in names:
+                self.assertEqual(stages_chart.part_of(name), part, name)
+                self.assertIn(part, stages_chart.COLOURS)
+        kernels = [file.stem for file in (ROOT / "kernels" / "stages").glob("*.cl")]
+        of_photons = [name for name in kernels if re.match("photon_|pair_|gather|walk_", name)]
+        self.assertGreater(len(of_photons), 12)
+        for name in of_photons:
+            self.assertNotEqual(stages_chart.part_of(name.replace("walk_", "walk ")), "other", name)
 
 
 if __name__ == "__main__":

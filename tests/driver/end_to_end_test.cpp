@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
@@ -170,25 +171,125 @@ TEST_F(EndToEnd, ACropIsThatPartOfTheImage) {
                 EXPECT_EQ(crop.find(name)->values[y * 7 + x], full.find(name)->values[(y + 4) * 32 + x + 9]);
 }
 
-TEST_F(EndToEnd, AnInterruptLeavesAValidImage) {
-    ChildProcess process(render("out.exr", {"--spp", "1000000", "--write-partial", "0.05"}), folder);
+/// What ends a render early, for each method: gpt keeps its film in another form, sppm's samples are passes.
+class EndToEndOf : public EndToEnd, public ::testing::WithParamInterface<const char *> {
+  protected:
+    std::vector<std::string> render_early(std::vector<std::string> more) const {
+        more.insert(more.end(), {"--method", GetParam(), "--photons", "2000"});
+        return render("out.exr", more);
+    }
+    /// Lit, and of as many samples as it says.
+    void expect_valid_image() const {
+        const Image image = read_image(at("out.exr"));
+        EXPECT_EQ(image.metadata.at("method"), GetParam());
+        EXPECT_EQ(count_non_finite(image), 0u);
+        EXPECT_GT(std::stoull(image.metadata.at("samples")), 0u);
+        EXPECT_NEAR(std::stod(image.metadata.at("spp")), std::stod(image.metadata.at("samples")) / (32 * 32), 1e-4);
+        // Of the box at this size: a division by another count of passes would show.
+        const double mean = compare_means(image, image).image;
+        EXPECT_GT(mean, 0.5 * box_mean);
+        EXPECT_LT(mean, 2 * box_mean);
+    }
+    static constexpr double box_mean = 0.26;
+};
+
+TEST_P(EndToEndOf, AnInterruptLeavesAValidImage) {
+    ChildProcess process(render_early({"--spp", "1000000", "--write-partial", "0.05"}), folder);
     ASSERT_TRUE(wait_for_file("out.exr"));
+    expect_valid_image(); // the partial one
+    EXPECT_EQ(read_image(at("out.exr")).metadata.at("partial"), "true");
     process.send(SIGINT);
     const Outcome outcome = process.wait();
     EXPECT_EQ(outcome.exit_code, 130) << outcome.err;
-    const Image image = read_image(at("out.exr"));
-    EXPECT_EQ(count_non_finite(image), 0u);
-    EXPECT_GT(std::stoull(image.metadata.at("samples")), 0u);
-    EXPECT_LT(std::stoull(image.metadata.at("samples")), 32u * 32 * 1000000);
+    expect_valid_image();
+    EXPECT_LT(std::stoull(read_image(at("out.exr")).metadata.at("samples")), 32u * 32 * 1000000);
 }
 
-TEST_F(EndToEnd, TimeEndsTheRender) {
-    const Outcome outcome = run(render("out.exr", {"--time", "0.5"}));
+TEST_P(EndToEndOf, TimeEndsTheRender) {
+    const Outcome outcome = run(render_early({"--time", "0.5"}));
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     const Image image = read_image(at("out.exr"));
     EXPECT_GE(std::stod(image.metadata.at("seconds")), 0.5);
     EXPECT_LT(std::stod(image.metadata.at("seconds")), 5);
     EXPECT_GT(std::stod(image.metadata.at("spp")), 1);
+    expect_valid_image();
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, EndToEndOf, ::testing::Values("pt", "gpt", "sppm"),
+                         [](const auto &info) { return std::string(info.param); });
+
+/// A ball before the camera, of a BSDF and with a light or without one.
+class EndToEndPhotons : public EndToEnd {
+  protected:
+    Outcome render_ball(const std::string &bsdf, const std::string &light, std::vector<std::string> more = {}) const {
+        std::ofstream(folder / "ball.xml")
+            << "<scene version=\"3.0.0\">"
+            << "<sensor type=\"perspective\"><transform name=\"to_world\">"
+            << "<lookat origin=\"0, 0, 4\" target=\"0, 0, 0\" up=\"0, 1, 0\"/>"
+            << "</transform></sensor>" << light << "<shape type=\"sphere\">" << bsdf << "</shape></scene>";
+        more.insert(more.begin(), {"render", "ball.xml", "-o", "out.exr", "--method", "sppm", "--size", "16x16",
+                                   "--spp", "3", "--photons", "500"});
+        return run(more);
+    }
+    const std::string light = "<emitter type=\"constant\"/>", gray = "<bsdf type=\"diffuse\"/>";
+    const std::string metal = "<bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"0.02\"/></bsdf>";
+};
+
+TEST_F(EndToEndPhotons, WhereNothingCanBeGatheredTheErrorSaysWhy) {
+    const Outcome smooth = render_ball(metal, light);
+    EXPECT_EQ(smooth.exit_code, 2);
+    EXPECT_THAT(smooth.err, HasSubstr("no surface is rough enough to gather photons at: roughness 0.05 or more; "
+                                      "--gather-roughness asks for less"));
+    const Outcome dark = render_ball(gray, "");
+    EXPECT_EQ(dark.exit_code, 2);
+    EXPECT_THAT(dark.err, HasSubstr("there is no light in the scene"));
+    EXPECT_FALSE(std::filesystem::exists(at("out.exr")));
+    for (const std::vector<std::string> &bad : std::vector<std::vector<std::string>>{{"--radius", "0"},
+                                                                                     {"--radius", "-1%"},
+                                                                                     {"--radius-alpha", "0"},
+                                                                                     {"--radius-alpha", "1.5"},
+                                                                                     {"--photons", "-1"},
+                                                                                     {"--gather-roughness", "2"},
+                                                                                     {"--direct", "magic"}}) {
+        const Outcome outcome = render_ball(gray, light, bad);
+        EXPECT_EQ(outcome.exit_code, 2) << bad[0] << " " << bad[1];
+        EXPECT_THAT(outcome.err, HasSubstr(bad[0]));
+    }
+    const Outcome rougher = render_ball(metal, light, {"--gather-roughness", "0.01"});
+    EXPECT_EQ(rougher.exit_code, 0) << rougher.err;
+}
+
+TEST_F(EndToEndPhotons, StatisticsSayWhatIsGathered) {
+    const Outcome outcome = render_ball(gray, light, {"--stats", "-", "--aov", "--radius-alpha", "0.5"});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    const nlohmann::json gathering = nlohmann::json::parse(outcome.out).at("gathering");
+    EXPECT_EQ(gathering.at("gathered_at"), (nlohmann::json{{"diffuse", 1}}));
+    EXPECT_EQ(gathering.at("passed_at"), nlohmann::json::object());
+    // Squares of radii: the product of (k + alpha) / (k + 1) for k = 1 and 2.
+    const double first = gathering.at("mean_radius_of_first_pass"), last = gathering.at("mean_radius_of_last_pass");
+    EXPECT_GT(first, 0);
+    EXPECT_NEAR(last / first, std::sqrt(1.5 / 2 * 2.5 / 3), 0.01);
+    EXPECT_NEAR(gathering.at("mean_radius").get<double>(), first * (1 + std::sqrt(0.75) + last / first) / 3,
+                0.01 * first);
+    // As the image has it.
+    const Image image = read_image(at("out.exr"));
+    double sum = 0;
+    for (const char *color : {"R", "G", "B"})
+        for (std::size_t i = 0; i < 256; ++i)
+            sum += image.find(std::string("variance.") + color)->values[i] /
+                   (std::pow(image.find(color)->values[i], 2) + 0.001) / 768;
+    EXPECT_GT(sum, 0);
+    EXPECT_NEAR(gathering.at("relative_variance"), sum, 1e-5 * sum);
+}
+
+TEST_F(EndToEndPhotons, InspectSaysWhatIsGathered) {
+    render_ball(metal, light);
+    EXPECT_THAT(run({"inspect", "ball.xml"}).out,
+                HasSubstr("photons     gathered at none; camera and light paths go on at 1 roughconductor_"));
+    const nlohmann::json json =
+        nlohmann::json::parse(run({"inspect", "ball.xml", "--json", "--gather-roughness", "0.02"}).out);
+    EXPECT_EQ(json.at("gathering").at("gathered_at").size(), 1u);
+    EXPECT_EQ(json.at("gathering").at("passed_at").size(), 0u);
 }
 
 TEST_F(EndToEnd, InspectDevicesAndWarm) {

@@ -12,6 +12,10 @@ TEST(StatisticsJson, HoldsEveryFigure) {
     statistics.rays = {{"extension", 5000}, {"shadow", 3000}};
     statistics.walks = {{"arrived", 70}, {"steps", 90}};
     statistics.compile_seconds = {{"shade", 0.5}, {"camera", 0.25}};
+    statistics.first_radii = {4, 2};
+    statistics.last_radii = {8, 1};
+    statistics.relative_variance = 0.25;
+    statistics.surfaces.gathered = {{"diffuse", 3}};
     statistics.samples = std::uint64_t(1) << 40;
     statistics.non_finite = 3;
     statistics.render_seconds = 4;
@@ -33,6 +37,10 @@ TEST(StatisticsJson, HoldsEveryFigure) {
     EXPECT_EQ(json.at("rays").at("shadow").at("per_second"), 750);
     EXPECT_EQ(json.at("rays_per_second"), 2000);
     EXPECT_EQ(json.at("walks").at("steps"), 90);
+    EXPECT_EQ(json.at("gathering").at("mean_radius_of_first_pass"), 0.5);
+    EXPECT_EQ(json.at("gathering").at("mean_radius_of_last_pass"), 0.125);
+    EXPECT_EQ(json.at("gathering").at("relative_variance"), 0.25);
+    EXPECT_EQ(json.at("gathering").at("gathered_at").at("diffuse"), 3);
     EXPECT_EQ(json.at("samples").get<std::uint64_t>(), std::uint64_t(1) << 40);
     EXPECT_EQ(json.at("seed").get<std::uint64_t>(), ~std::uint64_t(0));
     EXPECT_EQ(json.at("non_finite"), 3);
@@ -52,6 +60,8 @@ TEST(StatisticsJson, ARenderOfNoTimeHasNoInfiniteRates) {
     const nlohmann::json json = statistics_to_json({}, statistics);
     EXPECT_EQ(json.at("rays_per_second"), 0);
     EXPECT_EQ(json.at("samples_per_second"), 0);
+    EXPECT_EQ(json.at("gathering").at("mean_radius_of_last_pass"), 0);
+    EXPECT_EQ(json.at("gathering").at("relative_variance"), nullptr);
 }
 
 } // namespace

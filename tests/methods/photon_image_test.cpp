@@ -1,6 +1,7 @@
-// Images of photon mapping: in closed form, against references, and what must not change them.
+// Images of photon mapping: in closed form, and against path tracing.
 #include "methods/photon_mapper.h"
 #include "runtime/error.h"
+#include "tests/methods/photon_case.h"
 #include "tests/methods/reference_scene.h"
 #include "tests/support/render.h"
 #include "tests/support/small_scenes.h"
@@ -13,23 +14,6 @@ namespace gradus::testing {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-
-RenderOptions with_radius(double value, bool of_scene, double alpha = 1) {
-    RenderOptions options;
-    options.radius = RenderOptions::GatherRadius{value, of_scene};
-    options.radius_alpha = alpha;
-    return options;
-}
-
-/// A sphere that all light stays in: it emits 1 everywhere, so 1 / (1 - albedo) is seen everywhere. The part of a
-/// sphere within a distance r of one of its points has the area pi r^2 whatever its own radius: there is no bias.
-Scene furnace(const Bsdf &bsdf, std::uint64_t passes) {
-    SceneMaker maker(16, passes);
-    maker.look({0.1, 0.2, -0.3}, {0, 0, 1}, 60);
-    maker.sphere({0, 0, 0}, 1, maker.material(bsdf), maker.emitter(Emitter::Kind::area, {1, 1, 1}), true);
-    maker.scene.settings.rr_depth = 5;
-    return maker.scene;
-}
 
 class PhotonFurnace : public ::testing::TestWithParam<bool> {};
 
@@ -167,39 +151,6 @@ TEST(PhotonBias, AtTheBorderGoesWithTheRadius) {
     EXPECT_NEAR(std::log2(lost[1] / lost[0]), 1, 0.15);
 }
 
-/// A closed box with a lamp inside, with walls thinner than the radius, seen from outside.
-Scene thin_walls(bool outer) {
-    SceneMaker maker(24, 2);
-    maker.look({0, 0, -6}, {0, 0, 0}, 30);
-    maker.scene.settings.rr_depth = 5;
-    const std::uint32_t gray = maker.material(diffuse(0.7));
-    maker.cube(gray, -1, true);
-    maker.sphere({0, 0, 0}, 0.2f, gray, maker.emitter(Emitter::Kind::area, {10, 10, 10}));
-    if (outer) {
-        maker.cube(gray);
-        for (Vector3 &p : maker.scene.meshes.back().positions)
-            p = {1.005f * p.x, 1.005f * p.y, 1.005f * p.z};
-    }
-    return maker.scene;
-}
-
-TEST(PhotonLeaks, DoNotPassThinWalls) {
-    RenderOptions options = with_radius(0.05, true);
-    options.photons = 20'000;
-    for (const bool direct : {false, true}) {
-        options.direct_photons = direct;
-        const Rendered outside = render(thin_walls(true), options, "sppm");
-        for (const char *channel : {"R", "G", "B"})
-            for (const float value : outside.image.find(channel)->values)
-                ASSERT_EQ(value, 0) << "light from within";
-        EXPECT_GT(outside.statistics.gather_points, 100u);
-        // One sheet with its back to the camera: what it got from the front is not sent to the back.
-        const Image sheet = render(thin_walls(false), options, "sppm").image;
-        for (const float value : sheet.find("G")->values)
-            ASSERT_EQ(value, 0);
-    }
-}
-
 // With paths of so many edges at most, each kind of path by one estimator and none by two: whole images of both methods
 // are the same but for the bias, which the radius keeps small. A kind that is missing or counted twice would be some
 // percents of what its length adds.
@@ -261,112 +212,6 @@ TEST(PathLength, CountsBothSides) {
         EXPECT_GT(spread_of(render(maker.scene, options, "sppm").image).mean, 0);
     }
 }
-
-/// The materials are not among these scenes: their point and directional lights shine through glass onto the floor,
-/// which the reference's path tracer cannot find: 1.3 % of the image (PathKinds has them without these lights).
-///
-/// Per block of 16 x 16: what is left of the bias is no more than what a radius twice as large adds to it: that is the
-/// bias itself where it goes with the radius, and three times the bias where it goes with its square.
-class PhotonReference : public ::testing::TestWithParam<const char *> {};
-
-TEST_P(PhotonReference, IsMetWithinTheBiasOfTheRadius) {
-    ReferenceScene reference = own_reference(GetParam());
-    constexpr std::size_t seeds = 5;
-    constexpr std::uint64_t passes = 6;
-    reference.scene.settings.samples_per_pixel = passes;
-    std::vector<Image> images[2];
-    for (int i = 0; i < 2; ++i) {
-        RenderOptions options = with_radius(i == 0 ? 1 : 2, false);
-        options.photons = 250'000;
-        images[i] = render_seeds(reference.scene, seeds, options, 1 + 100 * std::uint64_t(i), "sppm");
-    }
-    const auto test = [&](const std::vector<Image> &set) {
-        return block_z_test(set, reference.mean, reference.variance, 0, 0, 16);
-    };
-    const BlockTest fine = test(images[0]), coarse = test(images[1]);
-    std::size_t beyond = 0;
-    double largest = 0, bias = 0, allowed = 0;
-    for (std::size_t i = 0; i < fine.z.size(); ++i) {
-        const double twice = std::fabs(coarse.difference[i] - fine.difference[i]);
-        const double noise = fine.standard_error[i] + std::hypot(fine.standard_error[i], coarse.standard_error[i]);
-        // Student's t of 4 degrees of freedom exceeds 8.6 once in a thousand tests.
-        const double excess = std::fabs(fine.difference[i]) - twice - 8.6 * noise;
-        beyond += excess > 0 ? 1 : 0;
-        largest = std::max(largest, std::fabs(fine.difference[i]));
-        bias += std::fabs(fine.difference[i]) / double(fine.z.size());
-        allowed += twice / double(fine.z.size());
-    }
-    const double mean = spread_of(reference.mean).mean;
-    fmt::print(
-        "{}: mean ratio {:.4f} and {:.4f} at twice the radius, relMSE {:.2e}; blocks: mean error {:.2f} % of the "
-        "image's mean, largest {:.2f} %, difference of both radii {:.2f} %\n",
-        reference.name, compare_means(mean_image(images[0]), reference.mean).ratio,
-        compare_means(mean_image(images[1]), reference.mean).ratio, relative_mse(mean_image(images[0]), reference.mean),
-        100 * bias / mean, 100 * largest / mean, 100 * allowed / mean);
-    EXPECT_EQ(fine.non_finite, 0u);
-    EXPECT_LE(beyond, 1 + fine.z.size() / 200) << "blocks whose error the radius does not explain";
-}
-
-INSTANTIATE_TEST_SUITE_P(Photons, PhotonReference,
-                         ::testing::Values("cornell-box", "door-ajar", "plates", "torus-rough-glass"), name_of_scene);
-
-class PhotonInvariance : public ::testing::TestWithParam<const char *> {
-  protected:
-    static RenderOptions options() {
-        RenderOptions options;
-        options.photons = 6000;
-        return options;
-    }
-    static Scene scene() {
-        Scene scene = own_scene(std::string(GetParam()) + ".xml", 61, 47);
-        scene.settings.samples_per_pixel = 3;
-        return scene;
-    }
-};
-
-TEST_P(PhotonInvariance, ToTheBatchSize) {
-    for (const bool direct : {false, true}) {
-        RenderOptions with = options();
-        with.direct_photons = direct;
-        const Image image = render(scene(), with, "sppm").image;
-        for (const std::uint32_t batch_size : {64u, 500u}) {
-            with.batch_size = batch_size;
-            EXPECT_TRUE(equal_bits(image, render(scene(), with, "sppm").image)) << "batch size " << batch_size;
-        }
-    }
-}
-
-TEST_P(PhotonInvariance, ToTheCropAndToLayers) {
-    Scene part = scene();
-    RenderOptions with = options();
-    const Image whole = render(part, with, "sppm").image;
-    with.aov = true;
-    for (const bool direct : {false, true}) {
-        with.direct_photons = direct;
-        RenderOptions plain = with;
-        plain.aov = false;
-        const Image layered = render(part, with, "sppm").image;
-        const Image image = render(part, plain, "sppm").image;
-        for (const char *channel : {"R", "G", "B"})
-            EXPECT_EQ(image.find(channel)->values, layered.find(channel)->values) << channel;
-        // What the camera sees is what the path tracer says it is.
-        const Image features = render(part, with, "pt").image;
-        for (const char *channel : {"albedo.R", "albedo.B", "normal.X", "normal.Z", "depth.Z"})
-            EXPECT_EQ(features.find(channel)->values, layered.find(channel)->values) << channel;
-    }
-    part.film.crop_x = 13;
-    part.film.crop_y = 7;
-    part.film.crop_width = 31;
-    part.film.crop_height = 29;
-    const Image crop = render(part, options(), "sppm").image;
-    std::size_t different = 0;
-    for (std::uint32_t y = 0; y < crop.height; ++y)
-        for (std::uint32_t x = 0; x < crop.width; ++x)
-            different += pixel(crop, x, y) != pixel(whole, x + 13, y + 7) ? 1 : 0;
-    EXPECT_EQ(different, 0u);
-}
-
-INSTANTIATE_TEST_SUITE_P(Photons, PhotonInvariance, ::testing::Values("cornell-box", "materials"), name_of_scene);
 
 TEST(PhotonRadius, ShrinksByTheRule) {
     double product = 1;

@@ -1,31 +1,14 @@
 // Scenes of other sizes and far from the origin.
 #include "tests/methods/gradient_bias.h"
 #include "tests/methods/reference_scene.h"
+#include "tests/support/placed_scene.h"
 #include "tests/support/render.h"
 #include "tests/support/stability.h"
-
-#include "runtime/scene/transform.h"
 
 #include <fmt/format.h>
 
 namespace gradus::testing {
 namespace {
-
-/// Every position p becomes factor p + offset.
-void place(Scene &scene, double factor, const Double3 &offset) {
-    const auto placed = [&](Vector3 p) { return to_float(add(scale(to_double(p), factor), offset)); };
-    for (Mesh &mesh : scene.meshes)
-        for (Vector3 &p : mesh.positions)
-            p = placed(p);
-    for (Sphere &sphere : scene.spheres) {
-        sphere.center = placed(sphere.center);
-        sphere.radius = float(sphere.radius * factor);
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-        double &origin = scene.camera.to_world.m[std::size_t(axis) * 4 + 3];
-        origin = factor * origin + offset[axis];
-    }
-}
 
 double extent(const Scene &scene) {
     Double3 low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};

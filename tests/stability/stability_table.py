@@ -22,7 +22,7 @@ import xml.etree.ElementTree
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 PAGE = ROOT / "docs" / "stability.md"
-AREAS = ["Path tracing", "Half-vector copy", "Reconnection", "Gradients", "Reconstruction", "Numbers"]
+AREAS = ["Path tracing", "Half-vector copy", "Reconnection", "Gradients", "Photons", "Reconstruction", "Numbers"]
 FACTOR = 3
 SHARE_OF_LIMIT = 0.01
 FIELDS = ("area", "failure", "provoked_by", "contract", "quantity", "number", "limit")
@@ -43,8 +43,11 @@ differences, R the path tracer's and D their differences, and A and B independen
 relative to the root mean square of D R: what bias the test cannot exclude. Besides, the estimate must be within four
 standard errors of 0.
 
-Not here, because there is no such method yet: manifold walks, photons, chains of Metropolis. Textures are not read yet
-either; edges between materials stand for theirs.
+"Bias of the mean at most": the difference of the means of images of several seeds to what they should be, and four
+standard errors, relatively.
+
+Not here, because there is no such method yet: chains of Metropolis. Textures are not read yet either; edges between
+materials stand for theirs.
 """
 
 

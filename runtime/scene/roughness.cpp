@@ -1,0 +1,33 @@
+#include "runtime/scene/roughness.h"
+
+#include "runtime/scene/traits.h"
+
+#include <algorithm>
+#include <set>
+
+namespace gradus {
+
+bool is_rough(const Bsdf &bsdf, double threshold) {
+    const BsdfKindTraits &kind = bsdf_kind_traits(bsdf.kind);
+    // As float, which the scene's are: 0.02 is not below 0.02.
+    const auto least = float(threshold);
+    return !kind.is_dirac && (!kind.has_roughness || std::min(bsdf.alpha_u, bsdf.alpha_v) >= least);
+}
+
+GatheringSurfaces gathering_surfaces(const Scene &scene, double threshold) {
+    GatheringSurfaces surfaces;
+    const auto count = [&](const Bsdf &bsdf) {
+        ++(is_rough(bsdf, threshold) ? surfaces.gathered : surfaces.passed)[bsdf_kind_name(bsdf)];
+    };
+    std::set<std::uint32_t> used;
+    for (const Shape &shape : scene.shapes)
+        used.insert(shape.material);
+    for (const std::uint32_t material : used) {
+        count(scene.materials[material].front);
+        if (scene.materials[material].two_sided)
+            count(scene.materials[material].back);
+    }
+    return surfaces;
+}
+
+} // namespace gradus

@@ -1,0 +1,290 @@
+// Photon mapping where it is at its worst: for each case a small scene whose light is known, or found by path tracing.
+#include "tests/methods/photon_case.h"
+#include "tests/methods/reference_scene.h"
+#include "tests/support/placed_scene.h"
+#include "tests/support/stability.h"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+namespace gradus::testing {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr const char *area = "Photons";
+constexpr const char *bias_at_most = "bias of the mean at most";
+constexpr std::size_t seeds = 8;
+
+/// Of the images of several seeds.
+Spread means_of(const Scene &scene, RenderOptions options, const char *method = "sppm") {
+    std::vector<double> means;
+    for (const Image &image : render_seeds(scene, seeds, options, 1, method))
+        means.push_back(spread_of(image).mean);
+    return spread_of(means);
+}
+
+/// What the test cannot exclude: the difference and four standard errors, relative to what is expected.
+double largest_bias(const Spread &found, const Spread &expected) {
+    const double error = std::hypot(found.standard_error, expected.standard_error);
+    const double bias = found.mean / expected.mean - 1;
+    fmt::print("found {:.5f} +- {:.5f}, expected {:.5f} +- {:.5f}, bias {:.4f}\n", found.mean, found.standard_error,
+               expected.mean, expected.standard_error, bias);
+    return std::fabs(bias) + 4 * error / expected.mean;
+}
+
+Spread exactly(double value) {
+    Spread spread;
+    spread.mean = value;
+    spread.standard_error = 0;
+    return spread;
+}
+
+TEST(PhotonStability, OnMetalJustRoughEnough) {
+    RenderOptions options = with_radius(0.02, true);
+    options.photons = 50'000;
+    options.direct_photons = true;
+    for (const double roughness : {0.05, 0.1}) {
+        Scene scene = furnace(rough_metal(roughness), 4);
+        scene.settings.max_depth = 4;
+        Scene traced = scene;
+        traced.settings.samples_per_pixel = 64;
+        record_stability(
+            {area, "gathering on glossy surfaces: few of the photons within the radius are in the lobe",
+             fmt::format("a closed sphere of metal of roughness {}, direct light by photons too", roughness),
+             "the BSDF of each photon is evaluated; noisy, but as bright as path tracing has it", bias_at_most,
+             largest_bias(means_of(scene, options), means_of(traced, {}, "pt")), 0.05});
+    }
+}
+
+// The radius goes by the pass and not by the photons that a pixel has seen, so there is nothing that few of them bias.
+TEST(PhotonStability, WhereFewPhotonsAreSeen) {
+    RenderOptions options = with_radius(0.005, true);
+    options.photons = 2000;
+    const Scene scene = furnace(diffuse(0.5), 4, 32);
+    const Statistics statistics = render(scene, options, "sppm").statistics;
+    EXPECT_LT(double(statistics.photon_pairs), 0.3 * double(statistics.gather_points)) << "they are not few";
+    record_stability({area, "few photons seen: estimates that go by their number are biased",
+                      "a furnace, one photon for five gather points", "the radius does not go by their number",
+                      bias_at_most, largest_bias(means_of(scene, options), exactly(2)), 0.05});
+}
+
+TEST(PhotonStability, OfOneLightPathAPass) {
+    RenderOptions options = with_radius(0.1, true);
+    options.photons = 1;
+    options.direct_photons = true;
+    const Scene scene = furnace(diffuse(0.5), 800, 8);
+    record_stability({area, "one light path a pass", "a furnace, 6400 passes in all", "is as bright as it is",
+                      bias_at_most, largest_bias(means_of(scene, options), exactly(2)), 0.1});
+}
+
+TEST(PhotonStability, AtTheLimitsOfTheRadius) {
+    std::size_t wrong = 0;
+    for (const double value : {1e-30, 1e-9, 1e3, 1e18, 1e30})
+        for (const bool of_scene : {false, true})
+            for (const bool direct : {false, true}) {
+                RenderOptions options = with_radius(value, of_scene);
+                options.direct_photons = direct;
+                options.photons = 200;
+                const Image image = render(furnace(diffuse(0.5), 1, 8), options, "sppm").image;
+                for (const float radiance : image.find("G")->values)
+                    wrong += std::isfinite(radiance) && radiance >= 1 && radiance < 1e9 ? 0 : 1;
+            }
+    record_stability({area, "a radius that vanishes or overflows when it is squared",
+                      "a furnace, radii from 1e-30 to 1e30 pixels or diameters",
+                      "at least what positions are exact to; in pixels a twentieth of the scene at most",
+                      "pixels that are not finite or darker than what the surface emits", double(wrong), 0});
+}
+
+// In a furnace of a cube the disc loses what lies beyond its wall: of a square of side s, seen as a whole, the mean
+// over the disc of (s - |x|)(s - |y|) / s^2 is left, which is 1 - 8 r / (3 pi s) + r^2 / (2 pi s^2).
+TEST(PhotonStability, InCorners) {
+    SceneMaker maker(16, 2);
+    maker.look({0, 0, 0}, {0, 0, 1}, 90);
+    maker.scene.settings.rr_depth = 5;
+    maker.cube(maker.material(diffuse(0.5)), maker.emitter(Emitter::Kind::area, {1, 1, 1}), true);
+    const double diameter = 1.01 * std::sqrt(3.0) * 2, radius = 0.5, side = 2;
+    const double lost = 8 * radius / (3 * pi * side) - radius * radius / (2 * pi * side * side);
+    for (const bool direct : {false, true}) {
+        RenderOptions options = with_radius(radius / diameter, true);
+        options.photons = 50'000;
+        options.direct_photons = direct;
+        const double by_photons = direct ? 1 : 0.5;
+        const Spread found = means_of(maker.scene, options), expected = exactly(2 - by_photons * lost);
+        record_stability({area, "corners: the disc reaches beyond the wall, and to the next one",
+                          direct ? "a cubic furnace, radius a quarter of its side, direct light by photons too"
+                                 : "a cubic furnace, radius a quarter of its side",
+                          "darkens by what of the disc is beyond the wall, and takes nothing from the next one",
+                          "deviation from that at most, relative to it",
+                          largest_bias(found, expected) * expected.mean / (by_photons * lost), 0.15});
+    }
+}
+
+/// A closed box of two metres with a lamp inside, seen from outside. `between`: the walls' thickness; 0: one sheet.
+Scene thin_walls(double between, bool both_sides) {
+    SceneMaker maker(24, 2);
+    maker.look({0, 0, -6}, {0, 0, 0}, 30);
+    maker.scene.settings.rr_depth = 5;
+    const std::uint32_t gray = maker.material(both_sides ? two_sided(diffuse(0.7)) : material_of(diffuse(0.7)));
+    maker.cube(gray, -1, true);
+    maker.sphere({0, 0, 0}, 0.2f, gray, maker.emitter(Emitter::Kind::area, {10, 10, 10}));
+    if (between > 0) {
+        maker.cube(gray);
+        const float factor = float(1 + between);
+        for (Vector3 &p : maker.scene.meshes.back().positions)
+            p = {factor * p.x, factor * p.y, factor * p.z};
+    }
+    return maker.scene;
+}
+
+TEST(PhotonStability, AtThinWalls) {
+    float brightest = 0;
+    const double diameter = 1.01 * std::sqrt(3.0) * 2;
+    const std::pair<double, double> walls[] = {{0, 0.01}, {0.001, 0.01}, {0.005, 0.17}}; // thickness, radius
+    for (const auto &[between, radius] : walls)
+        for (const bool both_sides : {false, true})
+            for (const bool direct : {false, true}) {
+                RenderOptions options = with_radius(radius / diameter, true);
+                options.photons = 10'000;
+                options.direct_photons = direct;
+                const Rendered outside = render(thin_walls(between, both_sides), options, "sppm");
+                for (const char *channel : {"R", "G", "B"})
+                    for (const float value : outside.image.find(channel)->values)
+                        brightest = std::max(brightest, value);
+                EXPECT_GT(outside.statistics.gather_points, 100u);
+            }
+    record_stability({area, "thin walls: light of the other side is gathered",
+                      "a lit box with walls of 0, 1 and 5 mm, one- and two-sided, radius 10, 10 and 170 mm",
+                      "photons count where their surface faces the same way", "largest value outside", brightest, 0});
+}
+
+// No bias by a disc on a sphere: the part of it within the radius has the area of the disc. So pixels at the silhouette
+// are as path tracing has them, partly ball and partly sky.
+TEST(PhotonStability, AtSilhouettes) {
+    SceneMaker maker(32, 4);
+    maker.look({0, 0, -4}, {0, 0, 0}, 32);
+    maker.environment(1);
+    maker.sphere({0, 0, 0}, 1, maker.material(diffuse(0.5)));
+    Scene traced = maker.scene;
+    traced.settings.samples_per_pixel = 128;
+    const std::vector<Image> expected = render_seeds(traced, seeds);
+    RenderOptions options = with_radius(4, false);
+    options.photons = 100'000;
+    options.direct_photons = true;
+    const Image mean = mean_image(expected);
+    const auto at_silhouette = [&](const std::vector<Image> &images) {
+        std::vector<double> means;
+        for (const Image &image : images) {
+            double sum = 0;
+            int count = 0;
+            for (std::uint32_t y = 0; y < image.height; ++y)
+                for (std::uint32_t x = 0; x < image.width; ++x)
+                    if (pixel(mean, x, y) > 0.52 && pixel(mean, x, y) < 0.98) {
+                        sum += pixel(image, x, y);
+                        ++count;
+                    }
+            EXPECT_GT(count, 40);
+            means.push_back(sum / count);
+        }
+        return spread_of(means);
+    };
+    record_stability(
+        {area, "silhouettes: the disc reaches beyond the surface, and where the pixel's other part is",
+         "a ball before the sky, direct light by photons too, the pixels of its silhouette",
+         "gathers by distance in space and by the surface's side", bias_at_most,
+         largest_bias(at_silhouette(render_seeds(maker.scene, seeds, options, 1, "sppm")), at_silhouette(expected)),
+         0.03});
+}
+
+/// A ball of some facets, with the ball's normals where `smooth`.
+Mesh coarse_ball(const Vector3 &center, double radius, bool smooth) {
+    constexpr std::uint32_t stacks = 6, slices = 9;
+    Mesh mesh;
+    for (std::uint32_t i = 0; i <= stacks; ++i)
+        for (std::uint32_t j = 0; j < slices; ++j) {
+            const double polar = pi * i / stacks, around = 2 * pi * j / slices;
+            const Vector3 normal{float(std::sin(polar) * std::cos(around)), float(std::cos(polar)),
+                                 float(std::sin(polar) * std::sin(around))};
+            mesh.positions.push_back({float(center.x + radius * normal.x), float(center.y + radius * normal.y),
+                                      float(center.z + radius * normal.z)});
+            if (smooth)
+                mesh.normals.push_back(normal);
+        }
+    for (std::uint32_t i = 0; i < stacks; ++i)
+        for (std::uint32_t j = 0; j < slices; ++j) {
+            const std::uint32_t next = (j + 1) % slices, a = i * slices + j, b = i * slices + next;
+            const std::uint32_t c = a + slices, d = b + slices;
+            if (i > 0)
+                mesh.triangles.push_back({a, b, c});
+            if (i + 1 < stacks)
+                mesh.triangles.push_back({b, d, c});
+        }
+    return mesh;
+}
+
+/// The floor under a piece of glass under a lamp that path tracing can find.
+Scene under_glass(const std::string &piece) {
+    SceneMaker maker(24, 4);
+    maker.look({0, 0.5, -2.5}, {0, 0, 0}, 25);
+    maker.scene.settings.max_depth = 10;
+    const std::uint32_t white = maker.material(diffuse(0.8)), clear = maker.material(glass(1.5));
+    maker.floor(-2, 2, 2, white);
+    maker.lamp({0, 3, 0}, 1.5f, 1.5f, 10, white);
+    if (piece ==
+        "a block") { // of glass on the floor but for 1 mm: light goes around in it by total internal reflection
+        maker.cube(clear);
+        for (Vector3 &p : maker.scene.meshes.back().positions)
+            p = {0.4f * p.x, 0.3f * p.y + 0.301f, 0.4f * p.z};
+    } else {
+        maker.scene.meshes.push_back(coarse_ball({0, 1.4f, 0}, 0.5, piece == "a smooth lens"));
+        maker.shape(Shape::Kind::mesh, maker.scene.meshes.size() - 1, clear, -1);
+    }
+    return maker.scene;
+}
+
+class PhotonStabilityUnder : public ::testing::TestWithParam<const char *> {};
+
+TEST_P(PhotonStabilityUnder, Glass) {
+    const Scene scene = under_glass(GetParam());
+    Scene traced = scene;
+    traced.settings.samples_per_pixel = 1024;
+    RenderOptions options = with_radius(0.5, false); // the edges of the block: 2 % at four times as much
+    options.photons = 200'000;
+    const std::string piece = GetParam();
+    record_stability({area,
+                      piece == "a block" ? "total internal reflection in chains of photons and of camera paths"
+                                         : "facets of a coarse lens: normals that jump, and that are not the surface's",
+                      piece == "a block" ? "a floor seen through a block of glass on it"
+                      : piece == "a smooth lens"
+                          ? "a floor under a ball of 90 triangles of glass, with a ball's normals"
+                          : "a floor under a ball of 90 triangles of glass",
+                      "light paths bear what shading normals and refraction change; as bright as path tracing has it",
+                      bias_at_most, largest_bias(means_of(scene, options), means_of(traced, {}, "pt")), 0.05});
+}
+
+INSTANTIATE_TEST_SUITE_P(Photons, PhotonStabilityUnder, ::testing::Values("a block", "a coarse lens", "a smooth lens"));
+
+// The same random numbers in a scene of another size: rounding decides some paths otherwise, and nothing else may.
+TEST(PhotonStability, InScenesOfAnotherSize) {
+    Scene scene = own_scene("cornell-box.xml", 32, 32);
+    scene.settings.samples_per_pixel = 2;
+    RenderOptions options;
+    options.photons = 50'000;
+    const Image there = render(scene, options, "sppm").image;
+    const double mean = spread_of(there).mean;
+    for (const double factor : {1e-3, 1e4}) {
+        Scene elsewhere = scene;
+        place(elsewhere, factor, {0, 0, 0});
+        const BlockTest blocks = block_z_test({render(elsewhere, options, "sppm").image}, there, there, 1, 1, 8);
+        double largest = 0;
+        for (const double difference : blocks.difference)
+            largest = std::max(largest, std::fabs(difference) / mean);
+        record_stability({area, "scenes of another size: areas of discs and cells of the grid out of range",
+                          fmt::format("scenes/cornell-box.xml times {}", factor),
+                          "radius and grid go by the scene's size, positions by what they are exact to",
+                          "largest change of a block of 8 x 8 pixels, relative to the image's mean", largest, 0.03});
+    }
+}
+
+} // namespace
+} // namespace gradus::testing
