@@ -60,8 +60,7 @@ StageDeclaration emit_stage(const Session &session) {
 }
 
 StageDeclaration scatter_stage() {
-    return with_vertices(
-        {.name = "scatter", .by_kind = true, .numbers = {"first", "to", "to_photon", "first_slot"}});
+    return with_vertices({.name = "scatter", .by_kind = true, .numbers = {"first", "to", "to_photon", "first_slot"}});
 }
 
 StageDeclaration gather_stage() {
@@ -94,8 +93,7 @@ TableList own_tables(const Session &session, const Wavefront &paths) {
 LightPaths::LightPaths(Session &session, Stages &consumers, const Scene &scene, const RenderOptions &options,
                        Direct direct)
     : session_(session), consumers_(consumers), wanted_(options.photons),
-      first_photon_depth_(direct == Direct::photons ? 1 : 2),
-      emit_(stages_.add(emit_stage(session))),
+      first_photon_depth_(direct == Direct::photons ? 1 : 2), emit_(stages_.add(emit_stage(session))),
       paths_(session, stages_, {.kinds = std::uint32_t(session.scene.kinds.size())}),
       scatter_(stages_.add(scatter_stage())), count_(stages_.add(photons_stage("count", {"rows"}))),
       scan_(stages_.add(photons_stage("scan", {"chunks"}))), place_(stages_.add(photons_stage("place", {"rows"}))),
@@ -136,8 +134,10 @@ TableList LightPaths::tables() const {
                        .columns = std::uint32_t(with_vertices ? photon_columns : photon_before),
                        .grows = true}};
     if (with_vertices) { // records: one column
-        list.push_back(
-            {.name = "light_vertices", .rows = RowsOf::one, .multiple = 3 * photons * light_vertex_stride, .grows = true});
+        list.push_back({.name = "light_vertices",
+                        .rows = RowsOf::one,
+                        .multiple = 3 * photons * light_vertex_stride,
+                        .grows = true});
         list.push_back({.name = "light_vertex_marks",
                         .rows = RowsOf::one,
                         .multiple = 3 * photons * light_vertex_mark_stride,
@@ -192,7 +192,7 @@ std::uint32_t LightPaths::trace_pass(std::uint64_t first_path, std::uint32_t fir
                                 {"first_path_low", std::uint32_t(first_path)},
                                 {"first_path_high", std::uint32_t(first_path >> 32)},
                                 {"to_vertex", vertices_}});
-        vertices_ += fresh.count;
+        vertices_ += session_.has("TRAIT_LIGHT_STARTS") ? fresh.count : 0;
         if (!paths_.is_alive())
             break;
         paths_.trace();
