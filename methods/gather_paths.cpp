@@ -29,7 +29,7 @@ StageDeclaration wanted_if(StageDeclaration stage, bool is_wanted) {
 }
 
 StageDeclaration defined_as(StageDeclaration stage, const char *definition, bool value) {
-    stage.definitions[definition] = value ? "1" : "0";
+    stage.definitions[definition] = fmt::format("{:d}", value);
     return stage;
 }
 

@@ -115,7 +115,7 @@ GradientPathTracer::GradientPathTracer(Device &device, const Scene &scene, const
       shade_with_offsets_(stages_.add(shade_stage(true))), shade_(stages_.add(shade_stage(false))),
       advance_(stages_.add(advance_stage("advance", "0", true))),
       advance_apart_(stages_.add(advance_stage("advance apart", "1", session_.has("TRAIT_APART")))),
-      join_(stages_.add({.name = "join", .by_kind = true, .dirac_alike = true, .numbers = {"first", "keeps"}})),
+      join_(stages_.add({.name = "join", .by_kind = true, .dirac = DiracKinds::alike, .numbers = {"first", "keeps"}})),
       count_(stages_.add(count_stage())), combine_(stages_.add({.name = "gradient_combine", .strict = true})),
       film_(session_, stages_),
       accumulate_(stages_.add({.name = "gradient_accumulate", .strict = true, .numbers = {"first_slot", "frames"}})),
@@ -302,6 +302,8 @@ void GradientPathTracer::shift(const OwnVertices &own, std::uint32_t stride) {
     const Range mixed = newest_.phase(own.mixed);
     launch(generally, mixed);
     for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+        if (!evaluate_.is_first_of_kernel(kind))
+            continue; // answered
         // No light connects to a specular vertex.
         const std::uint32_t first_line = bsdf_kind_is_dirac(kinds[kind]) || !session_.samples_lights() ? 4 : 0;
         evaluate_.run_planes(kind, mixed.count, 8 - first_line,

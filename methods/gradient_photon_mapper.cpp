@@ -54,6 +54,7 @@ StageDeclaration leaving_stage(const char *name, bool is_light, bool is_wanted, 
             .file = name,
             .definitions = {{"LAST_IS_LIGHT", is_light ? "1" : "0"}},
             .by_kind = !is_light,
+            .dirac = DiracKinds::left_out,
             .is_wanted = is_wanted,
             .numbers = std::move(numbers)};
 }
@@ -69,8 +70,8 @@ GradientPhotonMapper::GradientPhotonMapper(Device &device, const Scene &scene, c
       paths_(session_, stages_, scene, options, true), photons_(session_, stages_, scene, options, 0.5),
       pairs_(stages_, true), bin_(stages_.add({.name = "gather_bin"})),
       order_(stages_, "gather", first_kind_bin + std::uint32_t(session_.scene.kinds.size()), RowsOf::slot),
-      evaluate_(stages_.add({.name = "photon_evaluate", .by_kind = true})),
-      shift_(stages_.add({.name = "photon_shift", .by_kind = true})),
+      evaluate_(stages_.add({.name = "photon_evaluate", .by_kind = true, .dirac = DiracKinds::left_out})),
+      shift_(stages_.add({.name = "photon_shift", .by_kind = true, .dirac = DiracKinds::left_out})),
       moved_(stages_, "moved", light_bin() + 1, RowsOf::path, 4 * PhotonPairs::pair_rows(1)),
       reconnect_(stages_.add(leaving_stage("photon_reconnect", false, true, {"first", "pairs"}))),
       reconnect_light_(stages_.add(leaving_stage("photon_reconnect", true, true, {"first", "pairs"}))),
@@ -92,7 +93,8 @@ GradientPhotonMapper::GradientPhotonMapper(Device &device, const Scene &scene, c
       count_(stages_.add({.name = "photon_count",
                           .definitions = {{"PARTITION_CHUNK", std::to_string(partition_chunk)}},
                           .numbers = {"first", "rows", "to"}})),
-      arrive_(stages_.add({.name = "photon_arrive", .by_kind = true, .numbers = {"pairs"}})),
+      arrive_(
+          stages_.add({.name = "photon_arrive", .by_kind = true, .dirac = DiracKinds::left_out, .numbers = {"pairs"}})),
       sum_(stages_.add(pairs_.sum_stage("pair_difference_sum"))),
       gradient_gather_(stages_.add({.name = "gradient_gather"})),
       combine_(stages_.add({.name = "gradient_combine", .strict = true})), film_(session_, stages_),
@@ -279,11 +281,9 @@ void GradientPhotonMapper::move_chains(Range chains, std::uint32_t pairs) {
                                  {"chain_rows", rows},
                                  {"chain_vertices", vertices},
                                  {"leave_bin", light_bin()}});
-        for (std::uint32_t kind = 0; kind < kinds.size(); ++kind)
-            if (bsdf_kind_is_dirac(kinds[kind]))
-                pass_.run_kind(
-                    kind, count,
-                    {{"first", first}, {"pairs", pairs}, {"chain_rows", rows}, {"chain_vertices", vertices}});
+        const auto specular = std::find_if(kinds.begin(), kinds.end(), bsdf_kind_is_dirac); // one serves them all
+        pass_.run_kind(std::size_t(specular - kinds.begin()), count,
+                       {{"first", first}, {"pairs", pairs}, {"chain_rows", rows}, {"chain_vertices", vertices}});
         end_.run(count, {{"first", first}, {"chain_rows", rows}, {"chain_vertices", vertices}});
     }
 }

@@ -46,10 +46,10 @@ StageDeclaration photons_stage(const char *step, std::vector<std::string> number
             .numbers = std::move(numbers)};
 }
 
-/// Vertices go to tables of the consumers.
+/// Vertices and photons go to tables of the consumers, which are not known yet.
 StageDeclaration with_vertices(StageDeclaration stage) {
     stage.numbers.push_back("to_vertex");
-    stage.tables = {{"light_vertices", "light_path"}, {"light_vertex_marks", "photon_order"}}; // until they are known
+    stage.tables = {{"light_vertices", "light_path"}, {"light_vertex_marks", "photon_place"}};
     return stage;
 }
 
@@ -60,32 +60,51 @@ StageDeclaration emit_stage(const Session &session) {
 }
 
 StageDeclaration scatter_stage() {
-    return with_vertices({.name = "scatter", .by_kind = true, .numbers = {"first", "to", "to_photon", "first_slot"}});
-}
-
-StageDeclaration gather_stage() {
-    StageDeclaration stage = photons_stage("gather", {"first", "photon_rows"});
-    stage.tables = {{"photon", "new_photon"}}; // until it is known
+    StageDeclaration stage = with_vertices({.name = "scatter",
+                                            .definitions = {{"LEAVES_PHOTONS", "1"}},
+                                            .by_kind = true,
+                                            .numbers = {"first", "to", "to_photon"}});
+    stage.tables.insert(stage.tables.end(), {{"photon", "light_path"}, {"photon_origin", "light_path"}});
     return stage;
 }
 
-/// The tables of light paths in flight and of their photons before they are in order.
+/// The first surface, where no photon is left.
+StageDeclaration scatter_first_stage(bool is_wanted) {
+    return with_vertices({.name = "scatter first",
+                          .file = "scatter",
+                          .definitions = {{"LEAVES_PHOTONS", "0"}},
+                          .by_kind = true,
+                          .is_wanted = is_wanted,
+                          .numbers = {"first", "to"}});
+}
+
+// Light paths that have met their first surface are a phase of their own where that leaves no photon.
+constexpr std::uint32_t first_phase = 1;
+
+BinLayout bin_layout(const Session &session, bool is_first_apart) {
+    return {.phases = is_first_apart ? 2u : 1u, .kinds = std::uint32_t(session.scene.kinds.size())};
+}
+
+StageDeclaration order_stage() {
+    StageDeclaration stage = photons_stage("order", {});
+    stage.tables = {{"photon_origin", "light_path"}, {"photon_order", "photon_place"}};
+    return stage;
+}
+
+/// The tables of light paths in flight, and what orders their photons.
 TableList own_tables(const Session &session, const Wavefront &paths) {
-    // Photons a light path; more room is made where it is needed. By slots, for their columns are written side by side.
-    constexpr std::uint32_t photons = 2;
-    return joined(paths.ray_tables(),
-                  {{.name = "light_path",
-                    .columns = std::uint32_t(has_vertices(session) ? light_path_columns : light_path_vertex),
-                    .alternates = true},
-                   {.name = "new_photon",
-                    .rows = RowsOf::slot,
-                    .multiple = photons,
-                    .columns = new_photon_columns,
-                    .grows = true},
-                   {.name = "photon_order", .rows = RowsOf::slot, .multiple = photons, .is_uint = true, .grows = true},
-                   {.name = "photon_place", .rows = RowsOf::slot, .is_uint = true},
-                   {.name = "photon_chunk", .rows = RowsOf::chunk, .multiple = batches_a_pass, .is_uint = true},
-                   {.name = "photon_total", .rows = RowsOf::one, .is_uint = true}});
+    return joined(
+        paths.ray_tables(),
+        {{.name = "light_path",
+          .columns = std::uint32_t(has_vertices(session) ? light_path_columns : light_path_vertex),
+          .alternates = true},
+         {.name = "photon_place", .rows = RowsOf::one, .multiple = pilot_paths, .is_uint = true, .grows = true},
+         {.name = "photon_chunk",
+          .rows = RowsOf::one,
+          .multiple = chunks_of(pilot_paths),
+          .is_uint = true,
+          .grows = true},
+         {.name = "photon_total", .rows = RowsOf::one, .is_uint = true}});
 }
 
 } // namespace
@@ -93,11 +112,11 @@ TableList own_tables(const Session &session, const Wavefront &paths) {
 LightPaths::LightPaths(Session &session, Stages &consumers, const Scene &scene, const RenderOptions &options,
                        Direct direct)
     : session_(session), consumers_(consumers), wanted_(options.photons),
-      first_photon_depth_(direct == Direct::photons ? 1 : 2), emit_(stages_.add(emit_stage(session))),
-      paths_(session, stages_, {.kinds = std::uint32_t(session.scene.kinds.size())}),
-      scatter_(stages_.add(scatter_stage())), count_(stages_.add(photons_stage("count", {"rows"}))),
-      scan_(stages_.add(photons_stage("scan", {"chunks"}))), place_(stages_.add(photons_stage("place", {"rows"}))),
-      order_(stages_.add(photons_stage("order", {"first_slot"}))), gather_(stages_.add(gather_stage())) {
+      layout_(bin_layout(session, direct == Direct::left_out)), emit_(stages_.add(emit_stage(session))),
+      paths_(session, stages_, layout_, {{"FRESH_APART", layout_.phases > 1 ? "1" : "0"}}, {"bins_of_phase", "fresh"}),
+      scatter_(stages_.add(scatter_stage())), scatter_first_(stages_.add(scatter_first_stage(layout_.phases > 1))),
+      count_(stages_.add(photons_stage("count", {"rows"}))), scan_(stages_.add(photons_stage("scan", {"chunks"}))),
+      place_(stages_.add(photons_stage("place", {"rows"}))), order_(stages_.add(order_stage())) {
     if (wanted_ > std::numeric_limits<std::int32_t>::max())
         throw Error(ExitCode::usage, "there can be 2^31 - 1 light paths a pass at most");
     const std::vector<std::uint32_t> gathers = gathers_by_material(scene, options.gather_roughness);
@@ -107,20 +126,17 @@ LightPaths::LightPaths(Session &session, Stages &consumers, const Scene &scene, 
     const std::uint32_t batch =
         choose_batch_size(session.device, session.options.batch_size,
                           wanted_ ? wanted_ : std::uint64_t(most_paths_a_pass), list, session.options.precision);
-    const std::uint32_t slots = batches_a_pass * batch;
-    own_.emplace(session.device, list, table_rows(session, batch, slots), session.options.precision);
+    own_.emplace(session.device, list, table_rows(session, batch, batch), session.options.precision);
 
     // The numbers that our kernels know are not those of the consumers'.
     const auto numbers = session.numbers;
     const bool plays_roulette = session.numbers.at("roulette_depth") < beyond_all_paths;
     session.numbers["capacity"] = batch;
-    session.numbers["slots"] = own_->rows().slots;
     session.numbers["light_roulette_depth"] = plays_roulette ? roulette_from : no_roulette;
-    session.numbers["first_photon_depth"] = first_photon_depth_;
-    session.numbers["new_photon_rows"] = std::uint32_t(own_->rows_of("new_photon"));
+    session.numbers["photon_rows"] = 0; // attach() and trace() say it
     stages_.build(session, *own_);
     session.numbers = numbers;
-    session.numbers["photon_rows"] = 0; // attach() and trace() say it
+    session.numbers["photon_rows"] = 0;
     paths_.attach(*own_);
 }
 
@@ -128,11 +144,18 @@ TableList LightPaths::tables() const {
     const double rows = wanted_ ? std::min(double(wanted_), 1.1 * photons_a_pass) : 1.1 * photons_a_pass;
     const bool with_vertices = has_vertices(session_);
     const auto photons = slot_rows(std::uint32_t(rows));
-    TableList list = {{.name = "photon",
-                       .rows = RowsOf::one,
-                       .multiple = photons,
-                       .columns = std::uint32_t(with_vertices ? photon_columns : photon_before),
-                       .grows = true}};
+    TableList list = {
+        {.name = "photon",
+         .rows = RowsOf::one,
+         .multiple = photons,
+         .columns = std::uint32_t(with_vertices ? photon_columns : photon_before),
+         .grows = true},
+        {.name = "photon_origin",
+         .rows = RowsOf::one,
+         .multiple = photons,
+         .columns = photon_origin_columns,
+         .grows = true},
+        {.name = "photon_order", .rows = RowsOf::one, .multiple = photons, .is_uint = true, .grows = true}};
     if (with_vertices) { // records: one column
         list.push_back({.name = "light_vertices",
                         .rows = RowsOf::one,
@@ -149,8 +172,18 @@ TableList LightPaths::tables() const {
 
 void LightPaths::attach(Tables &tables) {
     tables_ = &tables;
-    session_.numbers["photon_rows"] = std::uint32_t(tables.rows_of("photon"));
-    consumers_.set("photon_rows", std::uint32_t(tables.rows_of("photon")));
+    bind_photons();
+}
+
+void LightPaths::bind_photons() {
+    const auto rows = std::uint32_t(tables_->rows_of("photon"));
+    session_.numbers["photon_rows"] = rows;
+    consumers_.set("photon_rows", rows);
+    stages_.set("photon_rows", rows);
+    scatter_.bind("photon", (*tables_)["photon"]);
+    for (Stage *stage : {&scatter_, &order_})
+        stage->bind("photon_origin", (*tables_)["photon_origin"]);
+    order_.bind("photon_order", (*tables_)["photon_order"]);
 }
 
 std::uint32_t LightPaths::paths_a_pass() {
@@ -166,22 +199,23 @@ std::uint32_t LightPaths::paths_a_pass() {
 }
 
 std::uint32_t LightPaths::trace(std::uint64_t first_path, std::uint32_t count) {
-    std::uint32_t stored = 0;
-    vertices_ = 0;
-    const std::uint32_t pass = batches_a_pass * own_->rows().paths;
-    if (emit_.is_wanted() && session_.max_depth() > 1)
-        for (std::uint32_t done = 0; done < count; done += std::min(pass, count - done))
-            stored += trace_pass(first_path + done, done, std::min(pass, count - done), stored);
+    rows_ = vertices_ = 0;
     light_paths_ += count;
+    if (!emit_.is_wanted() || session_.max_depth() <= 1)
+        return 0;
+    if (count > own_->rows_of("photon_place")) {
+        own_->grow("photon_place", count);
+        own_->grow("photon_chunk", chunks_of(count));
+    }
+    const std::uint64_t traced_before = session_.rays["extension"];
+    step_all(first_path, count);
+    rays_ += session_.rays["extension"] - traced_before;
+    const std::uint32_t stored = put_in_order(count);
     photons_ += stored;
     return stored;
 }
 
-std::uint32_t LightPaths::trace_pass(std::uint64_t first_path, std::uint32_t first_slot, std::uint32_t count,
-                                     std::uint32_t stored) {
-    const std::vector<std::string> &kinds = session_.scene.kinds;
-    const std::uint64_t traced_before = session_.rays["extension"];
-    std::uint32_t found = 0; // rows of `new_photon`
+void LightPaths::step_all(std::uint64_t first_path, std::uint32_t count) {
     paths_.begin_pass(count);
     for (;;) {
         std::uint32_t slot;
@@ -194,59 +228,53 @@ std::uint32_t LightPaths::trace_pass(std::uint64_t first_path, std::uint32_t fir
                                 {"to_vertex", vertices_}});
         vertices_ += session_.has("TRAIT_LIGHT_STARTS") ? fresh.count : 0;
         if (!paths_.is_alive())
-            break;
+            return;
         paths_.trace();
-        const Hits &hits = paths_.partition();
-        make_room(std::uint64_t(found) + hits.count());
+        const Hits &hits = paths_.partition(
+            {{"bins_of_phase", std::uint32_t(2 * session_.scene.kinds.size())}, {"fresh", paths_.vertices()}});
+        make_room(std::uint64_t(rows_) + hits.count());
         make_room_for_vertices(std::uint64_t(vertices_) + hits.count());
         paths_.advance();
-        for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
-            const Range rows = hits.kind(0, kind);
-            scatter_.run_kind(kind, rows.count,
-                              {{"first", hits.place(rows.first)},
-                               {"to", rows.first},
-                               {"to_photon", found},
-                               {"first_slot", first_slot},
-                               {"to_vertex", vertices_}});
-            vertices_ += rows.count;
-            found += bsdf_kind_is_dirac(kinds[kind]) ? 0 : rows.count;
-        }
+        for (std::uint32_t phase = 0; phase < layout_.phases; ++phase)
+            for (std::size_t kind = 0; kind < layout_.kinds; ++kind)
+                scatter(hits, phase, kind);
     }
-    rays_ += session_.rays["extension"] - traced_before;
-    return put_in_order(first_slot, count, found, stored);
 }
 
-std::uint32_t LightPaths::put_in_order(std::uint32_t first_slot, std::uint32_t count, std::uint32_t found,
-                                       std::uint32_t stored) {
+void LightPaths::scatter(const Hits &hits, std::uint32_t phase, std::size_t kind) {
+    const Range rows = hits.kind(phase, kind);
+    const std::uint32_t from = hits.place(rows.first);
+    if (phase == first_phase) {
+        scatter_first_.run_kind(kind, rows.count, {{"first", from}, {"to", rows.first}, {"to_vertex", vertices_}});
+    } else {
+        scatter_.run_kind(kind, rows.count,
+                          {{"first", from}, {"to", rows.first}, {"to_photon", rows_}, {"to_vertex", vertices_}});
+        rows_ += bsdf_kind_is_dirac(session_.scene.kinds[kind]) ? 0 : rows.count;
+    }
+    vertices_ += has_vertices(session_) ? rows.count : 0;
+}
+
+std::uint32_t LightPaths::put_in_order(std::uint32_t count) {
     const std::uint32_t chunks = chunks_of(count);
     count_.run(chunks, {{"rows", count}});
     scan_.run(1, {{"chunks", chunks}});
     std::uint32_t photons = 0;
     Buffer::Reading reading = (*own_)["photon_total"].start_read(&photons, sizeof photons);
     place_.run(chunks, {{"rows", count}});
-    order_.run(found, {{"first_slot", first_slot}});
+    order_.run(rows_);
     reading.wait();
-    const std::uint64_t rows = std::uint64_t(stored) + photons;
-    if (rows > most_photons)
-        throw Error(ExitCode::device, "these are more photons a pass than there can be; ask for fewer light paths");
-    if (rows > tables_->rows_of("photon")) {
-        tables_->grow("photon", slot_rows(std::uint32_t(rows + rows / 4)));
-        consumers_.set("photon_rows", std::uint32_t(tables_->rows_of("photon")));
-    }
-    gather_.bind("photon", (*tables_)["photon"]);
-    gather_.run(photons, {{"first", stored}, {"photon_rows", std::uint32_t(tables_->rows_of("photon"))}});
     return photons;
 }
 
 void LightPaths::make_room(std::uint64_t rows) {
-    if (rows <= own_->rows_of("new_photon"))
+    if (rows <= tables_->rows_of("photon"))
         return;
     if (rows > most_photons)
-        throw Error(ExitCode::device, "light paths leave more photons than there can be; ask for a smaller batch");
-    const auto multiple = std::uint32_t((rows + rows / 2) / own_->rows().slots + 1);
-    own_->grow("new_photon", multiple);
-    own_->grow("photon_order", multiple);
-    stages_.set("new_photon_rows", std::uint32_t(own_->rows_of("new_photon")));
+        throw Error(ExitCode::device, "these are more photons a pass than there can be; ask for fewer light paths");
+    const std::uint32_t more = slot_rows(std::uint32_t(std::min(rows + rows / 4, most_photons)));
+    for (const char *table : {"photon", "photon_origin", "photon_order"})
+        tables_->grow(table, more);
+    bind_photons();
 }
 
 /// For so many records of vertices.
@@ -260,7 +288,7 @@ void LightPaths::make_room_for_vertices(std::uint64_t records) {
         tables_->grow("light_vertices", more * light_vertex_stride);
         tables_->grow("light_vertex_marks", more * light_vertex_mark_stride);
     }
-    for (Stage *stage : {&emit_, &scatter_}) {
+    for (Stage *stage : {&emit_, &scatter_, &scatter_first_}) {
         stage->bind("light_vertices", (*tables_)["light_vertices"]);
         stage->bind("light_vertex_marks", (*tables_)["light_vertex_marks"]);
     }

@@ -24,9 +24,9 @@ class LightPaths {
     /// `photon_rows`, which is its stride and changes as it grows.
     LightPaths(Session &session, Stages &consumers, const Scene &scene, const RenderOptions &options, Direct direct);
 
-    /// For the consumers' tables: `photon`, which grows. With TRAIT_LIGHT_VERTICES, a trait of the method, also the
-    /// vertices of all light paths (kernels/shared/light_vertex.h), which photons name; with TRAIT_LIGHT_STARTS those
-    /// on lights too.
+    /// For the consumers' tables: `photon`, `photon_origin` and `photon_order`, which grow. With TRAIT_LIGHT_VERTICES,
+    /// a trait of the method, also the vertices of all light paths (kernels/shared/light_vertex.h), which photons name;
+    /// with TRAIT_LIGHT_STARTS those on lights too.
     TableList tables() const;
     /// To be called once these are allocated, before or after the consumers' stages are built.
     void attach(Tables &tables);
@@ -35,12 +35,14 @@ class LightPaths {
     /// are is told by a pilot, the same for any batch, of light paths that no render reaches.
     std::uint32_t paths_a_pass();
 
-    /// Traces the light paths of numbers first_path to first_path + count - 1 and stores their photons: rows 0 on of
-    /// `photon`. Returns how many there are. Each bears the power that it would have if its light path were the only
-    /// one: divide by `count`, or by all light paths of a render. Paths have at most max_depth - 1 edges, since the
-    /// camera's side has one at least.
+    /// Traces the light paths of numbers first_path to first_path + count - 1 and stores their photons: in rows of
+    /// `photon` that `photon_order` names, by light path and along each. Returns how many there are. Each bears the
+    /// power that it would have if its light path were the only one: divide by `count`, or by all light paths of a
+    /// render. Paths have at most max_depth - 1 edges, since the camera's side has one at least.
     std::uint32_t trace(std::uint64_t first_path, std::uint32_t count);
 
+    /// Rows of `photon` that the last call of trace() wrote, those without a photon counted in.
+    std::uint32_t rows() const { return rows_; }
     /// What all calls of trace() did, the pilot not counted in.
     std::uint64_t light_paths() const { return light_paths_; }
     std::uint64_t photons() const { return photons_; }
@@ -49,25 +51,25 @@ class LightPaths {
     std::uint64_t rays() const { return rays_; }
 
   private:
-    /// Those of [first, first + count), all of which have slots; their photons go behind `stored` others.
-    std::uint32_t trace_pass(std::uint64_t first_path, std::uint32_t first_slot, std::uint32_t count,
-                             std::uint32_t stored);
-    /// Of `found` new rows of `count` slots, from which come the photons that are returned.
-    std::uint32_t put_in_order(std::uint32_t first_slot, std::uint32_t count, std::uint32_t found,
-                               std::uint32_t stored);
-    /// For so many rows of `new_photon`.
+    void step_all(std::uint64_t first_path, std::uint32_t count);
+    void scatter(const Hits &hits, std::uint32_t phase, std::size_t kind);
+    /// The photons of `count` light paths. Returns how many there are.
+    std::uint32_t put_in_order(std::uint32_t count);
+    /// For so many rows of `photon`.
     void make_room(std::uint64_t rows);
+    void bind_photons();
     void make_room_for_vertices(std::uint64_t records);
 
     Session &session_;
     Stages &consumers_;
     std::uint64_t wanted_;
-    std::uint32_t first_photon_depth_, paths_a_pass_ = 0;
-    std::uint32_t vertices_ = 0; ///< records of vertices that this call of trace() has left
+    BinLayout layout_;
+    std::uint32_t paths_a_pass_ = 0;
+    std::uint32_t rows_ = 0, vertices_ = 0; ///< rows of `photon` and records of vertices that trace() has left
     Stages stages_;
     Stage &emit_;
     Wavefront paths_;
-    Stage &scatter_, &count_, &scan_, &place_, &order_, &gather_;
+    Stage &scatter_, &scatter_first_, &count_, &scan_, &place_, &order_;
     std::optional<Tables> own_;
     Tables *tables_ = nullptr;
     std::uint64_t light_paths_ = 0, photons_ = 0, rays_ = 0;

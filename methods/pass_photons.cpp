@@ -116,7 +116,7 @@ void PassPhotons::begin(std::uint64_t pass) {
     const double scale = std::sqrt(radius_shrinkage(pass, options_.radius_alpha));
     stages_.set_real("radius_scale", scale);
     const std::uint32_t photons = light_paths_.trace(pass * paths_a_pass_, paths_a_pass_);
-    map_.build(photons, scale * std::max(cell_edge * typical_radius_, largest_radius_ / most_radii_a_cell));
+    map_.build(light_paths_.rows(), photons, scale * std::max(cell_edge * typical_radius_, largest_radius_ / most_radii_a_cell));
     pass_ = pass;
 }
 

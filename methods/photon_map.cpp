@@ -109,7 +109,7 @@ PhotonGrid::PhotonGrid(const Box &box, double edge, std::uint32_t most) : low(bo
 PhotonMap::PhotonMap(Session &session, Stages &stages, std::uint32_t rows)
     : stages_(stages), box_(box_of(session.scene)), rows_(rows),
       columns_(session.has("TRAIT_LIGHT_VERTICES") ? photon_columns : photon_before),
-      sort_(session, stages, "photon_order", RowsOf::one, rows), cells_(stages.add(cells_stage("photon_cells", {}))),
+      sort_(session, stages, "photon_sort", RowsOf::one, rows), cells_(stages.add(cells_stage("photon_cells", {}))),
       copy_(stages.add(cells_stage("photon_copy", {}))), lines_(stages.add(cells_stage("photon_lines", {}))),
       starts_(stages.add(cells_stage("photon_starts", {"photons", "keys"}))) {
     set_grid(session, PhotonGrid(box_, 1, most_keys));
@@ -141,12 +141,12 @@ void PhotonMap::grow() {
     rows_ = rows;
 }
 
-void PhotonMap::build(std::uint32_t count, double edge) {
+void PhotonMap::build(std::uint32_t rows, std::uint32_t count, double edge) {
     grow();
     const PhotonGrid grid(box_, edge, most_keys);
     set_grid(stages_, grid);
-    cells_.run(count);
-    sort_.run((*tables_)["photon_key"], count, grid.keys - 1);
+    cells_.run(rows);
+    sort_.run_in((*tables_)["photon_order"], (*tables_)["photon_key"], count, grid.keys - 1);
     copy_.run_planes(0, count, columns_);
     lines_.run(count);
     starts_.run(count + 1, {{"photons", count}, {"keys", grid.keys}});

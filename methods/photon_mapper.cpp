@@ -16,7 +16,7 @@ using namespace lib_float;
 PhotonMapper::PhotonMapper(Device &device, const Scene &scene, const RenderOptions &options)
     : options_(options), session_(device, checked_for_gathering(scene, options), options, {}),
       paths_(session_, stages_, scene, options, false), photons_(session_, stages_, scene, options, 2), pairs_(stages_),
-      evaluate_(stages_.add({.name = "photon_evaluate", .by_kind = true})),
+      evaluate_(stages_.add({.name = "photon_evaluate", .by_kind = true, .dirac = DiracKinds::left_out})),
       add_(stages_.add({.name = "gather_add", .numbers = {"first"}})), film_(session_, stages_) {
     total_ = std::uint64_t(session_.pixels()) * session_.settings.samples_per_pixel;
     allocate();

@@ -12,6 +12,8 @@ PARTS = [
     ("photon_shift", "shifts"), ("photon_reconnect", "shifts"), ("photon_arrive", "shifts"), ("photon_project", "shifts"),
     ("photon_walk", "shifts"), ("photon_leave", "shifts"), ("photon_pass", "shifts"), ("moved", "shifts"),
     ("walk", "shifts"), ("pair_difference", "shifts"), ("gradient_gather", "shifts"),
+    ("light paths,", "photons"), ("photon", "photons"), ("pair_", "photons"), ("gather", "photons"),
+    ("travel", "photons"),
     ("accumulate", "film"), ("gradient_accumulate", "film"), ("gradient_combine", "film"),
 ]
 COLOURS = {
@@ -20,6 +22,7 @@ COLOURS = {
     "camera": plotting.YELLOW,
     "shading": plotting.BLUE,
     "shifts": plotting.VERMILLION,
+    "photons": plotting.GREEN,
     "film": plotting.PURPLE,
     "reconstruction": plotting.INK,
     "other": plotting.GRID,

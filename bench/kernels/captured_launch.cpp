@@ -143,11 +143,10 @@ CapturedLaunch::CapturedLaunch(Device &device, const Launch &launch)
 CapturedLaunch::~CapturedLaunch() { restore(); }
 
 void CapturedLaunch::lay_out(CapturedBuffer &captured, const TableLayout &layout) const {
-    captured.rows =
-        layout.rows({uint_argument("capacity"), uint_argument("slots"), uint_argument("pixels"),
-                     uint_argument("crop_width"), uint_argument("own_rows"), uint_argument("photon_rows"),
-                     uint_argument("new_photon_rows"), uint_argument("pair_rows"), uint_argument("gather_rows"),
-                     uint_argument("chain_rows"), uint_argument("chain_vertices")});
+    captured.rows = layout.rows({uint_argument("capacity"), uint_argument("slots"), uint_argument("pixels"),
+                                 uint_argument("crop_width"), uint_argument("own_rows"), uint_argument("photon_rows"),
+                                 uint_argument("pair_rows"), uint_argument("gather_rows"), uint_argument("chain_rows"),
+                                 uint_argument("chain_vertices")});
     if (captured.rows == 0)
         return;
     for (const TableColumn &column : layout.columns)

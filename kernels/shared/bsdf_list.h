@@ -17,8 +17,9 @@
     NUMBER(WITH, alpha_v, 0.1f, "roughness along the frame's t axis")
 
 /* KIND(name, is_dirac, transmits, parameters): a BSDF kind is one program of the stages that evaluate BSDFs, and one
- * bin of the wavefront. is_dirac: it has Dirac lobes alone, which light sampling cannot meet. transmits: light passes
- * it, so it has both sides by nature; where it has an `ior` too, it refracts. A kind with `alpha_u` has that roughness.
+ * bin of the wavefront. is_dirac: it has Dirac lobes alone, which light sampling cannot meet; the Dirac kinds of a
+ * scene share a program (kernels/lib/bsdf_specular.h). transmits: light passes it, so it has both sides by nature;
+ * where it has an `ior` too, it refracts. A kind with `alpha_u` has that roughness.
  *
  * Its functions are in kernels/lib/bsdf_<name>.h, or, where kinds share a file, in that of the name without its last
  * word. One a line, as here: kernels/CMakeLists.txt reads this list too. */
@@ -32,9 +33,10 @@
     KIND(roughdielectric_ggx, 0, 1, "specular_reflectance specular_transmittance ior alpha_u alpha_v")                 \
     KIND(roughdielectric_beckmann, 0, 1, "specular_reflectance specular_transmittance ior alpha_u alpha_v")
 
-/* FIELD(name): the reals of a material's record. */
+/* FIELD(name): the reals of a material's record; `bsdf` is the number of its kind. */
 #define GRADUS_COLOR_FIELDS(FIELD, name, value, text) FIELD(name##_r) FIELD(name##_g) FIELD(name##_b)
 #define GRADUS_NUMBER_FIELD(FIELD, name, value, text) FIELD(name)
-#define GRADUS_MATERIAL_FIELDS(FIELD) GRADUS_MATERIAL_PARAMETERS(GRADUS_COLOR_FIELDS, GRADUS_NUMBER_FIELD, FIELD)
+#define GRADUS_MATERIAL_FIELDS(FIELD)                                                                                  \
+    GRADUS_MATERIAL_PARAMETERS(GRADUS_COLOR_FIELDS, GRADUS_NUMBER_FIELD, FIELD) FIELD(bsdf)
 
 #endif

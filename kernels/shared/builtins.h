@@ -16,7 +16,10 @@ size_t GRADUS_BUILTIN get_local_id(uint);
 real GRADUS_BUILTIN sqrt(real);
 real GRADUS_BUILTIN fabs(real);
 real GRADUS_BUILTIN floor(real);
+/* Both signs, or arguments of the other would be converted without a word. */
 int GRADUS_BUILTIN max(int, int);
+uint GRADUS_BUILTIN max(uint, uint);
+int GRADUS_BUILTIN min(int, int);
 uint GRADUS_BUILTIN min(uint, uint);
 uint GRADUS_BUILTIN mul_hi(uint, uint);
 

@@ -1,5 +1,6 @@
 /* What a material is on the device: a record of reals in one array. Record m starts at m * material_stride, its fields
- * in the order of GRADUS_MATERIAL_PARAMETERS, a colour's three channels one after the other. */
+ * in the order of GRADUS_MATERIAL_PARAMETERS, a colour's three channels one after the other, and last the number of its
+ * kind. */
 #ifndef GRADUS_SHARED_MATERIAL_H
 #define GRADUS_SHARED_MATERIAL_H
 #include "kernels/shared/bsdf_list.h"

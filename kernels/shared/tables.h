@@ -146,21 +146,20 @@
     REAL(table, normal_x, "geometric normal, unit, on the side that the material calls front")                         \
     REAL(table, normal_y, "")                                                                                          \
     REAL(table, normal_z, "")                                                                                          \
-    UINT(table, slot, "number of its light path among those traced with it")                                           \
     UINT(table, depth, "edges from the light: 1 for what arrives directly")                                            \
     UINT(table, before, "only with TRAIT_LIGHT_VERTICES: record of the vertex that it came from (light_vertex.h)")
 
-/* All photons of a pass, by light path and along each, whatever the batches. */
+/* All photons of a pass as they came, which goes by the batch. Table `photon_order` has their rows by light path and
+ * along each, which does not. Rows that it does not have are of no photons. */
 #define GRADUS_PHOTON_COLUMNS(REAL, UINT) GRADUS_PHOTON_COLUMNS_OF(photon, REAL, UINT)
 
-/* Those of some light paths in the order in which they came. */
-#define GRADUS_NEW_PHOTON_COLUMNS(REAL, UINT)                                                                          \
-    GRADUS_PHOTON_COLUMNS_OF(new_photon, REAL, UINT)                                                                   \
-    UINT(new_photon, ordinal, "photons that its light path left before it; photon_none where it is none itself")
+/* Where they belong. */
+#define GRADUS_PHOTON_ORIGIN_COLUMNS(REAL, UINT)                                                                       \
+    UINT(photon_origin, slot, "number of the light path among those traced with it")                                   \
+    UINT(photon_origin, ordinal, "photons that it left before this one; photon_none where this is none itself")
 
 /* The photons of `photon`, cell by cell of a grid. */
-#define GRADUS_PHOTON_SORTED_COLUMNS(REAL, UINT)                                                                       \
-    GRADUS_PHOTON_COLUMNS_OF(photon_sorted, REAL, UINT)
+#define GRADUS_PHOTON_SORTED_COLUMNS(REAL, UINT) GRADUS_PHOTON_COLUMNS_OF(photon_sorted, REAL, UINT)
 
 /* Where camera paths ended at a surface that is rough enough: photons near it are gathered there. */
 #define GRADUS_GATHER_COLUMNS(REAL, UINT)                                                                              \
@@ -369,7 +368,7 @@
     TABLE(feature_film, GRADUS_FEATURE_FILM_COLUMNS)                                                                   \
     TABLE(light_path, GRADUS_LIGHT_PATH_COLUMNS)                                                                       \
     TABLE(photon, GRADUS_PHOTON_COLUMNS)                                                                               \
-    TABLE(new_photon, GRADUS_NEW_PHOTON_COLUMNS)                                                                       \
+    TABLE(photon_origin, GRADUS_PHOTON_ORIGIN_COLUMNS)                                                                 \
     TABLE(photon_sorted, GRADUS_PHOTON_SORTED_COLUMNS)                                                                 \
     TABLE(gather, GRADUS_GATHER_COLUMNS)                                                                               \
     TABLE(pair_value, GRADUS_PAIR_VALUE_COLUMNS)                                                                       \
@@ -412,7 +411,7 @@ GRADUS_COLUMN_ENUM(splat, GRADUS_SPLAT_COLUMNS) /* its rows are its writer's */
 /* A gather_radius that says that there is no neighbour. */
 #define gather_absent R(-1)
 
-/* A new_photon_ordinal that is none: the row is left out. */
+/* A photon_origin_ordinal that is none: the row is left out. */
 #define photon_none 0xFFFFFFFFu
 
 /* material_gathers, by material record: which surfaces keep photons, and where camera paths look for them. */
@@ -494,7 +493,7 @@ GRADUS_LIB_END
 #define ROWS_OF_splat splat_rows
 #define ROWS_OF_light_path capacity
 #define ROWS_OF_photon photon_rows
-#define ROWS_OF_new_photon new_photon_rows
+#define ROWS_OF_photon_origin photon_rows
 #define ROWS_OF_photon_sorted photon_rows
 #define ROWS_OF_gather gather_rows
 #define ROWS_OF_pair_value pair_rows

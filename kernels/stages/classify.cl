@@ -4,6 +4,8 @@
  * GATHER: paths that meet a surface that is rough enough leave a gather point there, which is phase 1. Rows in
  * [gathered_first, gathered_end) have left one: they end with the light that they find, if any (photon_mapper.h).
  *
+ * FRESH_APART: rows from `fresh` on, which begin, are phase 1.
+ *
  * TRAIT_GRADIENT: rows below `shifting` have offset paths that are not connected, rows from `fresh` on begin; where
  * offset paths are at the next vertex decides the phase (gradient_path_tracer.h). */
 //! traits: TRAIT_ENVIRONMENT TRAIT_TWO_FACED TRAIT_GRADIENT TRAIT_APART
@@ -22,6 +24,10 @@ STAGE classify(uint count, uint unit, uint capacity, __global const real *ray, _
                ,
                uint bins_of_phase, uint gathered_first, uint gathered_end, __global const uint *primitive_material,
                __global const uint *material_back, __global const uint *material_gathers
+#endif
+#if FRESH_APART
+               ,
+               uint bins_of_phase, uint fresh
 #endif
 #if TRAIT_GRADIENT
                ,
@@ -64,6 +70,9 @@ STAGE classify(uint count, uint unit, uint capacity, __global const real *ray, _
     const int has_gathered = row >= gathered_first && row < gathered_end;
     const uint onward_bin = hit_bin + 1u + gathers * bins_of_phase;
     hit_bin = has_gathered ? (emits ? FOUND_BIN : bin_none) : onward_bin;
+#endif
+#if FRESH_APART
+    hit_bin += row >= fresh ? bins_of_phase : 0u;
 #endif
 #if TRAIT_GRADIENT
     const int begins = row >= fresh, shifts = row < shifting;

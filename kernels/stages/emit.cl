@@ -7,7 +7,7 @@
 #include "kernels/shared/light_vertex.h"
 #include "kernels/shared/stage.h"
 
-STAGE emit(uint count, uint unit, uint capacity, uint slots, uint first_row, uint first_slot, uint first_path_low,
+STAGE emit(uint count, uint unit, uint capacity, uint first_row, uint first_slot, uint first_path_low,
            uint first_path_high, uint seed_low, uint seed_high, __global real *ray, __global real *light_path,
            __global uint *photon_place, __global const real *lights, __global const uint *light_kinds,
            __global const real *emissions, __global const uint *emission_alias, uint light_count, real scene_center_x,

@@ -1,7 +1,7 @@
-/* evaluate: the BSDF service. Answers the requests of `shift` that concern vertices of one BSDF kind: base paths in
- * rows `first` on, plane by plane the lines of `evaluation` from `first_line` on: 0 to 3 light connections of offset
- * paths, 4 to 7 their steps. Requests at vertices of other kinds are left alone. All rows are computed, also those without a
- * request: their answers go nowhere.
+/* evaluate: the BSDF service. Answers the requests of `shift` that concern vertices of one BSDF kind, or of all Dirac
+ * kinds: base paths in rows `first` on, plane by plane the lines of `evaluation` from `first_line` on: 0 to 3 light
+ * connections of offset paths, 4 to 7 their steps. Requests at vertices of other kinds are left alone. All rows are
+ * computed, also those without a request: their answers go nowhere.
  *
  * What has no value asks the tracer nothing. */
 #include "kernels/lib/bsdf_evaluate.h"
@@ -23,7 +23,12 @@ STAGE evaluate(uint count, uint unit, uint first, uint first_line, uint stride, 
     const uint slot = AT_UINT(path, slot, row);
     const film_pixel pixel = PIXEL_OF(slot);
     const own_vertex_state own = OWN_STATE(j, row, slot, pixel);
-    const int is_asked = own.is_own & (kind_number(AT_UINT(own_vertex, kind, own.row)) == PASTE(bsdf_kind_, BSDF));
+    const uint kind = AT_UINT(own_vertex, kind, own.row);
+#if BSDF_IS_DIRAC
+    const int is_asked = own.is_own & ((kind & kind_is_dirac) != 0u); /* whichever of them it is */
+#else
+    const int is_asked = own.is_own & (kind_number(kind) == PASTE(bsdf_kind_, BSDF));
+#endif
     const material m = material_load(materials, AT_UINT(own_vertex, material, own.row), unit);
     const frame axes = VERTEX_FRAME(own_vertex, own.row, m);
     const size_t at = (size_t)line * capacity + row;

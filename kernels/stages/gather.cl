@@ -8,7 +8,6 @@
  * BY_SLOT: in the rows of their slots instead.
  *
  * FEATURES: also leaves the features that the camera sees, in the place of `shade` (by BSDF kind). */
-//! traits: TRAIT_AOV
 #include "kernels/lib/bsdf.h"
 #include "kernels/lib/surface_point.h"
 #include "kernels/lib/vertex_frame.h"

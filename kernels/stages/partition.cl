@@ -43,7 +43,10 @@ STAGE partition_scatter(uint count, uint rows, uint bins, __global const uint *b
     const uint end = min(begin + PARTITION_CHUNK, rows);
     for (uint row = begin; row < end; ++row) {
         const uint b = bin[row];
-        if (b < bins)
-            index[chunk_offset[b * count + chunk]++] = row;
+        const int is_kept = b < bins;
+        const uint at = (is_kept ? b : 0u) * count + chunk, place = chunk_offset[at];
+        /* The last place is free where a row is dropped. Whether one is nobody can foresee, so there is no branch. */
+        index[is_kept ? place : rows - 1u] = row;
+        chunk_offset[at] = place + (is_kept ? 1u : 0u);
     }
 }

@@ -1,4 +1,4 @@
-/* photon_pass: what specular vertices of one BSDF kind make of the light of chains that have come to their new ends: the
+/* photon_pass: what specular vertices make of the light of chains that have come to their new ends: the
  * factor on the power, and the probability of the event over that at the base's vertex. Then (LAST_KIND) the chain's
  * last ray is left in `moved`, as if it had been sent out; nothing is where the walk has not arrived. */
 //! traits: TRAIT_SHADING_NORMALS
@@ -25,7 +25,7 @@ STAGE photon_pass(uint count, uint unit, uint first, uint pairs, uint photon_row
     for (uint k = AT_UINT(chain, inner, i); k > 0u; --k) {
         const size_t vertex = (size_t)(k - 1u) * chain_rows + i;
         const vec3 position = AT_V3(walked_vertex, position, vertex);
-        if (kind_number(AT_UINT(walked_vertex, kind, vertex)) == PASTE(bsdf_kind_, BSDF)) {
+        if ((AT_UINT(walked_vertex, kind, vertex) & kind_is_dirac) != 0u) { /* whichever of them it is */
             const vec3 out = v3_normalize(v3_sub(next, position)), back = AT_V3(walked_vertex, wi, vertex);
             const material m = material_load(materials, AT_UINT(walked_vertex, material, vertex), unit);
             const frame axes = VERTEX_FRAME(walked_vertex, vertex, m);

@@ -1,10 +1,9 @@
-/* photons: brings the new photons of some light paths into the order of these, and along each, whichever batches they
- * came in. Each light path has counted its own, so this is a counting sort without counting: the counts are added up,
- * and a photon's place is that of its light path and its ordinal.
+/* photons: the order of photons by light path, and along each, whichever batches they came in. Each light path has
+ * counted its own, so this is a counting sort without counting: the counts are added up, and a photon's place is that
+ * of its light path and its ordinal. Photons stay where they are: who sorts them goes by this order, and moves them
+ * once.
  *
  * As in the partition, each work-item of photons_count and photons_place has PARTITION_CHUNK of the `rows` slots. */
-//! traits: TRAIT_LIGHT_VERTICES
-#include "kernels/lib/vector.h"
 #include "kernels/shared/stage.h"
 
 /* The photons of each chunk of slots. */
@@ -47,26 +46,13 @@ STAGE photons_place(uint count, uint rows, __global const uint *photon_chunk, __
     }
 }
 
-/* Which new photon goes to each place. `first_slot`: light paths of before. */
-STAGE photons_order(uint count, uint first_slot, uint new_photon_rows, __global const real *new_photon,
-                    __global const uint *photon_place, __global uint *photon_order) {
+/* Which row has the photon of each place. */
+STAGE photons_order(uint count, uint photon_rows, __global const real *photon_origin, __global const uint *photon_place,
+                    __global uint *photon_order) {
     const size_t i = work_item();
     if (i >= count)
         return;
-    const uint before = AT_UINT(new_photon, ordinal, i);
+    const uint before = AT_UINT(photon_origin, ordinal, i);
     if (before != photon_none)
-        photon_order[photon_place[AT_UINT(new_photon, slot, i) - first_slot] + before] = (uint)i;
-}
-
-/* All columns that both tables have. `first`: photons of before. */
-STAGE photons_gather(uint count, uint first, uint new_photon_rows, uint photon_rows, __global const real *new_photon,
-                     __global const uint *photon_order, __global real *photon) {
-    const size_t i = work_item();
-    if (i >= count)
-        return;
-    const size_t row = first + i;
-    const uint from = photon_order[i];
-#pragma unroll
-    for (size_t column = 0; column < (TRAIT_LIGHT_VERTICES ? photon_columns : photon_before); ++column)
-        photon[column * photon_rows + row] = new_photon[column * new_photon_rows + from];
+        photon_order[photon_place[AT_UINT(photon_origin, slot, i)] + before] = (uint)i;
 }

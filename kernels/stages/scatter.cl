@@ -1,6 +1,7 @@
 /* scatter: the surface that each light path met, of one BSDF kind: the photon that it leaves there, and the direction
  * in which it goes on. Light paths at places `first` on of `index` take rows `to` on of `light_path` and `ray`; kinds
- * that are not Dirac write rows `to_photon` on of `new_photon`, with no ordinal where there is no photon.
+ * that are not Dirac write rows `to_photon` on of `photon` and `photon_origin`, with no ordinal where there is no
+ * photon. LEAVES_PHOTONS 0: none do.
  *
  * Power is scaled as importance's adjoint is: no squared index where light is refracted, but the ratio of shading and
  * geometric cosines on both sides (Veach 1997, eq. 5.19), since what a shading normal turns is the BSDF and not the
@@ -23,10 +24,10 @@ STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint ma
               __global const real *triangle_normals, __global const real *triangle_tangents,
               __global const real *spheres, uint triangle_count, __global const uint *primitive_material,
               __global const uint *material_back, __global const real *materials
-#if !BSDF_IS_DIRAC
+#if LEAVES_PHOTONS && !BSDF_IS_DIRAC
               ,
-              __global const uint *material_gathers, __global real *new_photon, __global uint *photon_place,
-              uint to_photon, uint new_photon_rows, uint first_photon_depth, uint first_slot
+              __global const uint *material_gathers, __global real *photon, __global real *photon_origin,
+              __global uint *photon_place, uint to_photon, uint photon_rows
 #endif
 #if TRAIT_LIGHT_VERTICES
               ,
@@ -58,21 +59,20 @@ STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint ma
 #endif
 
     uint left = left_before;
-#if !BSDF_IS_DIRAC
+#if LEAVES_PHOTONS && !BSDF_IS_DIRAC
     const uint gathers = material_gathers[point.material];
-    const int is_photon =
-        (edges >= first_photon_depth) & ((gathers == gathers_around) | ((gathers == gathers_in_front) & (wi.z > R(0))));
+    const int is_photon = (gathers == gathers_around) | ((gathers == gathers_in_front) & (wi.z > R(0)));
     const size_t photon_row = to_photon + i;
-    SET_V3(new_photon, position, photon_row, point.position);
-    SET_V3(new_photon, wi, photon_row, v3_neg(direction));
-    SET_RGB(new_photon, power, photon_row, arriving);
-    SET_V3(new_photon, normal, photon_row, point.geometric);
-    AT_UINT(new_photon, slot, photon_row) = first_slot + slot;
-    AT_UINT(new_photon, depth, photon_row) = edges;
+    SET_V3(photon, position, photon_row, point.position);
+    SET_V3(photon, wi, photon_row, v3_neg(direction));
+    SET_RGB(photon, power, photon_row, arriving);
+    SET_V3(photon, normal, photon_row, point.geometric);
+    AT_UINT(photon_origin, slot, photon_row) = slot;
+    AT_UINT(photon, depth, photon_row) = edges;
 #if TRAIT_LIGHT_VERTICES
-    AT_UINT(new_photon, before, photon_row) = vertex_before;
+    AT_UINT(photon, before, photon_row) = vertex_before;
 #endif
-    AT_UINT(new_photon, ordinal, photon_row) = is_photon ? left_before : photon_none;
+    AT_UINT(photon_origin, ordinal, photon_row) = is_photon ? left_before : photon_none;
     left += is_photon ? 1u : 0u;
     photon_place[slot] = left;
 #endif

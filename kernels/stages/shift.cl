@@ -190,11 +190,11 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         const int reconnects = both_rough & reconnectable & is_long;
 #ifdef BSDF
         const int alike = kind != kind_none;
-        const real ior = PASTE(bsdf_kind_, BSDF) == bsdf_kind_null ? R(1) : m.ior;
 #if BSDF_IS_DIRAC
+        const real ior = kind_number(kind) == bsdf_kind_null ? R(1) : m.ior;
         const shifted_direction copied = shift_specular(base_wi, base_wo, wi, ior);
 #else
-        const shifted_direction copied = shift_half_vector(base_wi, base_wo, base_material.ior, wi, ior);
+        const shifted_direction copied = shift_half_vector(base_wi, base_wo, base_material.ior, wi, m.ior);
 #endif
         const vec3 wo_copied = copied.wo;
         const int copies = alike & copied.is_valid;

@@ -231,6 +231,7 @@ void add_material_record(const Bsdf &bsdf, SceneTables &tables) {
     GRADUS_MATERIAL_PARAMETERS(GRADUS_PUT_COLOR, GRADUS_PUT_NUMBER, )
 #undef GRADUS_PUT_COLOR
 #undef GRADUS_PUT_NUMBER
+    record[material_bsdf] = static_cast<float>(bsdf_kind_number(bsdf));
     tables.material_back.push_back(static_cast<std::uint32_t>(tables.material_back.size()));
 }
 

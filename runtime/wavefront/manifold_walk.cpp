@@ -124,8 +124,13 @@ TableList ManifoldWalk::tables() const {
             list.push_back(table);
     for (const char *name : {"walk_bin", "walk_index"})
         list.push_back(of_uints(name));
-    list.push_back(
-        {.name = "walk_chunk", .rows = rows_of_, .multiple = multiple_, .columns = most, .is_uint = true}); // enough
+    // Enough, and cleared for oclgrind, which takes some of it for never written.
+    list.push_back({.name = "walk_chunk",
+                    .rows = rows_of_,
+                    .multiple = multiple_,
+                    .columns = most,
+                    .is_uint = true,
+                    .is_cleared = true});
     list.push_back({.name = "walk_range", .rows = RowsOf::one, .columns = most + 1, .is_uint = true});
     list.push_back({.name = "walk_found", .rows = RowsOf::one, .columns = walk_outcomes + 1, .is_uint = true});
     return list;

@@ -85,8 +85,13 @@ void Sort::run(const Buffer &keys, std::uint32_t count, std::uint32_t highest) {
 }
 
 void Sort::again(const Buffer &keys, std::uint32_t count, std::uint32_t highest) {
+    run_in(index(), keys, count, highest);
+}
+
+void Sort::run_in(const Buffer &order, const Buffer &keys, std::uint32_t count, std::uint32_t highest) {
     const Passes passes = passes_for(keys, count, highest);
     const Side to = side(passes.number % 2 == 1);
+    again_.bind("sort_index", order);
     again_.bind("sort_from", keys);
     again_.bind("sort_key_next", to.key);
     again_.bind("sort_index_next", to.index);

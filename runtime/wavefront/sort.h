@@ -34,6 +34,9 @@ class Sort {
     /// highest + 1 and come last. The lower `highest`, the less there is to do. Throws std::logic_error where there are
     /// more rows than room.
     void run(const Buffer &keys, std::uint32_t count, std::uint32_t highest);
+    /// The same for the rows that `order` names, `count` uints, each with the key of its row: those of equal keys are
+    /// in the order in which it has them. What it does not name does not matter.
+    void run_in(const Buffer &order, const Buffer &keys, std::uint32_t count, std::uint32_t highest);
     /// Sorts what run() left by another key of the same `count` rows: those in which it is equal stay in the order that
     /// they have. So this sorts by two keys, of which run() has the less significant one.
     void again(const Buffer &keys, std::uint32_t count, std::uint32_t highest);

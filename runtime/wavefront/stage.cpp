@@ -5,12 +5,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <stdexcept>
 
 namespace gradus {
 
 namespace {
+
+constexpr std::size_t no_kernel = ~std::size_t(0);
 
 KernelRequest request_of(const StageDeclaration &declaration) {
     const std::string file = declaration.file.empty() ? declaration.name : declaration.file;
@@ -20,6 +23,27 @@ KernelRequest request_of(const StageDeclaration &declaration) {
     request.entry = declaration.entry.empty() ? file : declaration.entry;
     request.definitions = declaration.definitions;
     request.strict = declaration.strict;
+    return request;
+}
+
+/// For BSDF kind `kind`, and where that is a Dirac one, for all Dirac kinds of the scene.
+KernelRequest request_of(const StageDeclaration &declaration, std::string kind, const std::vector<std::string> &kinds) {
+    KernelRequest request = request_of(declaration);
+    const bool is_dirac = bsdf_kind_is_dirac(kind);
+    std::uint32_t dirac_kinds = 0; // a bit each
+    for (const std::string &other : kinds)
+        if (bsdf_kind_is_dirac(other))
+            dirac_kinds |= 1u << std::uint32_t(bsdf_kind_named(other));
+    const bool are_alike = is_dirac && declaration.dirac == DiracKinds::alike;
+    const bool chooses = is_dirac && !are_alike && !std::has_single_bit(dirac_kinds);
+    if (chooses) {
+        kind = "specular";
+        request.definitions["SPECULAR_KINDS"] = fmt::format("{}u", dirac_kinds);
+    }
+    if (!are_alike)
+        request.definitions["BSDF"] = kind;
+    request.definitions["BSDF_IS_DIRAC"] = fmt::format("{:d}", is_dirac);
+    request.name = fmt::format("{} {}", declaration.name, are_alike || chooses ? "dirac" : kind);
     return request;
 }
 
@@ -66,6 +90,11 @@ std::vector<std::string> bind_arguments(Kernel &kernel, const StageDeclaration &
 
 } // namespace
 
+bool Stage::is_first_of_kernel(std::size_t kind) const {
+    const auto of_kind = kernel_of_.begin() + std::ptrdiff_t(kind);
+    return std::find(kernel_of_.begin(), of_kind, *of_kind) == of_kind;
+}
+
 void Stage::bind(const std::string &argument, const Buffer &buffer) {
     for (Kernel &kernel : kernels_)
         kernel.bind(argument, buffer);
@@ -75,7 +104,7 @@ void Stage::launch(std::size_t kind, std::uint32_t count, std::uint32_t planes, 
     if (count == 0 || kernels_.empty())
         return;
     const std::size_t number = kernel_of_[kind];
-    if (!kernels_[number].valid())
+    if (number == no_kernel || !kernels_[number].valid())
         return;
     Kernel &kernel = kernels_[number];
     if (bound_[number] != tables_->version()) {
@@ -105,23 +134,18 @@ void Stages::build(Session &session, const Tables &tables) {
         if (!declaration.is_wanted)
             continue;
         stage.tables_ = &tables;
-        std::size_t count = 0, for_dirac = ~std::size_t(0);
+        std::size_t count = 0, for_dirac = no_kernel;
         for (std::size_t k = 0; k < (declaration.by_kind ? kinds.size() : 1); ++k) {
-            KernelRequest request = request_of(declaration);
-            if (declaration.by_kind) {
-                const bool is_dirac = bsdf_kind_is_dirac(kinds[k]), shares = is_dirac && declaration.dirac_alike;
-                if (shares && for_dirac < count) {
-                    stage.kernel_of_.push_back(for_dirac);
-                    continue;
-                }
-                if (shares)
-                    for_dirac = count;
-                else
-                    request.definitions["BSDF"] = kinds[k];
-                request.name = fmt::format("{} {}", declaration.name, shares ? "dirac" : kinds[k]);
-                request.definitions["BSDF_IS_DIRAC"] = fmt::format("{:d}", is_dirac);
+            const bool is_dirac = declaration.by_kind && bsdf_kind_is_dirac(kinds[k]);
+            const bool is_left_out = is_dirac && declaration.dirac == DiracKinds::left_out;
+            if (is_left_out || (is_dirac && for_dirac != no_kernel)) {
+                stage.kernel_of_.push_back(for_dirac);
+                continue;
             }
-            requests.push_back(request);
+            if (is_dirac)
+                for_dirac = count;
+            requests.push_back(declaration.by_kind ? request_of(declaration, kinds[k], session.scene.kinds)
+                                                   : request_of(declaration));
             places.push_back({&stage, count});
             stage.kernel_of_.push_back(count++);
         }

@@ -14,6 +14,13 @@
 
 namespace gradus {
 
+/// What serves the Dirac kinds of a scene that has several, in a stage with a kernel for each BSDF kind.
+enum class DiracKinds {
+    chosen,  ///< one kernel that chooses among them, compiled with `specular` as its BSDF
+    alike,   ///< one that does the same for all, compiled without a BSDF; it serves a single Dirac kind too
+    left_out ///< none: nothing is launched on them
+};
+
 /// Which kernels a stage has.
 struct StageDeclaration {
     std::string name = {};  ///< its row in the profile; kernels by kind add theirs
@@ -22,10 +29,9 @@ struct StageDeclaration {
     std::map<std::string, std::string> definitions = {};
     /// True: a kernel for each BSDF kind of the scene, compiled with BSDF and BSDF_IS_DIRAC.
     bool by_kind = false;
-    /// With by_kind: what the kernel does is the same for all Dirac kinds, so one serves them, compiled without BSDF.
-    bool dirac_alike = false;
-    bool is_wanted = true; ///< false: nothing is built, and launches do nothing
-    bool strict = false;   ///< never relaxed: what counts on rounding or on NaN
+    DiracKinds dirac = DiracKinds::chosen; ///< with by_kind
+    bool is_wanted = true;                 ///< false: nothing is built, and launches do nothing
+    bool strict = false;                   ///< never relaxed: what counts on rounding or on NaN
     /// The arguments that each launch passes, `count` apart.
     std::vector<std::string> numbers = {};
     /// Arguments that are bound to tables of other names: argument, table at first.
@@ -43,6 +49,8 @@ class Stage {
     void leave_out() { declaration_.is_wanted = false; }
     /// Launches the kernel on `count` work-items; on none, nothing happens.
     void run(std::uint32_t count, LaunchNumbers numbers = {}) { launch(0, count, 1, numbers); }
+    /// Whether the kernel of BSDF kind `kind` serves no kind before it.
+    bool is_first_of_kernel(std::size_t kind) const;
     /// The kernel of BSDF kind `kind`, a place in SceneTables::kinds.
     void run_kind(std::size_t kind, std::uint32_t count, LaunchNumbers numbers = {}) {
         launch(kind, count, 1, numbers);

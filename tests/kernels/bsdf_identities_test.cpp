@@ -136,3 +136,40 @@ TEST(BsdfIdentities, EachChannelReadsItsOwnFields) {
             EXPECT_NEAR(permuted.b, albedo.r, 1e-6) << kind.name;
         }
 }
+
+// Each Dirac kind through `specular` is itself, but for how the compiler contracts two copies of it; a kind that is
+// none has no sample there.
+TEST(BsdfIdentities, SpecularIsEachDiracKind) {
+    std::mt19937_64 random(15);
+    for (std::size_t number = 0; number < kinds.size(); ++number) {
+        const Kind &kind = kinds[number];
+        for (int i = 0; i < sample_count / 16; ++i) {
+            lib::material m = coloured_material(0.1, 0.1, i % 2 ? 1.5 : 0.6);
+            m.bsdf = real(number);
+            const lib::vec3 wi = draw_direction(random);
+            const real u_lobe = draw(random), u1 = draw(random), u2 = draw(random);
+            const int mode = i % 3 ? lib::transport_radiance : lib::transport_importance;
+            const lib::bsdf_sample through = lib::specular_sample(m, wi, u_lobe, u1, u2, mode);
+            ASSERT_TRUE(through.is_specular);
+            if (!kind.is_delta) {
+                ASSERT_EQ(through.pdf, 0);
+                ASSERT_EQ(lib::rgb_max(through.weight), 0);
+                continue;
+            }
+            const lib::bsdf_sample sample = kind.sample(m, wi, u_lobe, u1, u2, mode);
+            const lib::rgb albedo = kind.albedo(m), albedo_through = lib::specular_albedo(m);
+            const auto same = [](real a, real b) { return std::fabs(a - b) <= bound(1e-6, 1e-14) * std::fabs(a); };
+            ASSERT_TRUE(same(sample.wo.x, through.wo.x) && same(sample.wo.y, through.wo.y) &&
+                        same(sample.wo.z, through.wo.z))
+                << kind.name;
+            ASSERT_TRUE(same(sample.weight.r, through.weight.r) && same(sample.weight.g, through.weight.g) &&
+                        same(sample.weight.b, through.weight.b))
+                << kind.name;
+            ASSERT_TRUE(same(sample.pdf, through.pdf) && same(sample.pdf_reverse, through.pdf_reverse)) << kind.name;
+            ASSERT_EQ(sample.eta, through.eta) << kind.name;
+            ASSERT_TRUE(same(albedo.r, albedo_through.r) && same(albedo.g, albedo_through.g) &&
+                        same(albedo.b, albedo_through.b))
+                << kind.name;
+        }
+    }
+}

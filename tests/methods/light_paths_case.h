@@ -35,16 +35,19 @@ class LightPathsCase {
         using namespace lib_float;
         const std::uint32_t stored = paths.trace(first_path, count);
         const HostTable table(tables_["photon"], tables_.rows_of("photon"), tables_.precision());
-        std::vector<Photon> photons(stored);
-        for (std::uint32_t row = 0; row < stored; ++row) {
-            Photon &photon = photons[row];
+        const HostTable origin(tables_["photon_origin"], tables_.rows_of("photon_origin"), tables_.precision());
+        const auto order = tables_["photon_order"].map(Access::read);
+        std::vector<Photon> photons;
+        for (std::uint32_t i = 0; i < stored; ++i) {
+            const std::uint32_t row = order.as<std::uint32_t>()[i];
+            Photon &photon = photons.emplace_back();
             for (int axis = 0; axis < 3; ++axis) {
                 photon.position[axis] = table.real(photon_position_x + axis, row);
                 photon.wi[axis] = table.real(photon_wi_x + axis, row);
                 photon.power[axis] = table.real(photon_power_r + axis, row);
                 photon.normal[axis] = table.real(photon_normal_x + axis, row);
             }
-            photon.slot = table.uint(photon_slot, row);
+            photon.slot = origin.uint(photon_origin_slot, row);
             photon.depth = table.uint(photon_depth, row);
         }
         return photons;

@@ -244,6 +244,24 @@ INSTANTIATE_TEST_SUITE_P(
         return test_name(std::string(std::get<0>(info.param)) + (std::get<1>(info.param) ? "_photons" : "_sampling"));
     });
 
+// A floor seen in a mirror: both edges of the camera path count, and the photon's.
+TEST(PathLength, CountsBothSides) {
+    SceneMaker maker(8, 1);
+    maker.look({0, 1, -3}, {0, 1, 0}, 20);
+    maker.parallelogram({-2, 0, 0}, {0, 3, -1}, {4, 0, 0}, maker.material(mirror()));
+    maker.floor(-4, 4, 8, maker.material(diffuse(0.8)), -0.5f);
+    maker.point_light({5, 5, 5}, {0, 3, -3});
+    RenderOptions options;
+    options.photons = 50'000;
+    for (const bool direct : {false, true}) {
+        options.direct_photons = direct;
+        maker.scene.settings.max_depth = 2;
+        EXPECT_EQ(spread_of(render(maker.scene, options, "sppm").image).most, 0);
+        maker.scene.settings.max_depth = 3;
+        EXPECT_GT(spread_of(render(maker.scene, options, "sppm").image).mean, 0);
+    }
+}
+
 /// The materials are not among these scenes: their point and directional lights shine through glass onto the floor,
 /// which the reference's path tracer cannot find: 1.3 % of the image (PathKinds has them without these lights).
 ///

@@ -46,6 +46,7 @@ class PhotonSearch {
                         .columns = photon_columns,
                         .is_cleared = true,
                         .grows = true});
+        list.push_back({.name = "photon_order", .rows = RowsOf::one, .multiple = slot_rows(photons), .is_uint = true});
         list.push_back({.name = "gather", .columns = gather_columns, .is_cleared = true});
         tables_.emplace(device, list, TableRows{gather_points, gather_points, 16, 4, 1}, Precision::single);
         session_.numbers["capacity"] = gather_points;
@@ -61,13 +62,16 @@ class PhotonSearch {
         using namespace lib_float;
         const std::size_t rows = tables_->rows_of("photon"), capacity = tables_->rows().paths;
         const auto photon = (*tables_)["photon"].map(Access::write);
+        const auto order = (*tables_)["photon_order"].map(Access::write);
         for (std::size_t i = 0; i < photons.size(); ++i) {
+            const std::size_t row = photons.size() - 1 - i; // not in order
+            order.as<std::uint32_t>()[i] = std::uint32_t(row);
             for (std::size_t axis = 0; axis < 3; ++axis) {
-                photon.as<float>()[(photon_position_x + axis) * rows + i] = photons[i].position[axis];
-                photon.as<float>()[(photon_normal_x + axis) * rows + i] = photons[i].normal[axis];
+                photon.as<float>()[(photon_position_x + axis) * rows + row] = photons[i].position[axis];
+                photon.as<float>()[(photon_normal_x + axis) * rows + row] = photons[i].normal[axis];
             }
-            photon.as<std::uint32_t>()[photon_slot * rows + i] = std::uint32_t(i);
-            photon.as<std::uint32_t>()[photon_depth * rows + i] = photons[i].depth;
+            photon.as<float>()[photon_power_r * rows + row] = float(i);
+            photon.as<std::uint32_t>()[photon_depth * rows + row] = photons[i].depth;
         }
         const auto gather = (*tables_)["gather"].map(Access::write);
         for (std::size_t i = 0; i < points.size(); ++i) {
@@ -85,7 +89,7 @@ class PhotonSearch {
     /// The pairs as they are listed.
     std::vector<FoundPair> find(double edge) {
         using namespace lib_float;
-        map_.build(photons_, edge);
+        map_.build(photons_, photons_, edge);
         std::vector<FoundPair> found;
         windows = 0;
         const std::size_t rows = tables_->rows_of("photon");
@@ -96,8 +100,7 @@ class PhotonSearch {
             const auto sorted = (*tables_)["photon_sorted"].map(Access::read);
             for (std::uint32_t i = 0; i < window.pairs; ++i)
                 found.push_back(
-                    {gather.as<std::uint32_t>()[i],
-                     sorted.as<std::uint32_t>()[photon_sorted_slot * rows + photon.as<std::uint32_t>()[i]]});
+                    {gather.as<std::uint32_t>()[i], number(sorted.as<float>(), rows, photon.as<std::uint32_t>()[i])});
         });
         return found;
     }
@@ -106,7 +109,7 @@ class PhotonSearch {
     template <class Value>
     std::vector<float> sums(double edge, const Value &value) {
         using namespace lib_float;
-        map_.build(photons_, edge);
+        map_.build(photons_, photons_, edge);
         const std::size_t rows = tables_->rows_of("photon"), capacity = tables_->rows().paths;
         {
             const auto gather = (*tables_)["gather"].map(Access::write);
@@ -121,8 +124,7 @@ class PhotonSearch {
                 const auto sorted = (*tables_)["photon_sorted"].map(Access::read);
                 const auto values = (*tables_)["pair_value"].map(Access::write);
                 for (std::uint32_t i = 0; i < window.pairs; ++i)
-                    values.as<float>()[i] =
-                        value(sorted.as<std::uint32_t>()[photon_sorted_slot * rows + photon.as<std::uint32_t>()[i]]);
+                    values.as<float>()[i] = value(number(sorted.as<float>(), rows, photon.as<std::uint32_t>()[i]));
             }
             pairs_.sum(window);
         });
@@ -135,6 +137,11 @@ class PhotonSearch {
     std::size_t windows = 0;
 
   private:
+    /// The number of a photon, which its power tells.
+    static std::uint32_t number(const float *sorted, std::size_t rows, std::uint32_t row) {
+        return std::uint32_t(sorted[lib_float::photon_sorted_power_r * rows + row]);
+    }
+
     static const Scene &with_box(SceneMaker &maker, Vector3 low, Vector3 high) {
         const std::uint32_t gray = maker.material(diffuse(0.5));
         maker.parallelogram(low, {high.x - low.x, 0, 0}, {0, high.y - low.y, 0}, gray);

@@ -141,6 +141,7 @@ TEST(Primitives, BringTheirOptionalRecordsOnlyWhereATraitAsks) {
 TEST(Materials, LieAsTheirListSays) {
     SceneMaker maker(4, 1);
     Bsdf bsdf;
+    bsdf.kind = BsdfKind::roughconductor_beckmann;
     float next = 0;
 #define GRADUS_SET_COLOR(with, name, value, text) bsdf.name = {++next, ++next, ++next};
 #define GRADUS_SET_NUMBER(with, name, value, text) bsdf.name = ++next;
@@ -150,9 +151,10 @@ TEST(Materials, LieAsTheirListSays) {
     maker.cube(maker.material(two_sided(diffuse(0.25), bsdf)));
     const SceneTables tables = tables_of(maker.scene);
     ASSERT_EQ(tables.materials.size(), std::size_t(2 * material_stride));
-    ASSERT_EQ(next, float(material_stride));
-    for (int field = 0; field < material_stride; ++field)
+    ASSERT_EQ(next, float(material_bsdf));
+    for (int field = 0; field < material_bsdf; ++field)
         EXPECT_EQ(tables.materials[std::size_t(material_stride + field)], float(field + 1)) << field;
+    EXPECT_EQ(tables.materials[std::size_t(material_stride + material_bsdf)], float(bsdf_kind_roughconductor_beckmann));
     EXPECT_EQ(tables.materials[material_reflectance_g], 0.25f);
     EXPECT_EQ(tables.material_back, (std::vector<std::uint32_t>{1, 1}));
 }

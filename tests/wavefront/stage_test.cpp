@@ -140,10 +140,9 @@ Seen watch(const char *method, const Scene &scene, const RenderOptions &options)
             const auto found = launch.arguments.find(name);
             return found == launch.arguments.end() ? 0 : std::get<std::uint32_t>(found->second.value);
         };
-        const TableSizes sizes = {number("capacity"),        number("slots"),     number("pixels"),
-                                  number("crop_width"),      number("own_rows"),  number("photon_rows"),
-                                  number("new_photon_rows"), number("pair_rows"), number("chain_rows"),
-                                  number("chain_vertices")};
+        const TableSizes sizes = {number("capacity"),   number("slots"),      number("pixels"),
+                                  number("crop_width"), number("own_rows"),   number("photon_rows"),
+                                  number("pair_rows"),  number("chain_rows"), number("chain_vertices")};
         for (const auto &[name, argument] : launch.arguments) {
             const auto *buffer = std::get_if<Buffer>(&argument.value);
             const TableLayout *layout = table_layout(name);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "runtime/wavefront/manifold_walk.h"
-#include "tests/support/render.h"
 #include "tests/support/small_scenes.h"
 #include "tests/wavefront/chain_sampler.h"
 
@@ -11,7 +10,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,10 +38,18 @@ inline std::vector<std::uint32_t> material_kinds(const Scene &scene, float thres
     return kinds;
 }
 
+/// With as many threads as the environment says: oclgrind's compiler is safe for one.
+inline Device &walk_device() {
+    const char *threads = std::getenv("GRADUS_TEST_THREADS");
+    // Never destroyed: at the end of the process oclgrind is gone before it would be.
+    static Device &device = *new Device("", threads ? std::atoi(threads) : 0);
+    return device;
+}
+
 class Walker {
   public:
     Walker(const Scene &scene, std::uint32_t capacity, const WalkSettings &settings = {},
-           const SessionOptions &options = {}, Device &device = shared_device())
+           const SessionOptions &options = {}, Device &device = walk_device())
         : session(device, scene, options, {}), walk(session, stages_, RowsOf::path, 1, settings),
           kinds(material_kinds(scene)), sampler(scene, kinds, session.tracer) {
         session.scene_buffers.emplace_back(device, "material_kind", kinds.data(), kinds.size() * sizeof(kinds[0]));
