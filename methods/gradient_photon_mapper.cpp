@@ -41,6 +41,13 @@ std::vector<std::uint32_t> material_bins(const Scene &scene, const Session &sess
     return bins;
 }
 
+/// Where light may come straight from a light, or by specular vertices alone, shifts ask how it left.
+TraitMap light_vertex_traits(const Scene &scene, const RenderOptions &options) {
+    bool starts = options.direct_photons || options.all_traits;
+    for_each_bsdf(scene, [&](const Bsdf &bsdf) { starts = starts || bsdf_kind_is_dirac(bsdf_kind_name(bsdf)); });
+    return {{"TRAIT_LIGHT_VERTICES", 1}, {"TRAIT_LIGHT_STARTS", starts}};
+}
+
 /// What is done by the kind of the vertex that light leaves, or where that is on a light.
 StageDeclaration leaving_stage(const char *name, bool is_light, bool is_wanted, std::vector<std::string> numbers) {
     return {.name = std::string(name) + (is_light ? " light" : ""),
@@ -59,7 +66,7 @@ const std::vector<std::string> chain_numbers = {"first", "pairs", "chain_rows", 
 
 GradientPhotonMapper::GradientPhotonMapper(Device &device, const Scene &scene, const RenderOptions &options)
     : options_(options),
-      session_(device, checked_for_gathering(scene, options), options, {{"TRAIT_LIGHT_VERTICES", 1}}),
+      session_(device, checked_for_gathering(scene, options), options, light_vertex_traits(scene, options)),
       paths_(session_, stages_, scene, options, true), photons_(session_, stages_, scene, options, 0.5),
       pairs_(stages_, true), bin_(stages_.add({.name = "gather_bin"})),
       order_(stages_, "gather", first_kind_bin + std::uint32_t(session_.scene.kinds.size()), RowsOf::slot),

@@ -226,7 +226,7 @@ void LightPaths::step_all(std::uint64_t first_path, std::uint32_t count) {
                                 {"first_path_low", std::uint32_t(first_path)},
                                 {"first_path_high", std::uint32_t(first_path >> 32)},
                                 {"to_vertex", vertices_}});
-        vertices_ += has_vertices(session_) ? fresh.count : 0;
+        vertices_ += session_.has("TRAIT_LIGHT_STARTS") ? fresh.count : 0;
         if (!paths_.is_alive())
             return;
         paths_.trace();

@@ -25,7 +25,8 @@ class LightPaths {
     LightPaths(Session &session, Stages &consumers, const Scene &scene, const RenderOptions &options, Direct direct);
 
     /// For the consumers' tables: `photon`, `photon_origin` and `photon_order`, which grow. With TRAIT_LIGHT_VERTICES,
-    /// a trait of the method, also the vertices of all light paths (kernels/shared/light_vertex.h), which photons name.
+    /// a trait of the method, also the vertices of all light paths (kernels/shared/light_vertex.h), which photons name;
+    /// with TRAIT_LIGHT_STARTS those on lights too.
     TableList tables() const;
     /// To be called once these are allocated, before or after the consumers' stages are built.
     void attach(Tables &tables);

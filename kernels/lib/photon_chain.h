@@ -19,8 +19,8 @@ GRADUS_FN photon_chain photon_chain_of(GRADUS_GLOBAL const uint *light_vertex_ma
     uint found = 0u;
     for (uint k = 0; k <= most; ++k) {
         const uint material = FIELD_OF(light_vertex_mark, light_vertex_marks, chain.start, material);
-        const int is_specular =
-            !light_vertex_is_light(material) && material_bin[light_vertex_is_light(material) ? 0u : material] == chain_bin;
+        const int is_specular = !light_vertex_is_light(material) &&
+                                material_bin[light_vertex_is_light(material) ? 0u : material] == chain_bin;
         if (!is_specular) {
             chain.inner = material == light_vertex_far ? 0u : found;
             break;

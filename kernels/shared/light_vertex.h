@@ -2,6 +2,7 @@
  * their own, each of which knows the one before. They are accessed at random, so these are records and not columns. */
 #ifndef GRADUS_SHARED_LIGHT_VERTEX_H
 #define GRADUS_SHARED_LIGHT_VERTEX_H
+//! traits: TRAIT_SHADING_NORMALS TRAIT_ANISOTROPIC
 #include "kernels/shared/scene_records.h"
 
 #define GRADUS_LIGHT_VERTEX_FIELDS(FIELD)                                                                              \
@@ -32,7 +33,7 @@
 #define GRADUS_LIGHT_VERTEX_MARKS(FIELD)                                                                               \
     FIELD(light_vertex_mark, material, "record of the material on this side, or light_vertex_on_surface...")           \
     FIELD(light_vertex_mark, primitive, "")                                                                            \
-    FIELD(light_vertex_mark, before, "the record of the vertex before; light_vertex_none for the light itself")       \
+    FIELD(light_vertex_mark, before, "the record of the vertex before; light_vertex_none for the light itself")        \
     FIELD(light_vertex_mark, padding, "to 16 bytes")
 
 GRADUS_LIB_BEGIN
@@ -41,6 +42,11 @@ GRADUS_LIB_BEGIN
 enum light_vertex_field { GRADUS_LIGHT_VERTEX_FIELDS(GRADUS_RECORD_INDEX) light_vertex_stride };
 enum light_vertex_mark_field { GRADUS_LIGHT_VERTEX_MARKS(GRADUS_RECORD_INDEX) light_vertex_mark_stride };
 #undef GRADUS_RECORD_INDEX
+
+/* Where the last fields are not needed, a record is a cache line; the host makes room for all. */
+#if defined(__OPENCL_VERSION__) && !TRAIT_SHADING_NORMALS && !TRAIT_ANISOTROPIC
+#define light_vertex_stride 16
+#endif
 
 #define light_vertex_none 0xFFFFFFFFu
 

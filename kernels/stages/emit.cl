@@ -2,7 +2,7 @@
  *
  * Light paths take rows `first_row` on and slots `first_slot` on; the one of slot 0 has the 64-bit number
  * `first_path_high`, `first_path_low`, by which its random numbers go. */
-//! traits: TRAIT_LIGHT_VERTICES
+//! traits: TRAIT_LIGHT_VERTICES TRAIT_LIGHT_STARTS
 #include "kernels/lib/light_emission.h"
 #include "kernels/shared/light_vertex.h"
 #include "kernels/shared/stage.h"
@@ -12,7 +12,7 @@ STAGE emit(uint count, uint unit, uint capacity, uint first_row, uint first_slot
            __global uint *photon_place, __global const real *lights, __global const uint *light_kinds,
            __global const real *emissions, __global const uint *emission_alias, uint light_count, real scene_center_x,
            real scene_center_y, real scene_center_z, real scene_diameter
-#if TRAIT_LIGHT_VERTICES
+#if TRAIT_LIGHT_STARTS
            ,
            __global real *light_vertices, __global uint *light_vertex_marks, uint to_vertex
 #endif
@@ -40,7 +40,10 @@ STAGE emit(uint count, uint unit, uint capacity, uint first_row, uint first_slot
     AT_UINT(light_path, stored, row) = 0u;
     SET_RGB(light_path, power, row, emitted.power);
     AT(light_path, start, row) = rgb_max(emitted.power);
-#if TRAIT_LIGHT_VERTICES
+#if TRAIT_LIGHT_VERTICES && !TRAIT_LIGHT_STARTS
+    AT_UINT(light_path, vertex, row) = light_vertex_none;
+#endif
+#if TRAIT_LIGHT_STARTS
     const uint record = to_vertex + (uint)i;
     const vec3 none = v3(R(0), R(0), R(0));
     SET_FIELD_V3(light_vertex, light_vertices, record, position, emitted.origin);

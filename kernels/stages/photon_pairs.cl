@@ -64,8 +64,9 @@ STAGE photon_pairs(uint count, uint first, uint from, uint gather_rows, uint pho
             const uint key = photon_line_key(line, line_stride, line_shift);
             const uint end = photon_first[key + x1 + 1u];
 #if LIST
-            /* A block at a time, first which count, then which these are, then to the list: the first and the last
-             * loop become vectors, and none has a branch that nobody can foresee. */
+            /* A block at a time, first which count, then which these are, then to the list: the first loop becomes
+             * vectors, and none has a branch that nobody can foresee. The last compares each place with the window: with
+             * bounds from `max` and `min`, which may cross, PoCL 3.1 wrote beyond the window. */
             for (uint begin = photon_first[key + x0]; begin < end; begin += PHOTON_BLOCK) {
                 const uint rows = min(end - begin, PHOTON_BLOCK);
                 uint counts[PHOTON_BLOCK], near[PHOTON_BLOCK];
@@ -76,11 +77,11 @@ STAGE photon_pairs(uint count, uint first, uint from, uint gather_rows, uint pho
                     near[found] = begin + k;
                     found += (int)counts[k];
                 }
-                const int low = max(-to, 0), high = min(found, (int)window_pairs - to);
-                for (int k = low; k < high; ++k) {
-                    pair_gather[to + k] = row;
-                    pair_photon[to + k] = near[k];
-                }
+                for (int k = 0; k < found; ++k)
+                    if (to + k >= 0 && to + k < (int)window_pairs) {
+                        pair_gather[to + k] = row;
+                        pair_photon[to + k] = near[k];
+                    }
                 to += found;
             }
 #else

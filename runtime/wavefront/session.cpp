@@ -23,6 +23,7 @@ TraitMap traits_for(const Scene &scene, const SessionOptions &options, const Tra
     traits["TRAIT_SHARED_JITTER"] = 0;
     traits["TRAIT_GRADIENT"] = 0;
     traits["TRAIT_LIGHT_VERTICES"] = 0;
+    traits["TRAIT_LIGHT_STARTS"] = 0;
     traits["STRATEGY"] = static_cast<int>(options.strategy);
     for (const auto &[name, value] : of_method)
         traits[name] = value;
