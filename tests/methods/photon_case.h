@@ -8,7 +8,7 @@ namespace gradus::testing {
 
 inline RenderOptions with_radius(double value, bool of_scene, double alpha = 1) {
     RenderOptions options;
-    options.radius = {value, of_scene};
+    options.radius = RenderOptions::GatherRadius{value, of_scene};
     options.radius_alpha = alpha;
     return options;
 }

@@ -5,6 +5,7 @@
 #include "tests/methods/reference_scene.h"
 #include "tests/support/render.h"
 #include "tests/support/small_scenes.h"
+#include "tests/support/test_name.h"
 
 #include <fmt/format.h>
 
