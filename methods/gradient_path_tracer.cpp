@@ -2,7 +2,6 @@
 
 #include "kernels/shared/material.h"
 #include "kernels/shared/tables.h"
-#include "methods/gradient_image.h"
 #include "methods/path_stages.h"
 #include "runtime/seconds_since.h"
 #include "runtime/wavefront/segments.h"
@@ -116,15 +115,10 @@ GradientPathTracer::GradientPathTracer(Device &device, const Scene &scene, const
       advance_(stages_.add(advance_stage("advance", "0", true))),
       advance_apart_(stages_.add(advance_stage("advance apart", "1", session_.has("TRAIT_APART")))),
       join_(stages_.add({.name = "join", .by_kind = true, .dirac = DiracKinds::alike, .numbers = {"first", "keeps"}})),
-      count_(stages_.add(count_stage())), combine_(stages_.add({.name = "gradient_combine", .strict = true})),
-      film_(session_, stages_),
-      accumulate_(stages_.add({.name = "gradient_accumulate", .strict = true, .numbers = {"first_slot", "frames"}})),
-      carry_(stages_.add({.name = "gradient_carry", .numbers = {"first_slot"}})) {
+      count_(stages_.add(count_stage())), film_(session_, stages_, options_, "outcome") {
     const std::vector<std::uint32_t> kinds = material_kinds(scene, options.shift_threshold);
     session_.scene_buffers.emplace_back(device, "material_kind", kinds.data(), kinds.size() * sizeof(kinds[0]));
     total_ = session_.pixels() * session_.settings.samples_per_pixel;
-    if (options.threads != 1)
-        compilers_ = keep_compilers(device);
     allocate();
 }
 
@@ -160,16 +154,10 @@ std::map<std::string, std::string> GradientPathTracer::classify_definitions() co
 
 TableList GradientPathTracer::tables() const {
     const auto with = [&](const char *trait, int columns) { return session_.has(trait) ? std::uint32_t(columns) : 0u; };
-    // Columns of vertices that the scene does not need are the last.
-    const std::uint32_t not_needed = session_.has("TRAIT_ANISOTROPIC")       ? 0
-                                     : session_.has("TRAIT_SHADING_NORMALS") ? 3
-                                                                             : 6;
+    const std::uint32_t not_needed = session_.vertex_columns_not_needed();
     const std::uint32_t offset_columns_used = session_.has("TRAIT_APART") ? offset_columns : offset_state;
     return {{.name = "primary", .rows = RowsOf::slot, .columns = primary_columns},
             {.name = "primary_vertex", .rows = RowsOf::slot, .columns = primary_vertex_columns - not_needed},
-            {.name = "direct", .rows = RowsOf::slot, .columns = radiance_columns},
-            {.name = "prefix", .rows = RowsOf::slot, .columns = prefix_columns},
-            {.name = "difference", .rows = RowsOf::slot, .multiple = 4, .columns = difference_columns},
             {.name = "vertex", .columns = vertex_columns - not_needed},
             {.name = "event", .columns = event_columns},
             {.name = "offset", .multiple = 4, .columns = offset_columns_used, .alternates = true, .is_cleared = true},
@@ -182,9 +170,7 @@ TableList GradientPathTracer::tables() const {
              .is_cleared = true},
             {.name = "offset_ray", .multiple = 4, .columns = with("TRAIT_APART", offset_ray_columns)},
             {.name = "offsets_state", .columns = with("TRAIT_APART", 1), .is_uint = true},
-            {.name = "outcome", .rows = RowsOf::chunk, .columns = shift_outcomes, .is_uint = true, .is_cleared = true},
-            {.name = "carry", .rows = RowsOf::image_row, .columns = carry_columns},
-            {.name = "gradient_film", .rows = RowsOf::pixel, .columns = gradient_film_columns, .is_cleared = true}};
+            {.name = "outcome", .rows = RowsOf::chunk, .columns = shift_outcomes, .is_uint = true, .is_cleared = true}};
 }
 
 void GradientPathTracer::allocate() {
@@ -198,7 +184,7 @@ void GradientPathTracer::allocate() {
     strip_rows_ = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(paths / width, 1, height));
     const bool is_whole = strip_rows_ == height;
     if (is_whole)
-        carry_.leave_out();
+        film_.carry_nothing();
     // A strip has the rows beside it too, as far as there are any.
     const std::uint32_t slots = is_whole ? strip_frames_ * session_.pixels() : (strip_rows_ + 2) * width;
     tables_.emplace(session_.device, list, table_rows(session_, batch, slots), options_.precision);
@@ -367,26 +353,14 @@ bool GradientPathTracer::render_batch() {
     if (done_ >= total_)
         return false;
     const auto start = std::chrono::steady_clock::now();
-    if (!solver_ && !solver_compiled_.valid()) // with one thread, once it is needed
-        solver_compiled_ = std::async(
-            options_.threads == 1 ? std::launch::deferred : std::launch::async,
-            [this, compilers = std::exchange(compilers_, nullptr)]() mutable {
-                PoissonSolver::compile(session_.device, poisson_options(options_, session_.settings.samples_per_pixel));
-                compilers.reset();
-            });
-    if (!direct_edges_ && session_.max_depth() != 0 && !session_.settings.hide_emitters)
-        direct_edges_ =
-            sample_direct_edges(session_.scene, session_.film, session_.tracer, options_.seed,
-                                static_cast<std::uint32_t>(session_.settings.samples_per_pixel), edge_rays_);
+    film_.begin();
     const Strip strip = next_strip();
     const std::uint32_t paths = strip.frames * strip.rows * session_.film.crop_width;
     begin_pass(strip);
     const bool is_black = session_.max_depth() == 0; // no path begins
     if (is_black)
-        for (const char *table : {"radiance", "feature", "direct", "prefix", "difference"})
-            if (tables_->has(table))
-                (*tables_)[table].clear();
-    if (!is_black)
+        film_.clear_slots();
+    else
         trace_primaries(strip);
 
     newest_ = Hits();
@@ -410,7 +384,7 @@ bool GradientPathTracer::render_batch() {
         follow(next, stride);
         newest_ = next;
     }
-    add_to_film(strip);
+    film_.add(strip.first, strip.rows, strip.frames);
     finish(session_.device);
     done_ += paths;
     statistics_.samples += paths;
@@ -418,24 +392,12 @@ bool GradientPathTracer::render_batch() {
     return done_ < total_;
 }
 
-void GradientPathTracer::add_to_film(const Strip &strip) {
-    const std::uint32_t width = session_.film.crop_width, pixels = strip.rows * width;
-    combine_.run(strip.frames * pixels);
-    film_.add(strip.frames * pixels, strip.first * width);
-    for (std::uint32_t frame = 0; frame < strip.frames; frame += accumulated_frames)
-        accumulate_.run(
-            pixels, {{"first_slot", frame * pixels}, {"frames", std::min(accumulated_frames, strip.frames - frame)}});
-    if (strip.first + strip.rows < session_.film.crop_height)
-        carry_.run(width, {{"first_slot", pixels - width}});
-}
-
 void GradientPathTracer::restart(std::uint64_t first_sample, std::uint64_t samples_per_pixel) {
     first_sample_ = first_sample;
     done_ = 0;
     total_ = session_.pixels() * samples_per_pixel;
     film_.clear();
-    for (const char *table : {"gradient_film", "outcome"})
-        (*tables_)[table].clear();
+    (*tables_)["outcome"].clear();
     statistics_ = Statistics();
     session_.rays.clear();
     session_.trace_seconds = 0;
@@ -443,32 +405,13 @@ void GradientPathTracer::restart(std::uint64_t first_sample, std::uint64_t sampl
 }
 
 Image GradientPathTracer::make_image(bool layers, bool last) {
-    if (last) // what a pass needs and the films do not
-        tables_->release_all_but({"film", "feature_film", "gradient_film", "outcome"});
     statistics_.non_finite = 0;
-    Image whole = film_.image(done_, statistics_.non_finite);
-    if (last)
-        tables_->release_all_but({"gradient_film", "outcome"});
-    if (solver_compiled_.valid())
-        solver_compiled_.get();
-    if (!solver_)
-        solver_ =
-            std::make_unique<PoissonSolver>(session_.device, session_.film.crop_width, session_.film.crop_height, 3);
-    Image image = reconstruct(*solver_, std::move(whole),
-                              std::make_unique<GradientFilm>((*tables_)["gradient_film"], session_.film.crop_width,
-                                                             session_.film.crop_height, options_.precision, done_),
-                              direct_edges_.value_or(std::vector<DirectPixel>()), options_, layers, [&] {
-                                  if (last)
-                                      tables_->release_all_but({"outcome"});
-                              });
-    if (last)
-        solver_.reset();
-    return image;
+    return film_.image(done_, layers, last, statistics_.non_finite);
 }
 
 Statistics GradientPathTracer::statistics() const {
     Statistics s = collected(statistics_, session_, stages_);
-    s.rays["edge"] = edge_rays_;
+    s.rays["edge"] = film_.edge_rays();
     const Buffer &outcome = (*tables_)["outcome"];
     std::vector<std::uint32_t> found(outcome.bytes() / sizeof(std::uint32_t));
     outcome.read(found.data(), outcome.bytes());

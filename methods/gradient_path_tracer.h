@@ -11,13 +11,10 @@
 // A pass is some samples of the whole image, or a strip of its rows where the image is larger than that.
 #pragma once
 
+#include "methods/difference_film.h"
 #include "methods/method.h"
-#include "runtime/direct_light/direct_light.h"
-#include "runtime/wavefront/film.h"
 #include "runtime/wavefront/wavefront.h"
-#include "solver/poisson_solver.h"
 
-#include <future>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -84,9 +81,7 @@ class GradientPathTracer final : public Method {
     void find_emission(const Hits &next);
     void shade(const Hits &next);
     void follow(const Hits &next, std::uint32_t stride);
-    /// `last`: lets go of batches and films as soon as they have been read.
     Image make_image(bool layers, bool last);
-    void add_to_film(const Strip &strip);
 
     RenderOptions options_;
     Session session_;
@@ -96,19 +91,13 @@ class GradientPathTracer final : public Method {
         &weigh_apart_;
     Wavefront paths_;
     Stage &escape_, &emission_, &gradient_escape_, &gradient_emission_, &shade_with_offsets_, &shade_, &advance_,
-        &advance_apart_, &join_, &count_, &combine_;
-    Film film_;
-    Stage &accumulate_, &carry_;
+        &advance_apart_, &join_, &count_;
+    DifferenceFilm film_;
     std::optional<Tables> tables_;
     Hits newest_; ///< of the newest vertices
     std::uint64_t total_ = 0, done_ = 0, first_sample_ = 0;
     std::uint32_t strip_rows_ = 0, strip_frames_ = 1; ///< of a pass, but for the last
     Statistics statistics_;
-    std::optional<std::vector<DirectPixel>> direct_edges_; ///< once sampled: a restart needs no others
-    std::uint64_t edge_rays_ = 0;
-    std::unique_ptr<PoissonSolver> solver_;
-    std::shared_ptr<void> compilers_;   ///< from before the stages' kernels are compiled until the solver's are
-    std::future<void> solver_compiled_; ///< while the first samples render
 };
 
 std::unique_ptr<Method> make_gradient_path_tracer(Device &device, const Scene &scene, const RenderOptions &options);

@@ -1,7 +1,6 @@
 #include "methods/gradient_photon_mapper.h"
 
 #include "kernels/shared/tables.h"
-#include "methods/gradient_image.h"
 #include "methods/path_stages.h"
 #include "runtime/seconds_since.h"
 #include "runtime/wavefront/segments.h"
@@ -96,10 +95,7 @@ GradientPhotonMapper::GradientPhotonMapper(Device &device, const Scene &scene, c
       arrive_(
           stages_.add({.name = "photon_arrive", .by_kind = true, .dirac = DiracKinds::left_out, .numbers = {"pairs"}})),
       sum_(stages_.add(pairs_.sum_stage("pair_difference_sum"))),
-      gradient_gather_(stages_.add({.name = "gradient_gather"})),
-      combine_(stages_.add({.name = "gradient_combine", .strict = true})), film_(session_, stages_),
-      accumulate_(stages_.add({.name = "gradient_accumulate", .strict = true, .numbers = {"first_slot", "frames"}})),
-      carry_(stages_.add({.name = "gradient_carry", .numbers = {"first_slot"}})) {
+      gradient_gather_(stages_.add({.name = "gradient_gather"})), film_(session_, stages_, options_, "photon_found") {
     if (has_specular(session_))
         manifold_walk_.emplace(session_, stages_, RowsOf::path, 1, WalkSettings{.most_vertices = most_inner});
     const std::vector<std::uint32_t> bins = material_bins(scene, session_);
@@ -110,15 +106,10 @@ GradientPhotonMapper::GradientPhotonMapper(Device &device, const Scene &scene, c
 
 TableList GradientPhotonMapper::tables() const {
     const std::uint32_t pairs = PhotonPairs::pair_rows(1);
-    return {{.name = "direct", .rows = RowsOf::slot, .columns = radiance_columns},
-            {.name = "prefix", .rows = RowsOf::slot, .columns = prefix_columns},
-            {.name = "difference", .rows = RowsOf::slot, .multiple = 4, .columns = difference_columns},
-            {.name = "pair_difference", .multiple = 4 * pairs, .columns = pair_difference_columns},
+    return {{.name = "pair_difference", .multiple = 4 * pairs, .columns = pair_difference_columns},
             {.name = "moved", .multiple = 4 * pairs, .columns = moved_columns},
             {.name = "moved_link", .columns = std::uint32_t(has_specular(session_) ? moved_link_columns : 0)},
-            {.name = "photon_found", .multiple = 2, .is_uint = true, .is_cleared = true},
-            {.name = "carry", .rows = RowsOf::image_row, .columns = carry_columns, .is_cleared = true},
-            {.name = "gradient_film", .rows = RowsOf::pixel, .columns = gradient_film_columns, .is_cleared = true}};
+            {.name = "photon_found", .multiple = 2, .is_uint = true, .is_cleared = true}};
 }
 
 void GradientPhotonMapper::allocate() {
@@ -130,6 +121,8 @@ void GradientPhotonMapper::allocate() {
     const std::uint32_t batch = choose_batch_size(session_.device, options_.batch_size,
                                                   planes * std::uint64_t(session_.pixels()), list, options_.precision);
     strip_rows_ = std::clamp(batches_a_pass * batch / planes / width, 1u, height);
+    if (strip_rows_ == height)
+        film_.carry_nothing();
     tables_.emplace(session_.device, list, table_rows(session_, batch, planes * strip_rows_ * width),
                     options_.precision);
     session_.numbers["capacity"] = batch;
@@ -173,27 +166,18 @@ bool GradientPhotonMapper::render_batch() {
     if (done_ >= total_)
         return false;
     const auto start = std::chrono::steady_clock::now();
-    if (!solver_ && !solver_compiled_.valid()) // with one thread, once it is needed
-        solver_compiled_ = std::async(options_.threads == 1 ? std::launch::deferred : std::launch::async, [this] {
-            PoissonSolver::compile(session_.device, poisson_options(options_, session_.settings.samples_per_pixel));
-        });
-    if (!direct_edges_ && session_.max_depth() != 0 && !session_.settings.hide_emitters)
-        direct_edges_ =
-            sample_direct_edges(session_.scene, session_.film, session_.tracer, options_.seed,
-                                static_cast<std::uint32_t>(session_.settings.samples_per_pixel), edge_rays_);
+    film_.begin();
     const Strip strip = next_strip();
     const std::uint64_t pass = done_ / session_.pixels();
     begin_strip(strip);
     if (session_.max_depth() == 0) { // no path begins
-        for (const char *table : {"radiance", "feature", "direct", "prefix", "difference"})
-            if (tables_->has(table))
-                (*tables_)[table].clear();
+        film_.clear_slots();
     } else {
         photons_.begin(pass);
         paths_.trace(planes * strip.pixels, strip.first * session_.film.crop_width, pass, [](const Hits &) {});
         gather_photons(strip);
     }
-    add_to_film(strip);
+    film_.add(strip.first, strip.rows, 1);
     finish(session_.device);
     done_ += strip.pixels;
     statistics_.samples += strip.pixels;
@@ -214,11 +198,7 @@ void GradientPhotonMapper::gather_photons(const Strip &strip) {
                     evaluate_.run_kind(kind, window.pairs);
                     shift_photons(kind, window);
                     pairs_.sum(window);
-                    sum_.run_planes(0, window.rows, 4,
-                                    {{"first", window.first},
-                                     {"from", window.from},
-                                     {"window_first", window.window_first},
-                                     {"window_pairs", window.pairs}});
+                    PhotonPairs::sum(sum_, 4, window);
                 });
     }
     gradient_gather_.run(strip.pixels);
@@ -293,37 +273,9 @@ std::uint32_t GradientPhotonMapper::light_bin() const {
     return first_kind_bin + std::uint32_t(session_.scene.kinds.size());
 }
 
-void GradientPhotonMapper::add_to_film(const Strip &strip) {
-    const std::uint32_t width = session_.film.crop_width;
-    combine_.run(strip.pixels);
-    film_.add(strip.pixels, strip.first * width);
-    accumulate_.run(strip.pixels, {{"first_slot", 0}, {"frames", 1}});
-    if (strip.first + strip.rows < session_.film.crop_height)
-        carry_.run(width, {{"first_slot", strip.pixels - width}});
-}
-
 Image GradientPhotonMapper::make_image(bool layers, bool last) {
-    if (last) // what a pass needs and the films do not
-        tables_->release_all_but({"film", "feature_film", "gradient_film", "photon_found"});
     statistics_.non_finite = 0;
-    Image whole = film_.image(done_, statistics_.non_finite);
-    if (last)
-        tables_->release_all_but({"gradient_film", "photon_found"});
-    if (solver_compiled_.valid())
-        solver_compiled_.get();
-    if (!solver_)
-        solver_ =
-            std::make_unique<PoissonSolver>(session_.device, session_.film.crop_width, session_.film.crop_height, 3);
-    Image image = reconstruct(*solver_, std::move(whole),
-                              std::make_unique<GradientFilm>((*tables_)["gradient_film"], session_.film.crop_width,
-                                                             session_.film.crop_height, options_.precision, done_),
-                              direct_edges_.value_or(std::vector<DirectPixel>()), options_, layers, [&] {
-                                  if (last)
-                                      tables_->release_all_but({"photon_found"});
-                              });
-    if (last)
-        solver_.reset();
-    return image;
+    return film_.image(done_, layers, last, statistics_.non_finite);
 }
 
 Statistics GradientPhotonMapper::statistics() const {
@@ -332,7 +284,7 @@ Statistics GradientPhotonMapper::statistics() const {
     s.photons = photons_.light_paths().photons();
     s.radius_sum = pairs_.radius_sum();
     s = collected(s, session_, stages_, photons_.light_paths().times());
-    s.rays["edge"] = edge_rays_;
+    s.rays["edge"] = film_.edge_rays();
     std::vector<std::uint32_t> found(2 * std::size_t(tables_->rows().paths));
     (*tables_)["photon_found"].read(found.data(), found.size() * sizeof(found[0]));
     const auto half = found.begin() + std::ptrdiff_t(found.size() / 2);

@@ -14,20 +14,16 @@
 // gather points are of different BSDF kinds.
 #pragma once
 
-#include "methods/gather_paths.h"
+#include "methods/difference_film.h"
 #include "methods/method.h"
-#include "methods/pass_photons.h"
-#include "methods/photon_pairs.h"
-#include "runtime/direct_light/direct_light.h"
-#include "runtime/wavefront/film.h"
+#include "methods/photons/gather_paths.h"
+#include "methods/photons/pass_photons.h"
+#include "methods/photons/photon_pairs.h"
 #include "runtime/wavefront/grouping.h"
 #include "runtime/wavefront/manifold_walk.h"
-#include "solver/poisson_solver.h"
 
-#include <future>
 #include <memory>
 #include <optional>
-#include <vector>
 
 namespace gradus {
 
@@ -59,7 +55,6 @@ class GradientPhotonMapper final : public Method {
     void shift_photons(std::size_t kind, const PairWindow &window);
     void move_chains(Range chains, std::uint32_t pairs);
     std::uint32_t light_bin() const;
-    void add_to_film(const Strip &strip);
     Image make_image(bool layers, bool last);
 
     RenderOptions options_;
@@ -76,19 +71,14 @@ class GradientPhotonMapper final : public Method {
     Stage &project_, &walk_, &leave_, &leave_light_, &pass_, &end_; ///< photons at the end of chains
     std::optional<ManifoldWalk> manifold_walk_;
     Stage &count_;
-    Stage &arrive_, &sum_, &gradient_gather_, &combine_;
-    Film film_;
-    Stage &accumulate_, &carry_;
+    Stage &arrive_, &sum_, &gradient_gather_;
+    DifferenceFilm film_;
     std::optional<Tables> tables_;
 
     std::uint64_t total_ = 0, done_ = 0;
     std::uint32_t strip_rows_ = 0;    ///< but for the last strip
     std::uint64_t moved_photons_ = 0; ///< those that it was tried with
     Statistics statistics_;
-    std::optional<std::vector<DirectPixel>> direct_edges_;
-    std::uint64_t edge_rays_ = 0;
-    std::unique_ptr<PoissonSolver> solver_;
-    std::future<void> solver_compiled_; ///< while the first samples render
 };
 
 std::unique_ptr<Method> make_gradient_photon_mapper(Device &device, const Scene &scene, const RenderOptions &options);

@@ -15,10 +15,10 @@
 //   L X X* D S* E photons
 #pragma once
 
-#include "methods/gather_paths.h"
 #include "methods/method.h"
-#include "methods/pass_photons.h"
-#include "methods/photon_pairs.h"
+#include "methods/photons/gather_paths.h"
+#include "methods/photons/pass_photons.h"
+#include "methods/photons/photon_pairs.h"
 #include "runtime/wavefront/film.h"
 
 #include <memory>

@@ -1,4 +1,4 @@
-#include "methods/light_paths.h"
+#include "methods/photons/light_paths.h"
 #include "bench/render/measurements.h"
 #include "methods/path_stages.h"
 #include "runtime/seconds_since.h"

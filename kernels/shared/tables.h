@@ -119,7 +119,7 @@
     REAL(splat, value_g, "")                                                                                           \
     REAL(splat, value_b, "")
 
-/* Light paths (methods/light_paths.h). The state of each; two of these tables alternate. */
+/* Light paths (methods/photons/light_paths.h). The state of each; two of these tables alternate. */
 #define GRADUS_LIGHT_PATH_COLUMNS(REAL, UINT)                                                                          \
     UINT(light_path, slot, "its place in its pass")                                                                    \
     UINT(light_path, key_0, "random numbers: hash of seed and the light path's number")                                \

@@ -95,10 +95,7 @@ ManifoldWalk::ManifoldWalk(Session &session, Stages &stages, RowsOf rows_of, std
 }
 
 TableList ManifoldWalk::tables() const {
-    // Columns of vertices that the scene does not need are the last.
-    const std::uint32_t not_needed = session_.has("TRAIT_ANISOTROPIC")       ? 0
-                                     : session_.has("TRAIT_SHADING_NORMALS") ? 3
-                                                                             : 6;
+    const std::uint32_t not_needed = session_.vertex_columns_not_needed();
     const auto of = [&](const char *name, std::uint32_t columns, std::uint32_t vertices = 1) -> TableDeclaration {
         return {
             .name = name, .rows = rows_of_, .multiple = multiple_ * vertices, .columns = columns, .is_cleared = true};

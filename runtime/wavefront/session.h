@@ -44,6 +44,10 @@ struct Session {
     /// Whether surfaces emit, and whether light is sampled at vertices.
     bool has_emission() const { return has("TRAIT_LIGHT_TRIANGLE") || has("TRAIT_LIGHT_SPHERE"); }
     bool samples_lights() const { return traits.at("SAMPLES_LIGHTS") != 0; }
+    /// Columns of tables of surface vertices that the scene does not need; they are the last.
+    std::uint32_t vertex_columns_not_needed() const {
+        return has("TRAIT_ANISOTROPIC") ? 0 : has("TRAIT_SHADING_NORMALS") ? 3 : 6;
+    }
 };
 
 /// Sets `<name>`, `<name>_multiplier` and `<name>_shift`, by which kernels divide by it (kernels/lib/division.h).

@@ -1,8 +1,8 @@
 // Light paths of a scene, without a method that gathers them.
 #pragma once
 
-#include "methods/light_paths.h"
 #include "methods/path_stages.h"
+#include "methods/photons/light_paths.h"
 #include "runtime/wavefront/host_table.h"
 #include "tests/support/render.h"
 #include "tests/support/small_scenes.h"

@@ -1,7 +1,7 @@
 // Photons and gather points of the test's own, sorted and searched without a render.
 #pragma once
 
-#include "methods/photon_pairs.h"
+#include "methods/photons/photon_pairs.h"
 #include "tests/support/small_scenes.h"
 
 #include <array>

@@ -1,4 +1,4 @@
-#include "methods/light_paths.h"
+#include "methods/photons/light_paths.h"
 
 #include "kernels/shared/light_vertex.h"
 #include "kernels/shared/tables.h"
@@ -172,10 +172,10 @@ TableList LightPaths::tables() const {
 
 void LightPaths::attach(Tables &tables) {
     tables_ = &tables;
-    bind_photons();
+    bind_tables();
 }
 
-void LightPaths::bind_photons() {
+void LightPaths::bind_tables() {
     const auto rows = std::uint32_t(tables_->rows_of("photon"));
     session_.numbers["photon_rows"] = rows;
     consumers_.set("photon_rows", rows);
@@ -184,6 +184,10 @@ void LightPaths::bind_photons() {
     for (Stage *stage : {&scatter_, &order_})
         stage->bind("photon_origin", (*tables_)["photon_origin"]);
     order_.bind("photon_order", (*tables_)["photon_order"]);
+    if (has_vertices(session_))
+        for (Stage *stage : {&emit_, &scatter_, &scatter_first_})
+            for (const char *table : {"light_vertices", "light_vertex_marks"})
+                stage->bind(table, (*tables_)[table]);
 }
 
 std::uint32_t LightPaths::paths_a_pass() {
@@ -274,7 +278,7 @@ void LightPaths::make_room(std::uint64_t rows) {
     const std::uint32_t more = slot_rows(std::uint32_t(std::min(rows + rows / 4, most_photons)));
     for (const char *table : {"photon", "photon_origin", "photon_order"})
         tables_->grow(table, more);
-    bind_photons();
+    bind_tables();
 }
 
 /// For so many records of vertices.
@@ -283,15 +287,12 @@ void LightPaths::make_room_for_vertices(std::uint64_t records) {
         return;
     if (records * light_vertex_stride > most_photons)
         throw Error(ExitCode::device, "light paths have more vertices than there can be; ask for fewer of them");
-    if (records * light_vertex_stride > tables_->rows_of("light_vertices")) {
-        const auto more = std::uint32_t(records + records / 2);
-        tables_->grow("light_vertices", more * light_vertex_stride);
-        tables_->grow("light_vertex_marks", more * light_vertex_mark_stride);
-    }
-    for (Stage *stage : {&emit_, &scatter_, &scatter_first_}) {
-        stage->bind("light_vertices", (*tables_)["light_vertices"]);
-        stage->bind("light_vertex_marks", (*tables_)["light_vertex_marks"]);
-    }
+    if (records * light_vertex_stride <= tables_->rows_of("light_vertices"))
+        return;
+    const auto more = std::uint32_t(records + records / 2);
+    tables_->grow("light_vertices", more * light_vertex_stride);
+    tables_->grow("light_vertex_marks", more * light_vertex_mark_stride);
+    bind_tables();
 }
 
 std::vector<StageTime> LightPaths::times() const {

@@ -1,7 +1,7 @@
 // Which photons are gathered at which gather points: pairs, listed window by window.
 #pragma once
 
-#include "methods/photon_map.h"
+#include "methods/photons/photon_map.h"
 #include "runtime/wavefront/wavefront.h"
 
 #include <cstdint>
@@ -41,7 +41,9 @@ class PhotonPairs {
     StageDeclaration sum_stage(const char *name) const;
 
     /// Adds `pair_value` to the sums of the window's gather points.
-    void sum(const PairWindow &window);
+    void sum(const PairWindow &window) { sum(sum_, 1, window); }
+    /// The same by such a stage, of so many planes.
+    static void sum(Stage &stage, std::uint32_t planes, const PairWindow &window);
 
     /// Of the radii of all gather points for which photons were looked for.
     double radius_sum() const { return radius_sum_; }

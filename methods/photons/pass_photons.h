@@ -1,9 +1,9 @@
 // The photons of a pass, and the radius that they are gathered from.
 #pragma once
 
-#include "methods/light_paths.h"
 #include "methods/method.h"
-#include "methods/photon_map.h"
+#include "methods/photons/light_paths.h"
+#include "methods/photons/photon_map.h"
 
 #include <cstdint>
 
@@ -12,8 +12,7 @@ namespace gradus {
 /// The square of the radius of pass `pass`, from 0 on, over that of the first: Knaus and Zwicker 2011, eq. 20.
 double radius_shrinkage(std::uint64_t pass, double alpha);
 
-/// Whether surfaces are rough enough to gather at, and whether some are not.
-bool has_gathering_surface(const Scene &scene, const RenderOptions &options);
+/// Whether some surfaces are too smooth to gather at.
 bool has_smooth_surface(const Scene &scene, const RenderOptions &options);
 
 /// The scene itself. Throws Error(ExitCode::usage) where options or scene leave nothing to be gathered.

@@ -57,7 +57,7 @@ class LightPaths {
     std::uint32_t put_in_order(std::uint32_t count);
     /// For so many rows of `photon`.
     void make_room(std::uint64_t rows);
-    void bind_photons();
+    void bind_tables();
     void make_room_for_vertices(std::uint64_t records);
 
     Session &session_;

@@ -1,4 +1,4 @@
-#include "methods/seen_distance.h"
+#include "methods/photons/seen_distance.h"
 
 #define TRAIT_TRIANGLES 1
 #define TRAIT_SPHERES 1

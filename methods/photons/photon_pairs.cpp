@@ -1,4 +1,4 @@
-#include "methods/photon_pairs.h"
+#include "methods/photons/photon_pairs.h"
 
 #include "kernels/shared/tables.h"
 #include "runtime/wavefront/host_table.h"
@@ -118,11 +118,12 @@ std::uint64_t PhotonPairs::find(Range rows, const std::function<void(const PairW
     return all;
 }
 
-void PhotonPairs::sum(const PairWindow &window) {
-    sum_.run(window.rows, {{"first", window.first},
-                           {"from", window.from},
-                           {"window_first", window.window_first},
-                           {"window_pairs", window.pairs}});
+void PhotonPairs::sum(Stage &stage, std::uint32_t planes, const PairWindow &window) {
+    stage.run_planes(0, window.rows, planes,
+                     {{"first", window.first},
+                      {"from", window.from},
+                      {"window_first", window.window_first},
+                      {"window_pairs", window.pairs}});
 }
 
 } // namespace gradus

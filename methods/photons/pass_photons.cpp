@@ -1,8 +1,8 @@
-#include "methods/pass_photons.h"
+#include "methods/photons/pass_photons.h"
 
 #include "kernels/shared/scene_records.h"
 #include "methods/path_stages.h"
-#include "methods/seen_distance.h"
+#include "methods/photons/seen_distance.h"
 #include "runtime/error.h"
 
 #include <fmt/format.h>
@@ -48,10 +48,6 @@ double radius_shrinkage(std::uint64_t pass, double alpha) {
     // The product of (k + alpha) / (k + 1) for k = 1 to pass.
     const double n = double(pass);
     return std::exp(std::lgamma(n + 1 + alpha) - std::lgamma(1 + alpha) - std::lgamma(n + 2));
-}
-
-bool has_gathering_surface(const Scene &scene, const RenderOptions &options) {
-    return any_bsdf(scene, options.gather_roughness, true);
 }
 
 bool has_smooth_surface(const Scene &scene, const RenderOptions &options) {
@@ -116,7 +112,8 @@ void PassPhotons::begin(std::uint64_t pass) {
     const double scale = std::sqrt(radius_shrinkage(pass, options_.radius_alpha));
     stages_.set_real("radius_scale", scale);
     const std::uint32_t photons = light_paths_.trace(pass * paths_a_pass_, paths_a_pass_);
-    map_.build(light_paths_.rows(), photons, scale * std::max(cell_edge * typical_radius_, largest_radius_ / most_radii_a_cell));
+    map_.build(light_paths_.rows(), photons,
+               scale * std::max(cell_edge * typical_radius_, largest_radius_ / most_radii_a_cell));
     pass_ = pass;
 }
 

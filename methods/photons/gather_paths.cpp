@@ -1,8 +1,8 @@
-#include "methods/gather_paths.h"
+#include "methods/photons/gather_paths.h"
 
 #include "kernels/shared/tables.h"
-#include "methods/pass_photons.h"
 #include "methods/path_stages.h"
+#include "methods/photons/pass_photons.h"
 
 #include <fmt/format.h>
 
@@ -57,10 +57,7 @@ GatherPaths::GatherPaths(Session &session, Stages &stages, const Scene &scene, c
 }
 
 TableList GatherPaths::tables() const {
-    // Columns of vertices that the scene does not need are the last.
-    const std::uint32_t not_needed = session_.has("TRAIT_ANISOTROPIC")       ? 0
-                                     : session_.has("TRAIT_SHADING_NORMALS") ? 3
-                                                                             : 6;
+    const std::uint32_t not_needed = session_.vertex_columns_not_needed();
     return joined(paths_.tables(), {{.name = "gather",
                                      .rows = planes_ ? RowsOf::slot : RowsOf::path,
                                      .columns = gather_columns - not_needed,

@@ -1,4 +1,4 @@
-#include "methods/photon_map.h"
+#include "methods/photons/photon_map.h"
 
 #include "kernels/shared/scene_records.h"
 #include "kernels/shared/tables.h"
@@ -21,28 +21,18 @@ constexpr double rounding = 0x1p-20;
 
 constexpr const char *grown_uints[] = {"photon_key", "photon_line_of", "photon_line_sorted"};
 
-void set_grid(Session &session, const PhotonGrid &grid) {
+/// Calls set_real and set_number with the name and value of each argument that is the grid's.
+template <class SetReal, class SetNumber>
+void set_grid(const PhotonGrid &grid, const SetReal &set_real, const SetNumber &set_number) {
     for (int axis = 0; axis < 3; ++axis) {
         const std::string name(1, char('x' + axis));
-        session.reals["grid_low_" + name] = grid.low[axis];
-        session.numbers["grid_last_" + name] = grid.last[axis];
+        set_real("grid_low_" + name, grid.low[axis]);
+        set_number("grid_last_" + name, grid.last[axis]);
     }
-    session.reals["grid_inverse_edge"] = grid.inverse_edge;
-    session.reals["grid_reach"] = grid.reach;
-    session.numbers["line_stride"] = grid.line_stride;
-    session.numbers["line_shift"] = grid.line_shift;
-}
-
-void set_grid(Stages &stages, const PhotonGrid &grid) {
-    for (int axis = 0; axis < 3; ++axis) {
-        const std::string name(1, char('x' + axis));
-        stages.set_real("grid_low_" + name, grid.low[axis]);
-        stages.set("grid_last_" + name, grid.last[axis]);
-    }
-    stages.set_real("grid_inverse_edge", grid.inverse_edge);
-    stages.set_real("grid_reach", grid.reach);
-    stages.set("line_stride", grid.line_stride);
-    stages.set("line_shift", grid.line_shift);
+    set_real("grid_inverse_edge", grid.inverse_edge);
+    set_real("grid_reach", grid.reach);
+    set_number("line_stride", grid.line_stride);
+    set_number("line_shift", grid.line_shift);
 }
 
 StageDeclaration cells_stage(const char *entry, std::vector<std::string> numbers) {
@@ -112,7 +102,9 @@ PhotonMap::PhotonMap(Session &session, Stages &stages, std::uint32_t rows)
       sort_(session, stages, "photon_sort", RowsOf::one, rows), cells_(stages.add(cells_stage("photon_cells", {}))),
       copy_(stages.add(cells_stage("photon_copy", {}))), lines_(stages.add(cells_stage("photon_lines", {}))),
       starts_(stages.add(cells_stage("photon_starts", {"photons", "keys"}))) {
-    set_grid(session, PhotonGrid(box_, 1, most_keys));
+    set_grid( // build() says it
+        PhotonGrid(box_, 1, most_keys), [&](const std::string &name, double value) { session.reals[name] = value; },
+        [&](const std::string &name, std::uint32_t value) { session.numbers[name] = value; });
 }
 
 TableList PhotonMap::tables() const {
@@ -144,7 +136,9 @@ void PhotonMap::grow() {
 void PhotonMap::build(std::uint32_t rows, std::uint32_t count, double edge) {
     grow();
     const PhotonGrid grid(box_, edge, most_keys);
-    set_grid(stages_, grid);
+    set_grid(
+        grid, [&](const std::string &name, double value) { stages_.set_real(name, value); },
+        [&](const std::string &name, std::uint32_t value) { stages_.set(name, value); });
     cells_.run(rows);
     sort_.run_in((*tables_)["photon_order"], (*tables_)["photon_key"], count, grid.keys - 1);
     copy_.run_planes(0, count, columns_);

@@ -1,0 +1,96 @@
+#include "methods/difference_film.h"
+
+#include "kernels/shared/tables.h"
+#include "methods/gradient_image.h"
+#include "methods/path_stages.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace gradus {
+
+using namespace lib_float;
+
+DifferenceFilm::DifferenceFilm(Session &session, Stages &stages, const RenderOptions &options, const char *counts)
+    : session_(session), options_(options), counts_(counts),
+      combine_(stages.add({.name = "gradient_combine", .strict = true})), film_(session, stages),
+      accumulate_(stages.add({.name = "gradient_accumulate", .strict = true, .numbers = {"first_slot", "frames"}})),
+      carry_(stages.add({.name = "gradient_carry", .numbers = {"first_slot"}})) {
+    if (options.threads != 1)
+        compilers_ = keep_compilers(session.device);
+}
+
+TableList DifferenceFilm::tables() const {
+    return joined(
+        film_.tables(),
+        {{.name = "direct", .rows = RowsOf::slot, .columns = radiance_columns},
+         {.name = "prefix", .rows = RowsOf::slot, .columns = prefix_columns},
+         {.name = "difference", .rows = RowsOf::slot, .multiple = 4, .columns = difference_columns},
+         {.name = "carry", .rows = RowsOf::image_row, .columns = carry_columns},
+         {.name = "gradient_film", .rows = RowsOf::pixel, .columns = gradient_film_columns, .is_cleared = true}});
+}
+
+void DifferenceFilm::attach(Tables &tables) {
+    tables_ = &tables;
+    film_.attach(tables);
+}
+
+void DifferenceFilm::begin() {
+    if (!solver_ && !solver_compiled_.valid()) // with one thread, once it is needed
+        solver_compiled_ = std::async(
+            options_.threads == 1 ? std::launch::deferred : std::launch::async,
+            [this, compilers = std::exchange(compilers_, nullptr)]() mutable {
+                PoissonSolver::compile(session_.device, poisson_options(options_, session_.settings.samples_per_pixel));
+                compilers.reset();
+            });
+    if (!edges_ && session_.max_depth() != 0 && !session_.settings.hide_emitters)
+        edges_ = sample_direct_edges(session_.scene, session_.film, session_.tracer, options_.seed,
+                                     static_cast<std::uint32_t>(session_.settings.samples_per_pixel), edge_rays_);
+}
+
+void DifferenceFilm::clear_slots() {
+    for (const char *table : {"radiance", "feature", "direct", "prefix", "difference"})
+        if (tables_->has(table))
+            (*tables_)[table].clear();
+}
+
+void DifferenceFilm::add(std::uint32_t first, std::uint32_t rows, std::uint32_t frames) {
+    const std::uint32_t width = session_.film.crop_width, pixels = rows * width;
+    combine_.run(frames * pixels);
+    film_.add(frames * pixels, first * width);
+    for (std::uint32_t frame = 0; frame < frames; frame += accumulated_frames)
+        accumulate_.run(pixels,
+                        {{"first_slot", frame * pixels}, {"frames", std::min(accumulated_frames, frames - frame)}});
+    if (first + rows < session_.film.crop_height)
+        carry_.run(width, {{"first_slot", pixels - width}});
+}
+
+Image DifferenceFilm::image(std::uint64_t samples, bool layers, bool last, std::uint64_t &non_finite) {
+    if (last) // what a pass needs and the films do not
+        tables_->release_all_but({"film", "feature_film", "gradient_film", counts_});
+    Image whole = film_.image(samples, non_finite);
+    if (last)
+        tables_->release_all_but({"gradient_film", counts_});
+    if (solver_compiled_.valid())
+        solver_compiled_.get();
+    if (!solver_)
+        solver_ =
+            std::make_unique<PoissonSolver>(session_.device, session_.film.crop_width, session_.film.crop_height, 3);
+    Image image = reconstruct(*solver_, std::move(whole),
+                              std::make_unique<GradientFilm>((*tables_)["gradient_film"], session_.film.crop_width,
+                                                             session_.film.crop_height, options_.precision, samples),
+                              edges_.value_or(std::vector<DirectPixel>()), options_, layers, [&] {
+                                  if (last)
+                                      tables_->release_all_but({counts_});
+                              });
+    if (last)
+        solver_.reset();
+    return image;
+}
+
+void DifferenceFilm::clear() {
+    film_.clear();
+    (*tables_)["gradient_film"].clear();
+}
+
+} // namespace gradus

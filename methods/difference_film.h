@@ -1,0 +1,60 @@
+// What gradient-domain methods do once samples and differences are known: the sums of both, what the camera sees of
+// lights, and the reconstruction, whose kernels are compiled while the first samples render.
+#pragma once
+
+#include "methods/method.h"
+#include "runtime/direct_light/direct_light.h"
+#include "runtime/wavefront/film.h"
+#include "solver/poisson_solver.h"
+
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace gradus {
+
+class DifferenceFilm {
+  public:
+    /// Declares the stages `gradient_combine`, `accumulate`, `gradient_accumulate` and `gradient_carry`. `options` must
+    /// live as long. `counts`: the table that the method's statistics read after the last image.
+    DifferenceFilm(Session &session, Stages &stages, const RenderOptions &options, const char *counts);
+
+    /// By slot `direct`, `prefix` and `difference`, which the method fills; and the sums.
+    TableList tables() const;
+    /// For strips that are whole frames: no differences are carried from one to the next. Before stages are built.
+    void carry_nothing() { carry_.leave_out(); }
+    /// To be called once the tables are allocated; all is zero.
+    void attach(Tables &tables);
+
+    /// To be called before samples render: begins what the first image will need.
+    void begin();
+    /// Zero in all slots, for images without paths.
+    void clear_slots();
+    /// Adds the samples of `frames` frames of the image's rows [first, first + rows), slot by slot.
+    void add(std::uint32_t first, std::uint32_t rows, std::uint32_t frames);
+    /// After `samples` samples; those left out are added to `non_finite`. `last`: lets go of batches and films as soon
+    /// as they have been read.
+    Image image(std::uint64_t samples, bool layers, bool last, std::uint64_t &non_finite);
+
+    /// All sums zero again. Edges of lights that have been sampled stay.
+    void clear();
+    std::uint64_t edge_rays() const { return edge_rays_; }
+
+  private:
+    Session &session_;
+    const RenderOptions &options_;
+    std::string counts_;
+    Stage &combine_;
+    Film film_;
+    Stage &accumulate_, &carry_;
+    Tables *tables_ = nullptr;
+    std::optional<std::vector<DirectPixel>> edges_; ///< once sampled
+    std::uint64_t edge_rays_ = 0;
+    std::unique_ptr<PoissonSolver> solver_;
+    std::shared_ptr<void> compilers_;   ///< from before the stages' kernels are compiled until the solver's are
+    std::future<void> solver_compiled_; ///< while the first samples render
+};
+
+} // namespace gradus
