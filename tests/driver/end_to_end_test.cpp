@@ -60,12 +60,21 @@ std::vector<std::string> names_of(const Image &image) {
     return names;
 }
 
-TEST_F(EndToEnd, WritesWhatTheImageWasMadeFromOnlyOnRequest) {
+/// Of methods that reconstruct their images.
+class EndToEndLayers : public EndToEnd, public ::testing::WithParamInterface<const char *> {
+  protected:
+    Outcome render_with(const std::string &output, std::vector<std::string> more) const {
+        more.insert(more.end(), {"--spp", "4", "--method", GetParam(), "--photons", "2000"});
+        return run(render(output, more));
+    }
+};
+
+TEST_P(EndToEndLayers, AreWrittenOnlyOnRequest) {
     using ::testing::ElementsAre;
-    ASSERT_EQ(run(render("plain.exr", {"--spp", "4"})).exit_code, 0);
-    ASSERT_EQ(run(render("aov.exr", {"--spp", "4", "--aov"})).exit_code, 0);
-    ASSERT_EQ(run(render("layers.exr", {"--spp", "4", "--layers"})).exit_code, 0);
-    ASSERT_EQ(run(render("all.exr", {"--spp", "4", "--layers", "--aov"})).exit_code, 0);
+    ASSERT_EQ(render_with("plain.exr", {}).exit_code, 0);
+    ASSERT_EQ(render_with("aov.exr", {"--aov"}).exit_code, 0);
+    ASSERT_EQ(render_with("layers.exr", {"--layers"}).exit_code, 0);
+    ASSERT_EQ(render_with("all.exr", {"--layers", "--aov"}).exit_code, 0);
     const Image plain = read_image(at("plain.exr")), layers = read_image(at("layers.exr"));
     EXPECT_THAT(names_of(plain), ElementsAre("B", "G", "R"));
     EXPECT_EQ(read_image(at("aov.exr")).channels.size(), 3u + 10); // albedo, normal, depth, variance
@@ -82,6 +91,9 @@ TEST_F(EndToEnd, WritesWhatTheImageWasMadeFromOnlyOnRequest) {
     // And without them there is nothing to make it from.
     EXPECT_EQ(run({"solve", "plain.exr", "-o", "again.exr"}).exit_code, 6);
 }
+
+INSTANTIATE_TEST_SUITE_P(Methods, EndToEndLayers, ::testing::Values("gpt", "gpm"),
+                         [](const auto &info) { return std::string(info.param); });
 
 TEST_F(EndToEnd, TheImageDependsOnTheSeedAndNotOnThreadsOrBatches) {
     ASSERT_EQ(run(render("first.exr", {"--spp", "4", "--seed", "3"})).exit_code, 0);
@@ -171,7 +183,8 @@ TEST_F(EndToEnd, ACropIsThatPartOfTheImage) {
                 EXPECT_EQ(crop.find(name)->values[y * 7 + x], full.find(name)->values[(y + 4) * 32 + x + 9]);
 }
 
-/// What ends a render early, for each method: gpt keeps its film in another form, sppm's samples are passes.
+/// What ends a render early, for each method: gpt and gpm keep their film in another form, samples of sppm and gpm are
+/// passes.
 class EndToEndOf : public EndToEnd, public ::testing::WithParamInterface<const char *> {
   protected:
     std::vector<std::string> render_early(std::vector<std::string> more) const {
@@ -215,7 +228,7 @@ TEST_P(EndToEndOf, TimeEndsTheRender) {
     expect_valid_image();
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, EndToEndOf, ::testing::Values("pt", "gpt", "sppm"),
+INSTANTIATE_TEST_SUITE_P(Methods, EndToEndOf, ::testing::Values("pt", "gpt", "sppm", "gpm"),
                          [](const auto &info) { return std::string(info.param); });
 
 /// A ball before the camera, of a BSDF and with a light or without one.
