@@ -133,5 +133,139 @@ TEST(GradientPhotonStability, OnSmallBalls) {
          difference_bias(maker.scene, photon_options(1.5, 4000)).largest_share(), 0.05});
 }
 
+TEST(GradientPhotonStability, AtSilhouettesBeforeNothing) {
+    SceneMaker maker = scene_of(16);
+    const std::uint32_t white = maker.material(diffuse(0.8));
+    for (int i = 0; i < 9; ++i)
+        maker.sphere({0.5f * float(i % 3) - 0.5f, 0.1f, 0.5f * float(i / 3) - 0.5f}, 0.2f, white);
+    look_down(maker);
+    record_stability({area, "silhouettes: the neighbour has no gather point",
+                      "balls before nothing, a disc of three pixels", "the base photon counts for itself",
+                      share_at_most, difference_bias(maker.scene, photon_options(1.5, 8000)).largest_share(), 0.06});
+}
+
+TEST(GradientPhotonStability, OfOtherNormals) {
+    for (const bool smooth : {false, true}) {
+        SceneMaker maker = scene_of(16);
+        add_plain_floor(maker);
+        maker.scene.meshes.push_back(coarse_ball({0, 0.2f, 0}, 0.55, smooth));
+        maker.shape(Shape::Kind::mesh, maker.scene.meshes.size() - 1, maker.material(diffuse(0.8)), -1);
+        look_down(maker);
+        record_stability({area, "faceted and smooth normals: planes jump, or are not the surface's",
+                          smooth ? "a ball of 90 triangles, with a ball's normals" : "a ball of 90 triangles",
+                          "shifts by geometric normals, values by shading normals", share_at_most,
+                          difference_bias(maker.scene, photon_options(1.5, 4000)).largest_share(), 0.06});
+    }
+}
+
+TEST(GradientPhotonStability, OnGlossyMetal) {
+    SceneMaker maker = scene_of(64);
+    maker.floor(-2, 2, 2, maker.material(rough_metal(0.1)));
+    maker.sphere({0, 0.3f, 0.3f}, 0.2f, maker.material(diffuse(0.8)));
+    maker.look({0, 1.5, -1.5}, {0, 0, 0}, 30);
+    maker.lamp({0, 2, 1.2f}, 0.8f, 0.8f, 10, maker.material(diffuse(0.5)));
+    record_stability({area, "gathering on glossy surfaces: lobes turn from pixel to pixel",
+                      "a floor of metal of roughness 0.1 that shows a lamp",
+                      "evaluates the BSDF of each photon at both gather points", share_at_most,
+                      difference_bias(maker.scene, photon_options(1.5, 4000)).largest_share(), 0.15});
+}
+
+TEST(GradientPhotonStability, InACorner) {
+    SceneMaker maker = scene_of(16);
+    maker.parallelogram({0, 0, 0}, {0, 0, 2}, {2, 0, 0}, maker.material(two_sided(diffuse(0.8))));
+    maker.parallelogram({0, 0, 0}, {2, 0, 0}, {0, 2, 0}, maker.material(two_sided(diffuse(0.5))));
+    maker.parallelogram({0, 0, 0}, {0, 2, 0}, {0, 0, 2}, maker.material(two_sided(diffuse(0.3))));
+    maker.lamp({0.6f, 1, 0.8f}, 0.4f, 0.4f, 10, maker.material(diffuse(0.5)));
+    maker.look({1, 1.1, 1.2}, {0, 0, 0}, 16);
+    record_stability({area, "corners: a photon's mirror image is on another wall, or none",
+                      "a corner of three walls, discs of six pixels", "the shift fails for both directions alike",
+                      share_at_most, difference_bias(maker.scene, photon_options(3, 8000)).largest_share(), 0.04});
+}
+
+TEST(GradientPhotonStability, WhereFewPhotonsAreSeen) {
+    for (const std::uint64_t photons : {100, 1}) {
+        SceneMaker maker = scene_of(photons == 1 ? 200 : 40);
+        const std::uint32_t stripes[] = {maker.material(diffuse(0.1)), maker.material(diffuse(0.9))};
+        for (int i = 0; i < 6; ++i)
+            maker.floor(0.34f * float(i) - 1.02f, 0.34f * float(i) - 0.68f, 2, stripes[i % 2]);
+        look_down(maker);
+        record_stability({area, photons == 1 ? "one light path a pass" : "few photons seen",
+                          photons == 1 ? "200 passes of one light path" : "40 passes of 100 light paths",
+                          "each photon is shifted by itself", share_at_most,
+                          difference_bias(maker.scene, photon_options(3, photons)).largest_share(),
+                          photons == 1 ? 0.2 : 0.06});
+    }
+}
+
+TEST(GradientPhotonStability, UnderGlass) {
+    for (const char *piece : {"a block", "a coarse lens", "a smooth lens"}) {
+        SceneMaker maker = scene_of(10);
+        add_floor_under_glass(maker, piece);
+        const bool is_block = std::string(piece) == "a block", is_smooth = std::string(piece) == "a smooth lens";
+        record_stability(
+            {area,
+             is_block ? "total internal reflection in chains of photons: the chain beside it may leave"
+                      : "facets of a coarse lens: chains of photons end at their edges",
+             is_block    ? "a floor seen through a block of glass on it"
+             : is_smooth ? "a floor under a ball of 90 triangles of glass, with a ball's normals"
+                         : "a floor under a ball of 90 triangles of glass",
+             "a walk that fails, or whose way back does not come back, is no shift; the base photon counts for itself",
+             share_at_most, difference_bias(maker.scene, photon_options(1.5, 8000)).largest_share(), 0.2});
+    }
+}
+
+// The same random numbers: rounding decides some paths otherwise, and nothing else may.
+TEST(GradientPhotonStability, InScenesOfAnotherSize) {
+    SceneMaker maker = scene_of(16);
+    add_plain_floor(maker);
+    const std::uint32_t white = maker.material(diffuse(0.8));
+    for (int i = 0; i < 9; ++i)
+        maker.sphere({0.5f * float(i % 3) - 0.5f, 0.1f, 0.5f * float(i / 3) - 0.5f}, 0.2f, white);
+    look_down(maker);
+    for (const double factor : {1e-3, 1e4}) {
+        Scene elsewhere = maker.scene;
+        place(elsewhere, factor, {0, 0, 0});
+        record_stability({area, "scenes of another size: planes and mirrors by products out of range",
+                          fmt::format("balls on a floor, 2 wide, times {}", factor), "goes by ratios and unit vectors",
+                          share_at_most, difference_bias(elsewhere, photon_options(1.5, 4000)).largest_share(), 0.04});
+    }
+}
+
+TEST(GradientPhotonStability, AtTheLimitsOfTheRadius) {
+    std::size_t wrong = 0;
+    for (const double value : {1e-30, 1e-9, 1e3, 1e18, 1e30})
+        for (const bool of_scene : {false, true}) {
+            SceneMaker maker = scene_of(1);
+            maker.scene.film.width = maker.scene.film.height = 8;
+            add_plain_floor(maker);
+            look_down(maker);
+            RenderOptions options = photon_options(1, 300);
+            options.radius = RenderOptions::GatherRadius{value, of_scene};
+            for (const Channel &channel : render(maker.scene, options, "gpm").image.channels)
+                for (const float number : channel.values)
+                    wrong += std::fabs(number) < 1e9 ? 0 : 1;
+        }
+    record_stability({area, "a radius that vanishes or overflows when it is squared",
+                      "a floor under a lamp, radii from 1e-30 to 1e30 pixels or diameters",
+                      "at least what positions are exact to; in pixels a twentieth of the scene at most",
+                      "values of primal and differences that are not finite or above 1e9", double(wrong), 0});
+}
+
+TEST(GradientPhotonStability, AtThinWalls) {
+    float brightest = 0;
+    const double diameter = 1.01 * std::sqrt(3.0) * 2;
+    for (const auto &[between, radius] : {std::pair{0.0, 0.01}, {0.001, 0.01}, {0.005, 0.17}}) {
+        RenderOptions options = photon_options(1, 10'000);
+        options.radius = RenderOptions::GatherRadius{radius / diameter, true};
+        for (const Channel &channel : render(thin_walls(between, true), options, "gpm").image.channels)
+            for (const float value : channel.values)
+                brightest = std::max(brightest, std::fabs(value));
+    }
+    record_stability({area, "thin walls: a photon is shifted through them",
+                      "a lit box with walls of 0, 1 and 5 mm, radius 10, 10 and 170 mm",
+                      "photons count where their surface faces the same way",
+                      "largest value outside, differences included", brightest, 0});
+}
+
 } // namespace
 } // namespace gradus::testing

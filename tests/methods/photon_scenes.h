@@ -52,24 +52,27 @@ inline Mesh coarse_ball(const Vector3 &center, double radius, bool smooth) {
     return mesh;
 }
 
-/// The floor under a piece of glass under a lamp that path tracing can find.
-inline Scene under_glass(const std::string &piece) {
-    SceneMaker maker(24, 4);
+/// A block of glass on the floor but for 1 mm, in which light goes around by total internal reflection, or a lens of 90
+/// triangles.
+inline void add_glass(SceneMaker &maker, const std::string &piece, std::uint32_t material) {
+    if (piece == "a block") {
+        maker.cube(material);
+        for (Vector3 &p : maker.scene.meshes.back().positions)
+            p = {0.4f * p.x, 0.3f * p.y + 0.301f, 0.4f * p.z};
+    } else {
+        maker.scene.meshes.push_back(coarse_ball({0, 1.4f, 0}, 0.5, piece == "a smooth lens"));
+        maker.shape(Shape::Kind::mesh, maker.scene.meshes.size() - 1, material, -1);
+    }
+}
+
+/// The floor under such a piece under a lamp that path tracing can find: to `maker`, of which it takes the camera.
+inline void add_floor_under_glass(SceneMaker &maker, const std::string &piece) {
     maker.look({0, 0.5, -2.5}, {0, 0, 0}, 25);
     maker.scene.settings.max_depth = 10;
     const std::uint32_t white = maker.material(diffuse(0.8)), clear = maker.material(glass(1.5));
     maker.floor(-2, 2, 2, white);
     maker.lamp({0, 3, 0}, 1.5f, 1.5f, 10, white);
-    if (piece ==
-        "a block") { // of glass on the floor but for 1 mm: light goes around in it by total internal reflection
-        maker.cube(clear);
-        for (Vector3 &p : maker.scene.meshes.back().positions)
-            p = {0.4f * p.x, 0.3f * p.y + 0.301f, 0.4f * p.z};
-    } else {
-        maker.scene.meshes.push_back(coarse_ball({0, 1.4f, 0}, 0.5, piece == "a smooth lens"));
-        maker.shape(Shape::Kind::mesh, maker.scene.meshes.size() - 1, clear, -1);
-    }
-    return maker.scene;
+    add_glass(maker, piece, clear);
 }
 
 } // namespace gradus::testing

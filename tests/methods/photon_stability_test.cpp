@@ -183,7 +183,9 @@ TEST(PhotonStability, AtSilhouettes) {
 class PhotonStabilityUnder : public ::testing::TestWithParam<const char *> {};
 
 TEST_P(PhotonStabilityUnder, Glass) {
-    const Scene scene = under_glass(GetParam());
+    SceneMaker maker(24, 4);
+    add_floor_under_glass(maker, GetParam());
+    const Scene &scene = maker.scene;
     Scene traced = scene;
     traced.settings.samples_per_pixel = 1024;
     RenderOptions options = with_radius(0.5, false); // the edges of the block: 2 % at four times as much
