@@ -240,22 +240,26 @@ class EndToEndPhotons : public EndToEnd {
             << "<sensor type=\"perspective\"><transform name=\"to_world\">"
             << "<lookat origin=\"0, 0, 4\" target=\"0, 0, 0\" up=\"0, 1, 0\"/>"
             << "</transform></sensor>" << light << "<shape type=\"sphere\">" << bsdf << "</shape></scene>";
-        more.insert(more.begin(), {"render", "ball.xml", "-o", "out.exr", "--method", "sppm", "--size", "16x16",
+        more.insert(more.begin(), {"render", "ball.xml", "-o", "out.exr", "--method", method, "--size", "16x16",
                                    "--spp", "3", "--photons", "500"});
         return run(more);
     }
     const std::string light = "<emitter type=\"constant\"/>", gray = "<bsdf type=\"diffuse\"/>";
+    std::string method = "sppm";
     const std::string metal = "<bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"0.02\"/></bsdf>";
 };
 
 TEST_F(EndToEndPhotons, WhereNothingCanBeGatheredTheErrorSaysWhy) {
-    const Outcome smooth = render_ball(metal, light);
-    EXPECT_EQ(smooth.exit_code, 2);
-    EXPECT_THAT(smooth.err, HasSubstr("no surface is rough enough to gather photons at: roughness 0.05 or more; "
-                                      "--gather-roughness asks for less"));
-    const Outcome dark = render_ball(gray, "");
-    EXPECT_EQ(dark.exit_code, 2);
-    EXPECT_THAT(dark.err, HasSubstr("there is no light in the scene"));
+    for (const char *name : {"sppm", "gpm"}) {
+        method = name;
+        const Outcome smooth = render_ball(metal, light);
+        EXPECT_EQ(smooth.exit_code, 2);
+        EXPECT_THAT(smooth.err, HasSubstr("no surface is rough enough to gather photons at: roughness 0.05 or more; "
+                                          "--gather-roughness asks for less"));
+        const Outcome dark = render_ball(gray, "");
+        EXPECT_EQ(dark.exit_code, 2);
+        EXPECT_THAT(dark.err, HasSubstr("there is no light in the scene"));
+    }
     EXPECT_FALSE(std::filesystem::exists(at("out.exr")));
     for (const std::vector<std::string> &bad : std::vector<std::vector<std::string>>{{"--radius", "0"},
                                                                                      {"--radius", "-1%"},
