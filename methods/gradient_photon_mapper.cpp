@@ -44,7 +44,7 @@ std::vector<std::uint32_t> material_bins(const Scene &scene, const Session &sess
 TraitMap light_vertex_traits(const Scene &scene, const RenderOptions &options) {
     bool starts = options.direct_photons || options.all_traits;
     for_each_bsdf(scene, [&](const Bsdf &bsdf) { starts = starts || bsdf_kind_is_dirac(bsdf_kind_name(bsdf)); });
-    return {{"TRAIT_LIGHT_VERTICES", 1}, {"TRAIT_LIGHT_STARTS", starts}};
+    return {{"TRAIT_LIGHT_VERTICES", 1}, {"TRAIT_LIGHT_STARTS", starts}, {"TRAIT_ONLY_CHAINS", options.only_chains}};
 }
 
 /// What is done by the kind of the vertex that light leaves, or where that is on a light.

@@ -2,6 +2,7 @@
 
 #include "kernels/shared/tables.h"
 #include "methods/path_stages.h"
+#include "runtime/error.h"
 #include "runtime/seconds_since.h"
 
 #include <fmt/format.h>
@@ -38,6 +39,8 @@ PhotonMapper::PhotonMapper(Device &device, const Scene &scene, const RenderOptio
       paths_(session_, stages_, scene, options, false), photons_(session_, stages_, scene, options, 2), pairs_(stages_),
       evaluate_(stages_.add({.name = "photon_evaluate", .by_kind = true, .dirac = DiracKinds::left_out})),
       add_(stages_.add({.name = "gather_add", .numbers = {"first"}})), film_(session_, stages_) {
+    if (options.only_chains)
+        throw Error(ExitCode::usage, "--only-chains is of gpm");
     statistics_.surfaces = gathering_surfaces(scene, options.gather_roughness);
     total_ = std::uint64_t(session_.pixels()) * session_.settings.samples_per_pixel;
     allocate();
