@@ -8,7 +8,7 @@ PARTS = [
     ("shade", "shading"),
     ("light paths, ", "light paths"),
     ("photon_shift", "shifts"), ("photon_reconnect", "shifts"), ("photon_arrive", "shifts"), ("walk", "walks"),
-    ("photon", "photons"), ("pair", "photons"), ("gather", "photons"), ("travel", "photons"), ("sort", "photons"),
+    ("photon", "photons"), ("pair", "photons"), ("gather", "photons"), ("bias", "photons"), ("travel", "photons"), ("sort", "photons"),
     ("shift", "shifts"), ("evaluate", "shifts"), ("weigh", "shifts"), ("advance", "shifts"), ("join", "shifts"),
     ("gradient_begin", "shifts"), ("gradient_connect", "shifts"), ("gradient escape", "shifts"),
     ("gradient emission", "shifts"),

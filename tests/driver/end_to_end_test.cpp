@@ -77,10 +77,11 @@ TEST_P(EndToEndLayers, AreWrittenOnlyOnRequest) {
     ASSERT_EQ(render_with("all.exr", {"--layers", "--aov"}).exit_code, 0);
     const Image plain = read_image(at("plain.exr")), layers = read_image(at("layers.exr"));
     EXPECT_THAT(names_of(plain), ElementsAre("B", "G", "R"));
-    EXPECT_EQ(read_image(at("aov.exr")).channels.size(), 3u + 10); // albedo, normal, depth, variance
+    const std::size_t bias = std::string(GetParam()) == "gpm" ? 3 : 0;
+    EXPECT_EQ(read_image(at("aov.exr")).channels.size(), 3u + 10 + bias); // albedo, normal, depth, variance
     EXPECT_THAT(names_of(layers), ElementsAre("B", "G", "R", "direct.B", "direct.G", "direct.R", "dx.B", "dx.G", "dx.R",
                                               "dy.B", "dy.G", "dy.R", "primal.B", "primal.G", "primal.R"));
-    EXPECT_EQ(read_image(at("all.exr")).channels.size(), 3u + 10 + 12 + 9);
+    EXPECT_EQ(read_image(at("all.exr")).channels.size(), 3u + 10 + bias + 12 + 9);
     for (const Channel &channel : plain.channels)
         EXPECT_EQ(channel.values, layers.find(channel.name)->values);
     // The layers are what the image was made from, bit for bit.
@@ -297,6 +298,8 @@ TEST_F(EndToEndPhotons, StatisticsSayWhatIsGathered) {
                    (std::pow(image.find(color)->values[i], 2) + 0.001) / 768;
     EXPECT_GT(sum, 0);
     EXPECT_NEAR(gathering.at("relative_variance"), sum, 1e-5 * sum);
+    EXPECT_TRUE(gathering.at("relative_squared_bias").is_number());
+    EXPECT_NE(image.find("bias.G"), nullptr);
 }
 
 TEST_F(EndToEndPhotons, InspectSaysWhatIsGathered) {
