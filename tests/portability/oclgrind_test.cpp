@@ -189,9 +189,8 @@ TEST_F(Oclgrind, GradientsOfPhotons) {
                 IsSupersetOf({"photon_shift diffuse", "photon_reconnect diffuse", "photon_arrive diffuse",
                               "photon_project", "photon_walk", "photon_leave light", "photon_pass dielectric",
                               "photon_pass end", "pair_difference_sum", "gradient_gather"}));
-    EXPECT_THAT(render("cornell-box.xml", {"--method", "gpm", "--size", "8x8", "--photons", "100", "--radius", "5%",
-                                           "--direct", "photons", "--batch-size", "64", "--aov"}),
-                IsSupersetOf({"bias_sum", "bias_add"}));
+    render("cornell-box.xml", {"--method", "gpm", "--size", "8x8", "--photons", "100", "--radius", "5%", "--direct",
+                               "photons", "--batch-size", "64"});
 }
 
 } // namespace
