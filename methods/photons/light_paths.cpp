@@ -18,10 +18,7 @@ namespace {
 // count from 0 and do not come to its numbers.
 constexpr std::uint32_t pilot_paths = 1u << 14;
 constexpr std::uint64_t pilot_first = std::uint64_t(1) << 63;
-constexpr double photons_a_pass = 1e6;
 constexpr std::uint64_t most_photons = 1u << 31; // tables are numbered with 32 bits
-// Where light hardly reaches a surface.
-constexpr double most_paths_a_pass = 4e6;
 
 // Russian roulette is played from the first vertex on, so that photons are of like power, unless the scene asks for
 // none: by a depth that no path has.
@@ -125,7 +122,7 @@ LightPaths::LightPaths(Session &session, Stages &consumers, const Scene &scene, 
     const TableList list = own_tables(session, paths_);
     const std::uint32_t batch =
         choose_batch_size(session.device, session.options.batch_size,
-                          wanted_ ? wanted_ : std::uint64_t(most_paths_a_pass), list, session.options.precision);
+                          wanted_ ? wanted_ : std::uint64_t(most_light_paths_a_pass), list, session.options.precision);
     own_.emplace(session.device, list, table_rows(session, batch, batch), session.options.precision);
 
     // The numbers that our kernels know are not those of the consumers'.
@@ -196,8 +193,8 @@ std::uint32_t LightPaths::paths_a_pass() {
     if (paths_a_pass_ == 0) {
         const double stored = trace(pilot_first, pilot_paths);
         light_paths_ = photons_ = 0;
-        paths_a_pass_ =
-            std::uint32_t(std::clamp(photons_a_pass * pilot_paths / std::max(stored, 1.0), 1.0, most_paths_a_pass));
+        paths_a_pass_ = std::uint32_t(
+            std::clamp(photons_a_pass * pilot_paths / std::max(stored, 1.0), 1.0, most_light_paths_a_pass));
     }
     return paths_a_pass_;
 }

@@ -14,6 +14,10 @@
 
 namespace gradus {
 
+/// A pass has as many light paths as leave so many photons, unless options say how many; but where light hardly reaches
+/// a surface at most so many.
+constexpr double photons_a_pass = 1e6, most_light_paths_a_pass = 4e6;
+
 class LightPaths {
   public:
     /// Photons of depth 1, which lights send directly, are left out where the caller samples lights himself.
