@@ -18,7 +18,7 @@ void add_method_options(CLI::App &command, const Services &services, MethodReque
         .add_option(
             "--method", request.method,
             "Rendering method: pt, path tracing; gpt, gradient-domain path tracing; sppm, stochastic progressive "
-            "photon mapping; auto, whichever of pt and gpt a short pilot render finds better")
+            "photon mapping; auto, whichever of pt, gpt and gpm a short pilot render finds better")
         ->check(CLI::IsMember(services.method_names()))
         ->capture_default_str()
         ->group(group);

@@ -1,5 +1,5 @@
 // gradus-bench-kernels: how fast each kernel is in its builds, how exact kernels/lib is on the device, what tuning
-// gains, and how fast rows are sorted.
+// gains, how fast rows are sorted, photons gathered and chains walked.
 #include "bench/kernels/measurements.h"
 #include "bench/program.h"
 #include "bench/write_results.h"
@@ -17,7 +17,7 @@
 
 namespace {
 
-const std::vector<std::string> all_parts = {"throughput", "accuracy", "tuning", "sort"};
+const std::vector<std::string> all_parts = {"throughput", "accuracy", "tuning", "sort", "photons"};
 
 struct Arguments : gradus::bench::ProgramOptions {
     std::set<std::string> parts{all_parts.begin(), all_parts.end()};
@@ -71,6 +71,8 @@ void run(const Arguments &arguments) {
         results["tuning"] = measure_tuning(settings);
     if (arguments.parts.contains("sort"))
         results["sort"] = measure_sort(settings);
+    if (arguments.parts.contains("photons"))
+        results["photons"] = measure_photons(settings);
     write_results(results, arguments.json);
 }
 
@@ -86,9 +88,10 @@ int main(int argc, char **argv) {
     Arguments arguments;
     CLI::App app("Kernel benchmarks. Every ratio is of runs that are mixed in one process, the median of --repeats",
                  "gradus-bench-kernels");
-    app.add_option("--parts", arguments.parts,
-                   "Any of throughput, accuracy, tuning, sort; or remarks, what PoCL's compiler says of each kernel")
-        ->check(CLI::IsMember({"throughput", "accuracy", "tuning", "sort", "remarks"}))
+    app.add_option(
+           "--parts", arguments.parts,
+           "Any of throughput, accuracy, tuning, sort, photons; or remarks, what PoCL's compiler says of each kernel")
+        ->check(CLI::IsMember({"throughput", "accuracy", "tuning", "sort", "photons", "remarks"}))
         ->delimiter(',');
     app.add_option("--scene", arguments.scene, "The room whose surfaces take each kind")->capture_default_str();
     app.add_option("--kinds", arguments.kinds, "BSDF kinds")

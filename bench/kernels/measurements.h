@@ -36,6 +36,9 @@ nlohmann::json measure_accuracy(const Settings &settings);
 /// The sort of runtime/wavefront, sums over runs of equal keys, and splats.
 nlohmann::json measure_sort(const Settings &settings);
 
+/// Gathering of photons over a triad of its bytes, and manifold walks, in the methods that have them.
+nlohmann::json measure_photons(const Settings &settings);
+
 /// What the work-group and batch size that a tuner chose gain.
 nlohmann::json measure_tuning(const Settings &settings);
 
