@@ -137,6 +137,29 @@ TEST(GradientPhotonImage, HasFarLessErrorThanPhotonMapping) {
     EXPECT_LT(ours, 0.5 * plain);
 }
 
+/// All light on a floor comes through a ball of glass, from a point in it: chains alone make the very same image. In a
+/// room of rough walls they make none.
+TEST(GradientPhotonImage, OfChainsAlone) {
+    SceneMaker maker(16, 2);
+    maker.look({0, 3, 3}, {0, 0, 0}, 20);
+    maker.scene.settings.max_depth = 6;
+    maker.floor(-1, 1, 1, maker.material(diffuse(0.7)));
+    maker.sphere({0, 1.5f, 0}, 0.3f, maker.material(glass(1.5)));
+    maker.point_light({5, 5, 5}, {0.05f, 1.5f, 0});
+    RenderOptions options = few_photons();
+    const Image all = render(maker.scene, options, "gpm").image;
+    options.only_chains = true;
+    const Image chains = render(maker.scene, options, "gpm").image;
+    EXPECT_GT(spread_of(chains, "primal.G").mean, 0);
+    for (const char *channel : {"primal.G", "dx.R", "dy.B"})
+        EXPECT_EQ(chains.find(channel)->values, all.find(channel)->values) << channel;
+    Scene room = own_scene("cornell-box.xml", 16, 12);
+    room.settings.samples_per_pixel = 2;
+    const Image none = render(room, options, "gpm").image;
+    for (const char *channel : {"primal.G", "dx.R", "dy.B"})
+        EXPECT_EQ(spread_of(none, channel).most, 0) << channel;
+}
+
 /// A mirror that sees the sky, and no photon at all: nothing to shift, and nothing that is not finite.
 TEST(GradientPhotonImage, IsFiniteWhereNothingIsGathered) {
     SceneMaker maker(24, 2);
