@@ -284,7 +284,7 @@ Statistics GradientPhotonMapper::statistics() const {
     s.photons = photons_.light_paths().photons();
     s.radius_sum = pairs_.radius_sum();
     s = collected(s, session_, stages_, photons_.light_paths().times());
-    s.rays["edge"] = film_.edge_rays();
+    film_.add_to(s);
     std::vector<std::uint32_t> found(2 * std::size_t(tables_->rows().paths));
     (*tables_)["photon_found"].read(found.data(), found.size() * sizeof(found[0]));
     const auto half = found.begin() + std::ptrdiff_t(found.size() / 2);

@@ -91,7 +91,10 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
     const int asks = goes_on && rgb_max(gain) > R(0);
 #endif
     const vec3 start = ray_origin(point.position, point.geometric, point.offset, light.direction);
-    const vec3 end = v3_mad(v3_add(point.position, light.connection), LIGHT_FIELD(chosen.light, offset), light.normal);
+    const vec3 light_point = v3_add(point.position, light.connection);
+    const vec3 end = connection_end(light_point, light.normal,
+                                    offset_at(light_point, light.normal, LIGHT_FIELD(chosen.light, offset)),
+                                    light.connection);
     SET_V3(shadow, origin, row, start);
     SET_V3(shadow, direction, row, v3_sub(end, start));
     SET_RGB(shadow, value, row, gain);
