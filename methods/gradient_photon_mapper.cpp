@@ -118,8 +118,10 @@ void GradientPhotonMapper::allocate() {
     if (manifold_walk_)
         list = joined(list, manifold_walk_->tables());
     const std::uint32_t width = session_.film.crop_width, height = session_.film.crop_height;
-    const std::uint32_t batch = choose_batch_size(session_.device, options_.batch_size,
-                                                  planes * std::uint64_t(session_.pixels()), list, options_.precision);
+    const std::uint64_t paths = planes * std::uint64_t(session_.pixels());
+    const std::uint32_t batch =
+        choose_batch_size(session_.device, options_.batch_size,
+                          std::max<std::uint64_t>(paths, PhotonPairs::least_batch), list, options_.precision);
     strip_rows_ = std::clamp(batches_a_pass * batch / planes / width, 1u, height);
     if (strip_rows_ == height)
         film_.carry_nothing();

@@ -46,7 +46,8 @@ PhotonMapper::PhotonMapper(Device &device, const Scene &scene, const RenderOptio
 void PhotonMapper::allocate() {
     TableList list = joined(joined(paths_.tables(), film_.tables()), joined(photons_.tables(), pairs_.tables()));
     const std::uint32_t batch =
-        choose_batch_size(session_.device, options_.batch_size, session_.pixels(), list, options_.precision);
+        choose_batch_size(session_.device, options_.batch_size, std::max(session_.pixels(), PhotonPairs::least_batch),
+                          list, options_.precision);
     camera_paths_ =
         static_cast<std::uint32_t>(std::min<std::uint64_t>(batches_a_pass * std::uint64_t(batch), session_.pixels()));
     tables_.emplace(session_.device, list, table_rows(session_, batch, camera_paths_), options_.precision);
