@@ -44,6 +44,10 @@ void add_photon_options(CLI::App &command, RenderOptions &options) {
         ->check(CLI::IsMember({"sample", "photons"}))
         ->default_str("sample")
         ->group(group);
+    command
+        .add_flag("--only-chains", options.only_chains,
+                  "For measuring, gpm: no light but by photons that come from a surface too smooth to gather at")
+        ->group(group);
     const auto complaint = [](std::string &text) {
         return gather_radius(text) ? std::string()
                                    : fmt::format("'{}' is neither a number above 0 nor a percentage", text);

@@ -44,7 +44,10 @@ std::vector<std::uint32_t> material_bins(const Scene &scene, const Session &sess
 TraitMap light_vertex_traits(const Scene &scene, const RenderOptions &options) {
     bool starts = options.direct_photons || options.all_traits;
     for_each_bsdf(scene, [&](const Bsdf &bsdf) { starts = starts || bsdf_kind_is_dirac(bsdf_kind_name(bsdf)); });
-    return {{"TRAIT_LIGHT_VERTICES", 1}, {"TRAIT_LIGHT_STARTS", starts}, {"TRAIT_STRATIFIED", 1}};
+    return {{"TRAIT_LIGHT_VERTICES", 1},
+            {"TRAIT_LIGHT_STARTS", starts},
+            {"TRAIT_ONLY_CHAINS", options.only_chains},
+            {"TRAIT_STRATIFIED", 1}};
 }
 
 /// What is done by the kind of the vertex that light leaves, or where that is on a light.
@@ -92,6 +95,7 @@ GradientPhotonMapper::GradientPhotonMapper(Device &device, const Scene &scene, c
       count_(stages_.add({.name = "photon_count",
                           .definitions = {{"PARTITION_CHUNK", std::to_string(partition_chunk)}},
                           .numbers = {"first", "rows", "to"}})),
+      bias_(session_, stages_, pairs_, true),
       arrive_(
           stages_.add({.name = "photon_arrive", .by_kind = true, .dirac = DiracKinds::left_out, .numbers = {"pairs"}})),
       sum_(stages_.add(pairs_.sum_stage("pair_difference_sum"))),
@@ -100,6 +104,7 @@ GradientPhotonMapper::GradientPhotonMapper(Device &device, const Scene &scene, c
         manifold_walk_.emplace(session_, stages_, RowsOf::path, 1, WalkSettings{.most_vertices = most_inner});
     const std::vector<std::uint32_t> bins = material_bins(scene, session_);
     session_.scene_buffers.emplace_back(device, "material_bin", bins.data(), bins.size() * sizeof(bins[0]));
+    statistics_.surfaces = gathering_surfaces(scene, options.gather_roughness);
     total_ = std::uint64_t(session_.pixels()) * session_.settings.samples_per_pixel;
     allocate();
 }
@@ -114,6 +119,7 @@ TableList GradientPhotonMapper::tables() const {
 
 void GradientPhotonMapper::allocate() {
     TableList list = joined(joined(paths_.tables(), film_.tables()), joined(photons_.tables(), pairs_.tables()));
+    list = joined(list, bias_.tables());
     list = joined(list, joined(joined(order_.tables(), moved_.tables()), tables()));
     if (manifold_walk_)
         list = joined(list, manifold_walk_->tables());
@@ -140,6 +146,7 @@ void GradientPhotonMapper::allocate() {
     stages_.build(session_, *tables_);
     paths_.attach(*tables_);
     pairs_.attach(*tables_);
+    bias_.attach(*tables_);
     order_.attach(*tables_);
     moved_.attach(*tables_);
     if (manifold_walk_)
@@ -172,6 +179,8 @@ bool GradientPhotonMapper::render_batch() {
     const Strip strip = next_strip();
     const std::uint64_t pass = done_ / session_.pixels();
     begin_strip(strip);
+    const double radii_before = pairs_.radius_sum();
+    const std::uint64_t points_before = statistics_.gather_points;
     if (session_.max_depth() == 0) { // no path begins
         film_.clear_slots();
     } else {
@@ -181,10 +190,20 @@ bool GradientPhotonMapper::render_batch() {
     }
     film_.add(strip.first, strip.rows, 1);
     finish(session_.device);
+    count_radii(pass, strip, statistics_.gather_points - points_before, pairs_.radius_sum() - radii_before);
     done_ += strip.pixels;
     statistics_.samples += strip.pixels;
     statistics_.render_seconds += seconds_since(start);
     return done_ < total_;
+}
+
+void GradientPhotonMapper::count_radii(std::uint64_t pass, const Strip &strip, std::uint64_t points, double radii) {
+    if (strip.first == 0)
+        statistics_.last_radii = {};
+    statistics_.last_radii.points += points;
+    statistics_.last_radii.sum += radii;
+    if (pass == 0)
+        statistics_.first_radii = statistics_.last_radii;
 }
 
 void GradientPhotonMapper::gather_photons(const Strip &strip) {
@@ -200,10 +219,12 @@ void GradientPhotonMapper::gather_photons(const Strip &strip) {
                     evaluate_.run_kind(kind, window.pairs);
                     shift_photons(kind, window);
                     pairs_.sum(window);
+                    bias_.sum(window);
                     PhotonPairs::sum(sum_, 4, window);
                 });
     }
     gradient_gather_.run(strip.pixels);
+    bias_.add({0, strip.pixels}, strip.first * session_.film.crop_width, done_ / session_.pixels());
 }
 
 /// The differences of the pairs in a window, whose gather points are of one BSDF kind.
@@ -277,7 +298,15 @@ std::uint32_t GradientPhotonMapper::light_bin() const {
 
 Image GradientPhotonMapper::make_image(bool layers, bool last) {
     statistics_.non_finite = 0;
-    return film_.image(done_, layers, last, statistics_.non_finite);
+    const std::optional<BiasEstimates> bias = bias_.estimates(done_);
+    Image image = film_.image(done_, layers, last, statistics_.non_finite);
+    statistics_.relative_variance = relative_variance_of_passes(image);
+    if (bias) {
+        bias->add_layer(image);
+        if (bias->has_halves)
+            statistics_.relative_squared_bias = bias->relative_square(image);
+    }
+    return image;
 }
 
 Statistics GradientPhotonMapper::statistics() const {

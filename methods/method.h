@@ -41,6 +41,9 @@ struct RenderOptions : SessionOptions {
     /// None: sppm's 2 widths, of which each photon's light is spread over many pixels, and gpm's 0.5, about a pixel:
     /// there the reconstruction does so, and by the image.
     std::optional<GatherRadius> radius;
+    /// To measure shifts of chains alone, gpm: no light but by photons whose light path was, at the vertex before, on a
+    /// surface too smooth to gather at.
+    bool only_chains = false;
     double radius_alpha = 0.9; ///< how slowly the radius shrinks, in (0, 1]; 1: not at all
     /// Called before the method `auto` renders a pilot, with its samples a pixel.
     std::function<void(std::uint64_t)> on_pilot;

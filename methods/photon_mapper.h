@@ -19,6 +19,7 @@
 #include "methods/photons/gather_paths.h"
 #include "methods/photons/pass_photons.h"
 #include "methods/photons/photon_pairs.h"
+#include "methods/photons/radius_bias.h"
 #include "runtime/wavefront/film.h"
 
 #include <memory>
@@ -41,7 +42,7 @@ class PhotonMapper final : public Method {
 
   private:
     void allocate();
-    void gather_photons(const Hits &hits);
+    void gather_photons(const Hits &hits, std::uint32_t first_pixel, std::uint64_t pass);
 
     RenderOptions options_;
     Session session_;
@@ -50,6 +51,7 @@ class PhotonMapper final : public Method {
     PassPhotons photons_;
     PhotonPairs pairs_;
     Stage &evaluate_, &add_;
+    RadiusBias bias_;
     Film film_;
     std::optional<Tables> tables_;
 
