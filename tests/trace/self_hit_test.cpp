@@ -190,6 +190,26 @@ TEST(SelfHit, RaysLeaveSpheres) {
         EXPECT_EQ(share_that_hits(chance, ball(random_place(chance)), rays_a_scene, 1), 0);
 }
 
+// Where a camera or a lamp may be. The point is ahead, not behind.
+TEST(SelfHit, RaysFromTheVeryCenterMeetTheSphere) {
+    for (const vec3 place : {v3(0, 0, 0), v3(5, -2, 0.1f), v3(-1e3f, 0, 0)}) {
+        Surfaces surfaces(ball(place));
+        Chance chance(5);
+        Batch batch;
+        for (std::size_t ray = 0; ray < rays_a_scene; ++ray) {
+            const vec3 direction = chance.direction();
+            batch.add(place, direction, ray_pending);
+            const primitive_hit hit = primitive_hit_of(surfaces.tables.triangles.data(), surfaces.tables.spheres.data(),
+                                                       unit, 0, 0, place, direction);
+            EXPECT_NEAR(v3_dot(v3_sub(hit.position, place), direction), 1, 1e-3);
+        }
+        RayColumns columns = batch.columns<RayColumns>();
+        columns.primitive = batch.state.data();
+        surfaces.tracer.trace(columns, rays_a_scene, ShadowColumns{}, 0);
+        EXPECT_EQ(std::count(batch.state.begin(), batch.state.end(), 0u), std::ptrdiff_t(rays_a_scene));
+    }
+}
+
 // One may be near the origin and the other up to 1e4 away: the way's own length decides how well its end is known.
 TEST(SelfHit, ConnectionsMeetNeitherEnd) {
     Chance chance(4);
