@@ -16,6 +16,9 @@ if [ ! -f build/CMakeCache.txt ]; then
     if command -v ccache >/dev/null; then
         generator+=(-D CMAKE_CXX_COMPILER_LAUNCHER=ccache)
     fi
+    # Files of a folder compiled together, eight at a time, build the whole tree in 40 % of the time; a change to one
+    # compiles the others again, so the presets leave it off.
+    generator+=(-D CMAKE_UNITY_BUILD=ON)
 fi
 cmake --preset release "${generator[@]}"
 targets=()
