@@ -1,5 +1,6 @@
 #include "driver/commands.h"
 #include "driver/comparison.h"
+#include "driver/limits_option.h"
 #include "driver/output_files.h"
 #include "driver/standard_streams.h"
 #include "runtime/error.h"
@@ -58,6 +59,9 @@ int run_compare(Arguments arguments) {
         write_json(comparison_json(comparison), arguments.json);
     if (arguments.json != "-")
         print_result(comparison_text(comparison));
+    if (arguments.check && !comparison.judged && comparison.failures.empty())
+        throw Error(ExitCode::failure,
+                    fmt::format("--check has nothing to judge by: give {}, or --max-relmse", what_bias_needs));
     const bool failed = arguments.check && !comparison.failures.empty();
     return static_cast<int>(failed ? ExitCode::failure : ExitCode::success);
 }
@@ -110,6 +114,7 @@ void add_compare_command(CLI::App &app, std::function<int()> &chosen) {
         ->check(CLI::PositiveNumber)
         ->group(group);
     command.add_flag("--check", arguments->check, "Exit with 1 unless the comparison holds")->group(group);
+    add_limits_option(command, request.limits, "Images");
     command.callback([arguments, &chosen] { chosen = [arguments] { return run_compare(*arguments); }; });
 }
 

@@ -1,4 +1,5 @@
 #include "driver/commands.h"
+#include "driver/limits_option.h"
 #include "driver/reconstruction_options.h"
 #include "driver/solve_job.h"
 #include "runtime/error.h"
@@ -215,6 +216,7 @@ void add_solve_command(CLI::App &app, const Services &services, std::function<in
     const auto request = std::make_shared<SolveRequest>();
     command.footer(notes_of_solve);
     add_input_options(command, request->sources);
+    add_limits_option(command, request->sources.limits, "Images");
     add_output_options(command, *request);
     add_problem_options(command, *request);
     add_solver_options(command, *request);

@@ -140,7 +140,7 @@ std::map<std::string, std::vector<GradientLayer>> files_to_read(const GradientSo
 /// Adds what one file holds to `found`, and the metadata of the primal's file to `images`.
 void read_file(const std::string &path, const std::vector<GradientLayer> &wanted, const GradientSources &sources,
                std::map<GradientLayer, Found> &found, GradientImages &images) {
-    const Image image = read_image(path);
+    const Image image = read_image(path, sources.limits);
     const Layers layers = layers_of(image);
     for (const GradientLayer layer : wanted) {
         const bool alone = sources.files.count(layer) > 0;

@@ -16,7 +16,7 @@ namespace gradus {
 /// or not above 0.
 std::optional<RenderOptions::GatherRadius> gather_radius(const std::string &text);
 
-/// --photons, --gather-roughness, --direct, --radius, --radius-alpha.
+/// --photons, --gather-roughness, --direct, --only-chains, --radius, --radius-alpha.
 void add_photon_options(CLI::App &command, RenderOptions &options);
 
 } // namespace gradus

@@ -7,6 +7,7 @@
 #include "runtime/error.h"
 #include "runtime/film/metrics.h"
 #include "runtime/io/image_io.h"
+#include "runtime/scene/own_scale.h"
 #include "runtime/seconds_since.h"
 
 #include <fmt/format.h>
@@ -14,6 +15,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <optional>
 
 namespace gradus {
 namespace {
@@ -31,9 +33,9 @@ class RenderJob {
 
     int run() {
         prepare();
-        const InterruptWatch watch;
-        render(watch);
-        record_.interrupted = watch.requested();
+        watch_.emplace();
+        render();
+        record_.interrupted = watch_->requested();
         write_results();
         return static_cast<int>(record_.interrupted ? ExitCode::interrupted : ExitCode::success);
     }
@@ -45,6 +47,7 @@ class RenderJob {
         });
         if (request_.time_limit > 0 && !request_.scene.samples_per_pixel)
             scene.settings.samples_per_pixel = endless_samples_per_pixel;
+        own_scale_ = bring_to_own_scale(scene);
         crop_ = scene.film.crop_width > 0 ? fmt::format("{},{},{},{}", scene.film.crop_x, scene.film.crop_y,
                                                         scene.film.crop_width, scene.film.crop_height)
                                           : std::string();
@@ -60,6 +63,7 @@ class RenderJob {
         options.on_compiled = [this](const std::string &kernel, std::size_t ready, std::size_t total, double seconds) {
             progress_.compiled(kernel, ready, total, seconds);
         };
+        options.stop = [this] { return is_to_stop(); };
         options.on_pilot = [this](std::uint64_t samples) {
             progress_.message(fmt::format("pilot of {} samples a pixel, to choose the method", samples));
         };
@@ -89,7 +93,24 @@ class RenderJob {
         return state;
     }
 
-    void render(const InterruptWatch &watch) {
+    /// Whether a batch that is under way is to be given up: at once when interrupted, but for a time limit only after a
+    /// second more, so that batches of usual length are not lost.
+    bool is_to_stop() const {
+        constexpr double patience = 1;
+        return watch_ && (watch_->requested() ||
+                          (request_.time_limit > 0 && seconds_since(render_start_) > request_.time_limit + patience));
+    }
+
+    /// The next batch; false after the last, or where it was given up.
+    bool render_batch() {
+        try {
+            return prepared_.method->render_batch();
+        } catch (const Stopped &) {
+            return false;
+        }
+    }
+
+    void render() {
         // The pilot counts as rendering: a time limit includes it.
         render_start_ =
             Clock::now() - std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(pilot_seconds_));
@@ -97,10 +118,10 @@ class RenderJob {
         progress_.update(state());
         bool more = true;
         while (more) {
-            more = prepared_.method->render_batch();
+            more = render_batch();
             const ProgressState now = state();
             progress_.update(now);
-            if (watch.requested() || (request_.time_limit > 0 && now.elapsed >= request_.time_limit))
+            if (watch_->requested() || (request_.time_limit > 0 && now.elapsed >= request_.time_limit))
                 break;
             if (more && request_.partial_interval > 0 && seconds_since(last_partial) >= request_.partial_interval) {
                 write_partial();
@@ -122,6 +143,10 @@ class RenderJob {
     /// `last`: the method may let go of its film.
     Image current_image(bool partial, bool last) {
         Image image = last ? prepared_.method->last_image() : prepared_.method->image();
+        for (Channel &channel : image.channels)
+            if (own_scale_ != 1 && channel.name == "depth.Z")
+                for (float &value : channel.values)
+                    value = float(value / own_scale_);
         const std::uint64_t done = prepared_.method->done_samples();
         const double pixels = double(image.width) * double(image.height);
         record_.samples_per_pixel = pixels > 0 ? double(done) / pixels : 0;
@@ -154,6 +179,8 @@ class RenderJob {
                                           statistics.non_finite));
         if (const std::uint64_t count = count_non_finite(image); count > 0)
             progress_.message(fmt::format("gradus: warning: {} values of the image are NaN or infinite", count));
+        if (prepared_.method->done_samples() == 0 && prepared_.method->total_samples() > 0)
+            progress_.message("gradus: warning: no batch of samples came to its end, so the image is black");
         progress_.message(fmt::format("{}wrote {}: {:.6g} samples a pixel", record_.interrupted ? "interrupted; " : "",
                                       request_.outputs.image, record_.samples_per_pixel));
     }
@@ -163,9 +190,11 @@ class RenderJob {
     const Clock::time_point job_start_ = Clock::now();
     Clock::time_point render_start_ = job_start_;
     Progress progress_;
+    std::optional<InterruptWatch> watch_; ///< once there is something to lose
     PreparedMethod prepared_;
     RenderRecord record_;
     std::string crop_;
+    double own_scale_ = 1;     ///< of the scene's lengths, while it renders
     double pilot_seconds_ = 0; ///< of the method auto
 };
 

@@ -20,6 +20,9 @@ struct SceneRequest {
     std::string path;
     std::vector<std::string> definitions; ///< "name=value"
     bool strict = false;
+    bool confined = false;
+    std::vector<std::string> allowed_folders;
+    std::uint64_t limits = 1; ///< all limits of what a scene's files may take are so many times as high
     std::optional<std::array<std::uint32_t, 2>> size; ///< width, height
     std::optional<std::array<std::uint32_t, 4>> crop; ///< x, y, width, height
     std::optional<std::uint64_t> samples_per_pixel;

@@ -41,14 +41,17 @@ nlohmann::json gathering_json(const Statistics &statistics) {
         return radii.points > 0 ? radii.sum / double(radii.points) : 0.0;
     };
     const auto by_point = [points](double sum) { return points > 0 ? sum / points : 0.0; };
+    const auto number_or_null = [](const std::optional<double> &number) {
+        return number ? nlohmann::json(*number) : nlohmann::json();
+    };
     return {{"gather_points", statistics.gather_points},
             {"pairs", statistics.photon_pairs},
             {"photons_a_gather_point", by_point(double(statistics.photon_pairs))},
             {"mean_radius", by_point(statistics.radius_sum)},
             {"mean_radius_of_first_pass", mean_radius(statistics.first_radii)},
             {"mean_radius_of_last_pass", mean_radius(statistics.last_radii)},
-            {"relative_variance",
-             statistics.relative_variance ? nlohmann::json(*statistics.relative_variance) : nlohmann::json()},
+            {"relative_variance", number_or_null(statistics.relative_variance)},
+            {"relative_squared_bias", number_or_null(statistics.relative_squared_bias)},
             {"gathered_at", statistics.surfaces.gathered},
             {"passed_at", statistics.surfaces.passed}};
 }

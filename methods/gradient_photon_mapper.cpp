@@ -40,11 +40,14 @@ std::vector<std::uint32_t> material_bins(const Scene &scene, const Session &sess
     return bins;
 }
 
-/// Where light may come straight from a light, or by specular vertices alone, shifts ask how it left.
+/// Camera paths of a pixel are stratified. Where light may come straight from a light, or by specular vertices alone, shifts ask how it left.
 TraitMap light_vertex_traits(const Scene &scene, const RenderOptions &options) {
     bool starts = options.direct_photons || options.all_traits;
     for_each_bsdf(scene, [&](const Bsdf &bsdf) { starts = starts || bsdf_kind_is_dirac(bsdf_kind_name(bsdf)); });
-    return {{"TRAIT_LIGHT_VERTICES", 1}, {"TRAIT_LIGHT_STARTS", starts}};
+    return {{"TRAIT_LIGHT_VERTICES", 1},
+            {"TRAIT_LIGHT_STARTS", starts},
+            {"TRAIT_ONLY_CHAINS", options.only_chains},
+            {"TRAIT_STRATIFIED", 1}};
 }
 
 /// What is done by the kind of the vertex that light leaves, or where that is on a light.
@@ -92,6 +95,7 @@ GradientPhotonMapper::GradientPhotonMapper(Device &device, const Scene &scene, c
       count_(stages_.add({.name = "photon_count",
                           .definitions = {{"PARTITION_CHUNK", std::to_string(partition_chunk)}},
                           .numbers = {"first", "rows", "to"}})),
+      bias_(session_, stages_, pairs_, true),
       arrive_(
           stages_.add({.name = "photon_arrive", .by_kind = true, .dirac = DiracKinds::left_out, .numbers = {"pairs"}})),
       sum_(stages_.add(pairs_.sum_stage("pair_difference_sum"))),
@@ -100,6 +104,7 @@ GradientPhotonMapper::GradientPhotonMapper(Device &device, const Scene &scene, c
         manifold_walk_.emplace(session_, stages_, RowsOf::path, 1, WalkSettings{.most_vertices = most_inner});
     const std::vector<std::uint32_t> bins = material_bins(scene, session_);
     session_.scene_buffers.emplace_back(device, "material_bin", bins.data(), bins.size() * sizeof(bins[0]));
+    statistics_.surfaces = gathering_surfaces(scene, options.gather_roughness);
     total_ = std::uint64_t(session_.pixels()) * session_.settings.samples_per_pixel;
     allocate();
 }
@@ -114,12 +119,15 @@ TableList GradientPhotonMapper::tables() const {
 
 void GradientPhotonMapper::allocate() {
     TableList list = joined(joined(paths_.tables(), film_.tables()), joined(photons_.tables(), pairs_.tables()));
+    list = joined(list, bias_.tables());
     list = joined(list, joined(joined(order_.tables(), moved_.tables()), tables()));
     if (manifold_walk_)
         list = joined(list, manifold_walk_->tables());
     const std::uint32_t width = session_.film.crop_width, height = session_.film.crop_height;
-    const std::uint32_t batch = choose_batch_size(session_.device, options_.batch_size,
-                                                  planes * std::uint64_t(session_.pixels()), list, options_.precision);
+    const std::uint64_t paths = planes * std::uint64_t(session_.pixels());
+    const std::uint32_t batch =
+        choose_batch_size(session_.device, options_.batch_size,
+                          std::max<std::uint64_t>(paths, PhotonPairs::least_batch), list, options_.precision);
     strip_rows_ = std::clamp(batches_a_pass * batch / planes / width, 1u, height);
     if (strip_rows_ == height)
         film_.carry_nothing();
@@ -138,6 +146,7 @@ void GradientPhotonMapper::allocate() {
     stages_.build(session_, *tables_);
     paths_.attach(*tables_);
     pairs_.attach(*tables_);
+    bias_.attach(*tables_);
     order_.attach(*tables_);
     moved_.attach(*tables_);
     if (manifold_walk_)
@@ -170,6 +179,8 @@ bool GradientPhotonMapper::render_batch() {
     const Strip strip = next_strip();
     const std::uint64_t pass = done_ / session_.pixels();
     begin_strip(strip);
+    const double radii_before = pairs_.radius_sum();
+    const std::uint64_t points_before = statistics_.gather_points;
     if (session_.max_depth() == 0) { // no path begins
         film_.clear_slots();
     } else {
@@ -179,10 +190,20 @@ bool GradientPhotonMapper::render_batch() {
     }
     film_.add(strip.first, strip.rows, 1);
     finish(session_.device);
+    count_radii(pass, strip, statistics_.gather_points - points_before, pairs_.radius_sum() - radii_before);
     done_ += strip.pixels;
     statistics_.samples += strip.pixels;
     statistics_.render_seconds += seconds_since(start);
     return done_ < total_;
+}
+
+void GradientPhotonMapper::count_radii(std::uint64_t pass, const Strip &strip, std::uint64_t points, double radii) {
+    if (strip.first == 0)
+        statistics_.last_radii = {};
+    statistics_.last_radii.points += points;
+    statistics_.last_radii.sum += radii;
+    if (pass == 0)
+        statistics_.first_radii = statistics_.last_radii;
 }
 
 void GradientPhotonMapper::gather_photons(const Strip &strip) {
@@ -198,10 +219,12 @@ void GradientPhotonMapper::gather_photons(const Strip &strip) {
                     evaluate_.run_kind(kind, window.pairs);
                     shift_photons(kind, window);
                     pairs_.sum(window);
+                    bias_.sum(window);
                     PhotonPairs::sum(sum_, 4, window);
                 });
     }
     gradient_gather_.run(strip.pixels);
+    bias_.add({0, strip.pixels}, strip.first * session_.film.crop_width, done_ / session_.pixels());
 }
 
 /// The differences of the pairs in a window, whose gather points are of one BSDF kind.
@@ -275,7 +298,15 @@ std::uint32_t GradientPhotonMapper::light_bin() const {
 
 Image GradientPhotonMapper::make_image(bool layers, bool last) {
     statistics_.non_finite = 0;
-    return film_.image(done_, layers, last, statistics_.non_finite);
+    const std::optional<BiasEstimates> bias = bias_.estimates(done_);
+    Image image = film_.image(done_, layers, last, statistics_.non_finite);
+    statistics_.relative_variance = relative_variance_of_passes(image);
+    if (bias) {
+        bias->add_layer(image);
+        if (bias->has_halves)
+            statistics_.relative_squared_bias = bias->relative_square(image);
+    }
+    return image;
 }
 
 Statistics GradientPhotonMapper::statistics() const {
@@ -284,7 +315,7 @@ Statistics GradientPhotonMapper::statistics() const {
     s.photons = photons_.light_paths().photons();
     s.radius_sum = pairs_.radius_sum();
     s = collected(s, session_, stages_, photons_.light_paths().times());
-    s.rays["edge"] = film_.edge_rays();
+    film_.add_to(s);
     std::vector<std::uint32_t> found(2 * std::size_t(tables_->rows().paths));
     (*tables_)["photon_found"].read(found.data(), found.size() * sizeof(found[0]));
     const auto half = found.begin() + std::ptrdiff_t(found.size() / 2);

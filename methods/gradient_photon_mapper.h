@@ -19,6 +19,7 @@
 #include "methods/photons/gather_paths.h"
 #include "methods/photons/pass_photons.h"
 #include "methods/photons/photon_pairs.h"
+#include "methods/photons/radius_bias.h"
 #include "runtime/wavefront/grouping.h"
 #include "runtime/wavefront/manifold_walk.h"
 
@@ -51,6 +52,7 @@ class GradientPhotonMapper final : public Method {
     TableList tables() const;
     Strip next_strip() const;
     void begin_strip(const Strip &strip);
+    void count_radii(std::uint64_t pass, const Strip &strip, std::uint64_t points, double radii);
     void gather_photons(const Strip &strip);
     void shift_photons(std::size_t kind, const PairWindow &window);
     void move_chains(Range chains, std::uint32_t pairs);
@@ -71,6 +73,7 @@ class GradientPhotonMapper final : public Method {
     Stage &project_, &walk_, &leave_, &leave_light_, &pass_, &end_; ///< photons at the end of chains
     std::optional<ManifoldWalk> manifold_walk_;
     Stage &count_;
+    RadiusBias bias_;
     Stage &arrive_, &sum_, &gradient_gather_;
     DifferenceFilm film_;
     std::optional<Tables> tables_;

@@ -29,7 +29,7 @@ struct RenderOptions : SessionOptions {
     /// They do not over ways shorter than eight times the distance of base and offset vertex, or than this share of the
     /// scene's diameter if that is less (kernels/lib/reconnectable.h); 0: over any.
     double shift_distance = 0;
-    std::uint64_t photons = 0;      ///< light paths a pass, photon methods; 0: as many as leave about a million photons
+    std::uint64_t photons = 0;      ///< light paths a pass, photon methods; 0: as many as leave about five photons a pixel
     double gather_roughness = 0.05; ///< photons are kept, and gathered, at surfaces of this roughness (alpha) or more
     bool direct_photons = false;    ///< lights' direct light at gather points by photons too, not by sampling lights
     /// Photons are gathered in the first pass from so far: in widths of a pixel at the gather point or, if it is
@@ -41,6 +41,9 @@ struct RenderOptions : SessionOptions {
     /// None: sppm's 2 widths, of which each photon's light is spread over many pixels, and gpm's 0.5, about a pixel:
     /// there the reconstruction does so, and by the image.
     std::optional<GatherRadius> radius;
+    /// To measure shifts of chains alone, gpm: no light but by photons whose light path was, at the vertex before, on a
+    /// surface too smooth to gather at.
+    bool only_chains = false;
     double radius_alpha = 0.9; ///< how slowly the radius shrinks, in (0, 1]; 1: not at all
     /// Called before the method `auto` renders a pilot, with its samples a pixel.
     std::function<void(std::uint64_t)> on_pilot;

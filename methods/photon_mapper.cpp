@@ -2,6 +2,7 @@
 
 #include "kernels/shared/tables.h"
 #include "methods/path_stages.h"
+#include "runtime/error.h"
 #include "runtime/seconds_since.h"
 
 #include <fmt/format.h>
@@ -15,29 +16,14 @@ namespace gradus {
 
 using namespace lib_float;
 
-namespace {
-
-/// Mean over pixels and colours of variance over R^2 + 0.001, which is the image's relMSE but for its bias: passes are
-/// independent samples of each pixel. Nothing where there are no variances.
-std::optional<double> relative_variance(const Image &image) {
-    double sum = 0;
-    for (const char *color : {"R", "G", "B"}) {
-        const Channel *mean = image.find(color), *variance = image.find(std::string("variance.") + color);
-        if (!variance || mean->values.empty())
-            return std::nullopt;
-        for (std::size_t i = 0; i < mean->values.size(); ++i)
-            sum += variance->values[i] / (double(mean->values[i]) * mean->values[i] + 0.001);
-    }
-    return sum / (3.0 * double(image.find("R")->values.size()));
-}
-
-} // namespace
-
 PhotonMapper::PhotonMapper(Device &device, const Scene &scene, const RenderOptions &options)
-    : options_(options), session_(device, checked_for_gathering(scene, options), options, {}),
+    : options_(options), session_(device, checked_for_gathering(scene, options), options, {{"TRAIT_STRATIFIED", 1}}),
       paths_(session_, stages_, scene, options, false), photons_(session_, stages_, scene, options, 2), pairs_(stages_),
       evaluate_(stages_.add({.name = "photon_evaluate", .by_kind = true, .dirac = DiracKinds::left_out})),
-      add_(stages_.add({.name = "gather_add", .numbers = {"first"}})), film_(session_, stages_) {
+      add_(stages_.add({.name = "gather_add", .numbers = {"first"}})), bias_(session_, stages_, pairs_, false),
+      film_(session_, stages_) {
+    if (options.only_chains)
+        throw Error(ExitCode::usage, "--only-chains is of gpm");
     statistics_.surfaces = gathering_surfaces(scene, options.gather_roughness);
     total_ = std::uint64_t(session_.pixels()) * session_.settings.samples_per_pixel;
     allocate();
@@ -45,8 +31,10 @@ PhotonMapper::PhotonMapper(Device &device, const Scene &scene, const RenderOptio
 
 void PhotonMapper::allocate() {
     TableList list = joined(joined(paths_.tables(), film_.tables()), joined(photons_.tables(), pairs_.tables()));
+    list = joined(list, bias_.tables());
     const std::uint32_t batch =
-        choose_batch_size(session_.device, options_.batch_size, session_.pixels(), list, options_.precision);
+        choose_batch_size(session_.device, options_.batch_size, std::max(session_.pixels(), PhotonPairs::least_batch),
+                          list, options_.precision);
     camera_paths_ =
         static_cast<std::uint32_t>(std::min<std::uint64_t>(batches_a_pass * std::uint64_t(batch), session_.pixels()));
     tables_.emplace(session_.device, list, table_rows(session_, batch, camera_paths_), options_.precision);
@@ -59,6 +47,7 @@ void PhotonMapper::allocate() {
     stages_.build(session_, *tables_);
     paths_.attach(*tables_);
     pairs_.attach(*tables_);
+    bias_.attach(*tables_);
     film_.attach(*tables_);
 }
 
@@ -77,7 +66,7 @@ bool PhotonMapper::render_batch() {
         if (first_pixel == 0)
             statistics_.last_radii = {};
         photons_.begin(pass);
-        paths_.trace(paths, first_pixel, pass, [this](const Hits &hits) { gather_photons(hits); });
+        paths_.trace(paths, first_pixel, pass, [&](const Hits &hits) { gather_photons(hits, first_pixel, pass); });
     }
     film_.add(paths, first_pixel);
     finish(session_.device);
@@ -89,7 +78,7 @@ bool PhotonMapper::render_batch() {
     return done_ < total_;
 }
 
-void PhotonMapper::gather_photons(const Hits &hits) {
+void PhotonMapper::gather_photons(const Hits &hits, std::uint32_t first_pixel, std::uint64_t pass) {
     for (std::size_t kind = 0; kind < paths_.kinds(); ++kind) {
         const Range rows = paths_.gather_points(hits, kind);
         const double radii_before = pairs_.radius_sum();
@@ -97,8 +86,10 @@ void PhotonMapper::gather_photons(const Hits &hits) {
         statistics_.photon_pairs += pairs_.find(rows, [&](const PairWindow &window) {
             evaluate_.run_kind(kind, window.pairs);
             pairs_.sum(window);
+            bias_.sum(window);
         });
         add_.run(rows.count, {{"first", rows.first}});
+        bias_.add(rows, first_pixel, pass);
         statistics_.last_radii.points += rows.count;
         statistics_.last_radii.sum += pairs_.radius_sum() - radii_before;
     }
@@ -107,7 +98,12 @@ void PhotonMapper::gather_photons(const Hits &hits) {
 Image PhotonMapper::image() {
     statistics_.non_finite = 0;
     Image image = film_.image(done_, statistics_.non_finite);
-    statistics_.relative_variance = relative_variance(image);
+    statistics_.relative_variance = relative_variance_of_passes(image);
+    if (const std::optional<BiasEstimates> bias = bias_.estimates(done_)) {
+        bias->add_layer(image);
+        if (bias->has_halves)
+            statistics_.relative_squared_bias = bias->relative_square(image);
+    }
     return image;
 }
 

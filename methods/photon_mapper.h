@@ -5,7 +5,7 @@
 // What the photons within a disc around it carry, over the disc's area, is the light that the surface sends on.
 //
 // The disc's radius goes with what a pixel covers there, and shrinks from pass to pass by a rule that knows the pass
-// alone (Knaus and Zwicker 2011): so passes are independent samples, no pixel has a state, and neighbouring gather
+// alone (Knaus and Zwicker 2011): so no pass depends on those before it, no pixel has a state, and neighbouring gather
 // points have like radii.
 //
 // Which kind of path is made by what (E the eye, L a light, S smooth vertices, D the first vertex from the eye that is
@@ -19,6 +19,7 @@
 #include "methods/photons/gather_paths.h"
 #include "methods/photons/pass_photons.h"
 #include "methods/photons/photon_pairs.h"
+#include "methods/photons/radius_bias.h"
 #include "runtime/wavefront/film.h"
 
 #include <memory>
@@ -41,7 +42,7 @@ class PhotonMapper final : public Method {
 
   private:
     void allocate();
-    void gather_photons(const Hits &hits);
+    void gather_photons(const Hits &hits, std::uint32_t first_pixel, std::uint64_t pass);
 
     RenderOptions options_;
     Session session_;
@@ -50,6 +51,7 @@ class PhotonMapper final : public Method {
     PassPhotons photons_;
     PhotonPairs pairs_;
     Stage &evaluate_, &add_;
+    RadiusBias bias_;
     Film film_;
     std::optional<Tables> tables_;
 

@@ -15,6 +15,7 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "render"), str(HERE.parent / "solver")]
 import chart as solver_chart  # noqa: E402
+import chains  # noqa: E402
 import convergence  # noqa: E402
 import curves  # noqa: E402
 import kernels  # noqa: E402
@@ -153,6 +154,17 @@ def add_photons(report):
     report.add("Photons", content)
 
 
+def add_chains(report):
+    results = report.read("chains.json")
+    if not results or not results.get("chains"):
+        return
+    content = page.text("Shifts of chains alone: no light counts but that of photons which come from a specular or glossy "
+                        "surface, as in figure 4 of Hua et al. 2017. Errors are root mean squares relative to that of the "
+                        "truth, against two halves of a long render whose own noise is taken out.")
+    content += report.figure("chains", chains.draw, results)
+    report.add("Chains", content + page.text(chains.caption(results)))
+
+
 def add_stages(report):
     results = report.read("profile.json")
     if results and results["profiles"]:
@@ -236,7 +248,7 @@ def main():
     output = arguments.output or arguments.folder / "report"
     output.mkdir(parents=True, exist_ok=True)
     report = Report(arguments.folder, output, plotting.pyplot())
-    for add in (add_convergence, add_pictures, add_photons, add_holes, add_stages, add_floors, add_kernels, add_solver,
+    for add in (add_convergence, add_pictures, add_photons, add_chains, add_holes, add_stages, add_floors, add_kernels, add_solver,
                 add_log, add_conditions):
         add(report)
     for missing in report.missing:

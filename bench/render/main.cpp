@@ -45,7 +45,7 @@ void run(const Arguments &arguments) {
                               {"platform", device.description().platform},
                               {"threads", arguments.threads},
                               {"repeats", arguments.repeats}};
-    for (const char *part : {"floor", "specialisation", "order", "light-paths"})
+    for (const char *part : {"floor", "specialisation", "order", "light-paths", "chains"})
         if (arguments.parts.contains(part))
             results[part] = nlohmann::json::array();
     for (const std::string &text : arguments.scenes) {
@@ -64,6 +64,9 @@ void run(const Arguments &arguments) {
             for (const bool roulette : {false, true})
                 results["light-paths"].push_back(measure_light_paths(
                     settings, load_job(s.path, s.width, s.height, arguments.samples_per_pixel, roulette)));
+        if (arguments.parts.contains("chains"))
+            results["chains"].push_back(
+                measure_chains(settings, load_job(s.path, s.width, s.height, arguments.samples_per_pixel, true)));
         if (arguments.parts.contains("order"))
             results["order"].push_back(measure_ray_order(settings, compared));
         std::fflush(stdout);
@@ -78,8 +81,8 @@ int main(int argc, char **argv) {
     CLI::App app("Render benchmarks in one process. Every figure is a ratio, the median of --repeats turns",
                  "gradus-bench-render");
     app.add_option("SCENES", arguments.scenes, "SCENE.xml:WxH")->required();
-    app.add_option("--parts", arguments.parts, "Any of floor, specialisation, order, light-paths")
-        ->check(CLI::IsMember({"floor", "specialisation", "order", "light-paths"}))
+    app.add_option("--parts", arguments.parts, "Any of floor, specialisation, order, light-paths, chains")
+        ->check(CLI::IsMember({"floor", "specialisation", "order", "light-paths", "chains"}))
         ->delimiter(',');
     app.add_option("--spp", arguments.samples_per_pixel, "Samples a pixel")->capture_default_str();
     app.add_option("--repeats", arguments.repeats, "Turns")->check(CLI::Range(1, 1000))->capture_default_str();

@@ -16,6 +16,11 @@ nlohmann::json measure_specialisation(const Settings &settings, const Job &job);
 /// Light paths alone: how many a second, and their time over that of Embree on the same rays.
 nlohmann::json measure_light_paths(const Settings &settings, const Job &job);
 
+/// Shifts of chains alone (Hua et al. 2017, figure 4): L2 errors of gpm's gradients and of the differences of its
+/// throughput, of its reconstruction and of the throughput itself, over passes, where no light counts but that of
+/// photons that come from a specular or glossy surface. The samples a pixel are the longest render's passes.
+nlohmann::json measure_chains(const Settings &settings, const Job &job);
+
 /// Orders in which rays are traced.
 nlohmann::json measure_ray_order(const Settings &settings, const Job &job);
 

@@ -174,6 +174,18 @@
     REAL(gather, sum_b, "")                                                                                            \
     GRADUS_SURFACE_VERTEX_COLUMNS(gather, REAL, UINT)
 
+/* Of the photons' f power, those within the inner half of the disc's area. */
+#define GRADUS_GATHER_INNER_COLUMNS(REAL, UINT)                                                                        \
+    REAL(gather_inner, value_r, "")                                                                                    \
+    REAL(gather_inner, value_g, "")                                                                                    \
+    REAL(gather_inner, value_b, "")
+
+/* By pixel, of even passes before odd ones: the sum over passes of what the radius adds to the radiance. */
+#define GRADUS_RADIUS_BIAS_COLUMNS(REAL, UINT)                                                                         \
+    REAL(radius_bias, value_r, "")                                                                                     \
+    REAL(radius_bias, value_g, "")                                                                                     \
+    REAL(radius_bias, value_b, "")
+
 /* What a pair of gather point and photon is worth: f power. The pair itself is in `pair_gather` and `pair_photon`. */
 #define GRADUS_PAIR_VALUE_COLUMNS(REAL, UINT)                                                                          \
     REAL(pair_value, value_r, "")                                                                                      \
@@ -371,6 +383,8 @@
     TABLE(photon_origin, GRADUS_PHOTON_ORIGIN_COLUMNS)                                                                 \
     TABLE(photon_sorted, GRADUS_PHOTON_SORTED_COLUMNS)                                                                 \
     TABLE(gather, GRADUS_GATHER_COLUMNS)                                                                               \
+    TABLE(gather_inner, GRADUS_GATHER_INNER_COLUMNS)                                                                   \
+    TABLE(radius_bias, GRADUS_RADIUS_BIAS_COLUMNS)                                                                     \
     TABLE(pair_value, GRADUS_PAIR_VALUE_COLUMNS)                                                                       \
     TABLE(pair_difference, GRADUS_PAIR_DIFFERENCE_COLUMNS)                                                             \
     TABLE(moved, GRADUS_MOVED_COLUMNS)                                                                                 \
@@ -496,6 +510,8 @@ GRADUS_LIB_END
 #define ROWS_OF_photon_origin photon_rows
 #define ROWS_OF_photon_sorted photon_rows
 #define ROWS_OF_gather gather_rows
+#define ROWS_OF_gather_inner gather_rows
+#define ROWS_OF_radius_bias (2u * pixels)
 #define ROWS_OF_pair_value pair_rows
 #define ROWS_OF_pair_difference (4u * pair_rows)
 #define ROWS_OF_moved (4u * pair_rows)

@@ -9,8 +9,10 @@
  *
  * Russian roulette goes by the power against that of the light path's beginning, so that photons are alike.
  *
- * TRAIT_LIGHT_VERTICES: leaves a record of each vertex, from `to_vertex` on, for who shifts photons. */
-//! traits: TRAIT_SHADING_NORMALS TRAIT_ANISOTROPIC TRAIT_LIGHT_VERTICES
+ * TRAIT_LIGHT_VERTICES: leaves a record of each vertex, from `to_vertex` on, for who shifts photons.
+ *
+ * TRAIT_ONLY_CHAINS: leaves a photon only where the vertex before is too smooth to gather at. */
+//! traits: TRAIT_SHADING_NORMALS TRAIT_ANISOTROPIC TRAIT_LIGHT_VERTICES TRAIT_ONLY_CHAINS
 #include "kernels/lib/bsdf.h"
 #include "kernels/lib/random.h"
 #include "kernels/lib/surface_point.h"
@@ -61,7 +63,16 @@ STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint ma
     uint left = left_before;
 #if LEAVES_PHOTONS && !BSDF_IS_DIRAC
     const uint gathers = material_gathers[point.material];
-    const int is_photon = (gathers == gathers_around) | ((gathers == gathers_in_front) & (wi.z > R(0)));
+    const int is_kept = (gathers == gathers_around) | ((gathers == gathers_in_front) & (wi.z > R(0)));
+#if TRAIT_ONLY_CHAINS
+    const int is_after_one = vertex_before != light_vertex_none;
+    const uint last = FIELD_OF(light_vertex_mark, light_vertex_marks, is_after_one ? vertex_before : 0u, material);
+    const int is_after_surface = is_after_one & !light_vertex_is_light(last);
+    const int is_photon =
+        is_kept & is_after_surface & (material_gathers[is_after_surface ? last : 0u] == gathers_nowhere);
+#else
+    const int is_photon = is_kept;
+#endif
     const size_t photon_row = to_photon + i;
     SET_V3(photon, position, photon_row, point.position);
     SET_V3(photon, wi, photon_row, v3_neg(direction));

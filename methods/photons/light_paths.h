@@ -31,8 +31,9 @@ class LightPaths {
     /// To be called once these are allocated, before or after the consumers' stages are built.
     void attach(Tables &tables);
 
-    /// Light paths a pass: those that the options ask for, or as many as store about a million photons. How many that
-    /// are is told by a pilot, the same for any batch, of light paths that no render reaches.
+    /// Light paths a pass: those that the options ask for, or as many as store about five photons for each pixel of the
+    /// film, at least 16384 and at most a million. How many that are is told by a pilot, the same for any batch, of
+    /// light paths that no render reaches.
     std::uint32_t paths_a_pass();
 
     /// Traces the light paths of numbers first_path to first_path + count - 1 and stores their photons: in rows of

@@ -2,18 +2,13 @@
 // is understood.
 #pragma once
 
+#include "runtime/io/load_options.h"
 #include "runtime/scene/scene.h"
 
-#include <map>
 #include <string>
 #include <vector>
 
 namespace gradus {
-
-struct LoadOptions {
-    std::map<std::string, std::string> parameters; ///< -D name=value, before the file's own <default>s
-    bool strict = false;                           ///< parameters that are not known become errors
-};
 
 struct LoadedScene {
     Scene scene;                       ///< in world space

@@ -54,6 +54,7 @@ struct Statistics {
     double radius_sum = 0;                         ///< of all gather points, world units
     GatherRadii first_radii, last_radii;           ///< of the first pass and the last one begun
     std::optional<double> relative_variance;       ///< of the image, from the spread of its passes, where it is known
+    std::optional<double> relative_squared_bias;   ///< by the radii of photons, where it is known
     GatheringSurfaces surfaces;                    ///< where photons are gathered and where not, photon methods
     std::uint64_t non_finite = 0;                  ///< samples left out because they were NaN or infinite
     double render_seconds = 0;                     ///< spent in render_batch()

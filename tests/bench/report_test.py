@@ -76,6 +76,12 @@ def photons():
         "sppm": {"light_paths_per_second": 2e6, "seconds_a_pass": 0.125}}}}
 
 
+def chains():
+    points = [{"passes": passes, "throughput": 1 / passes, "reconstruction": 0.25 / passes,
+               "throughput_differences": 4 / passes, "gradients": 2 / passes} for passes in (1, 4)]
+    return {"chains": [{"job": "box 8x8 4 spp, depth 12", "points": points, "failed_shifts": 0.125}]}
+
+
 class Headline(unittest.TestCase):
     def of(self, *ratios, at_least=False):
         return chart.headline([{"scene": f"scene {number}", "method": "gpt",
@@ -113,15 +119,16 @@ class DrawOnly(unittest.TestCase):
     def test_everything(self):
         self.write("convergence.json", convergence())
         self.write("photons.json", photons())
+        self.write("chains.json", chains())
         self.write("profile.json", profile())
         self.write("kernels.json", kernels())
         self.write("floor.json", floor(1.25, 1.5))
         self.write("gradient-floor.json", floor(3))
         self.write("holes.json", holes())
         _, page = self.draw()
-        for name in ("convergence", "convergence-trimmed", "photons", "stages", "functions", "kernels"):
+        for name in ("convergence", "convergence-trimmed", "photons", "chains", "stages", "functions", "kernels"):
             self.assertTrue((self.folder / "report" / f"{name}.png").exists(), name)
-        self.assertEqual(page.count("<svg"), 6)
+        self.assertEqual(page.count("<svg"), 7)
         self.assertEqual(page.count("<svg"), page.count("</svg>"))
         for svg in re.findall(r"<svg.*?</svg>", page, re.DOTALL):
             xml.etree.ElementTree.fromstring(svg)
@@ -131,6 +138,8 @@ class DrawOnly(unittest.TestCase):
         self.assertIn("box &lt;1&gt;", page)
         self.assertIn("mitsuba: skipped", page)
         self.assertIn("gbdpt: skipped", page)
+        self.assertIn("box 8x8 4 spp, after 4 passes: error of the reconstruction 0.25 of the throughput's, of the "
+                      "gradients 0.50 of its differences'; 12% of the shifts fail.", page)
         self.assertIn("<td>gpm</td><td>2.5e+06</td><td>1.60</td><td>0.25</td><td>6.40</td>", page)
         self.assertIn("<td>sppm</td><td>2e+06</td><td></td><td>0.125</td><td></td>", page)
         self.assertIn("a processor, 2 processors; a device", page)

@@ -60,18 +60,28 @@ std::vector<std::string> names_of(const Image &image) {
     return names;
 }
 
-TEST_F(EndToEnd, WritesWhatTheImageWasMadeFromOnlyOnRequest) {
+/// Of methods that reconstruct their images.
+class EndToEndLayers : public EndToEnd, public ::testing::WithParamInterface<const char *> {
+  protected:
+    Outcome render_with(const std::string &output, std::vector<std::string> more) const {
+        more.insert(more.end(), {"--spp", "4", "--method", GetParam(), "--photons", "2000"});
+        return run(render(output, more));
+    }
+};
+
+TEST_P(EndToEndLayers, AreWrittenOnlyOnRequest) {
     using ::testing::ElementsAre;
-    ASSERT_EQ(run(render("plain.exr", {"--spp", "4"})).exit_code, 0);
-    ASSERT_EQ(run(render("aov.exr", {"--spp", "4", "--aov"})).exit_code, 0);
-    ASSERT_EQ(run(render("layers.exr", {"--spp", "4", "--layers"})).exit_code, 0);
-    ASSERT_EQ(run(render("all.exr", {"--spp", "4", "--layers", "--aov"})).exit_code, 0);
+    ASSERT_EQ(render_with("plain.exr", {}).exit_code, 0);
+    ASSERT_EQ(render_with("aov.exr", {"--aov"}).exit_code, 0);
+    ASSERT_EQ(render_with("layers.exr", {"--layers"}).exit_code, 0);
+    ASSERT_EQ(render_with("all.exr", {"--layers", "--aov"}).exit_code, 0);
     const Image plain = read_image(at("plain.exr")), layers = read_image(at("layers.exr"));
     EXPECT_THAT(names_of(plain), ElementsAre("B", "G", "R"));
-    EXPECT_EQ(read_image(at("aov.exr")).channels.size(), 3u + 10); // albedo, normal, depth, variance
+    const std::size_t bias = std::string(GetParam()) == "gpm" ? 3 : 0;
+    EXPECT_EQ(read_image(at("aov.exr")).channels.size(), 3u + 10 + bias); // albedo, normal, depth, variance
     EXPECT_THAT(names_of(layers), ElementsAre("B", "G", "R", "direct.B", "direct.G", "direct.R", "dx.B", "dx.G", "dx.R",
                                               "dy.B", "dy.G", "dy.R", "primal.B", "primal.G", "primal.R"));
-    EXPECT_EQ(read_image(at("all.exr")).channels.size(), 3u + 10 + 12 + 9);
+    EXPECT_EQ(read_image(at("all.exr")).channels.size(), 3u + 10 + bias + 12 + 9);
     for (const Channel &channel : plain.channels)
         EXPECT_EQ(channel.values, layers.find(channel.name)->values);
     // The layers are what the image was made from, bit for bit.
@@ -82,6 +92,9 @@ TEST_F(EndToEnd, WritesWhatTheImageWasMadeFromOnlyOnRequest) {
     // And without them there is nothing to make it from.
     EXPECT_EQ(run({"solve", "plain.exr", "-o", "again.exr"}).exit_code, 6);
 }
+
+INSTANTIATE_TEST_SUITE_P(Methods, EndToEndLayers, ::testing::Values("gpt", "gpm"),
+                         [](const auto &info) { return std::string(info.param); });
 
 TEST_F(EndToEnd, TheImageDependsOnTheSeedAndNotOnThreadsOrBatches) {
     ASSERT_EQ(run(render("first.exr", {"--spp", "4", "--seed", "3"})).exit_code, 0);
@@ -171,7 +184,8 @@ TEST_F(EndToEnd, ACropIsThatPartOfTheImage) {
                 EXPECT_EQ(crop.find(name)->values[y * 7 + x], full.find(name)->values[(y + 4) * 32 + x + 9]);
 }
 
-/// What ends a render early, for each method: gpt keeps its film in another form, sppm's samples are passes.
+/// What ends a render early, for each method: gpt and gpm keep their film in another form, samples of sppm and gpm are
+/// passes.
 class EndToEndOf : public EndToEnd, public ::testing::WithParamInterface<const char *> {
   protected:
     std::vector<std::string> render_early(std::vector<std::string> more) const {
@@ -215,7 +229,7 @@ TEST_P(EndToEndOf, TimeEndsTheRender) {
     expect_valid_image();
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, EndToEndOf, ::testing::Values("pt", "gpt", "sppm"),
+INSTANTIATE_TEST_SUITE_P(Methods, EndToEndOf, ::testing::Values("pt", "gpt", "sppm", "gpm"),
                          [](const auto &info) { return std::string(info.param); });
 
 /// A ball before the camera, of a BSDF and with a light or without one.
@@ -227,22 +241,26 @@ class EndToEndPhotons : public EndToEnd {
             << "<sensor type=\"perspective\"><transform name=\"to_world\">"
             << "<lookat origin=\"0, 0, 4\" target=\"0, 0, 0\" up=\"0, 1, 0\"/>"
             << "</transform></sensor>" << light << "<shape type=\"sphere\">" << bsdf << "</shape></scene>";
-        more.insert(more.begin(), {"render", "ball.xml", "-o", "out.exr", "--method", "sppm", "--size", "16x16",
+        more.insert(more.begin(), {"render", "ball.xml", "-o", "out.exr", "--method", method, "--size", "16x16",
                                    "--spp", "3", "--photons", "500"});
         return run(more);
     }
     const std::string light = "<emitter type=\"constant\"/>", gray = "<bsdf type=\"diffuse\"/>";
+    std::string method = "sppm";
     const std::string metal = "<bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"0.02\"/></bsdf>";
 };
 
 TEST_F(EndToEndPhotons, WhereNothingCanBeGatheredTheErrorSaysWhy) {
-    const Outcome smooth = render_ball(metal, light);
-    EXPECT_EQ(smooth.exit_code, 2);
-    EXPECT_THAT(smooth.err, HasSubstr("no surface is rough enough to gather photons at: roughness 0.05 or more; "
-                                      "--gather-roughness asks for less"));
-    const Outcome dark = render_ball(gray, "");
-    EXPECT_EQ(dark.exit_code, 2);
-    EXPECT_THAT(dark.err, HasSubstr("there is no light in the scene"));
+    for (const char *name : {"sppm", "gpm"}) {
+        method = name;
+        const Outcome smooth = render_ball(metal, light);
+        EXPECT_EQ(smooth.exit_code, 2);
+        EXPECT_THAT(smooth.err, HasSubstr("no surface is rough enough to gather photons at: roughness 0.05 or more; "
+                                          "--gather-roughness asks for less"));
+        const Outcome dark = render_ball(gray, "");
+        EXPECT_EQ(dark.exit_code, 2);
+        EXPECT_THAT(dark.err, HasSubstr("there is no light in the scene"));
+    }
     EXPECT_FALSE(std::filesystem::exists(at("out.exr")));
     for (const std::vector<std::string> &bad : std::vector<std::vector<std::string>>{{"--radius", "0"},
                                                                                      {"--radius", "-1%"},
@@ -280,6 +298,8 @@ TEST_F(EndToEndPhotons, StatisticsSayWhatIsGathered) {
                    (std::pow(image.find(color)->values[i], 2) + 0.001) / 768;
     EXPECT_GT(sum, 0);
     EXPECT_NEAR(gathering.at("relative_variance"), sum, 1e-5 * sum);
+    EXPECT_TRUE(gathering.at("relative_squared_bias").is_number());
+    EXPECT_NE(image.find("bias.G"), nullptr);
 }
 
 TEST_F(EndToEndPhotons, InspectSaysWhatIsGathered) {

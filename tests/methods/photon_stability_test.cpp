@@ -1,5 +1,6 @@
 // Photon mapping where it is at its worst: for each case a small scene whose light is known, or found by path tracing.
 #include "tests/methods/photon_case.h"
+#include "tests/methods/photon_scenes.h"
 #include "tests/methods/reference_scene.h"
 #include "tests/support/placed_scene.h"
 #include "tests/support/stability.h"
@@ -120,23 +121,6 @@ TEST(PhotonStability, InCorners) {
     }
 }
 
-/// A closed box of two metres with a lamp inside, seen from outside. `between`: the walls' thickness; 0: one sheet.
-Scene thin_walls(double between, bool both_sides) {
-    SceneMaker maker(24, 2);
-    maker.look({0, 0, -6}, {0, 0, 0}, 30);
-    maker.scene.settings.rr_depth = 5;
-    const std::uint32_t gray = maker.material(both_sides ? two_sided(diffuse(0.7)) : material_of(diffuse(0.7)));
-    maker.cube(gray, -1, true);
-    maker.sphere({0, 0, 0}, 0.2f, gray, maker.emitter(Emitter::Kind::area, {10, 10, 10}));
-    if (between > 0) {
-        maker.cube(gray);
-        const float factor = float(1 + between);
-        for (Vector3 &p : maker.scene.meshes.back().positions)
-            p = {factor * p.x, factor * p.y, factor * p.z};
-    }
-    return maker.scene;
-}
-
 TEST(PhotonStability, AtThinWalls) {
     float brightest = 0;
     const double diameter = 1.01 * std::sqrt(3.0) * 2;
@@ -196,56 +180,12 @@ TEST(PhotonStability, AtSilhouettes) {
          0.03});
 }
 
-/// A ball of some facets, with the ball's normals where `smooth`.
-Mesh coarse_ball(const Vector3 &center, double radius, bool smooth) {
-    constexpr std::uint32_t stacks = 6, slices = 9;
-    Mesh mesh;
-    for (std::uint32_t i = 0; i <= stacks; ++i)
-        for (std::uint32_t j = 0; j < slices; ++j) {
-            const double polar = pi * i / stacks, around = 2 * pi * j / slices;
-            const Vector3 normal{float(std::sin(polar) * std::cos(around)), float(std::cos(polar)),
-                                 float(std::sin(polar) * std::sin(around))};
-            mesh.positions.push_back({float(center.x + radius * normal.x), float(center.y + radius * normal.y),
-                                      float(center.z + radius * normal.z)});
-            if (smooth)
-                mesh.normals.push_back(normal);
-        }
-    for (std::uint32_t i = 0; i < stacks; ++i)
-        for (std::uint32_t j = 0; j < slices; ++j) {
-            const std::uint32_t next = (j + 1) % slices, a = i * slices + j, b = i * slices + next;
-            const std::uint32_t c = a + slices, d = b + slices;
-            if (i > 0)
-                mesh.triangles.push_back({a, b, c});
-            if (i + 1 < stacks)
-                mesh.triangles.push_back({b, d, c});
-        }
-    return mesh;
-}
-
-/// The floor under a piece of glass under a lamp that path tracing can find.
-Scene under_glass(const std::string &piece) {
-    SceneMaker maker(24, 4);
-    maker.look({0, 0.5, -2.5}, {0, 0, 0}, 25);
-    maker.scene.settings.max_depth = 10;
-    const std::uint32_t white = maker.material(diffuse(0.8)), clear = maker.material(glass(1.5));
-    maker.floor(-2, 2, 2, white);
-    maker.lamp({0, 3, 0}, 1.5f, 1.5f, 10, white);
-    if (piece ==
-        "a block") { // of glass on the floor but for 1 mm: light goes around in it by total internal reflection
-        maker.cube(clear);
-        for (Vector3 &p : maker.scene.meshes.back().positions)
-            p = {0.4f * p.x, 0.3f * p.y + 0.301f, 0.4f * p.z};
-    } else {
-        maker.scene.meshes.push_back(coarse_ball({0, 1.4f, 0}, 0.5, piece == "a smooth lens"));
-        maker.shape(Shape::Kind::mesh, maker.scene.meshes.size() - 1, clear, -1);
-    }
-    return maker.scene;
-}
-
 class PhotonStabilityUnder : public ::testing::TestWithParam<const char *> {};
 
 TEST_P(PhotonStabilityUnder, Glass) {
-    const Scene scene = under_glass(GetParam());
+    SceneMaker maker(24, 4);
+    add_floor_under_glass(maker, GetParam());
+    const Scene &scene = maker.scene;
     Scene traced = scene;
     traced.settings.samples_per_pixel = 1024;
     RenderOptions options = with_radius(0.5, false); // the edges of the block: 2 % at four times as much

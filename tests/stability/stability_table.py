@@ -22,7 +22,7 @@ import xml.etree.ElementTree
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 PAGE = ROOT / "docs" / "stability.md"
-AREAS = ["Path tracing", "Half-vector copy", "Reconnection", "Gradients", "Photons", "Reconstruction", "Numbers"]
+AREAS = ["Path tracing", "Half-vector copy", "Reconnection", "Gradients", "Photons", "Gradients of photons", "Reconstruction", "Numbers"]
 FACTOR = 3
 SHARE_OF_LIMIT = 0.01
 FIELDS = ("area", "failure", "provoked_by", "contract", "quantity", "number", "limit")
@@ -45,6 +45,10 @@ standard errors of 0.
 
 "Bias of the mean at most": the difference of the means of images of several seeds to what they should be, and four
 standard errors, relatively.
+
+"Share of the differences that is lost or added at most": of the differences of gradient-domain photon mapping less those
+of the same image's primal, the mean product with the differences of independent primal images over the mean square of
+those, and four standard errors; besides, their squared bias must be within four standard errors of 0.
 
 Not here, because there is no such method yet: chains of Metropolis. Textures are not read yet either; edges between
 materials stand for theirs.

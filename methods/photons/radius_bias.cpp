@@ -1,0 +1,117 @@
+#include "methods/photons/radius_bias.h"
+
+#include "kernels/shared/tables.h"
+#include "runtime/film/metrics.h"
+#include "runtime/wavefront/host_table.h"
+
+#include <string>
+
+namespace gradus {
+
+using namespace lib_float;
+
+namespace {
+
+constexpr const char *colors[] = {"R", "G", "B"};
+
+StageDeclaration sum_stage(const PhotonPairs &pairs, bool is_wanted) {
+    StageDeclaration stage = pairs.sum_stage("bias_sum");
+    stage.is_wanted = is_wanted;
+    return stage;
+}
+
+} // namespace
+
+void BiasEstimates::add_layer(Image &image) const {
+    const std::size_t pixels = mean.size() / 3;
+    for (std::size_t c = 0; c < 3; ++c) {
+        Channel channel{std::string("bias.") + colors[c], std::vector<float>(pixels)};
+        for (std::size_t pixel = 0; pixel < pixels; ++pixel)
+            channel.values[pixel] = static_cast<float>(mean[c * pixels + pixel]);
+        image.channels.push_back(std::move(channel));
+    }
+}
+
+double BiasEstimates::relative_square(const Image &image) const {
+    const std::size_t pixels = mean.size() / 3;
+    double sum = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+        const std::vector<float> &values = image.find(colors[c])->values;
+        for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+            const std::size_t i = c * pixels + pixel;
+            sum += even[i] * odd[i] / (double(values[pixel]) * values[pixel] + relative_mse_epsilon);
+        }
+    }
+    return sum / double(mean.size());
+}
+
+std::optional<double> relative_variance_of_passes(const Image &image) {
+    Image variance;
+    variance.width = image.width;
+    variance.height = image.height;
+    for (const char *color : colors) {
+        const Channel *channel = image.find(std::string("variance.") + color);
+        if (!channel || channel->values.empty())
+            return std::nullopt;
+        variance.channels.push_back({color, channel->values});
+    }
+    return relative_variance(variance, image);
+}
+
+RadiusBias::RadiusBias(Session &session, Stages &stages, const PhotonPairs &pairs, bool by_slot)
+    : session_(session), is_wanted_(session.has("TRAIT_AOV")), by_slot_(by_slot),
+      sum_(stages.add(sum_stage(pairs, is_wanted_))),
+      add_(stages.add({.name = "bias_add",
+                       .definitions = {{"BY_SLOT", by_slot ? "1" : "0"}},
+                       .is_wanted = is_wanted_,
+                       .strict = true,
+                       .numbers = {"first", "first_pixel", "half_number"}})) {}
+
+TableList RadiusBias::tables() const {
+    if (!is_wanted_)
+        return {};
+    return {{.name = "gather_inner",
+             .rows = by_slot_ ? RowsOf::slot : RowsOf::path,
+             .columns = gather_inner_columns,
+             .is_cleared = true},
+            {.name = "radius_bias", .rows = RowsOf::pixel, .multiple = 2, .columns = radius_bias_columns}};
+}
+
+void RadiusBias::attach(Tables &tables) {
+    tables_ = &tables;
+    if (is_wanted_)
+        tables["radius_bias"].clear();
+}
+
+void RadiusBias::sum(const PairWindow &window) {
+    if (is_wanted_)
+        PhotonPairs::sum(sum_, 1, window);
+}
+
+void RadiusBias::add(Range rows, std::uint32_t first_pixel, std::uint64_t pass) {
+    add_.run(rows.count,
+             {{"first", rows.first}, {"first_pixel", first_pixel}, {"half_number", std::uint32_t(pass % 2)}});
+}
+
+std::optional<BiasEstimates> RadiusBias::estimates(std::uint64_t samples) const {
+    if (!is_wanted_)
+        return std::nullopt;
+    const std::size_t pixels = session_.pixels();
+    const HostTable table((*tables_)["radius_bias"], 2 * pixels, tables_->precision());
+    const std::uint64_t of_all = samples / pixels, with_one_more = samples % pixels;
+    BiasEstimates found;
+    found.has_halves = of_all >= 2;
+    const auto mean_of = [](double sum, std::uint64_t count) { return count > 0 ? sum / double(count) : 0.0; };
+    for (int color = 0; color < 3; ++color)
+        for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+            const std::uint64_t passes = of_all + (pixel < with_one_more ? 1 : 0);
+            const double even = table.real(radius_bias_value_r + color, pixel);
+            const double odd = table.real(radius_bias_value_r + color, pixels + pixel);
+            found.mean.push_back(mean_of(even + odd, passes));
+            found.even.push_back(mean_of(even, passes - passes / 2));
+            found.odd.push_back(mean_of(odd, passes / 2));
+        }
+    return found;
+}
+
+} // namespace gradus

@@ -1,0 +1,65 @@
+// What the radius does to an image of photons, told from the same photons.
+//
+// The mean of a smooth radiance over a disc of radius r is L + c r^2, where c is an eighth of its Laplacian on the
+// surface. The estimate from the inner half of the disc's area, of radius r / sqrt(2), is L + c r^2 / 2. So twice the
+// difference of both estimates c r^2, the bias, pass by pass. It has twice the noise of the radiance, so a pixel alone
+// says little; over an image, the product of two independent halves of the passes says what the square of the bias is.
+// Where the radiance is not smooth within the disc (edges of shadows and caustics, corners, borders of
+// surfaces) the bias goes by another power of r: what goes by r itself is seen at 0.59 of what it is.
+#pragma once
+
+#include "methods/photons/photon_pairs.h"
+#include "runtime/film/image.h"
+#include "runtime/wavefront/session.h"
+#include "runtime/wavefront/stage.h"
+#include "runtime/wavefront/table.h"
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace gradus {
+
+/// By pixel and colour, from the passes of an image.
+struct BiasEstimates {
+    std::vector<double> mean;      ///< of all passes: what the image has too much, or too little
+    std::vector<double> even, odd; ///< of every other pass: independent of each other
+    bool has_halves = false;       ///< each pixel has a pass of either
+
+    /// Adds it to the image as its layer `bias`, R, G and B.
+    void add_layer(Image &image) const;
+    /// Mean over pixels and colours of the squared bias over R^2 + 0.001: what of the image's relMSE more photons do
+    /// not take away. It has no bias itself, so noise may make it negative.
+    double relative_square(const Image &image) const;
+};
+
+/// What noise adds to relMSE, from an image with its layer `variance`: passes are independent samples of each pixel.
+/// Nothing where there is none.
+std::optional<double> relative_variance_of_passes(const Image &image);
+
+class RadiusBias {
+  public:
+    /// Declares the stages `bias_sum` and `bias_add`; nothing is done without TRAIT_AOV. `by_slot`: gather points are
+    /// in the rows of their slots.
+    RadiusBias(Session &session, Stages &stages, const PhotonPairs &pairs, bool by_slot);
+
+    TableList tables() const;
+    /// To be called once these are allocated; all is zero.
+    void attach(Tables &tables);
+
+    /// After the pairs of a window have been evaluated.
+    void sum(const PairWindow &window);
+    /// After all windows of gather points in `rows`; slot 0 is that of pixel `first_pixel`.
+    void add(Range rows, std::uint32_t first_pixel, std::uint64_t pass);
+
+    /// After `samples` samples. Nothing without TRAIT_AOV.
+    std::optional<BiasEstimates> estimates(std::uint64_t samples) const;
+
+  private:
+    Session &session_;
+    bool is_wanted_, by_slot_;
+    Stage &sum_, &add_;
+    Tables *tables_ = nullptr;
+};
+
+} // namespace gradus
