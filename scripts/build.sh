@@ -23,4 +23,10 @@ fi
 cmake --preset release "${generator[@]}"
 targets=()
 [ $# -eq 0 ] || targets=(--target "$@")
-cmake --build build --parallel "$(nproc)" "${targets[@]}"
+if ! cmake --build build --parallel "$(nproc)" "${targets[@]}"; then
+    # Two files may have a name in common, or one is wrong on its own, too.
+    grep -q '^CMAKE_UNITY_BUILD:[A-Z]*=ON' build/CMakeCache.txt || exit 1
+    echo "build: each file on its own, as files compiled together have failed" >&2
+    cmake -D CMAKE_UNITY_BUILD=OFF build >/dev/null
+    cmake --build build --parallel "$(nproc)" "${targets[@]}"
+fi
