@@ -16,7 +16,7 @@
 namespace gradus {
 namespace {
 
-constexpr const char *notes = R"(Examples:
+constexpr const char *notes_of_compare = R"(Examples:
   gradus compare out.exr reference.exr --error-image error.png
   gradus compare seed-*.exr mean.exr --variance variance.exr --reference-spp 32768 --check
 
@@ -72,7 +72,7 @@ void add_compare_command(CLI::App &app, std::function<int()> &chosen) {
     CLI::App &command = *app.add_subcommand("compare", "Compare images of independent seeds with a reference");
     const auto arguments = std::make_shared<Arguments>();
     CompareRequest &request = arguments->request;
-    command.footer(notes);
+    command.footer(notes_of_compare);
     command.add_option("IMAGES", arguments->files, "One image or several of independent seeds, then the reference")
         ->required()
         ->expected(2, 1 << 20)

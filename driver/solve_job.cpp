@@ -20,7 +20,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-[[noreturn]] void fail(const std::string &message) { throw Error(ExitCode::usage, message); }
+[[noreturn]] void refuse(const std::string &message) { throw Error(ExitCode::usage, message); }
 
 bool same_file(const std::string &first, const std::string &second) {
     std::error_code not_there;
@@ -38,14 +38,14 @@ void check_inputs_are_kept(const SolveRequest &request) {
     for (const std::string &output : outputs)
         for (const std::string &input : inputs)
             if (same_file(output, input))
-                fail(fmt::format("'{}' is an image to read, and would be replaced", output));
+                refuse(fmt::format("'{}' is an image to read, and would be replaced", output));
 }
 
 void check_options(const SolveRequest &request) {
     if (request.options.weigh_by_variance && request.options.norm == PoissonNorm::l1)
-        fail("--weights variance is for the norm L2: add --norm L2");
+        refuse("--weights variance is for the norm L2: add --norm L2");
     if (request.damping && request.options.method != LinearMethod::jacobi)
-        fail("--damping is for one method: add --method jacobi");
+        refuse("--damping is for one method: add --method jacobi");
 }
 
 class SolveJob {

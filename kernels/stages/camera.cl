@@ -79,8 +79,8 @@ STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ra
 #if PLANES
     const int is_offset = plane > 0u, is_across = plane - 1u < 2u;
     const int step = (plane & 1u) != 0u ? 1 : -1;
-    const int to_x = (int)(x - crop_x) + (is_offset & is_across ? step : 0);
-    const int to_y = (int)line + (is_offset & !is_across ? step : 0);
+    const int to_x = (int)(x - crop_x) + ((is_offset & is_across) ? step : 0);
+    const int to_y = (int)line + ((is_offset & !is_across) ? step : 0);
     const int exists = (to_x >= 0) & (to_y >= 0) & (to_x < (int)crop_width) & (to_y < (int)crop_height);
     AT(gather, radius, slot) = exists ? R(0) : gather_absent;
     SET_RGB_IN(direct, radiance, value, slot, rgb_gray(R(0)));

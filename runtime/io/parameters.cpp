@@ -130,7 +130,8 @@ void Parameters::check_given() const {
     for (const auto &[name, value] : given_) {
         if (used_.count(name))
             continue;
-        message += (message.empty() ? "" : "\n") + ("-D " + name + ": the scene has no parameter of that name");
+        message += message.empty() ? "-D " : "\n-D ";
+        message += name + ": the scene has no parameter of that name";
         if (const auto nearest = nearest_name(name, known))
             message += "; did you mean " + *nearest + "?";
         message += known.empty() ? " (it has none)" : " (it has: " + shortened(join(known), 1000) + ")";
