@@ -4,6 +4,7 @@
 #include "driver/output_files.h"
 #include "driver/standard_streams.h"
 #include "runtime/error.h"
+#include "runtime/io/atomic_file.h"
 #include "runtime/io/image_io.h"
 
 #include <CLI/CLI.hpp>
@@ -48,10 +49,23 @@ void write_error_image(const Comparison &comparison, const std::string &path) {
         throw Error(ExitCode::usage, fmt::format("the error image '{}' must end in .png or .exr", path));
 }
 
+/// Before anything is read: a comparison of large images takes a while.
+void check_files(const Arguments &arguments) {
+    std::vector<std::string> inputs = arguments.request.images;
+    inputs.push_back(arguments.request.reference);
+    inputs.push_back(arguments.request.variance);
+    const std::vector<NamedFile> outputs{{"--error-image", arguments.error_image}, {"--json", arguments.json}};
+    for (const NamedFile &output : outputs)
+        if (!output.path.empty() && output.path != "-")
+            check_writable(output.path);
+    check_distinct(outputs, inputs);
+}
+
 int run_compare(Arguments arguments) {
     arguments.request.reference = arguments.files.back();
     arguments.files.pop_back();
     arguments.request.images = arguments.files;
+    check_files(arguments);
     const Comparison comparison = compare_images(arguments.request);
     if (!arguments.error_image.empty())
         write_error_image(comparison, arguments.error_image);

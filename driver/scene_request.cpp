@@ -150,7 +150,7 @@ void apply_request(const SceneRequest &request, Scene &scene) {
 }
 
 Scene load_requested_scene(const SceneRequest &request, const Services &services,
-                           const std::function<void(const std::string &)> &warn) {
+                           const std::function<void(const std::string &)> &warn, std::vector<std::string> *files) {
     LoadOptions options;
     options.strict = request.strict;
     options.confined = request.confined;
@@ -163,6 +163,8 @@ Scene load_requested_scene(const SceneRequest &request, const Services &services
     LoadedScene loaded = services.load_scene(request.path, options);
     for (const std::string &warning : loaded.warnings)
         warn(warning);
+    if (files)
+        *files = loaded.files;
     apply_request(request, loaded.scene);
     return std::move(loaded.scene);
 }

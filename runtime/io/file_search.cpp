@@ -67,6 +67,13 @@ std::optional<fs::path> FileFinder::follow_ignoring_case(fs::path folder, const 
 }
 
 std::optional<FoundFile> FileFinder::find(const std::string &name, const std::vector<fs::path> &folders) {
+    std::optional<FoundFile> file = search(name, folders);
+    if (file)
+        found_.insert(file->path.string());
+    return file;
+}
+
+std::optional<FoundFile> FileFinder::search(const std::string &name, const std::vector<fs::path> &folders) {
     constexpr std::size_t longest = 4096; // no system opens longer ones
     std::string slashed(trimmed(name));
     std::replace(slashed.begin(), slashed.end(), '\\', '/');

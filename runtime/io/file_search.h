@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -26,10 +27,14 @@ class FileFinder {
     /// file has that very name, letters are compared without case.
     std::optional<FoundFile> find(const std::string &name, const std::vector<std::filesystem::path> &folders);
 
+    /// All that were found so far, each once.
+    const std::set<std::string> &found() const { return found_; }
+
     /// Why there may be no such file, for messages.
     const char *hint() const { return is_confined() ? " in the folders that --confined leaves" : ""; }
 
   private:
+    std::optional<FoundFile> search(const std::string &name, const std::vector<std::filesystem::path> &folders);
     /// Where links lead counts, not where they lie.
     bool is_allowed(const std::filesystem::path &path) const;
     std::optional<std::filesystem::path> follow_ignoring_case(std::filesystem::path folder,
@@ -37,6 +42,7 @@ class FileFinder {
     const std::map<std::string, std::string> &listing(const std::filesystem::path &folder);
 
     std::vector<std::filesystem::path> allowed_; ///< canonical; empty: all
+    std::set<std::string> found_;
     /// By folder: its entries by their names in lower case; of several the first in alphabetical order.
     std::map<std::string, std::map<std::string, std::string>> listings_;
 };

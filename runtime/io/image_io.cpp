@@ -48,7 +48,7 @@ bool holds_srgb(const OIIO::ImageSpec &spec) {
 class PixelLimit {
   public:
     PixelLimit(const std::string &path, std::uint64_t limits) : path_(path), most_channels_(1024 * limits) {
-        constexpr std::uint64_t always = 1u << 30, unfolding = 64;
+        constexpr std::uint64_t always = 1u << 28, unfolding = 64;
         std::error_code not_there;
         const std::uintmax_t size = std::filesystem::file_size(path, not_there);
         most_bytes_ = (always + (not_there ? 0 : std::uint64_t(size)) * unfolding) * limits;

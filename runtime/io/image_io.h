@@ -13,7 +13,7 @@ namespace gradus {
 /// formats that hold sRGB values (PNG, JPEG) are decoded to linear. Parts of a file after the first have their channel
 /// names led by "NAME." with the part's name. Metadata that write_image() wrote is read back under the same keys;
 /// other attributes keep their names. What the file declares is checked before anything is allocated: at most
-/// `limits` times 1024 channels and 1 GiB of pixels as floats, to which 64 times the file's size comes.
+/// `limits` times 1024 channels and 256 MiB of pixels as floats, to which 64 times the file's size comes.
 /// Throws Error(ExitCode::image).
 Image read_image(const std::string &path, std::uint64_t limits = 1);
 

@@ -21,6 +21,8 @@ LoadedScene load_scene(const std::string &path, const LoadOptions &options) {
     diagnostics.throw_if_errors();
     loaded.scene.path = path;
     loaded.warnings = diagnostics.warnings();
+    loaded.files.assign(finder.found().begin(), finder.found().end());
+    loaded.files.insert(loaded.files.begin(), path);
     return loaded;
 }
 

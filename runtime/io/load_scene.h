@@ -13,6 +13,7 @@ namespace gradus {
 struct LoadedScene {
     Scene scene;                       ///< in world space
     std::vector<std::string> warnings; ///< "file:line: text", in the order in which they were met
+    std::vector<std::string> files;    ///< all that were read, the scene file first
 };
 
 /// Throws Error (ExitCode::scene) with one "file:line: text" a line for everything that is wrong, so far as it can be

@@ -126,6 +126,17 @@ TEST_F(Compare, ACheckNeedsSomethingToJudgeBy) {
     EXPECT_EQ(run({"compare", "infinite.exr", "image.exr", "--check"}).exit_code, 1);
 }
 
+TEST_F(Compare, OutputsOverInputsAreRefused) {
+    write_image(make_gray(2, 1, {1, 2}), at("image.exr"));
+    const std::string before = text_of("image.exr");
+    for (const char *option : {"--error-image", "--json"})
+        for (const char *name : {"image.exr", "./image.exr"}) {
+            EXPECT_EQ(run({"compare", "image.exr", "image.exr", option, name}).exit_code, 2) << option;
+            EXPECT_EQ(text_of("image.exr"), before);
+        }
+    EXPECT_EQ(run({"compare", "image.exr", "image.exr", "--json", "a.exr", "--error-image", "./a.exr"}).exit_code, 2);
+}
+
 TEST_F(Compare, NonFiniteValuesAreReportedAndFail) {
     write_image(make_gray(2, 1, {1, std::numeric_limits<float>::quiet_NaN()}), at("image.exr"));
     write_image(make_gray(2, 1, {1, 1}), at("reference.exr"));
