@@ -95,7 +95,7 @@ GradientPhotonMapper::GradientPhotonMapper(Device &device, const Scene &scene, c
       count_(stages_.add({.name = "photon_count",
                           .definitions = {{"PARTITION_CHUNK", std::to_string(partition_chunk)}},
                           .numbers = {"first", "rows", "to"}})),
-      bias_(session_, stages_, pairs_, true),
+      bias_(session_, stages_, pairs_, options, true),
       arrive_(
           stages_.add({.name = "photon_arrive", .by_kind = true, .dirac = DiracKinds::left_out, .numbers = {"pairs"}})),
       sum_(stages_.add(pairs_.sum_stage("pair_difference_sum"))),

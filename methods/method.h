@@ -41,6 +41,7 @@ struct RenderOptions : SessionOptions {
     /// None: sppm's 2 widths, of which each photon's light is spread over many pixels, and gpm's 0.5, about a pixel:
     /// there the reconstruction does so, and by the image.
     std::optional<GatherRadius> radius;
+    bool bias_layer = false; ///< the layer `bias` (radius_bias.h) without the others of `aov`, photon methods
     /// To measure shifts of chains alone, gpm: no light but by photons whose light path was, at the vertex before, on a
     /// surface too smooth to gather at.
     bool only_chains = false;

@@ -20,7 +20,7 @@ PhotonMapper::PhotonMapper(Device &device, const Scene &scene, const RenderOptio
     : options_(options), session_(device, checked_for_gathering(scene, options), options, {{"TRAIT_STRATIFIED", 1}}),
       paths_(session_, stages_, scene, options, false), photons_(session_, stages_, scene, options, 2), pairs_(stages_),
       evaluate_(stages_.add({.name = "photon_evaluate", .by_kind = true, .dirac = DiracKinds::left_out})),
-      add_(stages_.add({.name = "gather_add", .numbers = {"first"}})), bias_(session_, stages_, pairs_, false),
+      add_(stages_.add({.name = "gather_add", .numbers = {"first"}})), bias_(session_, stages_, pairs_, options, false),
       film_(session_, stages_) {
     if (options.only_chains)
         throw Error(ExitCode::usage, "--only-chains is of gpm");

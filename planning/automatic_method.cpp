@@ -35,6 +35,15 @@ class ChosenMethod final : public Method {
 };
 
 /// Without a pilot. Where gpt gains nothing it loses at most what its samples cost more; where it gains, it gains more.
+// Photons are taken where they are estimated to have less than so much of the error: costs of so unlike methods are
+// known less well, and their bias does not fall as noise does.
+constexpr double least_gain_of_photons = 0.5;
+// A render that ends by time has more samples than this; it is decided on as if it had those.
+constexpr std::uint64_t most_samples = 1u << 20;
+constexpr double samples_of_endless = 1024;
+// Passes are a render's samples: with fewer, radii hardly shrink, and nobody knows alpha.
+constexpr double fewest_passes = 16;
+
 MethodChoice choose_by_rule(const RenderSettings &settings) {
     MethodChoice choice;
     const bool only_lights = settings.max_depth == 0 || settings.max_depth == 1;
@@ -72,6 +81,37 @@ MethodChoice choose_by_pilot(const Pilot &pilot) {
     return choice;
 }
 
+PhotonChoice choose_by_photons(MethodChoice choice, const PhotonPilot &pilot, std::uint64_t samples,
+                               const RenderOptions &options) {
+    const PhotonErrors &errors = pilot.errors;
+    choice.pilot_seconds += pilot.seconds;
+    choice.estimates["gpm"] = {errors.gpm, pilot.cost};
+    const double decided = samples > most_samples ? samples_of_endless : double(samples);
+    const double cost = choice.estimates.at(choice.method).cost;
+    const double of_paths = choice.method == "gpt" ? errors.gpt : errors.pt;
+    const double paths = of_paths * 0.5 * pilot_samples / decided + errors.missed;
+    const double photons = errors.gpm * pilot.cost / (decided * cost) + errors.gpm_radius;
+    if (!(std::isfinite(paths) && std::isfinite(photons) && photons < least_gain_of_photons * paths))
+        return {choice, samples, 0};
+    choice.reason = fmt::format("at equal cost the relMSE of gpm is estimated at {:.2g} of that of {}", photons / paths,
+                                choice.method);
+    if (errors.missed > 0.5 * paths)
+        choice.reason += ", which misses light";
+    choice.method = "gpm";
+    choice.gain = 0;
+    // As many light paths as cost as much; passes of as many as LightPaths takes, or fewer where these would be few.
+    const double all = double(samples) * cost / pilot.cost * double(pilot.light_paths);
+    const double usual =
+        options.photons > 0
+            ? double(options.photons)
+            : std::min(double(pilot.light_paths) * photons_a_pass(pilot.film_pixels) / std::max(pilot.photons, 1.0),
+                       most_light_paths_a_pass(pilot.film_pixels));
+    const double pass = options.photons > 0 ? usual : std::clamp(all / fewest_passes, double(pilot.light_paths), usual);
+    PhotonChoice found{choice, std::max<std::uint64_t>(1, std::uint64_t(all / pass)), std::uint64_t(pass)};
+    found.choice.reason += fmt::format("; passes of {} light paths, as many as cost as much", found.light_paths);
+    return found;
+}
+
 std::unique_ptr<Method> make_automatic_method(Device &device, const Scene &scene, const RenderOptions &options) {
     const auto chosen = [&](const MethodChoice &choice, std::unique_ptr<Method> method) {
         return std::make_unique<ChosenMethod>(std::move(method), choice);
@@ -84,13 +124,20 @@ std::unique_ptr<Method> make_automatic_method(Device &device, const Scene &scene
     auto method = std::make_unique<GradientPathTracer>(device, scene, options);
     if (options.on_pilot)
         options.on_pilot(pilot_samples);
-    const MethodChoice choice = choose_by_pilot(run_pilot(*method));
-    if (choice.method == "gpt") {
+    const Pilot pilot = run_pilot(*method);
+    PhotonChoice found{choose_by_pilot(pilot), samples, 0};
+    if (may_ask_for_photons(scene, options))
+        found = choose_by_photons(found.choice, run_photon_pilot(device, scene, options, pilot), samples, options);
+    if (found.choice.method == "gpt") {
         method->restart(0, samples);
-        return chosen(choice, std::move(method));
+        return chosen(found.choice, std::move(method));
     }
     method.reset(); // its memory before the other's
-    return chosen(choice, make_method(choice.method, device, scene, options));
+    Scene of_choice = scene;
+    of_choice.settings.samples_per_pixel = found.samples;
+    RenderOptions with = options;
+    with.photons = found.light_paths > 0 ? found.light_paths : options.photons;
+    return chosen(found.choice, make_method(found.choice.method, device, of_choice, with));
 }
 
 } // namespace gradus

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <map>
 #include <string>
@@ -47,7 +48,29 @@ double without_outlier(const std::vector<double> &values, std::ptrdiff_t width, 
 
 } // namespace
 
+std::vector<double> relative_weights(const ReferencePairs &references, const char *color) {
+    std::vector<double> largest, means;
+    for (const auto &[first, second] : references) {
+        const std::vector<float> &a = first->find(color)->values, &b = second->find(color)->values;
+        means.resize(a.size());
+        largest.resize(a.size(), 0.0);
+        for (std::size_t i = 0; i < a.size(); ++i)
+            means[i] = 0.5 * (double(a[i]) + b[i]);
+        for (std::size_t i = 0; i < a.size(); ++i)
+            largest[i] = std::max(largest[i], std::fabs(without_outlier(means, first->width, first->height,
+                                                                        std::ptrdiff_t(i % first->width),
+                                                                        std::ptrdiff_t(i / first->width))));
+    }
+    for (double &value : largest)
+        value = 1 / (value * value + relative_mse_epsilon);
+    return largest;
+}
+
 PilotErrors estimate_errors(const Image &first, const Image &second) {
+    return estimate_errors(first, second, {{&first, &second}});
+}
+
+PilotErrors estimate_errors(const Image &first, const Image &second, const ReferencePairs &references) {
     double pt = 0, gpt_variance = 0, gpt_bias = 0;
     std::size_t count = 0;
     for (const char *color : {"R", "G", "B"}) {
@@ -58,14 +81,10 @@ PilotErrors estimate_errors(const Image &first, const Image &second) {
         const float *primal_1 = channel(first, "primal."), *primal_2 = channel(second, "primal.");
         const float *direct_1 = channel(first, "direct."), *direct_2 = channel(second, "direct.");
         const std::size_t pixels = first.find(color)->values.size();
-        std::vector<double> means(pixels);
-        for (std::size_t i = 0; i < pixels; ++i)
-            means[i] = 0.5 * (double(r_1[i]) + r_2[i]);
+        const std::vector<double> weights = relative_weights(references, color);
         for (std::size_t i = 0; i < pixels; ++i) {
             const double w_1 = double(primal_1[i]) + direct_1[i], w_2 = double(primal_2[i]) + direct_2[i];
-            const double reference = without_outlier(means, first.width, first.height, std::ptrdiff_t(i % first.width),
-                                                     std::ptrdiff_t(i / first.width));
-            const double weight = 1 / (reference * reference + relative_mse_epsilon);
+            const double weight = weights[i];
             const double spread = double(r_1[i]) - r_2[i];
             pt += 0.5 * weight * (w_1 - w_2) * (w_1 - w_2);
             gpt_variance += 0.5 * weight * spread * spread;
@@ -81,7 +100,7 @@ bool has_room_for_pilot(std::uint64_t samples_per_pixel) { return samples_per_pi
 
 Pilot run_pilot(GradientPathTracer &method) {
     Pilot pilot;
-    Image halves[2];
+    std::array<Image, 2> &halves = pilot.halves;
     std::map<std::string, double> rays;
     double samples = 0;
     for (int half = 0; half < 2; ++half) {

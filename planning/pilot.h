@@ -5,7 +5,9 @@
 #include "methods/gradient_path_tracer.h"
 #include "runtime/film/image.h"
 
+#include <array>
 #include <cstdint>
+#include <vector>
 
 namespace gradus {
 
@@ -17,6 +19,12 @@ struct PilotErrors {
     double pt = 0, gpt = 0; ///< relMSE
 };
 
+/// Pairs of independent images whose means, freed of single outliers, stand for the reference that there is not: where
+/// there are several, the largest, for of what one does not see it would be no measure.
+using ReferencePairs = std::vector<std::array<const Image *, 2>>;
+/// By pixel: 1 over the square of that reference and relMSE's epsilon.
+std::vector<double> relative_weights(const ReferencePairs &references, const char *color);
+
 /// From two images of gpt of independent samples: W its means without reconstruction, which are images of pt, and R
 /// reconstructed. Without a reference,
 ///   relMSE of W: half of (W_1 - W_2)^2,
@@ -26,6 +34,8 @@ struct PilotErrors {
 /// independent halves make its square without bias. What the reconstruction of both halves gets wrong in the same way
 /// (L1 where noise is skewed, blurred detail) counts by that. All are means over pixels and channels R, G, B.
 PilotErrors estimate_errors(const Image &first, const Image &second);
+/// The same relative to others than R_1 and R_2.
+PilotErrors estimate_errors(const Image &first, const Image &second, const ReferencePairs &references);
 
 /// What a sample costs, in rays of a path tracer. Counted, never timed, so that a choice by it is the same on each run
 /// and on each machine. Kernels work by vertex, and vertices are what rays meet, so time follows the rays.
@@ -36,7 +46,8 @@ struct PilotCosts {
 struct Pilot {
     PilotErrors errors;
     PilotCosts costs;
-    double seconds = 0; ///< rendering, kernels compiled; without the reconstructions
+    double seconds = 0;          ///< rendering, kernels compiled; without the reconstructions
+    std::array<Image, 2> halves; ///< with layers
 };
 
 /// False before a render of so few samples a pixel that a pilot would be more than a tenth of it.

@@ -30,12 +30,8 @@ constexpr std::uint64_t most_photons = 1u << 31; // tables are numbered with 32 
 // none: by a depth that no path has.
 constexpr std::uint32_t roulette_from = 1, no_roulette = 0xFFFFFFFFu, beyond_all_paths = 1u << 16;
 
-/// Stored by a pass where nobody asks for a number of light paths. By the whole film: a crop is a part of its image.
-double photons_a_pass(const Session &session) {
-    return std::clamp(photons_a_pixel * session.film.width * session.film.height, least_photons, largest_photons);
-}
-
-double most_paths_a_pass(const Session &session) { return most_paths_a_photon * photons_a_pass(session); }
+/// By the whole film: a crop is a part of its image.
+std::uint64_t film_pixels(const Session &session) { return std::uint64_t(session.film.width) * session.film.height; }
 
 bool has_vertices(const Session &session) { return session.has("TRAIT_LIGHT_VERTICES"); }
 
@@ -119,6 +115,12 @@ TableList own_tables(const Session &session, const Wavefront &paths) {
 
 } // namespace
 
+double photons_a_pass(std::uint64_t film_pixels) {
+    return std::clamp(photons_a_pixel * double(film_pixels), least_photons, largest_photons);
+}
+
+double most_light_paths_a_pass(std::uint64_t film_pixels) { return most_paths_a_photon * photons_a_pass(film_pixels); }
+
 LightPaths::LightPaths(Session &session, Stages &consumers, const Scene &scene, const RenderOptions &options,
                        Direct direct)
     : session_(session), consumers_(consumers), wanted_(options.photons),
@@ -133,9 +135,10 @@ LightPaths::LightPaths(Session &session, Stages &consumers, const Scene &scene, 
     session.scene_buffers.emplace_back(session.device, "material_gathers", gathers.data(),
                                        gathers.size() * sizeof(gathers[0]));
     const TableList list = own_tables(session, paths_);
-    const std::uint32_t batch = choose_batch_size(session.device, session.options.batch_size,
-                                                  wanted_ ? wanted_ : std::uint64_t(most_paths_a_pass(session)), list,
-                                                  session.options.precision);
+    const std::uint32_t batch =
+        choose_batch_size(session.device, session.options.batch_size,
+                          wanted_ ? wanted_ : std::uint64_t(most_light_paths_a_pass(film_pixels(session))), list,
+                          session.options.precision);
     own_.emplace(session.device, list, table_rows(session, batch, batch), session.options.precision);
 
     // The numbers that our kernels know are not those of the consumers'.
@@ -151,7 +154,8 @@ LightPaths::LightPaths(Session &session, Stages &consumers, const Scene &scene, 
 }
 
 TableList LightPaths::tables() const {
-    const double usual = 1.1 * photons_a_pass(session_), rows = wanted_ ? std::min(double(wanted_), usual) : usual;
+    const double usual = 1.1 * photons_a_pass(film_pixels(session_)),
+                 rows = wanted_ ? std::min(double(wanted_), usual) : usual;
     const bool with_vertices = has_vertices(session_);
     const auto photons = slot_rows(std::uint32_t(rows));
     TableList list = {
@@ -206,8 +210,9 @@ std::uint32_t LightPaths::paths_a_pass() {
     if (paths_a_pass_ == 0) {
         const double stored = trace(pilot_first, pilot_paths);
         light_paths_ = photons_ = 0;
-        paths_a_pass_ = std::uint32_t(std::clamp(photons_a_pass(session_) * pilot_paths / std::max(stored, 1.0), 1.0,
-                                                 most_paths_a_pass(session_)));
+        paths_a_pass_ =
+            std::uint32_t(std::clamp(photons_a_pass(film_pixels(session_)) * pilot_paths / std::max(stored, 1.0), 1.0,
+                                     most_light_paths_a_pass(film_pixels(session_))));
     }
     return paths_a_pass_;
 }

@@ -14,6 +14,11 @@
 
 namespace gradus {
 
+/// For an image of so many pixels a pass has as many light paths as leave so many photons, unless options say how many;
+/// but where light hardly reaches a surface at most so many.
+double photons_a_pass(std::uint64_t film_pixels);
+double most_light_paths_a_pass(std::uint64_t film_pixels);
+
 class LightPaths {
   public:
     /// Photons of depth 1, which lights send directly, are left out where the caller samples lights himself.

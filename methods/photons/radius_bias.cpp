@@ -58,8 +58,9 @@ std::optional<double> relative_variance_of_passes(const Image &image) {
     return relative_variance(variance, image);
 }
 
-RadiusBias::RadiusBias(Session &session, Stages &stages, const PhotonPairs &pairs, bool by_slot)
-    : session_(session), is_wanted_(session.has("TRAIT_AOV")), by_slot_(by_slot),
+RadiusBias::RadiusBias(Session &session, Stages &stages, const PhotonPairs &pairs, const RenderOptions &options,
+                       bool by_slot)
+    : session_(session), is_wanted_(options.aov || options.bias_layer), by_slot_(by_slot),
       sum_(stages.add(sum_stage(pairs, is_wanted_))),
       add_(stages.add({.name = "bias_add",
                        .definitions = {{"BY_SLOT", by_slot ? "1" : "0"}},

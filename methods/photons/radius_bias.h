@@ -8,6 +8,7 @@
 // surfaces) the bias goes by another power of r: what goes by r itself is seen at 0.59 of what it is.
 #pragma once
 
+#include "methods/method.h"
 #include "methods/photons/photon_pairs.h"
 #include "runtime/film/image.h"
 #include "runtime/wavefront/session.h"
@@ -39,9 +40,9 @@ std::optional<double> relative_variance_of_passes(const Image &image);
 
 class RadiusBias {
   public:
-    /// Declares the stages `bias_sum` and `bias_add`; nothing is done without TRAIT_AOV. `by_slot`: gather points are
-    /// in the rows of their slots.
-    RadiusBias(Session &session, Stages &stages, const PhotonPairs &pairs, bool by_slot);
+    /// Declares the stages `bias_sum` and `bias_add`; nothing is done unless options ask for its layer. `by_slot`:
+    /// gather points are in the rows of their slots.
+    RadiusBias(Session &session, Stages &stages, const PhotonPairs &pairs, const RenderOptions &options, bool by_slot);
 
     TableList tables() const;
     /// To be called once these are allocated; all is zero.
@@ -52,7 +53,7 @@ class RadiusBias {
     /// After all windows of gather points in `rows`; slot 0 is that of pixel `first_pixel`.
     void add(Range rows, std::uint32_t first_pixel, std::uint64_t pass);
 
-    /// After `samples` samples. Nothing without TRAIT_AOV.
+    /// After `samples` samples. Nothing where nobody asked for it.
     std::optional<BiasEstimates> estimates(std::uint64_t samples) const;
 
   private:

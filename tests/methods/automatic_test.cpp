@@ -101,6 +101,78 @@ TEST(ChoiceByPilot, IsPtWhereThePilotTellsNothing) {
     }
 }
 
+/// The same with the layer `bias`, of this value and as noisy as the primal.
+Image with_bias(Image image, double bias, double noise, unsigned seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal;
+    for (const char *color : {"R", "G", "B"}) {
+        Channel channel{std::string("bias.").append(color), {}};
+        for (std::size_t i = 0; i < image.find("R")->values.size(); ++i)
+            channel.values.push_back(float(bias + noise * normal(random)));
+        image.channels.push_back(std::move(channel));
+    }
+    return image;
+}
+
+/// Paths see half of the light that photons see. Four standard deviations of a mean of 120,000 products, the larger of
+/// which have one of about 0.5 * 0.3 + 0.2 * 0.2.
+TEST(PhotonErrors, TellWhatPathsMissFromWhatTheRadiusAdds) {
+    const auto estimate = [](double bias) {
+        return estimate_photon_errors(with_bias(synthetic(1, 0.2, 0, 0.1, 1), bias, 0.2, 5),
+                                      with_bias(synthetic(1, 0.2, 0, 0.1, 2), bias, 0.2, 6),
+                                      synthetic(0.5, 0.2, 0, 0.1, 3), synthetic(0.5, 0.2, 0, 0.1, 4));
+    };
+    const double deviations = 4 * 0.2 / std::sqrt(120000.0);
+    const PhotonErrors exact = estimate(0);
+    EXPECT_NEAR(exact.missed, 0.25 / 1.001, 2 * deviations); // less three of the errors that it knows
+    EXPECT_NEAR(exact.gpm_radius, 0, deviations);
+    EXPECT_NEAR(exact.gpm, 0.01 / 1.001, deviations);
+    EXPECT_NEAR(exact.pt, 0.04 / 1.001, deviations) << "relative to the brighter images";
+    const PhotonErrors biased = estimate(0.5);
+    EXPECT_NEAR(biased.gpm_radius, 0.25 / 1.001, 2 * deviations);
+    EXPECT_LT(biased.missed, 2 * deviations);
+}
+
+/// gpt with errors of 0.08 a half pilot, which is 0.32 of one sample, and of 10 rays.
+MethodChoice choice_of_gpt() {
+    MethodChoice choice;
+    choice.method = "gpt";
+    choice.gain = 2;
+    choice.estimates["gpt"] = {0.32, 10};
+    return choice;
+}
+
+TEST(ChoiceByPhotons, IsOfLessThanHalfOfTheErrorAtEqualCost) {
+    PhotonPilot pilot;
+    pilot.cost = 40;
+    pilot.light_paths = 1000;
+    pilot.photons = 2000;
+    pilot.errors.gpt = 0.08;
+    pilot.errors.gpm = 0.03; // times 4, at equal cost: 0.12 of 0.32
+    const auto choose = [&](std::uint64_t samples) { return choose_by_photons(choice_of_gpt(), pilot, samples, {}); };
+    const PhotonChoice photons = choose(1600);
+    EXPECT_EQ(photons.choice.method, "gpm");
+    EXPECT_EQ(photons.light_paths, 25'000u) << "16,000 rays a pixel are 400 passes of the pilot, in 16 passes";
+    EXPECT_EQ(photons.samples, 16u);
+    const PhotonChoice longer = choose(160'000);
+    EXPECT_EQ(longer.light_paths, 500'000u) << "those of a million photons";
+    EXPECT_EQ(longer.samples, 80u);
+    pilot.errors.gpm = 0.05;
+    const PhotonChoice paths = choose(1600);
+    EXPECT_EQ(paths.choice.method, "gpt");
+    EXPECT_EQ(paths.samples, 1600u);
+    EXPECT_EQ(paths.light_paths, 0u);
+    EXPECT_EQ(paths.choice.gain, 2);
+    // What paths miss stays, and so does the bias by the radius.
+    pilot.errors.missed = 0.1;
+    EXPECT_EQ(choose(1600).choice.method, "gpm");
+    EXPECT_THAT(choose(1600).choice.reason, ::testing::HasSubstr("misses light"));
+    pilot.errors.gpm_radius = 0.06;
+    EXPECT_EQ(choose(1600).choice.method, "gpt");
+    pilot.errors.missed = std::nan("");
+    EXPECT_EQ(choose(1600).choice.method, "gpt");
+}
+
 /// The image is that of the method, for every batch size and number of threads, and so are the estimates.
 void expect_choice(const Scene &scene, const std::string &method) {
     RenderOptions options;
@@ -166,6 +238,53 @@ TEST(Automatic, TakesPtWhereNeighboursHaveNothingInCommon) {
     for (int i = 0; i < 4000; ++i)
         maker.sphere({2 * unit() - 1, 2 * unit() - 1, 2 * unit() - 1}, 0.03f, materials[random() % materials.size()]);
     expect_choice(maker.scene, "pt");
+}
+
+/// A floor lit by a lamp in a ball of glass alone: of some size paths find it seldom, a point never.
+Scene lamp_in_glass(bool is_point) {
+    SceneMaker maker(24, 400);
+    maker.look({0, 3, 3}, {0, 0, 0}, 30);
+    maker.scene.settings.max_depth = 8;
+    maker.floor(-1, 1, 1, maker.material(diffuse(0.7)));
+    maker.sphere({0, 1.5f, 0}, 0.3f, maker.material(glass(1.5)));
+    if (is_point)
+        maker.point_light({5, 5, 5}, {0.05f, 1.5f, 0});
+    else
+        maker.sphere({0.05f, 1.5f, 0}, 0.02f, maker.material(diffuse(0)),
+                     maker.emitter(Emitter::Kind::area, {4000, 4000, 4000}));
+    maker.scene.settings.hide_emitters = true;
+    return maker.scene;
+}
+
+TEST(Automatic, TakesGpmWhereLightComesThroughGlass) {
+    for (const bool is_point : {false, true}) {
+        const Scene scene = lamp_in_glass(is_point);
+        RenderOptions options;
+        options.seed = 3;
+        const Rendered automatic = render(scene, options, "auto");
+        const MethodChoice &choice = automatic.statistics.choice.value();
+        ASSERT_EQ(choice.method, "gpm") << choice.reason;
+
+        EXPECT_EQ(choice.estimates.count("gpm"), 1u);
+        const std::uint64_t passes = automatic.statistics.samples / (24 * 24);
+        Scene same = scene;
+        same.settings.samples_per_pixel = passes;
+        options.photons = automatic.statistics.light_paths / passes;
+        EXPECT_TRUE(equal_bits(automatic.image, render(same, options, "gpm").image));
+    }
+}
+
+/// Glass is there, and what lights the floor does not come through it.
+TEST(Automatic, LeavesPhotonsWherePathsFindAll) {
+    SceneMaker maker(24, 96);
+    maker.look({0, 3, 3}, {0, 0, 0}, 30);
+    maker.scene.settings.max_depth = 8;
+    maker.floor(-1, 1, 1, maker.material(diffuse(0.7)));
+    maker.sphere({5, 0.5f, 0}, 0.4f, maker.material(glass(1.5)));
+    maker.environment(1);
+    const MethodChoice choice = render(maker.scene, {}, "auto").statistics.choice.value();
+    EXPECT_NE(choice.method, "gpm") << choice.reason;
+    EXPECT_EQ(choice.estimates.count("gpm"), 1u);
 }
 
 TEST(Automatic, TakesPtForABlackImage) {
