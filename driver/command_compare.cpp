@@ -1,8 +1,10 @@
 #include "driver/commands.h"
 #include "driver/comparison.h"
+#include "driver/limits_option.h"
 #include "driver/output_files.h"
 #include "driver/standard_streams.h"
 #include "runtime/error.h"
+#include "runtime/io/atomic_file.h"
 #include "runtime/io/image_io.h"
 
 #include <CLI/CLI.hpp>
@@ -15,7 +17,7 @@
 namespace gradus {
 namespace {
 
-constexpr const char *notes = R"(Examples:
+constexpr const char *notes_of_compare = R"(Examples:
   gradus compare out.exr reference.exr --error-image error.png
   gradus compare seed-*.exr mean.exr --variance variance.exr --reference-spp 32768 --check
 
@@ -47,10 +49,23 @@ void write_error_image(const Comparison &comparison, const std::string &path) {
         throw Error(ExitCode::usage, fmt::format("the error image '{}' must end in .png or .exr", path));
 }
 
+/// Before anything is read: a comparison of large images takes a while.
+void check_files(const Arguments &arguments) {
+    std::vector<std::string> inputs = arguments.request.images;
+    inputs.push_back(arguments.request.reference);
+    inputs.push_back(arguments.request.variance);
+    const std::vector<NamedFile> outputs{{"--error-image", arguments.error_image}, {"--json", arguments.json}};
+    for (const NamedFile &output : outputs)
+        if (!output.path.empty() && output.path != "-")
+            check_writable(output.path);
+    check_distinct(outputs, inputs);
+}
+
 int run_compare(Arguments arguments) {
     arguments.request.reference = arguments.files.back();
     arguments.files.pop_back();
     arguments.request.images = arguments.files;
+    check_files(arguments);
     const Comparison comparison = compare_images(arguments.request);
     if (!arguments.error_image.empty())
         write_error_image(comparison, arguments.error_image);
@@ -58,6 +73,9 @@ int run_compare(Arguments arguments) {
         write_json(comparison_json(comparison), arguments.json);
     if (arguments.json != "-")
         print_result(comparison_text(comparison));
+    if (arguments.check && !comparison.judged && comparison.failures.empty())
+        throw Error(ExitCode::failure,
+                    fmt::format("--check has nothing to judge by: give {}, or --max-relmse", what_bias_needs));
     const bool failed = arguments.check && !comparison.failures.empty();
     return static_cast<int>(failed ? ExitCode::failure : ExitCode::success);
 }
@@ -68,7 +86,7 @@ void add_compare_command(CLI::App &app, std::function<int()> &chosen) {
     CLI::App &command = *app.add_subcommand("compare", "Compare images of independent seeds with a reference");
     const auto arguments = std::make_shared<Arguments>();
     CompareRequest &request = arguments->request;
-    command.footer(notes);
+    command.footer(notes_of_compare);
     command.add_option("IMAGES", arguments->files, "One image or several of independent seeds, then the reference")
         ->required()
         ->expected(2, 1 << 20)
@@ -110,6 +128,7 @@ void add_compare_command(CLI::App &app, std::function<int()> &chosen) {
         ->check(CLI::PositiveNumber)
         ->group(group);
     command.add_flag("--check", arguments->check, "Exit with 1 unless the comparison holds")->group(group);
+    add_limits_option(command, request.limits, "Images");
     command.callback([arguments, &chosen] { chosen = [arguments] { return run_compare(*arguments); }; });
 }
 

@@ -8,7 +8,7 @@
 namespace gradus {
 namespace {
 
-constexpr const char *notes = R"(Examples:
+constexpr const char *notes_of_render = R"(Examples:
   gradus render scene.xml -o out.exr --spp 64 --png
   gradus render scene.xml -o out.exr --time 60 --write-partial 10
   gradus render scene.xml -o out.exr --size 1280x720 --crop 600,300,128,128 --aov
@@ -22,7 +22,7 @@ The image depends on --seed and on what is rendered, never on --nthreads or --ba
 void add_render_command(CLI::App &app, const Services &services, std::function<int()> &chosen) {
     CLI::App &command = *app.add_subcommand("render", "Render a scene to an EXR image");
     const auto request = std::make_shared<RenderRequest>();
-    command.footer(notes);
+    command.footer(notes_of_render);
     add_scene_options(command, request->scene);
 
     const char *output = "Output";

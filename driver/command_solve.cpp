@@ -1,4 +1,5 @@
 #include "driver/commands.h"
+#include "driver/limits_option.h"
 #include "driver/reconstruction_options.h"
 #include "driver/solve_job.h"
 #include "runtime/error.h"
@@ -13,7 +14,7 @@
 namespace gradus {
 namespace {
 
-constexpr const char *notes = R"(Examples:
+constexpr const char *notes_of_solve = R"(Examples:
   gradus solve layers.exr -o out.exr                      layers primal, dx, dy, and direct if there is one
   gradus solve --primal p.exr --dx dx.exr --dy dy.exr --direct d.exr -o out.exr
   gradus solve layers.exr -o out.exr --norm L2 --alpha auto --stats out.json
@@ -213,8 +214,9 @@ void add_solve_command(CLI::App &app, const Services &services, std::function<in
     CLI::App &command =
         *app.add_subcommand("solve", "Reconstruct an image from a primal image and its gradients (screened Poisson)");
     const auto request = std::make_shared<SolveRequest>();
-    command.footer(notes);
+    command.footer(notes_of_solve);
     add_input_options(command, request->sources);
+    add_limits_option(command, request->sources.limits, "Images");
     add_output_options(command, *request);
     add_problem_options(command, *request);
     add_solver_options(command, *request);

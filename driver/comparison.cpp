@@ -13,8 +13,9 @@
 namespace gradus {
 namespace {
 
-Image read_selected(const std::string &path, const std::string &layer) {
-    Image image = read_image(path);
+Image read_selected(const std::string &path, const CompareRequest &request) {
+    const std::string &layer = request.layer;
+    Image image = read_image(path, request.limits);
     if (layer.empty())
         return image;
     try {
@@ -25,9 +26,9 @@ Image read_selected(const std::string &path, const std::string &layer) {
 }
 
 /// A file that holds a variance, or our own image with its variance as a layer.
-Image read_variance(const std::string &path, const std::string &layer) {
-    const Image image = read_selected(path, layer);
-    return layer.empty() && image.find("variance.R") ? select_layer(image, "variance") : image;
+Image read_variance(const CompareRequest &request) {
+    const Image image = read_selected(request.variance, request);
+    return request.layer.empty() && image.find("variance.R") ? select_layer(image, "variance") : image;
 }
 
 /// Samples a pixel as our own files state them; 0 where the file does not say.
@@ -181,13 +182,13 @@ Comparison compare_images(const CompareRequest &request) {
     result.reference = request.reference;
     result.block = request.block;
     result.variance_given = !request.variance.empty();
-    const Image reference = read_selected(request.reference, request.layer);
-    const Image variance = result.variance_given ? read_variance(request.variance, request.layer) : Image();
+    const Image reference = read_selected(request.reference, request);
+    const Image variance = result.variance_given ? read_variance(request) : Image();
     if (result.variance_given)
         result.reference_relative_mse = relative_variance(variance, reference);
     std::vector<Image> images;
     for (const std::string &path : request.images) {
-        images.push_back(read_selected(path, request.layer));
+        images.push_back(read_selected(path, request));
         result.images.push_back(figures_of(path, images.back(), reference));
         if (result.images.back().non_finite > 0)
             result.failures.push_back(
@@ -208,9 +209,12 @@ Comparison compare_images(const CompareRequest &request) {
     // Negated, so that NaN fails.
     if (request.largest_relative_mse > 0 && !(judged <= request.largest_relative_mse))
         result.failures.push_back(fmt::format("relMSE {:.4e} is over {:.4e}", judged, request.largest_relative_mse));
+    result.judged = result.whole.has_value() || request.largest_relative_mse > 0;
     result.reference_image = reference;
     return result;
 }
+
+const char *const what_bias_needs = "several seeds, or --variance and sample counts";
 
 std::string comparison_text(const Comparison &comparison) {
     std::string text;
@@ -239,8 +243,8 @@ std::string comparison_text(const Comparison &comparison) {
     for (const std::string &failure : comparison.failures)
         text += "FAILED: " + failure + "\n";
     if (comparison.failures.empty())
-        text += comparison.blocks ? "verdict: equal within the noise\n"
-                                  : "verdict: none on bias (it needs several seeds, or --variance and sample counts)\n";
+        text += comparison.blocks ? std::string("verdict: equal within the noise\n")
+                                  : fmt::format("verdict: none on bias (it needs {})\n", what_bias_needs);
     else
         text += "verdict: not equal\n";
     return text;
@@ -258,6 +262,7 @@ nlohmann::json comparison_json(const Comparison &comparison) {
                         {"reference_samples_per_pixel", comparison.reference_spp},
                         {"notes", comparison.notes},
                         {"failures", comparison.failures},
+                        {"judged", comparison.judged},
                         {"holds", comparison.failures.empty()}};
     if (comparison.reference_relative_mse)
         json["reference_relative_mse"] = *comparison.reference_relative_mse;

@@ -24,6 +24,7 @@ struct CompareRequest {
     int reference_batches = 64;
     double threshold = 0;            ///< largest |z| of a block that passes; 0: Sidak's limit
     double largest_relative_mse = 0; ///< of the images' mean; 0: not judged
+    std::uint64_t limits = 1;        ///< of read_image()
 };
 
 struct Comparison {
@@ -39,6 +40,7 @@ struct Comparison {
     double reference_peak = 0;
     std::optional<double> reference_relative_mse; ///< of the reference itself, where its variance is given
     std::uint64_t reference_non_finite = 0;
+    bool judged = false; ///< by z scores or by relMSE
 
     int block = 16;
     double samples_per_pixel = 0, reference_spp = 0; ///< 0: not known
@@ -54,6 +56,9 @@ struct Comparison {
 /// limit), the blocks (largest |z| and the count over 3), and values that are not finite; pixels are only shown, as
 /// single pixels are far from normal. Throws Error.
 Comparison compare_images(const CompareRequest &request);
+
+/// What a comparison must be given to judge bias.
+extern const char *const what_bias_needs;
 
 std::string comparison_text(const Comparison &comparison);
 nlohmann::json comparison_json(const Comparison &comparison);

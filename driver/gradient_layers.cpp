@@ -67,7 +67,7 @@ std::string list_of(const Layers &layers) {
     return fmt::format("{}", fmt::join(list, "; "));
 }
 
-[[noreturn]] void fail(const std::string &message) { throw Error(ExitCode::image, message); }
+[[noreturn]] void fail_to_read(const std::string &message) { throw Error(ExitCode::image, message); }
 
 /// Where the image is in a file: the layer's name, or nothing. `alone`: the file was given for this image.
 std::optional<std::string> find_layer(const Image &image, const Layers &layers, GradientLayer layer,
@@ -110,7 +110,8 @@ Found take_colours(const Image &image, const std::vector<const Channel *> &layer
     else if (colours.count("Y") && colours.size() == 1)
         found.channels = {"Y"};
     else
-        fail(fmt::format("{} has the channels {}: there must be R, G and B, or Y alone", where, letters_of(layer)));
+        fail_to_read(
+            fmt::format("{} has the channels {}: there must be R, G and B, or Y alone", where, letters_of(layer)));
     for (const std::string &letter : found.channels) {
         const std::vector<float> &values = colours.at(letter)->values;
         found.values.insert(found.values.end(), values.begin(), values.end());
@@ -139,7 +140,7 @@ std::map<std::string, std::vector<GradientLayer>> files_to_read(const GradientSo
 /// Adds what one file holds to `found`, and the metadata of the primal's file to `images`.
 void read_file(const std::string &path, const std::vector<GradientLayer> &wanted, const GradientSources &sources,
                std::map<GradientLayer, Found> &found, GradientImages &images) {
-    const Image image = read_image(path);
+    const Image image = read_image(path, sources.limits);
     const Layers layers = layers_of(image);
     for (const GradientLayer layer : wanted) {
         const bool alone = sources.files.count(layer) > 0;
@@ -147,8 +148,8 @@ void read_file(const std::string &path, const std::vector<GradientLayer> &wanted
         if (!name && layer == GradientLayer::direct && !alone && !sources.names.count(layer))
             continue;
         if (!name)
-            fail(fmt::format("'{}' has no layer for {}; it has: {}. Name it with --layer {}=NAME", path,
-                             layer_name(layer), list_of(layers), layer_name(layer)));
+            fail_to_read(fmt::format("'{}' has no layer for {}; it has: {}. Name it with --layer {}=NAME", path,
+                                     layer_name(layer), list_of(layers), layer_name(layer)));
         const std::string where = name->empty() ? fmt::format("'{}'", path) : fmt::format("{} of '{}'", *name, path);
         found[layer] = take_colours(image, layers.at(*name), where);
         if (layer == GradientLayer::primal)
@@ -159,11 +160,11 @@ void read_file(const std::string &path, const std::vector<GradientLayer> &wanted
 /// Everything is measured by the primal.
 void check_equal(const Found &primal, const Found &other) {
     if (other.width != primal.width || other.height != primal.height)
-        fail(fmt::format("sizes differ: {} is {}x{}, {} is {}x{}", primal.where, primal.width, primal.height,
-                         other.where, other.width, other.height));
+        fail_to_read(fmt::format("sizes differ: {} is {}x{}, {} is {}x{}", primal.where, primal.width, primal.height,
+                                 other.where, other.width, other.height));
     if (other.channels != primal.channels)
-        fail(fmt::format("channels differ: {} has {}, {} has {}", primal.where, fmt::join(primal.channels, ", "),
-                         other.where, fmt::join(other.channels, ", ")));
+        fail_to_read(fmt::format("channels differ: {} has {}, {} has {}", primal.where,
+                                 fmt::join(primal.channels, ", "), other.where, fmt::join(other.channels, ", ")));
 }
 
 } // namespace

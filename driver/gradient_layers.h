@@ -27,7 +27,8 @@ struct GradientSources {
     /// Names of layers, in whichever file; without one, those of docs/command-line.md. An empty name means the channels
     /// outside of any layer.
     std::map<GradientLayer, std::string> names;
-    bool variances = false; ///< whether they are asked for; if not they are not read
+    bool variances = false;   ///< whether they are asked for; if not they are not read
+    std::uint64_t limits = 1; ///< of read_image()
 };
 
 struct GradientImages {

@@ -18,10 +18,49 @@ void check_outputs(const OutputFiles &files) {
     check_writable(files.image);
     if (files.png)
         check_writable(png_path(files.image));
-    if (!files.statistics.empty() && files.statistics != "-") {
-        if (files.statistics == files.image)
-            throw Error(ExitCode::usage, "--stats and --output name the same file");
+    if (!files.statistics.empty() && files.statistics != "-")
         check_writable(files.statistics);
+    check_distinct(output_list(files), {});
+}
+
+std::vector<NamedFile> output_list(const OutputFiles &files) {
+    std::vector<NamedFile> list{{"--output", files.image}, {"--stats", files.statistics}};
+    if (files.png)
+        list.push_back({"--png", png_path(files.image)});
+    return list;
+}
+
+namespace {
+
+/// The name of a file with neither links nor ".." in it; the file need not be there.
+std::filesystem::path plain_path(const std::string &path) {
+    std::error_code failure;
+    const std::filesystem::path plain = std::filesystem::weakly_canonical(path, failure);
+    return failure ? std::filesystem::absolute(path, failure).lexically_normal() : plain;
+}
+
+bool is_same_file(const std::string &first, const std::string &second) {
+    std::error_code not_there;
+    return plain_path(first) == plain_path(second) || std::filesystem::equivalent(first, second, not_there);
+}
+
+} // namespace
+
+void check_distinct(const std::vector<NamedFile> &outputs, const std::vector<std::string> &inputs) {
+    std::vector<NamedFile> written;
+    for (const NamedFile &output : outputs) {
+        if (output.path.empty() || output.path == "-")
+            continue;
+        const std::string file = written_file(output.path);
+        for (const NamedFile &other : written)
+            if (is_same_file(file, other.path))
+                throw Error(ExitCode::usage,
+                            fmt::format("{} and {} name the same file '{}'", output.use, other.use, output.path));
+        for (const std::string &input : inputs)
+            if (!input.empty() && is_same_file(file, input))
+                throw Error(ExitCode::usage, fmt::format("{} '{}' is a file to read ('{}'), and would be replaced",
+                                                         output.use, output.path, input));
+        written.push_back({output.use, file});
     }
 }
 

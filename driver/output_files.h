@@ -4,6 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <string>
+#include <vector>
 
 namespace gradus {
 
@@ -16,6 +17,17 @@ struct OutputFiles {
 /// Throws Error(ExitCode::usage) for names that do not fit and Error(ExitCode::output) for files that could not be
 /// written.
 void check_outputs(const OutputFiles &files);
+
+/// Files that a command reads and writes, by what they are for ("--stats"). Throws Error(ExitCode::usage) where two
+/// outputs are one file, or one is a file that is read, however their paths are written: by links, by folders and back.
+/// Outputs that cannot be written throw Error(ExitCode::output). Empty paths and "-" are none.
+struct NamedFile {
+    std::string use, path;
+};
+void check_distinct(const std::vector<NamedFile> &outputs, const std::vector<std::string> &inputs);
+
+/// Those of `files`.
+std::vector<NamedFile> output_list(const OutputFiles &files);
 
 /// The path of the picture beside an image: its extension replaced by .png.
 std::string png_path(const std::string &image);

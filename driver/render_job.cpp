@@ -3,17 +3,22 @@
 #include "driver/interrupt.h"
 #include "driver/program.h"
 #include "driver/progress.h"
+#include "driver/standard_streams.h"
 #include "driver/statistics_json.h"
 #include "runtime/error.h"
-#include "runtime/film/metrics.h"
 #include "runtime/io/image_io.h"
+#include "runtime/scene/own_scale.h"
 #include "runtime/seconds_since.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
+#include <new>
+#include <optional>
 
 namespace gradus {
 namespace {
@@ -31,20 +36,34 @@ class RenderJob {
 
     int run() {
         prepare();
-        const InterruptWatch watch;
-        render(watch);
-        record_.interrupted = watch.requested();
+        watch_.emplace();
+        try {
+            render();
+        } catch (const std::bad_alloc &) {
+            save_what_there_is();
+            throw;
+        } catch (const Error &error) {
+            if (error.code == ExitCode::device)
+                save_what_there_is();
+            throw;
+        }
+        record_.interrupted = watch_->requested();
         write_results();
+        if (black_pixels_ > 0)
+            return static_cast<int>(ExitCode::failure);
         return static_cast<int>(record_.interrupted ? ExitCode::interrupted : ExitCode::success);
     }
 
   private:
     void prepare() {
-        Scene scene = load_requested_scene(request_.scene, services_, [this](const std::string &warning) {
-            progress_.message("gradus: warning: " + warning);
-        });
+        Scene scene = load_requested_scene(
+            request_.scene, services_,
+            [this](const std::string &warning) { progress_.message("gradus: warning: " + warning); }, &files_read_);
+        check_distinct(output_list(request_.outputs), files_read_);
+        check_counts(scene);
         if (request_.time_limit > 0 && !request_.scene.samples_per_pixel)
             scene.settings.samples_per_pixel = endless_samples_per_pixel;
+        own_scale_ = bring_to_own_scale(scene);
         crop_ = scene.film.crop_width > 0 ? fmt::format("{},{},{},{}", scene.film.crop_x, scene.film.crop_y,
                                                         scene.film.crop_width, scene.film.crop_height)
                                           : std::string();
@@ -60,6 +79,7 @@ class RenderJob {
         options.on_compiled = [this](const std::string &kernel, std::size_t ready, std::size_t total, double seconds) {
             progress_.compiled(kernel, ready, total, seconds);
         };
+        options.stop = [this] { return is_to_stop(); };
         options.on_pilot = [this](std::uint64_t samples) {
             progress_.message(fmt::format("pilot of {} samples a pixel, to choose the method", samples));
         };
@@ -79,6 +99,17 @@ class RenderJob {
                                       record_.device.name));
     }
 
+    /// Samples are counted in 64 bits, with room for sums and for what methods add to each.
+    static void check_counts(const Scene &scene) {
+        constexpr std::uint64_t most = std::uint64_t(1) << 56;
+        const auto [width, height] = image_size(scene.film);
+        const std::uint64_t pixels = std::uint64_t(width) * height;
+        if (pixels > 0 && scene.settings.samples_per_pixel > most / pixels)
+            throw Error(ExitCode::usage, fmt::format("{} samples for each of {} pixels are more than 2^56: give a "
+                                                     "smaller --spp or --size",
+                                                     scene.settings.samples_per_pixel, pixels));
+    }
+
     ProgressState state() const {
         ProgressState state;
         state.done = prepared_.method->done_samples();
@@ -89,7 +120,24 @@ class RenderJob {
         return state;
     }
 
-    void render(const InterruptWatch &watch) {
+    /// Whether a batch that is under way is to be given up: at once when interrupted, but for a time limit only after a
+    /// second more, so that batches of usual length are not lost.
+    bool is_to_stop() const {
+        constexpr double patience = 1;
+        return watch_ && (watch_->requested() ||
+                          (request_.time_limit > 0 && seconds_since(render_start_) > request_.time_limit + patience));
+    }
+
+    /// The next batch; false after the last, or where it was given up.
+    bool render_batch() {
+        try {
+            return prepared_.method->render_batch();
+        } catch (const Stopped &) {
+            return false;
+        }
+    }
+
+    void render() {
         // The pilot counts as rendering: a time limit includes it.
         render_start_ =
             Clock::now() - std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(pilot_seconds_));
@@ -97,10 +145,10 @@ class RenderJob {
         progress_.update(state());
         bool more = true;
         while (more) {
-            more = prepared_.method->render_batch();
+            more = render_batch();
             const ProgressState now = state();
             progress_.update(now);
-            if (watch.requested() || (request_.time_limit > 0 && now.elapsed >= request_.time_limit))
+            if (watch_->requested() || (request_.time_limit > 0 && now.elapsed >= request_.time_limit))
                 break;
             if (more && request_.partial_interval > 0 && seconds_since(last_partial) >= request_.partial_interval) {
                 write_partial();
@@ -116,12 +164,46 @@ class RenderJob {
             write_image(current_image(true, false), request_.outputs.image);
         } catch (const Error &error) {
             progress_.message(fmt::format("gradus: warning: {}; the render goes on", error.what()));
+        } catch (const std::bad_alloc &) {
+            progress_.message("gradus: warning: out of memory for an image so far; the render goes on");
         }
+    }
+
+    /// After an error of memory or of the device: hours of samples may be there. What cannot be written is told beside
+    /// the error itself.
+    void save_what_there_is() {
+        if (prepared_.method->done_samples() == 0)
+            return;
+        try {
+            write_image(current_image(true, true), request_.outputs.image);
+            progress_.message(fmt::format("gradus: warning: the render failed; wrote {} of what was rendered: {:.6g} "
+                                          "samples a pixel",
+                                          request_.outputs.image, record_.samples_per_pixel));
+        } catch (const std::exception &error) {
+            progress_.message(fmt::format("gradus: warning: what was rendered cannot be written: {}", error.what()));
+        }
+    }
+
+    /// Values that are NaN or infinite have no place in a file: what reads it spreads them. They become 0.
+    void settle_values(Image &image) {
+        std::vector<bool> is_bad(std::size_t(image.width) * image.height);
+        for (Channel &channel : image.channels)
+            for (std::size_t i = 0; i < channel.values.size(); ++i)
+                if (!std::isfinite(channel.values[i])) {
+                    channel.values[i] = 0;
+                    is_bad[i] = true;
+                }
+        black_pixels_ = std::uint64_t(std::count(is_bad.begin(), is_bad.end(), true));
     }
 
     /// `last`: the method may let go of its film.
     Image current_image(bool partial, bool last) {
         Image image = last ? prepared_.method->last_image() : prepared_.method->image();
+        for (Channel &channel : image.channels)
+            if (own_scale_ != 1 && channel.name == "depth.Z")
+                for (float &value : channel.values)
+                    value = float(value / own_scale_);
+        settle_values(image);
         const std::uint64_t done = prepared_.method->done_samples();
         const double pixels = double(image.width) * double(image.height);
         record_.samples_per_pixel = pixels > 0 ? double(done) / pixels : 0;
@@ -152,8 +234,12 @@ class RenderJob {
         if (statistics.non_finite > 0)
             progress_.message(fmt::format("gradus: warning: {} samples were NaN or infinite and were left out",
                                           statistics.non_finite));
-        if (const std::uint64_t count = count_non_finite(image); count > 0)
-            progress_.message(fmt::format("gradus: warning: {} values of the image are NaN or infinite", count));
+        if (prepared_.method->done_samples() == 0 && prepared_.method->total_samples() > 0)
+            progress_.message("gradus: warning: no batch of samples came to its end, so the image is black");
+        if (black_pixels_ > 0)
+            print_message(fmt::format("gradus: error: {} pixels have a value that is NaN or infinite, which the image "
+                                      "holds as 0: the scene's numbers are too large or too small\n",
+                                      black_pixels_));
         progress_.message(fmt::format("{}wrote {}: {:.6g} samples a pixel", record_.interrupted ? "interrupted; " : "",
                                       request_.outputs.image, record_.samples_per_pixel));
     }
@@ -163,10 +249,14 @@ class RenderJob {
     const Clock::time_point job_start_ = Clock::now();
     Clock::time_point render_start_ = job_start_;
     Progress progress_;
+    std::optional<InterruptWatch> watch_; ///< once there is something to lose
     PreparedMethod prepared_;
     RenderRecord record_;
     std::string crop_;
-    double pilot_seconds_ = 0; ///< of the method auto
+    std::vector<std::string> files_read_;
+    std::uint64_t black_pixels_ = 0; ///< of the last image
+    double pilot_seconds_ = 0;       ///< of the method auto
+    double own_scale_ = 1;           ///< of the scene's lengths, while it renders
 };
 
 } // namespace

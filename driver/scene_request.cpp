@@ -1,5 +1,6 @@
 #include "driver/scene_request.h"
 
+#include "driver/limits_option.h"
 #include "runtime/error.h"
 
 #include <CLI/CLI.hpp>
@@ -81,6 +82,19 @@ void add_scene_options(CLI::App &command, SceneRequest &request) {
         ->group(group);
     command.add_flag("--strict", request.strict, "Parameters that are not known are errors, not warnings")
         ->group(group);
+    CLI::Option *const confined =
+        command
+            .add_flag("--confined", request.confined,
+                      "For scenes by strangers: read only files in the scene's folder and those of --allow")
+            ->group(group);
+    command
+        .add_option("--allow", request.allowed_folders,
+                    "With --confined: files in this folder may be read, too; repeatable")
+        ->type_name("FOLDER")
+        ->allow_extra_args(false)
+        ->needs(confined)
+        ->group(group);
+    add_limits_option(command, request.limits, group);
     command
         .add_option_function<std::string>(
             "--size", [&request](const std::string &text) { request.size = parse_size(text); },
@@ -136,9 +150,12 @@ void apply_request(const SceneRequest &request, Scene &scene) {
 }
 
 Scene load_requested_scene(const SceneRequest &request, const Services &services,
-                           const std::function<void(const std::string &)> &warn) {
+                           const std::function<void(const std::string &)> &warn, std::vector<std::string> *files) {
     LoadOptions options;
     options.strict = request.strict;
+    options.confined = request.confined;
+    options.allowed_folders.assign(request.allowed_folders.begin(), request.allowed_folders.end());
+    options.limits = LoadLimits().times(request.limits);
     for (const std::string &definition : request.definitions) {
         auto [name, value] = parse_definition(definition);
         options.parameters[name] = value;
@@ -146,6 +163,8 @@ Scene load_requested_scene(const SceneRequest &request, const Services &services
     LoadedScene loaded = services.load_scene(request.path, options);
     for (const std::string &warning : loaded.warnings)
         warn(warning);
+    if (files)
+        *files = loaded.files;
     apply_request(request, loaded.scene);
     return std::move(loaded.scene);
 }

@@ -20,6 +20,9 @@ struct SceneRequest {
     std::string path;
     std::vector<std::string> definitions; ///< "name=value"
     bool strict = false;
+    bool confined = false;
+    std::vector<std::string> allowed_folders;
+    std::uint64_t limits = 1; ///< all limits of what a scene's files may take are so many times as high
     std::optional<std::array<std::uint32_t, 2>> size; ///< width, height
     std::optional<std::array<std::uint32_t, 4>> crop; ///< x, y, width, height
     std::optional<std::uint64_t> samples_per_pixel;
@@ -40,9 +43,11 @@ void add_scene_options(CLI::App &command, SceneRequest &request);
 /// Throws Error(ExitCode::usage) for a crop that is not inside the film.
 void apply_request(const SceneRequest &request, Scene &scene);
 
-/// Loads the scene, hands each warning to `warn`, and applies the request.
+/// Loads the scene, hands each warning to `warn`, and applies the request. `files`: takes the names of all files that
+/// were read.
 Scene load_requested_scene(const SceneRequest &request, const Services &services,
-                           const std::function<void(const std::string &)> &warn);
+                           const std::function<void(const std::string &)> &warn,
+                           std::vector<std::string> *files = nullptr);
 
 /// Width and height of the image to render: the crop's, or the film's where there is none.
 std::array<std::uint32_t, 2> image_size(const FilmSettings &film);

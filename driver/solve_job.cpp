@@ -12,7 +12,6 @@
 #include <nlohmann/json.hpp>
 
 #include <chrono>
-#include <filesystem>
 #include <new>
 
 namespace gradus {
@@ -20,32 +19,21 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-[[noreturn]] void fail(const std::string &message) { throw Error(ExitCode::usage, message); }
-
-bool same_file(const std::string &first, const std::string &second) {
-    std::error_code not_there;
-    return std::filesystem::equivalent(first, second, not_there);
-}
+[[noreturn]] void refuse(const std::string &message) { throw Error(ExitCode::usage, message); }
 
 /// An output in the place of an input would destroy what a render may have taken hours for.
 void check_inputs_are_kept(const SolveRequest &request) {
-    std::vector<std::string> outputs{request.outputs.image, request.outputs.statistics};
-    if (request.outputs.png)
-        outputs.push_back(png_path(request.outputs.image));
     std::vector<std::string> inputs{request.sources.layered};
     for (const auto &[layer, path] : request.sources.files)
         inputs.push_back(path);
-    for (const std::string &output : outputs)
-        for (const std::string &input : inputs)
-            if (same_file(output, input))
-                fail(fmt::format("'{}' is an image to read, and would be replaced", output));
+    check_distinct(output_list(request.outputs), inputs);
 }
 
 void check_options(const SolveRequest &request) {
     if (request.options.weigh_by_variance && request.options.norm == PoissonNorm::l1)
-        fail("--weights variance is for the norm L2: add --norm L2");
+        refuse("--weights variance is for the norm L2: add --norm L2");
     if (request.damping && request.options.method != LinearMethod::jacobi)
-        fail("--damping is for one method: add --method jacobi");
+        refuse("--damping is for one method: add --method jacobi");
 }
 
 class SolveJob {
@@ -167,8 +155,8 @@ void check_images_fit(const DeviceDescription &device, std::uint32_t width, std:
 
 int run_solve(SolveRequest request, const Services &services) {
     check_options(request);
-    check_inputs_are_kept(request);
     check_outputs(request.outputs);
+    check_inputs_are_kept(request);
     try {
         SolveJob(std::move(request), services).run();
     } catch (const std::bad_alloc &) {

@@ -3,8 +3,10 @@
 #include "kernels/shared/tables.h"
 #include "methods/gradient_image.h"
 #include "methods/path_stages.h"
+#include "runtime/seconds_since.h"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 namespace gradus {
@@ -43,9 +45,20 @@ void DifferenceFilm::begin() {
                 PoissonSolver::compile(session_.device, poisson_options(options_, session_.settings.samples_per_pixel));
                 compilers.reset();
             });
-    if (!edges_ && session_.max_depth() != 0 && !session_.settings.hide_emitters)
-        edges_ = sample_direct_edges(session_.scene, session_.film, session_.tracer, options_.seed,
-                                     static_cast<std::uint32_t>(session_.settings.samples_per_pixel), edge_rays_);
+}
+
+const std::vector<DirectPixel> &DifferenceFilm::edges(std::uint64_t samples, bool last) {
+    constexpr std::uint64_t most = 0xFFFFFFFFu; // far more than have an effect
+    const auto a_pixel = std::uint32_t(std::min((samples + session_.pixels() - 1) / session_.pixels(), most));
+    const bool is_old = last ? a_pixel != edge_samples_ : a_pixel > std::uint64_t(2) * edge_samples_;
+    if (is_old && session_.max_depth() != 0 && !session_.settings.hide_emitters) {
+        const auto start = std::chrono::steady_clock::now();
+        edges_ =
+            sample_direct_edges(session_.scene, session_.film, session_.tracer, options_.seed, a_pixel, edge_rays_);
+        edge_samples_ = a_pixel;
+        edge_seconds_ += seconds_since(start);
+    }
+    return edges_;
 }
 
 void DifferenceFilm::clear_slots() {
@@ -79,13 +92,19 @@ Image DifferenceFilm::image(std::uint64_t samples, bool layers, bool last, std::
     Image image = reconstruct(*solver_, std::move(whole),
                               std::make_unique<GradientFilm>((*tables_)["gradient_film"], session_.film.crop_width,
                                                              session_.film.crop_height, options_.precision, samples),
-                              edges_.value_or(std::vector<DirectPixel>()), options_, layers, [&] {
+                              edges(samples, last), options_, layers, [&] {
                                   if (last)
                                       tables_->release_all_but({counts_});
                               });
     if (last)
         solver_.reset();
     return image;
+}
+
+void DifferenceFilm::add_to(Statistics &statistics) const {
+    statistics.rays["edge"] = edge_rays_;
+    statistics.render_seconds += edge_seconds_;
+    statistics.stages.push_back({"edges of lights", edge_seconds_, 0, 0});
 }
 
 void DifferenceFilm::clear() {

@@ -9,7 +9,6 @@
 
 #include <future>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,9 +39,14 @@ class DifferenceFilm {
 
     /// All sums zero again. Edges of lights that have been sampled stay.
     void clear();
-    std::uint64_t edge_rays() const { return edge_rays_; }
+    /// Adds what sampling the edges of lights took.
+    void add_to(Statistics &statistics) const;
 
   private:
+    /// What the camera sees of lights at their edges, for an image of so many samples. Images between the first and the
+    /// last take what an earlier one of half as many had.
+    const std::vector<DirectPixel> &edges(std::uint64_t samples, bool last);
+
     Session &session_;
     const RenderOptions &options_;
     std::string counts_;
@@ -50,8 +54,10 @@ class DifferenceFilm {
     Film film_;
     Stage &accumulate_, &carry_;
     Tables *tables_ = nullptr;
-    std::optional<std::vector<DirectPixel>> edges_; ///< once sampled
+    std::vector<DirectPixel> edges_;
+    std::uint32_t edge_samples_ = 0; ///< a pixel of the image that `edges_` were sampled for; 0: not yet
     std::uint64_t edge_rays_ = 0;
+    double edge_seconds_ = 0;
     std::unique_ptr<PoissonSolver> solver_;
     std::shared_ptr<void> compilers_;   ///< from before the stages' kernels are compiled until the solver's are
     std::future<void> solver_compiled_; ///< while the first samples render

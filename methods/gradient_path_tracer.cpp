@@ -411,7 +411,7 @@ Image GradientPathTracer::make_image(bool layers, bool last) {
 
 Statistics GradientPathTracer::statistics() const {
     Statistics s = collected(statistics_, session_, stages_);
-    s.rays["edge"] = film_.edge_rays();
+    film_.add_to(s);
     const Buffer &outcome = (*tables_)["outcome"];
     std::vector<std::uint32_t> found(outcome.bytes() / sizeof(std::uint32_t));
     outcome.read(found.data(), outcome.bytes());

@@ -40,11 +40,14 @@ std::vector<std::uint32_t> material_bins(const Scene &scene, const Session &sess
     return bins;
 }
 
-/// Where light may come straight from a light, or by specular vertices alone, shifts ask how it left.
+/// Camera paths of a pixel are stratified. Where light may come straight from a light, or by specular vertices alone, shifts ask how it left.
 TraitMap light_vertex_traits(const Scene &scene, const RenderOptions &options) {
     bool starts = options.direct_photons || options.all_traits;
     for_each_bsdf(scene, [&](const Bsdf &bsdf) { starts = starts || bsdf_kind_is_dirac(bsdf_kind_name(bsdf)); });
-    return {{"TRAIT_LIGHT_VERTICES", 1}, {"TRAIT_LIGHT_STARTS", starts}, {"TRAIT_ONLY_CHAINS", options.only_chains}};
+    return {{"TRAIT_LIGHT_VERTICES", 1},
+            {"TRAIT_LIGHT_STARTS", starts},
+            {"TRAIT_ONLY_CHAINS", options.only_chains},
+            {"TRAIT_STRATIFIED", 1}};
 }
 
 /// What is done by the kind of the vertex that light leaves, or where that is on a light.
@@ -121,8 +124,10 @@ void GradientPhotonMapper::allocate() {
     if (manifold_walk_)
         list = joined(list, manifold_walk_->tables());
     const std::uint32_t width = session_.film.crop_width, height = session_.film.crop_height;
-    const std::uint32_t batch = choose_batch_size(session_.device, options_.batch_size,
-                                                  planes * std::uint64_t(session_.pixels()), list, options_.precision);
+    const std::uint64_t paths = planes * std::uint64_t(session_.pixels());
+    const std::uint32_t batch =
+        choose_batch_size(session_.device, options_.batch_size,
+                          std::max<std::uint64_t>(paths, PhotonPairs::least_batch), list, options_.precision);
     strip_rows_ = std::clamp(batches_a_pass * batch / planes / width, 1u, height);
     if (strip_rows_ == height)
         film_.carry_nothing();
@@ -310,7 +315,7 @@ Statistics GradientPhotonMapper::statistics() const {
     s.photons = photons_.light_paths().photons();
     s.radius_sum = pairs_.radius_sum();
     s = collected(s, session_, stages_, photons_.light_paths().times());
-    s.rays["edge"] = film_.edge_rays();
+    film_.add_to(s);
     std::vector<std::uint32_t> found(2 * std::size_t(tables_->rows().paths));
     (*tables_)["photon_found"].read(found.data(), found.size() * sizeof(found[0]));
     const auto half = found.begin() + std::ptrdiff_t(found.size() / 2);

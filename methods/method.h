@@ -29,7 +29,7 @@ struct RenderOptions : SessionOptions {
     /// They do not over ways shorter than eight times the distance of base and offset vertex, or than this share of the
     /// scene's diameter if that is less (kernels/lib/reconnectable.h); 0: over any.
     double shift_distance = 0;
-    std::uint64_t photons = 0;      ///< light paths a pass, photon methods; 0: as many as leave about a million photons
+    std::uint64_t photons = 0;      ///< light paths a pass, photon methods; 0: as many as leave about five photons a pixel
     double gather_roughness = 0.05; ///< photons are kept, and gathered, at surfaces of this roughness (alpha) or more
     bool direct_photons = false;    ///< lights' direct light at gather points by photons too, not by sampling lights
     /// Photons are gathered in the first pass from so far: in widths of a pixel at the gather point or, if it is

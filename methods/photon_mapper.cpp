@@ -17,7 +17,7 @@ namespace gradus {
 using namespace lib_float;
 
 PhotonMapper::PhotonMapper(Device &device, const Scene &scene, const RenderOptions &options)
-    : options_(options), session_(device, checked_for_gathering(scene, options), options, {}),
+    : options_(options), session_(device, checked_for_gathering(scene, options), options, {{"TRAIT_STRATIFIED", 1}}),
       paths_(session_, stages_, scene, options, false), photons_(session_, stages_, scene, options, 2), pairs_(stages_),
       evaluate_(stages_.add({.name = "photon_evaluate", .by_kind = true, .dirac = DiracKinds::left_out})),
       add_(stages_.add({.name = "gather_add", .numbers = {"first"}})), bias_(session_, stages_, pairs_, options, false),
@@ -33,7 +33,8 @@ void PhotonMapper::allocate() {
     TableList list = joined(joined(paths_.tables(), film_.tables()), joined(photons_.tables(), pairs_.tables()));
     list = joined(list, bias_.tables());
     const std::uint32_t batch =
-        choose_batch_size(session_.device, options_.batch_size, session_.pixels(), list, options_.precision);
+        choose_batch_size(session_.device, options_.batch_size, std::max(session_.pixels(), PhotonPairs::least_batch),
+                          list, options_.precision);
     camera_paths_ =
         static_cast<std::uint32_t>(std::min<std::uint64_t>(batches_a_pass * std::uint64_t(batch), session_.pixels()));
     tables_.emplace(session_.device, list, table_rows(session_, batch, camera_paths_), options_.precision);

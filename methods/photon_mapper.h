@@ -5,7 +5,7 @@
 // What the photons within a disc around it carry, over the disc's area, is the light that the surface sends on.
 //
 // The disc's radius goes with what a pixel covers there, and shrinks from pass to pass by a rule that knows the pass
-// alone (Knaus and Zwicker 2011): so passes are independent samples, no pixel has a state, and neighbouring gather
+// alone (Knaus and Zwicker 2011): so no pass depends on those before it, no pixel has a state, and neighbouring gather
 // points have like radii.
 //
 // Which kind of path is made by what (E the eye, L a light, S smooth vertices, D the first vertex from the eye that is

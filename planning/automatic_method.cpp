@@ -101,10 +101,11 @@ PhotonChoice choose_by_photons(MethodChoice choice, const PhotonPilot &pilot, st
     choice.gain = 0;
     // As many light paths as cost as much; passes of as many as LightPaths takes, or fewer where these would be few.
     const double all = double(samples) * cost / pilot.cost * double(pilot.light_paths);
-    const double usual = options.photons > 0
-                             ? double(options.photons)
-                             : std::min(double(pilot.light_paths) * photons_a_pass / std::max(pilot.photons, 1.0),
-                                        most_light_paths_a_pass);
+    const double usual =
+        options.photons > 0
+            ? double(options.photons)
+            : std::min(double(pilot.light_paths) * photons_a_pass(pilot.film_pixels) / std::max(pilot.photons, 1.0),
+                       most_light_paths_a_pass(pilot.film_pixels));
     const double pass = options.photons > 0 ? usual : std::clamp(all / fewest_passes, double(pilot.light_paths), usual);
     PhotonChoice found{choice, std::max<std::uint64_t>(1, std::uint64_t(all / pass)), std::uint64_t(pass)};
     found.choice.reason += fmt::format("; passes of {} light paths, as many as cost as much", found.light_paths);

@@ -107,6 +107,7 @@ PhotonPilot run_photon_pilot(Device &device, const Scene &scene, const RenderOpt
         samples_done += double(statistics.samples);
         found.seconds += statistics.render_seconds;
     }
+    found.film_pixels = std::uint64_t(scene.film.width) * scene.film.height;
     found.light_paths = with.photons;
     found.cost = cost / samples_done;
     found.errors = estimate_photon_errors(passes[0], passes[1], pilot.halves[0], pilot.halves[1]);

@@ -33,10 +33,11 @@ PhotonErrors estimate_photon_errors(const Image &photons_1, const Image &photons
 
 struct PhotonPilot {
     PhotonErrors errors;
-    double cost = 0;               ///< of a pass and pixel of the pilot, in rays of a path tracer
-    std::uint64_t light_paths = 0; ///< of such a pass
-    double photons = 0;            ///< of such a pass
-    double seconds = 0;            ///< rendering, kernels compiled
+    double cost = 0;                      ///< of a pass and pixel of the pilot, in rays of a path tracer
+    std::uint64_t light_paths = 0;        ///< of such a pass
+    double photons = 0;                   ///< of such a pass
+    std::uint64_t film_pixels = 1u << 18; ///< of the render
+    double seconds = 0;                   ///< rendering, kernels compiled
 };
 
 /// Renders a pass of each of two seeds that are far from the render's, with so few photons that this is a small part of

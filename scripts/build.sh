@@ -16,8 +16,17 @@ if [ ! -f build/CMakeCache.txt ]; then
     if command -v ccache >/dev/null; then
         generator+=(-D CMAKE_CXX_COMPILER_LAUNCHER=ccache)
     fi
+    # Files of a folder compiled together, eight at a time, build the whole tree in 40 % of the time; a change to one
+    # compiles the others again, so the presets leave it off.
+    generator+=(-D CMAKE_UNITY_BUILD=ON)
 fi
 cmake --preset release "${generator[@]}"
 targets=()
 [ $# -eq 0 ] || targets=(--target "$@")
-cmake --build build --parallel "$(nproc)" "${targets[@]}"
+if ! cmake --build build --parallel "$(nproc)" "${targets[@]}"; then
+    # Two files may have a name in common, or one is wrong on its own, too.
+    grep -q '^CMAKE_UNITY_BUILD:[A-Z]*=ON' build/CMakeCache.txt || exit 1
+    echo "build: each file on its own, as files compiled together have failed" >&2
+    cmake -D CMAKE_UNITY_BUILD=OFF build >/dev/null
+    cmake --build build --parallel "$(nproc)" "${targets[@]}"
+fi

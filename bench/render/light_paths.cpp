@@ -12,7 +12,7 @@ namespace gradus::bench {
 namespace {
 
 /// Every so many calls of the tracer are recorded: a prime, so that all depths of a path come in turn.
-constexpr std::size_t record_interval = 3;
+constexpr std::size_t every_third = 3;
 
 /// Light paths without a method that gathers their photons.
 struct Tracing {
@@ -36,7 +36,7 @@ nlohmann::json measure_light_paths(const Settings &settings, const Job &job) {
     // The rays of one are recorded, which costs time; the other one is timed.
     Tracing recorder(settings, job, options), tracing(settings, job, options);
     const std::uint32_t count = tracing.paths.paths_a_pass();
-    recorder.session.tracer.record(record_interval);
+    recorder.session.tracer.record(every_third);
     recorder.paths.trace(0, count);
     std::uint64_t first = 0;
     const auto trace = [&] {

@@ -42,6 +42,7 @@ PARTS = ["curves", "rates", "scaling", "pictures"]
 # Mitsuba 3's path tracer on that machine and scene, microseconds a sample.
 SURVEY_SECONDS = {"sppm": 0.9, "gpm": 1.6}
 SURVEY_MICROSECONDS = 0.45
+SURVEY_PHOTONS = 1_000_000
 
 
 def measure_curves(arguments, scene, methods):
@@ -87,9 +88,10 @@ def measure_rates(arguments, methods, python):
     with tempfile.TemporaryDirectory() as folder:
         image = pathlib.Path(folder) / "image.exr"
         for method in [method for method in methods if method in SURVEY_SECONDS]:
-            renders.render(arguments.gradus, scene, method, 0, image, samples=1)
+            first = renders.render(arguments.gradus, scene, method, 0, image, samples=1)
+            paths = ["--photons", round(SURVEY_PHOTONS * first["light_paths"] / first["photons"])]
             own = median_of([rates_of(renders.render(arguments.gradus, scene, method, seed, image,
-                                                     samples=arguments.passes))
+                                                     samples=arguments.passes, options=paths))
                              for seed in range(1, arguments.turns + 1)])
             if python:
                 scale = found["mitsuba_microseconds_a_sample"] / SURVEY_MICROSECONDS

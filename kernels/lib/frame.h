@@ -31,10 +31,5 @@ GRADUS_FN vec3 frame_to_world(frame f, vec3 v) {
               f.s.z * v.x + f.t.z * v.y + f.n.z * v.z);
 }
 
-/* Where a ray starts from a surface in a direction: moved off it by `offset` along the geometric normal. */
-GRADUS_FN vec3 ray_origin(vec3 position, vec3 geometric, real offset, vec3 direction) {
-    return v3_mad(position, offset * r_copysign1(v3_dot(geometric, direction)), geometric);
-}
-
 GRADUS_LIB_END
 #endif

@@ -4,6 +4,7 @@
 #define GRADUS_LIB_LIGHT_H
 #include "kernels/lib/frame.h"
 #include "kernels/lib/ordered.h"
+#include "kernels/lib/ray_start.h"
 #include "kernels/lib/vector.h"
 #include "kernels/lib/warp.h"
 #include "kernels/shared/scene_records.h"

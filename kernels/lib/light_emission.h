@@ -24,7 +24,7 @@ GRADUS_FN light_emission emission_from_surface(rgb radiance, vec3 point, vec3 no
                                                real u2) {
     light_emission e;
     e.direction = v3_normalize(frame_to_world(frame_from_normal(normal), warp_cosine_hemisphere(u1, u2)));
-    e.origin = v3_mad(point, offset, normal);
+    e.origin = v3_mad(point, offset_at(point, normal, offset), normal);
     e.power = rgb_scale(radiance, GRADUS_PI * area);
     e.normal = normal;
     e.is_far = 0;

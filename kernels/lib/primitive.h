@@ -41,8 +41,8 @@ GRADUS_FN primitive_hit sphere_hit(vec3 center, real radius, real facing, vec3 o
     const real c = v3_dot(f, f) - radius * radius;
     const real q = b + r_copysign1(b) * r_sqrt(discriminant);
     const real t_near = c / (q == R(0) ? R(1) : q);
-    /* With b > 0 the roots are c / q <= q, with b < 0 they are q <= c / q; an origin inside has c < 0. */
-    const real t = c > R(0) ? (b > R(0) ? t_near : q) : (b > R(0) ? q : t_near);
+    /* With q > 0 the roots are c / q <= q, else q <= c / q; an origin inside has c < 0. At the center b is 0. */
+    const real t = (c > R(0)) == (q > R(0)) ? t_near : q;
     const vec3 normal = v3_normalize(v3_mad(f, t, direction));
     primitive_hit hit;
     hit.u = R(0);

@@ -3,6 +3,7 @@
 #define GRADUS_LIB_SCENE_HIT_H
 //! traits: TRAIT_SPHERES TRAIT_TRIANGLES
 #include "kernels/lib/primitive.h"
+#include "kernels/lib/ray_start.h"
 
 GRADUS_LIB_BEGIN
 
@@ -42,7 +43,7 @@ GRADUS_FN primitive_hit primitive_hit_of(GRADUS_GLOBAL const real *triangles, GR
     return hit;
 }
 
-/* How far rays start off a primitive. */
+/* What a primitive adds to how far rays start off it (offset_at). */
 GRADUS_FN real primitive_offset(GRADUS_GLOBAL const real *triangles, GRADUS_GLOBAL const real *spheres, uint unit,
                                 uint triangle_count, uint primitive) {
     real offset = R(0);
@@ -55,13 +56,6 @@ GRADUS_FN real primitive_offset(GRADUS_GLOBAL const real *triangles, GRADUS_GLOB
     offset = TRAIT_TRIANGLES && primitive < triangle_count ? offset : of_sphere;
 #endif
     return offset;
-}
-
-/* 1 where the ray arrives against the geometric normal's back. */
-GRADUS_FN int primitive_is_behind(GRADUS_GLOBAL const real *triangles, GRADUS_GLOBAL const real *spheres, uint unit,
-                                  uint triangle_count, uint primitive, vec3 origin, vec3 direction) {
-    return v3_dot(primitive_hit_of(triangles, spheres, unit, triangle_count, primitive, origin, direction).normal,
-                  direction) > R(0);
 }
 
 GRADUS_LIB_END

@@ -2,7 +2,7 @@
 #ifndef GRADUS_LIB_SURFACE_POINT_H
 #define GRADUS_LIB_SURFACE_POINT_H
 //! traits: TRAIT_SHADING_NORMALS TRAIT_ANISOTROPIC TRAIT_TWO_SIDED TRAIT_TWO_FACED
-#include "kernels/lib/scene_hit.h"
+#include "kernels/lib/surface_side.h"
 
 GRADUS_LIB_BEGIN
 
@@ -22,28 +22,17 @@ GRADUS_FN surface_point surface_point_at(GRADUS_GLOBAL const real *triangles,
                                          uint unit, uint triangle_count, GRADUS_GLOBAL const uint *primitive_material,
                                          GRADUS_GLOBAL const uint *material_back, uint primitive, primitive_hit hit,
                                          vec3 direction) {
-    (void)triangle_normals, (void)triangle_tangents, (void)material_back, (void)direction;
+    (void)triangle_tangents, (void)material_back, (void)direction;
     surface_point point;
-    vec3 shading = hit.normal;
-#if TRAIT_SHADING_NORMALS
-    const uint smooth = TRIANGLE_OF(primitive);
-    const vec3 interpolated =
-        v3_normalize(v3_mad(v3_mad(v3_scale(FIELD_V3(normals, triangle_normals, smooth, n0), R(1) - hit.u - hit.v),
-                                   hit.u, FIELD_V3(normals, triangle_normals, smooth, n1)),
-                            hit.v, FIELD_V3(normals, triangle_normals, smooth, n2)));
-    shading = v3_select(!TRAIT_SPHERES || primitive < triangle_count, interpolated, shading);
-#endif
+    vec3 shading = shading_normal_at(triangle_normals, unit, triangle_count, primitive, hit);
     const uint sided_material = primitive_material[primitive];
     uint material_index = material_record(sided_material);
     vec3 geometric = hit.normal;
 #if TRAIT_TWO_SIDED
-    const int two_sided = (sided_material & material_two_sided) != 0u;
+    const int turned = (sided_material & material_two_sided) != 0u && v3_dot(shading, direction) > R(0);
 #if TRAIT_TWO_FACED
-    const int turned = two_sided && v3_dot(hit.normal, direction) > R(0);
     const uint back = material_back[material_index];
     material_index = turned ? back : material_index;
-#else
-    const int turned = two_sided && v3_dot(shading, direction) > R(0);
 #endif
     const real turn = turned ? R(-1) : R(1);
     geometric = v3_scale(geometric, turn);
@@ -57,7 +46,8 @@ GRADUS_FN surface_point surface_point_at(GRADUS_GLOBAL const real *triangles,
     point.position = hit.position;
     point.geometric = geometric;
     point.shading = shading;
-    point.offset = primitive_offset(triangles, spheres, unit, triangle_count, primitive);
+    point.offset =
+        offset_at(hit.position, hit.normal, primitive_offset(triangles, spheres, unit, triangle_count, primitive));
     point.material = material_index;
     return point;
 }

@@ -16,7 +16,7 @@
     FIELD(triangle, e2_x, "third vertex minus first")                                                                  \
     FIELD(triangle, e2_y, "")                                                                                          \
     FIELD(triangle, e2_z, "")                                                                                          \
-    FIELD(triangle, offset, "how far rays start off the surface")                                                      \
+    FIELD(triangle, offset, "what its shape adds to how far rays start off")                                             \
     FIELD(triangle, padding_0, "to 48 bytes in float")                                                                 \
     FIELD(triangle, padding_1, "")
 
@@ -44,7 +44,7 @@
     FIELD(sphere, center_z, "")                                                                                        \
     FIELD(sphere, radius, "")                                                                                          \
     FIELD(sphere, facing, "1: the normal points out; -1: to the center")                                               \
-    FIELD(sphere, offset, "how far rays start off the surface")
+    FIELD(sphere, offset, "what its size adds to how far rays start off")
 
 /* A light is one emitting triangle or sphere, a point, a direction or the constant environment. Which members of p
  * and the edges mean what is said by kind: triangle: p0, e1, e2; sphere: center, radius in e1_x, facing in e1_y;
@@ -65,7 +65,7 @@
     FIELD(light, e2_y, "")                                                                                             \
     FIELD(light, e2_z, "")                                                                                             \
     FIELD(light, inverse_area, "triangles and spheres; for the density of hits")                                       \
-    FIELD(light, offset, "how far connections end before the surface")
+    FIELD(light, offset, "of the triangle or sphere")
 
 /* How light paths choose among the lights. */
 #define GRADUS_EMISSION_FIELDS(FIELD)                                                                                  \

@@ -12,6 +12,7 @@
 #include "kernels/lib/begin_path.h"
 #include "kernels/lib/camera_ray.h"
 #include "kernels/lib/division.h"
+#include "kernels/lib/path_draw.h"
 
 /* Filter importance sampling (Ernst et al. 2006): the offset from the pixel's center is drawn from the filter. */
 GRADUS_FN real filter_offset(__global const real *camera, uint unit, real u) {
@@ -58,7 +59,12 @@ STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ra
     const uint y = line + crop_y;
     const uint x = pixel - line * crop_width + crop_x;
 
+#if TRAIT_STRATIFIED
+    random_bits key = random_key(seed_low, seed_high, y * film_width + x, 0u, sample_high);
+    key.y = sample_low;
+#else
     const random_bits key = random_key(seed_low, seed_high, y * film_width + x, sample_low, sample_high);
+#endif
 #if TRAIT_SHARED_JITTER
     /* All pixels of a sample share their place within the pixel. Places follow each other in a sequence that fills the
      * pixel evenly: what all pixels share does not average out over the image. */
@@ -68,13 +74,13 @@ STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ra
     u.a = place.x;
     u.b = place.y;
 #else
-    const random4 u = random_draw(key.x, key.y, random_dimension_camera);
+    const random4 u = PATH_DRAW(key.x, key.y, random_dimension_camera);
 #endif
 #if PLANES
     const int is_offset = plane > 0u, is_across = plane - 1u < 2u;
     const int step = (plane & 1u) != 0u ? 1 : -1;
-    const int to_x = (int)(x - crop_x) + (is_offset & is_across ? step : 0);
-    const int to_y = (int)line + (is_offset & !is_across ? step : 0);
+    const int to_x = (int)(x - crop_x) + ((is_offset & is_across) ? step : 0);
+    const int to_y = (int)line + ((is_offset & !is_across) ? step : 0);
     const int exists = (to_x >= 0) & (to_y >= 0) & (to_x < (int)crop_width) & (to_y < (int)crop_height);
     AT(gather, radius, slot) = exists ? R(0) : gather_absent;
     SET_RGB_IN(direct, radiance, value, slot, rgb_gray(R(0)));

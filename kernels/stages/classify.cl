@@ -10,15 +10,15 @@
  * offset paths are at the next vertex decides the phase (gradient_path_tracer.h). */
 //! traits: TRAIT_ENVIRONMENT TRAIT_TWO_FACED TRAIT_GRADIENT TRAIT_APART
 #include "kernels/lib/gradient.h"
-#include "kernels/lib/scene_hit.h"
+#include "kernels/lib/surface_side.h"
 #include "kernels/shared/stage.h"
 
 STAGE classify(uint count, uint unit, uint capacity, __global const real *ray, __global uint *bin,
                __global const uint *primitive_bin
 #if TRAIT_TWO_FACED
                ,
-               __global const uint *primitive_back_bin, __global const real *triangles, __global const real *spheres,
-               uint triangle_count
+               __global const uint *primitive_back_bin, __global const real *triangles,
+               __global const real *triangle_normals, __global const real *spheres, uint triangle_count
 #endif
 #if GATHER
                ,
@@ -52,8 +52,8 @@ STAGE classify(uint count, uint unit, uint capacity, __global const real *ray, _
     uint hit_bin = primitive_bin[present];
 #if TRAIT_TWO_FACED
     /* The two sides may be of different kinds. */
-    const int behind = primitive_is_behind(triangles, spheres, unit, triangle_count, present, AT_V3(ray, origin, row),
-                                           AT_V3(ray, direction, row));
+    const int behind = primitive_is_behind(triangles, triangle_normals, spheres, unit, triangle_count, present,
+                                           AT_V3(ray, origin, row), AT_V3(ray, direction, row));
     const uint back_bin = primitive_back_bin[present];
     hit_bin = behind ? back_bin : hit_bin;
 #endif

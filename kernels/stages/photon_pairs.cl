@@ -7,6 +7,10 @@
  * does not shine through to the other, and one wall not around a corner to the next), and where both paths together are
  * not too long. Cells of lines that share keys hold strangers: these are of another line.
  *
+ * A gather point whose pairs are cut by the end of a window leaves a mark, from which the next window goes on: so each
+ * photon is looked at once, or twice in the block where the end fell, however many windows there are. `pair_looked`
+ * says how many were.
+ *
  * The loops are of a length that is only known here, so work-items are not joined to vectors; what is done for each
  * pair is done elsewhere (photon_evaluate). */
 #include "kernels/lib/gather_row.h"
@@ -15,6 +19,13 @@
 
 /* Photons that are tested at once before any is listed. */
 #define PHOTON_BLOCK 32u
+
+/* Where a gather point's list was cut: the line of cells, counted from its first one; the first photon of the block;
+ * and how many pairs come before that. */
+#define MARK(column) pair_mark[(size_t)(column)*capacity + place]
+#define MARK_LINE 0u
+#define MARK_PHOTON 1u
+#define MARK_PAIRS 2u
 
 /* 1 where the photon in row i counts. All is computed, for most photons that are looked at are near. */
 #define SQUARED(i, axis)                                                                                               \
@@ -26,11 +37,13 @@
 
 STAGE photon_pairs(uint count, uint first, uint from, uint gather_rows, uint photon_rows, PHOTON_GRID, real grid_reach,
                    __global const real *gather, __global const real *photon_sorted,
-                   __global const uint *photon_line_sorted, __global const uint *photon_first GATHER_INDEX
+                   __global const uint *photon_line_sorted, __global const uint *photon_first,
+                   __global uint *pair_looked GATHER_INDEX
 #if LIST
                    ,
-                   uint window_first, uint window_pairs, __global const uint *pair_chunk_first,
-                   __global const uint *pair_offset, __global uint *pair_gather, __global uint *pair_photon
+                   uint window_first, uint window_pairs, uint capacity, __global const uint *pair_chunk_first,
+                   __global const uint *pair_offset, __global const uint *pair_count, __global uint *pair_mark,
+                   __global uint *pair_gather, __global uint *pair_photon
 #else
                    ,
                    __global uint *pair_count
@@ -52,44 +65,62 @@ STAGE photon_pairs(uint count, uint first, uint from, uint gather_rows, uint pho
     const uint y1 = photon_cell(at.y + reach, grid.low.y, grid.inverse_edge, grid.last_y);
     const uint z0 = photon_cell(at.z - reach, grid.low.z, grid.inverse_edge, grid.last_z);
     const uint z1 = photon_cell(at.z + reach, grid.low.z, grid.inverse_edge, grid.last_z);
+    const uint wide = y1 - y0 + 1u, lines = wide * (z1 - z0 + 1u);
 #if LIST
     /* Where the next pair goes, less where the window begins: below 0 before it. */
-    int to = (int)(pair_chunk_first[place / PAIR_CHUNK] + pair_offset[place] - window_first);
+    const int begin = (int)(pair_chunk_first[place / PAIR_CHUNK] + pair_offset[place] - window_first);
+    if (begin + (int)pair_count[place] <= 0 || begin >= (int)window_pairs)
+        return; /* all in other windows */
+    const int is_cut = begin < 0;
+    int to = begin + (is_cut ? (int)MARK(MARK_PAIRS) : 0);
+    uint looked = pair_looked[place];
+    for (uint k = is_cut ? MARK(MARK_LINE) : 0u; k < lines; ++k) {
 #else
     uint found = 0;
+    for (uint k = 0u; k < lines; ++k) {
 #endif
-    for (uint z = z0; z <= z1; ++z)
-        for (uint y = y0; y <= y1; ++y) {
-            const uint line = photon_line(y, z, grid_last_y);
-            const uint key = photon_line_key(line, line_stride, line_shift);
-            const uint end = photon_first[key + x1 + 1u];
+        const uint line = photon_line(y0 + k % wide, z0 + k / wide, grid_last_y);
+        const uint key = photon_line_key(line, line_stride, line_shift);
+        const uint end = photon_first[key + x1 + 1u];
 #if LIST
-            /* A block at a time, first which count, then which these are, then to the list: the first loop becomes
-             * vectors, and none has a branch that nobody can foresee. The last compares each place with the window: with
-             * bounds from `max` and `min`, which may cross, PoCL 3.1 wrote beyond the window. */
-            for (uint begin = photon_first[key + x0]; begin < end; begin += PHOTON_BLOCK) {
-                const uint rows = min(end - begin, PHOTON_BLOCK);
-                uint counts[PHOTON_BLOCK], near[PHOTON_BLOCK];
-                for (uint k = 0; k < rows; ++k)
-                    counts[k] = COUNTS(begin + k) ? 1u : 0u;
-                int found = 0;
-                for (uint k = 0; k < rows; ++k) {
-                    near[found] = begin + k;
-                    found += (int)counts[k];
-                }
-                for (int k = 0; k < found; ++k)
-                    if (to + k >= 0 && to + k < (int)window_pairs) {
-                        pair_gather[to + k] = row;
-                        pair_photon[to + k] = near[k];
-                    }
-                to += found;
+        /* A block at a time, first which count, then which these are, then to the list: the first loop becomes vectors,
+         * and none has a branch that nobody can foresee. The last compares each place with the window: with bounds from
+         * `max` and `min`, which may cross, PoCL 3.1 wrote beyond the window. */
+        const int goes_on = is_cut && k == MARK(MARK_LINE);
+        for (uint block = goes_on ? MARK(MARK_PHOTON) : photon_first[key + x0]; block < end; block += PHOTON_BLOCK) {
+            const uint rows = min(end - block, PHOTON_BLOCK);
+            looked += rows;
+            uint counts[PHOTON_BLOCK], near[PHOTON_BLOCK];
+            for (uint n = 0; n < rows; ++n)
+                counts[n] = COUNTS(block + n) ? 1u : 0u;
+            int found = 0;
+            for (uint n = 0; n < rows; ++n) {
+                near[found] = block + n;
+                found += (int)counts[n];
             }
-#else
-            for (uint i = photon_first[key + x0]; i < end; ++i)
-                found += COUNTS(i) ? 1u : 0u;
-#endif
+            for (int n = 0; n < found; ++n)
+                if (to + n >= 0 && to + n < (int)window_pairs) {
+                    pair_gather[to + n] = row;
+                    pair_photon[to + n] = near[n];
+                }
+            if (to + found >= (int)window_pairs) {
+                MARK(MARK_LINE) = k;
+                MARK(MARK_PHOTON) = block;
+                MARK(MARK_PAIRS) = (uint)(to - begin);
+                pair_looked[place] = looked;
+                return;
+            }
+            to += found;
         }
-#if !LIST
+#else
+        for (uint i = photon_first[key + x0]; i < end; ++i)
+            found += COUNTS(i) ? 1u : 0u;
+#endif
+    }
+#if LIST
+    pair_looked[place] = looked;
+#else
+    pair_looked[place] = 0u;
     pair_count[place] = found;
 #endif
 }

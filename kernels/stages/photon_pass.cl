@@ -5,6 +5,7 @@
 #include "kernels/lib/bsdf.h"
 #include "kernels/lib/moved_photon.h"
 #include "kernels/lib/photon_chain.h"
+#include "kernels/lib/ray_start.h"
 #include "kernels/lib/vertex_frame.h"
 
 #if !LAST_KIND

@@ -5,6 +5,7 @@
  * Nothing is sent where the shift fails, or where the path cannot go that way: then it would not find the way back. */
 #include "kernels/lib/light_vertex_leave.h"
 #include "kernels/lib/moved_photon.h"
+#include "kernels/lib/ray_start.h"
 
 STAGE photon_reconnect(uint count, uint unit, uint first, uint pairs, uint gather_rows, uint photon_rows,
                        uint pair_rows, uint strip_pixels, __global const uint *moved_index,

@@ -13,6 +13,7 @@
 #include "kernels/lib/bsdf.h"
 #include "kernels/lib/light_sampling.h"
 #include "kernels/lib/mis.h"
+#include "kernels/lib/path_draw.h"
 #include "kernels/lib/surface_point.h"
 #include "kernels/lib/vertex_frame.h"
 #include "kernels/shared/stage.h"
@@ -67,7 +68,7 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
 #endif
 
 #if SAMPLES_LIGHTS && !BSDF_IS_DIRAC
-    const random4 l = random_draw(key_0, key_1, random_dimension_light(depth));
+    const random4 l = PATH_DRAW(key_0, key_1, random_dimension_light(depth));
     const chosen_light chosen =
         light_sampling(lights, light_kinds, light_alias, light_count, scene_diameter, unit, point.position, l);
     const light_choice light = chosen.choice;
@@ -91,7 +92,10 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
     const int asks = goes_on && rgb_max(gain) > R(0);
 #endif
     const vec3 start = ray_origin(point.position, point.geometric, point.offset, light.direction);
-    const vec3 end = v3_mad(v3_add(point.position, light.connection), LIGHT_FIELD(chosen.light, offset), light.normal);
+    const vec3 light_point = v3_add(point.position, light.connection);
+    const vec3 end = connection_end(light_point, light.normal,
+                                    offset_at(light_point, light.normal, LIGHT_FIELD(chosen.light, offset)),
+                                    light.connection);
     SET_V3(shadow, origin, row, start);
     SET_V3(shadow, direction, row, v3_sub(end, start));
     SET_RGB(shadow, value, row, gain);
@@ -105,7 +109,7 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
 #endif
 #endif
 
-    const random4 u = random_draw(key_0, key_1, random_dimension_scatter(depth));
+    const random4 u = PATH_DRAW(key_0, key_1, random_dimension_scatter(depth));
     const bsdf_sample s = PASTE(BSDF, _sample)(m, wi, u.a, u.b, u.c, transport_radiance);
     const rgb scattered = rgb_mul(throughput, s.weight);
     real eta = R(1);

@@ -20,9 +20,9 @@
 #include "kernels/lib/light_sampling.h"
 #include "kernels/lib/ordered.h"
 #include "kernels/lib/reconnectable.h"
-#include "kernels/lib/scene_hit.h"
 #include "kernels/lib/shift_reconnection.h"
 #include "kernels/lib/shift_specular.h"
+#include "kernels/lib/surface_side.h"
 
 /* Whether light may be sampled at the vertices. */
 #if defined(BSDF) && BSDF_IS_DIRAC
@@ -45,6 +45,10 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
 #if TRAIT_APART
             ,
             __global real *offset_ray
+#if TRAIT_TWO_FACED
+            ,
+            __global const real *triangle_normals
+#endif
 #endif
 #if TRAIT_SHIFT_DISTANCE
             ,
@@ -69,8 +73,9 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
     const primitive_hit hit =
         primitive_hit_of(triangles, spheres, unit, triangle_count, present, AT_V3(ray, origin, row), base_direction);
     const real base_side = v3_dot(hit.normal, v3_sub(base, hit.position));
-    const real end_offset = primitive_offset(triangles, spheres, unit, triangle_count, present);
-    const vec3 end = v3_mad(hit.position, end_offset * r_copysign1(base_side), hit.normal);
+    const real end_offset = offset_at(hit.position, hit.normal,
+                                      primitive_offset(triangles, spheres, unit, triangle_count, present));
+    const vec3 end_normal = v3_scale(hit.normal, r_copysign1(base_side));
     const real pdf = AT(event, pdf, row);
     const int goes_on = (is_hit | is_escaped) & (pdf > R(0));
 #if TRAIT_APART
@@ -80,8 +85,11 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
     const vec3 base_wi = frame_to_local(base_axes, AT_V3(vertex, wi, row));
     const vec3 base_wo = frame_to_local(base_axes, base_direction);
     const uint next_light = primitive_light[present];
-    const uint next_kind =
-        kind_of_primitive(primitive_material, material_back, material_kind, present, base_side < R(0));
+    int is_behind = 0;
+#if TRAIT_TWO_FACED
+    is_behind = is_met_from_behind(triangle_normals, unit, triangle_count, present, hit, base_direction);
+#endif
+    const uint next_kind = kind_of_primitive(primitive_material, material_back, material_kind, present, is_behind);
     const int reconnectable = is_escaped | is_reconnectable(next_kind, next_light);
 #endif
 
@@ -100,7 +108,7 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
     const real base_cosine = -v3_dot(s.normal, s.direction);
     /* After the light's normal, which is normalised as the ways to it will be (kernels/lib/ordered.h). */
     const vec3 light_point = v3_after(v3_add(base, s.connection), base_cosine);
-    const real end_gap = LIGHT_FIELD(chosen.light, offset);
+    const real light_gap = offset_at(light_point, s.normal, LIGHT_FIELD(chosen.light, offset));
     const int arrives = rgb_max(AT_RGB(event, arriving, row)) > R(0);
 #endif
 #pragma unroll
@@ -166,7 +174,9 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         const vec3 light_end = v3_select(is_finite_light, light_point, v3_add(from, s.connection));
         const size_t light_link = (size_t)j * stride + row;
         SET_V3(link, origin, light_link, light_origin);
-        SET_V3(link, direction, light_link, v3_sub(v3_mad(light_end, end_gap, s.normal), light_origin));
+        const vec3 light_way = v3_sub(light_end, light_origin);
+        SET_V3(link, direction, light_link,
+               v3_mad(light_way, light_gap + rounding_along(s.normal, light_way), s.normal));
 #endif
         AT_UINT(link, open, (size_t)j * stride + row) = asks_light ? 1u : 0u;
 
@@ -246,7 +256,9 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         const vec3 origin = ray_origin(from, geometric, from_offset, direction);
         const size_t step_link = (size_t)(4u + j) * stride + row;
         SET_V3(link, origin, step_link, origin);
-        const vec3 way_out = v3_select(is_escaped, v3_scale(direction, scene_diameter), v3_sub(end, origin));
+        const vec3 to_hit = v3_sub(hit.position, origin);
+        const vec3 to_end = v3_mad(to_hit, end_offset + rounding_along(end_normal, to_hit), end_normal);
+        const vec3 way_out = v3_select(is_escaped, v3_scale(direction, scene_diameter), to_end);
         SET_V3(link, direction, step_link, way_out);
         AT_UINT(link, open, step_link) = (own.is_own & reconnects & works & has_density) ? 1u : 0u;
 #if TRAIT_APART

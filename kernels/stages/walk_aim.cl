@@ -1,7 +1,7 @@
 /* walk_aim: the first ray of each walk, at where its first vertex is wanted: the share of the step that it tries. Walks
  * that go on take rows side by side, in the order of the index. */
-#include "kernels/lib/frame.h"
 #include "kernels/lib/ray_differential.h"
+#include "kernels/lib/ray_start.h"
 #include "kernels/shared/stage.h"
 
 STAGE walk_aim(uint count, uint chain_rows, __global const uint *walk_index, __global const real *chain,

@@ -142,7 +142,7 @@ walk_follow
     const int has_arrived = is_taken & (miss <= tolerance * tolerance);
     const uint steps = AT_UINT(walk, steps, row) + (replays ? 0u : 1u);
     const uint why_not = follows ? (lands ? (is_taken ? walk_unfinished : walk_diverged) : walk_nothing) : outcome;
-    const uint now = replays & !is_taken ? walk_base : why_not;
+    const uint now = (replays & !is_taken) ? walk_base : why_not;
     const int is_done = has_arrived | (steps >= most_steps) | (replays & !is_taken);
     const real old_share = AT(walk, share, row);
     const real doubled = r_min(R(2) * old_share, R(1));

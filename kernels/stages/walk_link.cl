@@ -1,6 +1,6 @@
 /* walk_link: asks whether the last segments of chains that have arrived are open; they are the only ones that no ray of
  * the walk has traced. walk_seen: reads the answer. */
-#include "kernels/lib/frame.h"
+#include "kernels/lib/ray_start.h"
 #include "kernels/shared/stage.h"
 
 STAGE walk_link(uint count, uint chain_rows, uint chain_vertices, __global const real *chain,
@@ -13,7 +13,7 @@ STAGE walk_link(uint count, uint chain_rows, uint chain_vertices, __global const
     const size_t last = (size_t)(has_arrived ? number - 1u : 0u) * chain_rows + row;
     const vec3 from = AT_V3(walked_vertex, position, last), target = AT_V3(chain, target, row);
     const vec3 normal = AT_V3(chain, target_normal, row);
-    const vec3 end = ray_origin(target, normal, AT(chain, target_offset, row), v3_sub(from, target));
+    const vec3 end = connection_end(target, normal, AT(chain, target_offset, row), v3_sub(target, from));
     const vec3 origin =
         ray_origin(from, AT_V3(walked_vertex, geometric, last), AT(walked_vertex, offset, last), v3_sub(target, from));
     SET_V3(walk_link, origin, row, origin);

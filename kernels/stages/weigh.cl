@@ -15,7 +15,7 @@
 //! traits: TRAIT_SHIFT_DISTANCE
 #include "kernels/lib/gradient.h"
 #include "kernels/lib/reconnectable.h"
-#include "kernels/lib/scene_hit.h"
+#include "kernels/lib/surface_side.h"
 #include "kernels/lib/weighted_difference.h"
 
 /* Sums begin at first vertices. */
@@ -40,6 +40,10 @@ STAGE weigh(uint count, uint unit, uint first, uint stride, uint capacity, uint 
             __global const real *triangles, __global const real *spheres, uint triangle_count,
             __global const uint *primitive_material, __global const uint *primitive_light,
             __global const uint *material_back, __global const uint *material_kind
+#if TRAIT_TWO_FACED
+            ,
+            __global const real *triangle_normals
+#endif
 #endif
 #if TRAIT_SHIFT_DISTANCE
             ,
@@ -72,8 +76,8 @@ STAGE weigh(uint count, uint unit, uint first, uint stride, uint capacity, uint 
     const int is_hit = primitive < ray_first_special;
     int base_is_behind = 0;
 #if TRAIT_TWO_FACED
-    base_is_behind = primitive_is_behind(triangles, spheres, unit, triangle_count, is_hit ? primitive : 0u,
-                                         AT_V3(ray, origin, row), AT_V3(ray, direction, row));
+    base_is_behind = primitive_is_behind(triangles, triangle_normals, spheres, unit, triangle_count,
+                                         is_hit ? primitive : 0u, AT_V3(ray, origin, row), AT_V3(ray, direction, row));
 #endif
     const uint next_kind =
         kind_of_primitive(primitive_material, material_back, material_kind, is_hit ? primitive : 0u, base_is_behind);
@@ -139,8 +143,8 @@ STAGE weigh(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         const uint met = meets ? offset_primitive : 0u;
         int is_behind = 0;
 #if TRAIT_TWO_FACED
-        is_behind = primitive_is_behind(triangles, spheres, unit, triangle_count, met, AT_V3(offset_ray, origin, sent),
-                                        AT_V3(offset_ray, direction, sent));
+        is_behind = primitive_is_behind(triangles, triangle_normals, spheres, unit, triangle_count, met,
+                                        AT_V3(offset_ray, origin, sent), AT_V3(offset_ray, direction, sent));
 #endif
         const uint met_kind = kind_of_primitive(primitive_material, material_back, material_kind, met, is_behind);
         int would_reconnect = is_reconnectable(met_kind, primitive_light[met]);

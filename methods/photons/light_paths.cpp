@@ -18,11 +18,20 @@ namespace {
 // count from 0 and do not come to its numbers.
 constexpr std::uint32_t pilot_paths = 1u << 14;
 constexpr std::uint64_t pilot_first = std::uint64_t(1) << 63;
+// Photons of a pass, for each pixel of the film. A camera path is as random as photons are: by what glass does, by
+// edges in its pixel and by lights that it samples. More photons than these take time that more passes use better,
+// fewer leave the pass to its launches.
+constexpr double photons_a_pixel = 5, least_photons = 1 << 14, largest_photons = 1e6;
+// Where light hardly reaches a surface.
+constexpr double most_paths_a_photon = 4;
 constexpr std::uint64_t most_photons = 1u << 31; // tables are numbered with 32 bits
 
 // Russian roulette is played from the first vertex on, so that photons are of like power, unless the scene asks for
 // none: by a depth that no path has.
 constexpr std::uint32_t roulette_from = 1, no_roulette = 0xFFFFFFFFu, beyond_all_paths = 1u << 16;
+
+/// By the whole film: a crop is a part of its image.
+std::uint64_t film_pixels(const Session &session) { return std::uint64_t(session.film.width) * session.film.height; }
 
 bool has_vertices(const Session &session) { return session.has("TRAIT_LIGHT_VERTICES"); }
 
@@ -106,6 +115,12 @@ TableList own_tables(const Session &session, const Wavefront &paths) {
 
 } // namespace
 
+double photons_a_pass(std::uint64_t film_pixels) {
+    return std::clamp(photons_a_pixel * double(film_pixels), least_photons, largest_photons);
+}
+
+double most_light_paths_a_pass(std::uint64_t film_pixels) { return most_paths_a_photon * photons_a_pass(film_pixels); }
+
 LightPaths::LightPaths(Session &session, Stages &consumers, const Scene &scene, const RenderOptions &options,
                        Direct direct)
     : session_(session), consumers_(consumers), wanted_(options.photons),
@@ -122,7 +137,8 @@ LightPaths::LightPaths(Session &session, Stages &consumers, const Scene &scene, 
     const TableList list = own_tables(session, paths_);
     const std::uint32_t batch =
         choose_batch_size(session.device, session.options.batch_size,
-                          wanted_ ? wanted_ : std::uint64_t(most_light_paths_a_pass), list, session.options.precision);
+                          wanted_ ? wanted_ : std::uint64_t(most_light_paths_a_pass(film_pixels(session))), list,
+                          session.options.precision);
     own_.emplace(session.device, list, table_rows(session, batch, batch), session.options.precision);
 
     // The numbers that our kernels know are not those of the consumers'.
@@ -138,7 +154,8 @@ LightPaths::LightPaths(Session &session, Stages &consumers, const Scene &scene, 
 }
 
 TableList LightPaths::tables() const {
-    const double rows = wanted_ ? std::min(double(wanted_), 1.1 * photons_a_pass) : 1.1 * photons_a_pass;
+    const double usual = 1.1 * photons_a_pass(film_pixels(session_)),
+                 rows = wanted_ ? std::min(double(wanted_), usual) : usual;
     const bool with_vertices = has_vertices(session_);
     const auto photons = slot_rows(std::uint32_t(rows));
     TableList list = {
@@ -193,8 +210,9 @@ std::uint32_t LightPaths::paths_a_pass() {
     if (paths_a_pass_ == 0) {
         const double stored = trace(pilot_first, pilot_paths);
         light_paths_ = photons_ = 0;
-        paths_a_pass_ = std::uint32_t(
-            std::clamp(photons_a_pass * pilot_paths / std::max(stored, 1.0), 1.0, most_light_paths_a_pass));
+        paths_a_pass_ =
+            std::uint32_t(std::clamp(photons_a_pass(film_pixels(session_)) * pilot_paths / std::max(stored, 1.0), 1.0,
+                                     most_light_paths_a_pass(film_pixels(session_))));
     }
     return paths_a_pass_;
 }

@@ -14,9 +14,10 @@
 
 namespace gradus {
 
-/// A pass has as many light paths as leave so many photons, unless options say how many; but where light hardly reaches
-/// a surface at most so many.
-constexpr double photons_a_pass = 1e6, most_light_paths_a_pass = 4e6;
+/// For an image of so many pixels a pass has as many light paths as leave so many photons, unless options say how many;
+/// but where light hardly reaches a surface at most so many.
+double photons_a_pass(std::uint64_t film_pixels);
+double most_light_paths_a_pass(std::uint64_t film_pixels);
 
 class LightPaths {
   public:
@@ -35,8 +36,9 @@ class LightPaths {
     /// To be called once these are allocated, before or after the consumers' stages are built.
     void attach(Tables &tables);
 
-    /// Light paths a pass: those that the options ask for, or as many as store about a million photons. How many that
-    /// are is told by a pilot, the same for any batch, of light paths that no render reaches.
+    /// Light paths a pass: those that the options ask for, or as many as store about five photons for each pixel of the
+    /// film, at least 16384 and at most a million. How many that are is told by a pilot, the same for any batch, of
+    /// light paths that no render reaches.
     std::uint32_t paths_a_pass();
 
     /// Traces the light paths of numbers first_path to first_path + count - 1 and stores their photons: in rows of

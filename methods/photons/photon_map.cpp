@@ -14,6 +14,8 @@ namespace {
 
 // Keys that photons are sorted by. More would not fit into the cache with all else.
 constexpr std::uint32_t key_bits = 21, most_keys = 1u << key_bits;
+// What there is room for at first: most grids have fewer than a million keys, small renders a few hundred.
+constexpr std::uint32_t first_keys = 1u << 12;
 // Cells along an axis: so lines have numbers of 30 bits.
 constexpr double most_cells = 1 << 15;
 // Positions are computed, and are off by some units in the last place of the largest coordinate.
@@ -113,7 +115,8 @@ TableList PhotonMap::tables() const {
         {.name = "photon_sorted", .rows = RowsOf::one, .multiple = rows_, .columns = columns_, .grows = true});
     for (const char *name : grown_uints)
         list.push_back({.name = name, .rows = RowsOf::one, .multiple = rows_, .is_uint = true, .grows = true});
-    list.push_back({.name = "photon_first", .rows = RowsOf::one, .columns = most_keys + 1, .is_uint = true});
+    list.push_back(
+        {.name = "photon_first", .rows = RowsOf::one, .multiple = first_keys + 1, .is_uint = true, .grows = true});
     return list;
 }
 
@@ -136,6 +139,8 @@ void PhotonMap::grow() {
 void PhotonMap::build(std::uint32_t rows, std::uint32_t count, double edge) {
     grow();
     const PhotonGrid grid(box_, edge, most_keys);
+    if (const std::uint64_t room = tables_->rows_of("photon_first"); grid.keys >= room)
+        tables_->grow("photon_first", std::max<std::uint32_t>(grid.keys, 2 * room) + 1);
     set_grid(
         grid, [&](const std::string &name, double value) { stages_.set_real(name, value); },
         [&](const std::string &name, std::uint32_t value) { stages_.set(name, value); });

@@ -17,6 +17,8 @@ namespace {
 constexpr std::uint32_t pairs_a_row = 4;
 // Gather points whose pairs are counted together: so few that their pairs are surely fewer than 2^32.
 constexpr std::uint32_t pair_chunk = 64;
+// Of `pair_mark` (kernels/stages/photon_pairs.cl).
+constexpr std::uint32_t mark_columns = 3;
 // The cosine between the geometric normals of gather point and photon: walls at right angles are two surfaces, a mesh
 // of a few hundred triangles is one.
 constexpr const char *least_facing = "R(0.1)";
@@ -59,7 +61,8 @@ TableList PhotonPairs::tables() const {
         list.push_back({.name = name, .multiple = pairs_a_row, .is_uint = true});
     list.push_back({.name = "pair_value", .multiple = pairs_a_row, .columns = pair_value_columns});
     list.push_back({.name = "radius_total"});
-    for (const char *name : {"pair_count", "pair_offset", "pair_total", "pair_chunk_first"})
+    list.push_back({.name = "pair_mark", .columns = mark_columns, .is_uint = true});
+    for (const char *name : {"pair_count", "pair_looked", "pair_offset", "pair_total", "pair_chunk_first"})
         list.push_back({.name = name, .is_uint = true});
     return list;
 }

@@ -22,6 +22,10 @@ struct PairWindow {
 
 class PhotonPairs {
   public:
+    /// A batch has at least so many rows unless a smaller one is asked for, however few pixels there are: windows go by
+    /// it, and each has its launches.
+    static constexpr std::uint32_t least_batch = 8192;
+
     /// Declares the stages that list pairs and sum over them. `Session::numbers` gets "pair_rows" in attach().
     /// indexed: find() is asked for places in the table `gather_index`, which has rows of `gather`, not for such rows.
     PhotonPairs(Stages &stages, bool indexed = false);

@@ -95,6 +95,39 @@ class DirectRays {
     std::vector<rgb> light_;
 };
 
+/// How many pixels of any window have what `is(x, y)` says; it is false beyond `all`.
+class WindowSums {
+  public:
+    template <class Predicate>
+    WindowSums(const PixelRectangle &all, const Predicate &is)
+        : all_(all), sums_(std::size_t(all.width() + 1) * (all.height() + 1), 0) {
+        for (std::uint32_t y = all.top; y < all.bottom; ++y) {
+            std::uint32_t row = 0;
+            for (std::uint32_t x = all.left; x < all.right; ++x) {
+                row += is(int(x), int(y)) ? 1 : 0;
+                sums_[place(x + 1, y + 1)] = sums_[place(x + 1, y)] + row;
+            }
+        }
+    }
+    /// Whether columns [left, right) of rows [top, bottom) have any.
+    bool any(int left, int top, int right, int bottom) const {
+        const std::uint32_t x0 = clamp(left, all_.left, all_.right), x1 = clamp(right, all_.left, all_.right);
+        const std::uint32_t y0 = clamp(top, all_.top, all_.bottom), y1 = clamp(bottom, all_.top, all_.bottom);
+        return x0 < x1 && y0 < y1 &&
+               sums_[place(x1, y1)] - sums_[place(x0, y1)] != sums_[place(x1, y0)] - sums_[place(x0, y0)];
+    }
+
+  private:
+    static std::uint32_t clamp(int value, std::uint32_t least, std::uint32_t most) {
+        return std::uint32_t(std::clamp<std::int64_t>(value, least, most));
+    }
+    std::size_t place(std::uint32_t x, std::uint32_t y) const {
+        return std::size_t(y - all_.top) * (all_.width() + 1) + (x - all_.left);
+    }
+    PixelRectangle all_;
+    std::vector<std::uint32_t> sums_; ///< over all pixels to the left of and above a place
+};
+
 bool differ(rgb a, rgb b) { return a.r != b.r || a.g != b.g || a.b != b.b; }
 
 /// Pixels of the crop near which the pilot rays see different light. Beyond the `lit` ones all would see none.
@@ -119,18 +152,27 @@ std::vector<std::size_t> edge_pixels(const FilmSettings &film, const PixelRectan
         }
         begin = end;
     }
-    const auto number_of = [&](int x, int y) { return std::size_t(y - int(lit.top)) * lit.width() + x - lit.left; };
-    const auto seen_at = [&](int x, int y) { return lit.contains(x, y) ? seen[number_of(x, y)] : rgb_gray(0); };
-    const auto mixed_at = [&](int x, int y) { return lit.contains(x, y) && mixed[number_of(x, y)]; };
+    const auto seen_at = [&](int x, int y) {
+        return lit.contains(x, y) ? seen[std::size_t(y - int(lit.top)) * lit.width() + x - lit.left] : rgb_gray(0);
+    };
+    const auto is_mixed = [&](int x, int y) {
+        return lit.contains(x, y) && mixed[std::size_t(y - int(lit.top)) * lit.width() + x - lit.left];
+    };
+    // A pixel is at an edge where one of its window is mixed, or where two that lie side by side in it differ. Beyond
+    // the lit ones all are dark.
     const int width = int(film.crop_width), height = int(film.crop_height);
+    const PixelRectangle around{lit.left - std::min(lit.left, 1u), lit.top - std::min(lit.top, 1u),
+                                std::min(lit.right + 1, film.crop_width), std::min(lit.bottom + 1, film.crop_height)};
+    const WindowSums mixes(around, is_mixed);
+    const WindowSums across(around, [&](int x, int y) { return differ(seen_at(x, y), seen_at(x - 1, y)); });
+    const WindowSums down(around, [&](int x, int y) { return differ(seen_at(x, y), seen_at(x, y - 1)); });
     std::vector<std::size_t> found;
     for (int y = std::max(int(lit.top) - reach, 0); y < std::min(int(lit.bottom) + reach, height); ++y)
         for (int x = std::max(int(lit.left) - reach, 0); x < std::min(int(lit.right) + reach, width); ++x) {
-            bool is_edge = false;
-            for (int near_y = std::max(y - reach, 0); near_y <= std::min(y + reach, height - 1); ++near_y)
-                for (int near_x = std::max(x - reach, 0); near_x <= std::min(x + reach, width - 1); ++near_x)
-                    is_edge = is_edge || mixed_at(near_x, near_y) || differ(seen_at(near_x, near_y), seen_at(x, y));
-            if (is_edge)
+            const int left = std::max(x - reach, 0), right = std::min(x + reach + 1, width);
+            const int top = std::max(y - reach, 0), bottom = std::min(y + reach + 1, height);
+            if (mixes.any(left, top, right, bottom) || across.any(left + 1, top, right, bottom) ||
+                down.any(left, top + 1, right, bottom))
                 found.push_back(std::size_t(y) * film.crop_width + x);
         }
     return found;

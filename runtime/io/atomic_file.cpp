@@ -4,13 +4,17 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <fcntl.h>
 #include <filesystem>
+#include <string>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <vector>
 
 namespace gradus {
 namespace {
@@ -49,16 +53,61 @@ fs::path resolve_target(const std::string &path) {
     return target;
 }
 
-/// A new file beside its target that removes itself unless it was given the target's name.
+constexpr const char *prefix = ".gradus-", *suffix = ".part";
+
+/// Whether this name still is the file that is open.
+bool is_named(int descriptor, const fs::path &name) {
+    struct stat opened = {}, named = {};
+    return ::fstat(descriptor, &opened) == 0 && ::lstat(name.c_str(), &named) == 0 && opened.st_dev == named.st_dev &&
+           opened.st_ino == named.st_ino;
+}
+
+/// Removes the temporary files in a folder that no process holds any more: those of runs that were killed.
+void remove_abandoned(const fs::path &folder) {
+    std::error_code failure;
+    std::vector<fs::path> names;
+    for (fs::directory_iterator entry(folder, failure), end; !failure && entry != end; entry.increment(failure)) {
+        const std::string name = entry->path().filename().string();
+        if (name.starts_with(prefix) && name.ends_with(suffix))
+            names.push_back(entry->path());
+    }
+    for (const fs::path &name : names) {
+        const int descriptor = ::open(name.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+        if (descriptor < 0)
+            continue;
+        if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0 && is_named(descriptor, name))
+            ::unlink(name.c_str());
+        ::close(descriptor);
+    }
+}
+
+/// A new file beside its target that removes itself unless it was given the target's name. It is locked while its
+/// process lives, so that others can tell it from what a killed one left.
 class TemporaryFile {
   public:
     TemporaryFile(const std::string &path, const fs::path &target) : path_(path), target_(target) {
-        // Hidden, and unique among the processes that may write to this folder.
-        static unsigned count = 0;
-        name_ = target.parent_path() / fmt::format(".gradus-{}-{}.part", ::getpid(), count++);
-        descriptor_ = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666);
-        if (descriptor_ < 0)
-            fail(path_, std::strerror(errno));
+        // Hidden, and unique among the processes that may write to this folder; whoever else has the name keeps it.
+        static std::atomic<unsigned> count{0};
+        constexpr int most_tries = 10000;
+        for (int i = 0; i < most_tries; ++i) {
+            name_ = target.parent_path() / fmt::format("{}{}-{}{}", prefix, ::getpid(), count++, suffix);
+            descriptor_ = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666);
+            if (descriptor_ < 0) {
+                if (errno == EEXIST)
+                    continue;
+                break;
+            }
+            // Some file systems have no locks; there nobody else gets one either. Between the two calls another run may
+            // have taken the file for an abandoned one.
+            (void)::flock(descriptor_, LOCK_EX);
+            if (is_named(descriptor_, name_))
+                return;
+            ::close(descriptor_);
+            descriptor_ = -1;
+        }
+        const int reason = errno;
+        name_.clear();
+        fail(path_, std::strerror(reason));
     }
     ~TemporaryFile() {
         if (descriptor_ >= 0)
@@ -85,13 +134,12 @@ class TemporaryFile {
         // A full disk may show only here; without the flush a crash could leave the new name on an empty file.
         if (::fsync(descriptor_) != 0)
             fail(path_, std::strerror(errno));
-        const int descriptor = descriptor_;
-        descriptor_ = -1;
-        if (::close(descriptor) != 0)
-            fail(path_, std::strerror(errno));
+        // Still open, and so still locked: without that it would be an abandoned one for a moment.
         if (::rename(name_.c_str(), target_.c_str()) != 0)
             fail(path_, std::strerror(errno));
         name_.clear();
+        ::close(descriptor_);
+        descriptor_ = -1;
         // The rename is safe from a crash once its folder is on the disk. Some file systems refuse: no harm.
         const int folder = ::open(target_.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
         if (folder >= 0) {
@@ -108,6 +156,8 @@ class TemporaryFile {
 
 } // namespace
 
+std::string written_file(const std::string &path) { return resolve_target(path).string(); }
+
 void write_file_atomically(const std::string &path, const void *bytes, std::size_t size) {
     const fs::path target = resolve_target(path);
     TemporaryFile file(path, target);
@@ -117,6 +167,7 @@ void write_file_atomically(const std::string &path, const void *bytes, std::size
 
 void check_writable(const std::string &path) {
     const fs::path target = resolve_target(path);
+    remove_abandoned(target.parent_path());
     const TemporaryFile probe(path, target);
 }
 

@@ -13,8 +13,13 @@ namespace gradus {
 void write_file_atomically(const std::string &path, const void *bytes, std::size_t size);
 
 /// Throws Error(ExitCode::output) where write_file_atomically(path) would fail for its folder or its name: a folder
-/// that is missing or not writable, a path that is a folder or a device. Leaves nothing behind. A disk may still
-/// fill up later.
+/// that is missing or not writable, a path that is a folder or a device. Leaves nothing behind, and removes what runs
+/// that were killed left in that folder: temporary files that no process holds a lock of. A disk may still fill up
+/// later.
 void check_writable(const std::string &path);
+
+/// The file that write_file_atomically(path) would replace: absolute, links followed. Throws Error(ExitCode::output)
+/// like check_writable().
+std::string written_file(const std::string &path);
 
 } // namespace gradus

@@ -1,23 +1,29 @@
 #include "runtime/io/diagnostics.h"
 
 #include "runtime/error.h"
-
-#include <algorithm>
+#include "runtime/io/text.h"
 
 namespace gradus {
 
 namespace {
-// More than a user reads; a broken file of a thousand meshes need not print a thousand lines.
-constexpr std::size_t most_messages = 100;
-
-bool contains(const std::vector<std::string> &list, const std::string &text) {
-    return std::find(list.begin(), list.end(), text) != list.end();
-}
+// As many as a user reads. Reports that repeat what was said count too, for finding each may have taken long.
+constexpr std::size_t most_messages = 100, most_error_reports = 1000;
+constexpr std::size_t longest_message = 2000;
 } // namespace
 
+std::string located(const Location &location, const std::string &message) {
+    return location.text() + ": " + shortened(message, longest_message);
+}
+
+bool Diagnostics::is_full() const { return warnings_.size() >= most_messages; }
+
 void Diagnostics::warn(const Location &location, const std::string &message) {
-    const std::string text = location.text() + ": " + message;
-    if (!contains(warnings_, text))
+    if (is_full()) {
+        ++warnings_left_out_;
+        return;
+    }
+    const std::string text = located(location, message);
+    if (known_.insert(text).second)
         warnings_.push_back(text);
 }
 
@@ -28,26 +34,32 @@ void Diagnostics::unknown(const Location &location, const std::string &message) 
         warn(location, message);
 }
 
-void Diagnostics::error(const Location &location, const std::string &message) {
-    add_error(location.text() + ": " + message);
-}
+void Diagnostics::error(const Location &location, const std::string &message) { add_error(located(location, message)); }
 
 void Diagnostics::error(const SceneError &error) { add_error(error.what()); }
 
 void Diagnostics::add_error(const std::string &text) {
-    if (!contains(errors_, text))
+    if (known_.insert("error " + text).second)
         errors_.push_back(text);
+    if (++error_reports_ < most_error_reports && errors_.size() < most_messages)
+        return;
+    errors_.push_back("too many errors: what comes after is not read");
+    throw_if_errors();
+}
+
+std::vector<std::string> Diagnostics::warnings() const {
+    std::vector<std::string> all = warnings_;
+    if (warnings_left_out_ > 0)
+        all.push_back("and " + std::to_string(warnings_left_out_) + " more warnings");
+    return all;
 }
 
 void Diagnostics::throw_if_errors() const {
     if (errors_.empty())
         return;
     std::string text;
-    const std::size_t shown = std::min(errors_.size(), most_messages);
-    for (std::size_t i = 0; i < shown; ++i)
-        text += (i ? "\n" : "") + errors_[i];
-    if (shown < errors_.size())
-        text += "\nand " + std::to_string(errors_.size() - shown) + " more errors";
+    for (const std::string &error : errors_)
+        text += (text.empty() ? "" : "\n") + error;
     throw Error(ExitCode::scene, text);
 }
 

@@ -3,9 +3,10 @@
 
 #include "runtime/io/diagnostics.h"
 #include "runtime/io/element.h"
+#include "runtime/io/file_search.h"
+#include "runtime/io/load_options.h"
 
 #include <filesystem>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -16,9 +17,9 @@ struct Document {
     std::vector<std::filesystem::path> search_folders; ///< where the files it names are looked for, in order
 };
 
-/// `parameters` go before the <default>s of the file. A <default> counts for the whole scene, whichever file and
-/// line it stands in; of several for one name the first counts. Throws Error (ExitCode::scene).
-Document read_document(const std::string &path, const std::map<std::string, std::string> &parameters,
+/// The options' parameters go before the <default>s of the file. A <default> counts for the whole scene, whichever file
+/// and line it stands in; of several for one name the first counts. Throws Error (ExitCode::scene).
+Document read_document(const std::string &path, const LoadOptions &options, FileFinder &finder,
                        Diagnostics &diagnostics);
 
 } // namespace gradus

@@ -1,5 +1,6 @@
 #include "runtime/io/file_search.h"
 
+#include "runtime/error.h"
 #include "runtime/io/text.h"
 
 #include <algorithm>
@@ -8,47 +9,86 @@
 namespace gradus {
 namespace fs = std::filesystem;
 
-namespace {
+void FileFinder::confine(const std::vector<fs::path> &folders) {
+    for (const fs::path &folder : folders) {
+        std::error_code error;
+        const fs::path canonical = fs::canonical(folder.empty() ? fs::path(".") : folder, error);
+        if (error || !fs::is_directory(canonical, error))
+            throw Error(ExitCode::scene, "--confined: there is no folder \"" + folder.string() + "\"");
+        allowed_.push_back(canonical);
+    }
+}
+
+bool FileFinder::is_allowed(const fs::path &path) const {
+    if (!is_confined())
+        return true;
+    std::error_code error;
+    const fs::path canonical = fs::canonical(path, error);
+    if (error)
+        return false;
+    return std::any_of(allowed_.begin(), allowed_.end(), [&](const fs::path &folder) {
+        return std::mismatch(folder.begin(), folder.end(), canonical.begin(), canonical.end()).first == folder.end();
+    });
+}
+
+/// A folder is listed once: a scene may have a thousand names in the wrong case.
+const std::map<std::string, std::string> &FileFinder::listing(const fs::path &folder) {
+    const auto [at, is_new] = listings_.try_emplace(folder.string());
+    if (!is_new || !is_allowed(folder))
+        return at->second;
+    std::error_code error;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+        const std::string name = entry->path().filename().string();
+        const auto [first, is_first] = at->second.try_emplace(lower_case(name), name);
+        if (!is_first)
+            first->second = std::min(first->second, name);
+    }
+    return at->second;
+}
 
 /// Follows `relative` from `folder`, at each step taking the entry of that name or, failing that, the first in
 /// alphabetical order that differs in case alone.
-std::optional<fs::path> follow_ignoring_case(fs::path folder, const fs::path &relative) {
+std::optional<fs::path> FileFinder::follow_ignoring_case(fs::path folder, const fs::path &relative) {
     std::error_code error;
     for (const fs::path &part : relative) {
         if (part == "." || part == ".." || fs::exists(folder / part, error)) {
             folder /= part;
             continue;
         }
-        const std::string wanted = lower_case(part.string());
-        std::vector<fs::path> matches;
-        for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-            if (lower_case(entry->path().filename().string()) == wanted)
-                matches.push_back(entry->path());
-        if (matches.empty())
+        const auto &entries = listing(folder);
+        const auto match = entries.find(lower_case(part.string()));
+        if (match == entries.end())
             return std::nullopt;
-        folder = *std::min_element(matches.begin(), matches.end());
+        folder /= match->second;
     }
     if (!fs::is_regular_file(folder, error))
         return std::nullopt;
     return folder;
 }
 
-} // namespace
+std::optional<FoundFile> FileFinder::find(const std::string &name, const std::vector<fs::path> &folders) {
+    std::optional<FoundFile> file = search(name, folders);
+    if (file)
+        found_.insert(file->path.string());
+    return file;
+}
 
-std::optional<FoundFile> find_file(const std::string &name, const std::vector<fs::path> &folders) {
+std::optional<FoundFile> FileFinder::search(const std::string &name, const std::vector<fs::path> &folders) {
+    constexpr std::size_t longest = 4096; // no system opens longer ones
     std::string slashed(trimmed(name));
     std::replace(slashed.begin(), slashed.end(), '\\', '/');
-    if (slashed.empty() || slashed.find('\0') != std::string::npos)
+    if (slashed.empty() || slashed.size() > longest || slashed.find('\0') != std::string::npos)
         return std::nullopt;
     const fs::path path(slashed);
     const std::vector<fs::path> starts = path.is_absolute() ? std::vector<fs::path>{path.root_path()} : folders;
     const fs::path relative = path.relative_path();
     std::error_code error;
     for (const fs::path &start : starts)
-        if (fs::is_regular_file(start / relative, error))
+        if (fs::is_regular_file(start / relative, error) && is_allowed(start / relative))
             return FoundFile{start / relative, true};
     for (const fs::path &start : starts)
-        if (const auto found = follow_ignoring_case(start.empty() ? fs::path(".") : start, relative))
+        if (const auto found = follow_ignoring_case(start.empty() ? fs::path(".") : start, relative);
+            found && is_allowed(*found))
             return FoundFile{*found, false};
     return std::nullopt;
 }

@@ -1,8 +1,11 @@
 // Finds the files that a scene names, as forgiving as its users need.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -13,9 +16,36 @@ struct FoundFile {
     bool exact = true; ///< false: only found by ignoring case
 };
 
-/// Looks for `name` (absolute, or relative to one of the folders in order). Backslashes count as slashes. Where no
-/// file has that very name, letters are compared without case.
-std::optional<FoundFile> find_file(const std::string &name, const std::vector<std::filesystem::path> &folders);
+class FileFinder {
+  public:
+    /// From now on files outside of these folders are not found, whether or not they exist. An empty path is the
+    /// working folder. Throws Error(ExitCode::scene) for a folder that is not there.
+    void confine(const std::vector<std::filesystem::path> &folders);
+    bool is_confined() const { return !allowed_.empty(); }
+
+    /// Looks for `name` (absolute, or relative to one of the folders in order). Backslashes count as slashes. Where no
+    /// file has that very name, letters are compared without case.
+    std::optional<FoundFile> find(const std::string &name, const std::vector<std::filesystem::path> &folders);
+
+    /// All that were found so far, each once.
+    const std::set<std::string> &found() const { return found_; }
+
+    /// Why there may be no such file, for messages.
+    const char *hint() const { return is_confined() ? " in the folders that --confined leaves" : ""; }
+
+  private:
+    std::optional<FoundFile> search(const std::string &name, const std::vector<std::filesystem::path> &folders);
+    /// Where links lead counts, not where they lie.
+    bool is_allowed(const std::filesystem::path &path) const;
+    std::optional<std::filesystem::path> follow_ignoring_case(std::filesystem::path folder,
+                                                              const std::filesystem::path &relative);
+    const std::map<std::string, std::string> &listing(const std::filesystem::path &folder);
+
+    std::vector<std::filesystem::path> allowed_; ///< canonical; empty: all
+    std::set<std::string> found_;
+    /// By folder: its entries by their names in lower case; of several the first in alphabetical order.
+    std::map<std::string, std::map<std::string, std::string>> listings_;
+};
 
 /// The whole file, or nothing if it cannot be read or is no regular file.
 std::optional<std::string> read_whole_file(const std::filesystem::path &path);

@@ -3,12 +3,15 @@
 #include "runtime/error.h"
 #include "runtime/film/tonemap.h"
 #include "runtime/io/atomic_file.h"
+#include "runtime/io/exr_header.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <optional>
 #include <thread>
 
 namespace gradus {
@@ -41,13 +44,53 @@ bool holds_srgb(const OIIO::ImageSpec &spec) {
     return !spec.format.is_floating_point() && spec.get_string_attribute("oiio:ColorSpace") == "sRGB";
 }
 
+/// What may be read of a file: a few kilobytes can declare any number of pixels.
+class PixelLimit {
+  public:
+    PixelLimit(const std::string &path, std::uint64_t limits) : path_(path), most_channels_(1024 * limits) {
+        constexpr std::uint64_t always = 1u << 28, unfolding = 64;
+        std::error_code not_there;
+        const std::uintmax_t size = std::filesystem::file_size(path, not_there);
+        most_bytes_ = (always + (not_there ? 0 : std::uint64_t(size)) * unfolding) * limits;
+        if (const std::optional<ExrSize> declared = exr_size(path); declared && !not_there) {
+            check_bytes(declared->bytes);
+            if (declared->blocks > size / 8)
+                fail_read(path, "it is truncated: its size and its pixels do not agree");
+        }
+    }
+
+    /// Before a part's pixels are read.
+    void count(const OIIO::ImageSpec &spec) {
+        channels_ += std::uint64_t(spec.nchannels);
+        if (channels_ > most_channels_)
+            fail_read(path_, fmt::format("it has more than {} channels; --limits 10 allows ten times as many",
+                                         most_channels_));
+        // At most 2^31 times 2^31 times 1024 * 4: in floating point, against overflow.
+        const double bytes = double(spec.width) * double(spec.height) * double(spec.nchannels) * sizeof(float);
+        check_bytes(bytes < 1e18 ? std::uint64_t(bytes) + bytes_ : ~std::uint64_t(0));
+        bytes_ += std::uint64_t(bytes);
+    }
+
+  private:
+    void check_bytes(std::uint64_t bytes) const {
+        if (bytes > most_bytes_)
+            fail_read(path_, fmt::format("its pixels would take {} MiB, far more than a file of its size holds; "
+                                         "--limits 10 allows ten times the {} MiB that are read",
+                                         bytes >> 20, most_bytes_ >> 20));
+    }
+
+    const std::string &path_;
+    std::uint64_t most_channels_, most_bytes_, channels_ = 0, bytes_ = 0;
+};
+
 /// Appends the channels of the part that `input` stands at.
-void read_part(OIIO::ImageInput &input, int part, const std::string &path, Image &image) {
+void read_part(OIIO::ImageInput &input, int part, const std::string &path, PixelLimit &limit, Image &image) {
     const OIIO::ImageSpec spec = input.spec();
     if (spec.deep)
         fail_read(path, "deep images are not supported");
     if (spec.width <= 0 || spec.height <= 0 || spec.depth > 1)
         fail_read(path, "it is not a plane of pixels");
+    limit.count(spec);
     const auto width = static_cast<std::uint32_t>(spec.width), height = static_cast<std::uint32_t>(spec.height);
     if (part == 0) {
         image.width = width;
@@ -131,14 +174,15 @@ void check_channels(const Image &image, const std::string &path) {
 
 } // namespace
 
-Image read_image(const std::string &path) {
+Image read_image(const std::string &path, std::uint64_t limits) {
     set_up_library();
+    PixelLimit limit(path, limits);
     const auto input = OIIO::ImageInput::open(path);
     if (!input)
         fail_read(path, OIIO::geterror());
     Image image;
     for (int part = 0; input->seek_subimage(part, 0); ++part)
-        read_part(*input, part, path, image);
+        read_part(*input, part, path, limit, image);
     return image;
 }
 

@@ -3,6 +3,7 @@
 
 #include "runtime/film/image.h"
 
+#include <cstdint>
 #include <string>
 
 namespace gradus {
@@ -11,8 +12,10 @@ namespace gradus {
 /// Channels keep their names ("R", "layer.R"); their order is the file's, so look them up by name. Colour channels of
 /// formats that hold sRGB values (PNG, JPEG) are decoded to linear. Parts of a file after the first have their channel
 /// names led by "NAME." with the part's name. Metadata that write_image() wrote is read back under the same keys;
-/// other attributes keep their names. Throws Error(ExitCode::image).
-Image read_image(const std::string &path);
+/// other attributes keep their names. What the file declares is checked before anything is allocated: at most
+/// `limits` times 1024 channels and 256 MiB of pixels as floats, to which 64 times the file's size comes.
+/// Throws Error(ExitCode::image).
+Image read_image(const std::string &path, std::uint64_t limits = 1);
 
 /// Writes all channels as 32-bit float to an OpenEXR file (zip), with the metadata as string attributes "gradus:KEY".
 /// Infinities and NaN are kept. The file is written in whole or not at all (write_file_atomically). Equal images give

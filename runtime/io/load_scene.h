@@ -2,22 +2,18 @@
 // is understood.
 #pragma once
 
+#include "runtime/io/load_options.h"
 #include "runtime/scene/scene.h"
 
-#include <map>
 #include <string>
 #include <vector>
 
 namespace gradus {
 
-struct LoadOptions {
-    std::map<std::string, std::string> parameters; ///< -D name=value, before the file's own <default>s
-    bool strict = false;                           ///< parameters that are not known become errors
-};
-
 struct LoadedScene {
     Scene scene;                       ///< in world space
     std::vector<std::string> warnings; ///< "file:line: text", in the order in which they were met
+    std::vector<std::string> files;    ///< all that were read, the scene file first
 };
 
 /// Throws Error (ExitCode::scene) with one "file:line: text" a line for everything that is wrong, so far as it can be

@@ -2,30 +2,31 @@
 // texcoords empty or one a vertex. Throws SceneError, which names the file and where it can the line.
 #pragma once
 
+#include "runtime/io/limits.h"
 #include "runtime/scene/scene.h"
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 
 namespace gradus {
 
 /// Wavefront OBJ: v, vt, vn, f with any mix of v, v/t, v//n, v/t/n and negative indices. Polygons become fans.
-/// Everything else (groups, materials, lines, curves) is skipped: the whole file is one mesh.
-Mesh read_obj(const std::filesystem::path &path);
+/// Everything else (groups, materials, lines, curves) is skipped: the whole file is one mesh. Messages quote a file
+/// only where it is called .obj, links resolved: the format has no mark, and a scene can name any file.
 Mesh parse_obj(const std::string &text, const std::string &file_name);
 
 /// PLY, ASCII or binary of either byte order. Takes x y z, nx ny nz, u v (or s t) of "vertex" and the index list of
 /// "face"; skips every other element and property. Polygons become fans.
-Mesh read_ply(const std::filesystem::path &path);
 Mesh parse_ply(const std::string &data, const std::string &file_name);
 
 struct SerializedMesh {
     Mesh mesh;
-    bool face_normals = false; ///< the file asks for flat shading
+    bool face_normals = false;        ///< the file asks for flat shading
+    std::uint64_t unfolded_bytes = 0; ///< of the stream that it was read from
 };
-/// Mesh `index` (from 0) of a file in Mitsuba's serialized format, versions 3 and 4.
-SerializedMesh read_serialized(const std::filesystem::path &path, std::uint64_t index);
-SerializedMesh parse_serialized(const std::string &data, const std::string &file_name, std::uint64_t index);
+/// Mesh `index` (from 0) of a file in Mitsuba's serialized format, versions 3 and 4. Of the limits those of what a
+/// stream may unfold to count.
+SerializedMesh parse_serialized(const std::string &data, const std::string &file_name, std::uint64_t index,
+                                const LoadLimits &limits = {});
 
 } // namespace gradus

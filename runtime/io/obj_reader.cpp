@@ -1,12 +1,16 @@
 // Wavefront OBJ. A reader of our own: exact line numbers in errors, no crash on broken files, and from_chars speed.
 #include "runtime/io/diagnostics.h"
-#include "runtime/io/file_search.h"
 #include "runtime/io/mesh_files.h"
 #include "runtime/io/text.h"
 
+#include <fmt/format.h>
+
 #include <charconv>
 #include <cmath>
+#include <compare>
+#include <filesystem>
 #include <limits>
+#include <map>
 
 namespace gradus {
 
@@ -16,12 +20,18 @@ constexpr std::uint32_t none = 0xffffffffu;
 
 struct Corner {
     std::uint32_t position, texcoord, normal; // none where the file gives none
-    bool operator==(const Corner &) const = default;
+    auto operator<=>(const Corner &) const = default;
 };
+
+constexpr int longest_list = 16; // of vertices that share a position
 
 class ObjReader {
   public:
-    ObjReader(const std::string &text, const std::string &file_name) : text_(text), file_name_(file_name) {}
+    ObjReader(const std::string &text, const std::string &file_name) : text_(text), file_name_(file_name) {
+        std::error_code not_there;
+        const std::filesystem::path file = std::filesystem::canonical(file_name, not_there);
+        quotes_ = lower_case((not_there ? std::filesystem::path(file_name) : file).extension().string()) == ".obj";
+    }
 
     Mesh read() {
         const char *at = text_.data(), *const end = at + text_.size();
@@ -39,6 +49,11 @@ class ObjReader {
   private:
     [[noreturn]] void fail(const std::string &message) const {
         throw SceneError({std::make_shared<const std::string>(file_name_), line_}, message);
+    }
+
+    /// What stands there, for messages; or nothing of it where the file may be anybody's.
+    std::string quoted(const char *at, const char *end) const {
+        return quotes_ ? quoted_excerpt({at, std::size_t(end - at)}) : "what stands there";
     }
 
     static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
@@ -60,7 +75,9 @@ class ObjReader {
     std::vector<Vector3> positions_, normals_;
     std::vector<std::array<float, 2>> texcoords_;
     std::vector<Corner> corners_;             // by vertex of the mesh
-    std::vector<std::uint32_t> first_, next_; // vertices that share a position, as lists
+    std::vector<std::uint32_t> first_, next_; // the first few vertices that share a position, as lists
+    std::map<Corner, std::uint32_t> crowded_; // the others: a list of all would be searched for each corner
+    bool quotes_ = false;
     std::vector<std::uint32_t> polygon_;
     std::vector<std::array<std::uint32_t, 3>> triangles_;
 };
@@ -75,7 +92,7 @@ int ObjReader::read_floats(const char *&at, const char *end, float *values, int 
         double value = 0;
         const auto [stop, error] = std::from_chars(at, end, value);
         if (error == std::errc::invalid_argument || (stop < end && !is_blank(*stop) && *stop != '#'))
-            fail(quoted_excerpt({at, end}) + " is not a number");
+            fail(quoted(at, end) + " is not a number");
         values[i] = error == std::errc() ? float(value) : 0.0f; // out of a double's range: nothing to keep
         at = stop;
     }
@@ -113,12 +130,11 @@ std::uint32_t ObjReader::read_index(const char *&at, const char *end, std::size_
     long long index = 0;
     const auto [stop, error] = std::from_chars(at, end, index);
     if (error == std::errc::invalid_argument)
-        fail("a face needs indices, not " + quoted_excerpt({at, end}));
+        fail(std::string("a face needs indices, not ").append(quoted(at, end)));
     at = stop;
     const long long from_zero = index > 0 ? index - 1 : index + (long long)count;
     if (error != std::errc() || index == 0 || from_zero < 0 || from_zero >= (long long)count)
-        fail(std::string("face index out of range: ") + kind + " " + std::to_string(index) + " of " +
-             std::to_string(count));
+        fail(fmt::format("face index out of range: {}{} of {}", kind, quotes_ ? fmt::format(" {}", index) : "", count));
     return std::uint32_t(from_zero);
 }
 
@@ -141,7 +157,7 @@ void ObjReader::read_face(const char *at, const char *end) {
             }
         }
         if (at < end && !is_blank(*at))
-            fail("a face corner is v, v/vt, v//vn or v/vt/vn; cannot read " + quoted_excerpt({at, end}));
+            fail("a face corner is v, v/vt, v//vn or v/vt/vn; cannot read " + quoted(at, end));
         polygon_.push_back(vertex_of(corner));
     }
     if (polygon_.size() < 3)
@@ -153,15 +169,24 @@ void ObjReader::read_face(const char *at, const char *end) {
 std::uint32_t ObjReader::vertex_of(const Corner &corner) {
     if (first_.size() < positions_.size())
         first_.resize(positions_.size(), none);
-    for (std::uint32_t vertex = first_[corner.position]; vertex != none; vertex = next_[vertex])
+    int length = 0;
+    for (std::uint32_t vertex = first_[corner.position]; vertex != none; vertex = next_[vertex], ++length)
         if (corners_[vertex] == corner)
             return vertex;
+    if (length >= longest_list)
+        if (const auto known = crowded_.find(corner); known != crowded_.end())
+            return known->second;
     if (corners_.size() >= std::numeric_limits<std::int32_t>::max())
         fail("more vertices than 32-bit indices hold");
     const auto vertex = std::uint32_t(corners_.size());
     corners_.push_back(corner);
-    next_.push_back(first_[corner.position]);
-    first_[corner.position] = vertex;
+    next_.push_back(none);
+    if (length >= longest_list) {
+        crowded_.emplace(corner, vertex);
+    } else {
+        next_.back() = first_[corner.position];
+        first_[corner.position] = vertex;
+    }
     return vertex;
 }
 
@@ -189,12 +214,5 @@ Mesh ObjReader::assemble() {
 } // namespace
 
 Mesh parse_obj(const std::string &text, const std::string &file_name) { return ObjReader(text, file_name).read(); }
-
-Mesh read_obj(const std::filesystem::path &path) {
-    const std::optional<std::string> text = read_whole_file(path);
-    if (!text)
-        throw SceneError({std::make_shared<const std::string>(path.string()), 0}, "cannot read this file");
-    return parse_obj(*text, path.string());
-}
 
 } // namespace gradus

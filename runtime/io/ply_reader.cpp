@@ -1,6 +1,5 @@
 // PLY, the Stanford polygon format: a text header that lists elements and their properties, then their values.
 #include "runtime/io/diagnostics.h"
-#include "runtime/io/file_search.h"
 #include "runtime/io/mesh_files.h"
 #include "runtime/io/text.h"
 
@@ -95,6 +94,8 @@ double load_scalar(const char *at, Scalar type, bool swap) {
     return 0;
 }
 
+constexpr std::size_t most_elements = 1000; // kinds of them; files have two or three
+
 class PlyReader {
   public:
     PlyReader(const std::string &data, const std::string &file_name)
@@ -103,6 +104,8 @@ class PlyReader {
     Mesh read() {
         read_header();
         for (const ElementDeclaration &element : elements_) {
+            if (element.properties.empty()) // none takes a byte, however many there are said to be
+                continue;
             if (element.count > std::uint64_t(end_ - at_) / element.least_size(ascii_) + 1)
                 fail("truncated: " + std::to_string(element.count) + " of \"" + element.name +
                      "\" are announced, more than the file holds");
@@ -178,6 +181,13 @@ void PlyReader::read_header() {
             const std::optional<std::int64_t> count = parse_integer(words[2]);
             if (!count || *count < 0)
                 fail("\"" + std::string(words[2]) + "\" is no count of elements");
+            for (const char *name : {"vertex", "face"}) // their properties are said once for all
+                if (words[1] == name &&
+                    std::any_of(elements_.begin(), elements_.end(),
+                                [&](const ElementDeclaration &other) { return other.name == name; }))
+                    fail(std::string("a second element \"") + name + "\"");
+            if (elements_.size() >= most_elements)
+                fail("more than " + std::to_string(most_elements) + " elements are declared");
             elements_.push_back({std::string(words[1]), std::uint64_t(*count), {}});
         } else if (words[0] == "property" && !elements_.empty() && words.size() >= 3) {
             Property property;
@@ -187,11 +197,11 @@ void PlyReader::read_header() {
             if (is_list)
                 property.count_type = scalar_type(words[2]);
             if (!type || (is_list && !property.count_type))
-                fail("unknown property type in \"" + std::string(line) + "\"");
+                fail("unknown property type in \"" + shortened(line, 80) + "\"");
             property.type = *type;
             elements_.back().properties.push_back(property);
         } else
-            fail("cannot read the header line \"" + std::string(line.substr(0, 80)) + "\"");
+            fail("cannot read the header line \"" + shortened(line, 80) + "\"");
     }
     if (!has_format)
         fail("the header has no format line");
@@ -306,12 +316,5 @@ void PlyReader::read_faces(const ElementDeclaration &element) {
 } // namespace
 
 Mesh parse_ply(const std::string &data, const std::string &file_name) { return PlyReader(data, file_name).read(); }
-
-Mesh read_ply(const std::filesystem::path &path) {
-    const std::optional<std::string> data = read_whole_file(path);
-    if (!data)
-        throw SceneError({std::make_shared<const std::string>(path.string()), 0}, "cannot read this file");
-    return parse_ply(*data, path.string());
-}
 
 } // namespace gradus

@@ -207,7 +207,7 @@ void Properties::report_unread() {
         if (is_property_tag(child.tag) || (child.tag == "texture" && written)) {
             const std::string name = snake_case(trimmed(written ? *written : ""));
             std::string message = "unknown parameter \"" + (written ? *written : "") + "\" of " + owner + " is ignored";
-            if (const auto nearest = nearest_name(name, asked_))
+            if (const auto nearest = diagnostics_.is_full() ? std::nullopt : nearest_name(name, asked_))
                 message += "; did you mean \"" + *nearest + "\"?";
             diagnostics_.unknown(child.location, message);
         } else if (child.tag == "ref")

@@ -6,11 +6,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace gradus {
 
 namespace {
 const char *const other_tags[] = {"ref", "alias", "scene"};
+constexpr std::size_t deepest_references = 100; // objects in objects, by <ref>s
+constexpr std::size_t longest_alias = 16;       // names that stand for names
 
 std::string described(const Element &element) {
     const std::string type = element.attribute_or("type", "");
@@ -18,8 +21,9 @@ std::string described(const Element &element) {
 }
 } // namespace
 
-SceneBuilder::SceneBuilder(const Document &document, Diagnostics &diagnostics)
-    : document_(document), diagnostics_(diagnostics),
+SceneBuilder::SceneBuilder(const Document &document, const LoadLimits &limits, FileFinder &finder,
+                           Diagnostics &diagnostics)
+    : document_(document), limits_(limits), finder_(finder), diagnostics_(diagnostics),
       resolve_([this](const Element &reference) -> const Element & { return resolve(reference); }) {}
 
 /// Reports tags that mean nothing, in every object.
@@ -67,7 +71,7 @@ const Element &SceneBuilder::resolve(const Element &reference) {
         throw SceneError(reference.location, "<ref> needs id");
     std::string name = *id;
     auto found = by_id_.find(name);
-    for (std::size_t i = 0; found == by_id_.end() && i <= aliases_.size(); ++i) {
+    for (std::size_t i = 0; found == by_id_.end() && i < longest_alias; ++i) {
         const auto alias = aliases_.find(name);
         if (alias == aliases_.end())
             break;
@@ -75,9 +79,9 @@ const Element &SceneBuilder::resolve(const Element &reference) {
         found = by_id_.find(name);
     }
     if (found == by_id_.end()) {
-        std::vector<std::string> known;
-        for (const auto &[other, element] : by_id_)
-            known.push_back(other);
+        std::vector<std::string> known; // not for the thousandth time: there may be as many ids
+        for (auto at = by_id_.begin(); at != by_id_.end() && !diagnostics_.is_full(); ++at)
+            known.push_back(at->first);
         std::string message = "nothing has the id \"" + *id + "\"";
         if (const auto nearest = nearest_name(*id, known))
             message += "; did you mean \"" + *nearest + "\"?";
@@ -90,6 +94,15 @@ template <typename Result>
 Result SceneBuilder::build_object(const Element &element) {
     if (std::find(open_.begin(), open_.end(), &element) != open_.end())
         throw SceneError(element.location, described(element) + " contains itself through a <ref>");
+    if (open_.size() > deepest_references)
+        throw SceneError(element.location, described(element) + " is nested more than " +
+                                               std::to_string(deepest_references) + " deep through <ref>s");
+    if constexpr (std::is_same_v<Result, Material>)
+        if (const auto known = built_materials_.find(&element); known != built_materials_.end()) {
+            if (const auto *error = std::get_if<SceneError>(&known->second))
+                throw *error;
+            return std::get<Material>(known->second);
+        }
     Properties properties(element, resolve_, diagnostics_);
     const std::string type = properties.type();
     const PluginFunction<Result> plugin = find_plugin<Result>(type);
@@ -106,9 +119,13 @@ Result SceneBuilder::build_object(const Element &element) {
         Result result = plugin(properties, *this);
         properties.report_unread();
         open_.pop_back();
+        if constexpr (std::is_same_v<Result, Material>)
+            built_materials_.emplace(&element, result);
         return result;
-    } catch (...) {
+    } catch (const SceneError &error) {
         open_.pop_back();
+        if constexpr (std::is_same_v<Result, Material>)
+            built_materials_.emplace(&element, error);
         throw;
     }
 }
@@ -128,16 +145,21 @@ std::filesystem::path SceneBuilder::find_file(Properties &properties) {
     std::vector<std::filesystem::path> folders = document_.search_folders;
     if (const auto &file = properties.location().file) // an included file may lie elsewhere, its meshes beside it
         folders.push_back(std::filesystem::path(*file).parent_path());
-    const auto found = gradus::find_file(name, folders);
+    const auto found = finder_.find(name, folders);
     if (!found)
-        throw properties.error("filename", "cannot find the file \"" + name + "\"");
+        throw properties.error("filename", "cannot find the file \"" + name + "\"" + finder_.hint());
     if (!found->exact)
         diagnostics_.warn(properties.location_of("filename"),
                           "\"" + name + "\" differs in case from the file " + found->path.string());
     return found->path;
 }
 
-const std::string &SceneBuilder::file_bytes(const std::filesystem::path &path, const Location &location) {
+const std::string &SceneBuilder::file_bytes(const std::filesystem::path &path, const Location &location, bool whole) {
+    std::error_code not_there;
+    const std::uintmax_t size =
+        path == cached_path_ ? cached_bytes_.size() : std::filesystem::file_size(path, not_there);
+    if (!not_there && (whole || path != cached_path_))
+        count_mesh_bytes(size, location);
     if (path != cached_path_) {
         std::optional<std::string> bytes = read_whole_file(path);
         if (!bytes)
@@ -146,6 +168,23 @@ const std::string &SceneBuilder::file_bytes(const std::filesystem::path &path, c
         cached_path_ = path;
     }
     return cached_bytes_;
+}
+
+void SceneBuilder::count_mesh_bytes(std::uint64_t bytes, const Location &location) {
+    mesh_bytes_ += std::min(bytes, limits_.mesh_bytes + 1);
+    if (mesh_bytes_ > limits_.mesh_bytes)
+        throw SceneError(location, "the shapes up to this one read more than " +
+                                       std::to_string(limits_.mesh_bytes >> 20) + " MiB of meshes" + limits_hint);
+}
+
+void SceneBuilder::count_geometry(const Mesh &mesh, const Location &location) {
+    geometry_bytes_ += mesh.positions.size() * sizeof mesh.positions[0] + mesh.normals.size() * sizeof mesh.normals[0] +
+                       mesh.texcoords.size() * sizeof mesh.texcoords[0] +
+                       mesh.triangles.size() * sizeof mesh.triangles[0];
+    if (geometry_bytes_ > limits_.geometry_bytes)
+        throw SceneError(location, "the meshes up to this one have more than " +
+                                       std::to_string(limits_.geometry_bytes >> 20) + " MiB of vertices and triangles" +
+                                       limits_hint);
 }
 
 Scene SceneBuilder::build() {
@@ -301,7 +340,10 @@ std::int32_t SceneBuilder::emitter_of(Properties &shape) {
     const std::string type(trimmed(element.attribute_or("type", "")));
     if (type != "area" && find_plugin<Emitter>(type))
         throw SceneError(emitters[0].location, "only an area emitter can stand inside a shape, not \"" + type + "\"");
-    const Emitter emitter = build_object<Emitter>(element);
+    auto known = area_emitters_.find(&element);
+    if (known == area_emitters_.end())
+        known = area_emitters_.emplace(&element, build_object<Emitter>(element)).first;
+    const Emitter &emitter = known->second;
     if (emitter.value == Rgb{})
         return -1;
     scene_.emitters.push_back(emitter);
@@ -321,6 +363,7 @@ void SceneBuilder::build_shape(const Element &element) {
             diagnostics_.warn(element.location, std::to_string(built->degenerate) +
                                                     " degenerate triangles of shape \"" + shape.name +
                                                     "\" are left out");
+        count_geometry(built->mesh, element.location);
         if (built->mesh.triangles.empty()) {
             diagnostics_.warn(element.location, "shape \"" + shape.name + "\" has no area and is left out");
             return;

@@ -9,13 +9,14 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace gradus {
 
 class SceneBuilder {
   public:
-    SceneBuilder(const Document &document, Diagnostics &diagnostics);
+    SceneBuilder(const Document &document, const LoadLimits &limits, FileFinder &finder, Diagnostics &diagnostics);
 
     /// Errors go to the diagnostics; the scene is of use only if there are none.
     Scene build();
@@ -24,8 +25,12 @@ class SceneBuilder {
 
     /// The file that the string parameter "filename" names. A missing one is a SceneError.
     std::filesystem::path find_file(Properties &properties);
-    /// A file's bytes. The last file is kept, since many shapes may come from one.
-    const std::string &file_bytes(const std::filesystem::path &path, const Location &location);
+    /// A file's bytes. The last file is kept, since many shapes may come from one. They count as read where they come
+    /// from the disk, and each time where the shape takes the file as a `whole`.
+    const std::string &file_bytes(const std::filesystem::path &path, const Location &location, bool whole);
+    /// Counts what a shape reads. Throws SceneError where all of them read more than the limit.
+    void count_mesh_bytes(std::uint64_t bytes, const Location &location);
+    const LoadLimits &limits() const { return limits_; }
     /// Builds a nested object by its plugin. Throws SceneError where its type is not known.
     template <typename Result>
     Result build_object(const Element &element);
@@ -43,20 +48,27 @@ class SceneBuilder {
     void check_unused_bsdf(const Element &element);
     std::uint32_t material_of(Properties &shape);
     std::int32_t emitter_of(Properties &shape);
+    void count_geometry(const Mesh &mesh, const Location &location);
     void check_whole();
 
     const Document &document_;
+    const LoadLimits limits_;
+    FileFinder &finder_;
     Diagnostics &diagnostics_;
     ResolveReference resolve_;
     Scene scene_;
     std::map<std::string, const Element *> by_id_;
     std::map<std::string, std::string> aliases_;
     std::map<const Element *, std::uint32_t> materials_;
+    /// Each is built once, however many refer to it, and fails once.
+    std::map<const Element *, std::variant<Material, SceneError>> built_materials_;
+    std::map<const Element *, Emitter> area_emitters_;
     std::int64_t default_material_ = -1, default_emitter_material_ = -1;
     const Element *sensor_ = nullptr, *integrator_ = nullptr, *environment_ = nullptr;
     std::vector<const Element *> open_; ///< objects that are being built, outermost first
     std::filesystem::path cached_path_;
     std::string cached_bytes_;
+    std::uint64_t mesh_bytes_ = 0, geometry_bytes_ = 0;
 };
 
 } // namespace gradus

@@ -2,7 +2,6 @@
 // (32 bits). A mesh is the bytes 1C 04, its version (16 bits), and a zlib stream of flags, [from version 4: a name],
 // counts, positions, normals, texture coordinates, colours and triangles. All little endian.
 #include "runtime/io/diagnostics.h"
-#include "runtime/io/file_search.h"
 #include "runtime/io/mesh_files.h"
 
 #include <zlib.h>
@@ -71,8 +70,9 @@ class Inflater {
 
 class SerializedReader {
   public:
-    SerializedReader(const std::string &data, const std::string &file_name, std::uint64_t index)
-        : data_(data), file_name_(file_name), index_(index) {}
+    SerializedReader(const std::string &data, const std::string &file_name, std::uint64_t index,
+                     const LoadLimits &limits)
+        : data_(data), file_name_(file_name), index_(index), limits_(limits) {}
 
     SerializedMesh read();
 
@@ -94,6 +94,7 @@ class SerializedReader {
     const std::string &data_;
     const std::string &file_name_;
     std::uint64_t index_;
+    const LoadLimits limits_;
 };
 
 /// Where the mesh begins and ends. The end is the next offset or the table.
@@ -169,16 +170,30 @@ SerializedMesh SerializedReader::read() {
     unsigned char raw[4];
     read_bytes(inflater, raw, 4);
     const auto flags = little_endian<std::uint32_t>(raw);
-    if (version == 4)
-        for (char c = 1; c != 0;) // the name
+    if (version == 4) { // the name
+        constexpr int longest = 4096;
+        int length = 0;
+        for (char c = 1; c != 0; ++length) {
+            if (length > longest)
+                fail("corrupt: the name of mesh " + std::to_string(index_) + " has no end");
             read_bytes(inflater, &c, 1);
+        }
+    }
     // Deflate shrinks by 1032 at most, which bounds what a stream can hold.
     const std::uint64_t most = (end - begin) * 1032 / 12 + 1;
     const std::uint64_t vertices = read_count(inflater, std::min<std::uint64_t>(most, 0x7fffffff));
     const std::uint64_t triangles = read_count(inflater, most);
 
     const bool doubles = flags & double_precision;
+    const std::uint64_t numbers = 3 + (flags & has_normals ? 3 : 0) + (flags & has_texcoords ? 2 : 0) +
+                                  (flags & has_colors ? 3 : 0); // of a vertex
+    const std::uint64_t unfolded = vertices * numbers * (doubles ? 8 : 4) + triangles * 12;
+    // The least that numbers shrink in practice is to a third; a plane of a million equal ones is another matter.
+    if (unfolded > std::max(limits_.unfolded_bytes, (end - begin) * limits_.unfolding))
+        fail("mesh " + std::to_string(index_) + " unfolds to " + std::to_string(unfolded >> 20) + " MiB, " +
+             std::to_string(limits_.unfolding) + " times its size and more" + limits_hint);
     SerializedMesh result;
+    result.unfolded_bytes = unfolded;
     result.face_normals = flags & wants_face_normals;
     const auto to_vectors = [&](const std::vector<float> &values) {
         std::vector<Vector3> vectors(values.size() / 3);
@@ -214,15 +229,9 @@ SerializedMesh SerializedReader::read() {
 
 } // namespace
 
-SerializedMesh parse_serialized(const std::string &data, const std::string &file_name, std::uint64_t index) {
-    return SerializedReader(data, file_name, index).read();
-}
-
-SerializedMesh read_serialized(const std::filesystem::path &path, std::uint64_t index) {
-    const std::optional<std::string> data = read_whole_file(path);
-    if (!data)
-        throw SceneError({std::make_shared<const std::string>(path.string()), 0}, "cannot read this file");
-    return parse_serialized(*data, path.string(), index);
+SerializedMesh parse_serialized(const std::string &data, const std::string &file_name, std::uint64_t index,
+                                const LoadLimits &limits) {
+    return SerializedReader(data, file_name, index, limits).read();
 }
 
 } // namespace gradus

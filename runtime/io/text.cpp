@@ -121,12 +121,15 @@ std::size_t edit_distance(const std::string &a, const std::string &b) {
 
 std::optional<std::string> nearest_name(const std::string &name, const std::vector<std::string> &candidates) {
     std::optional<std::string> nearest;
+    constexpr std::size_t longest = 100; // nobody misspells more
+    if (name.size() > longest)
+        return nearest;
     // Half of the letters may differ: a guess further off than that misleads.
-    std::size_t best = std::min<std::size_t>(name.size(), 100) / 2 + 1;
+    std::size_t best = name.size() / 2 + 1;
     for (const std::string &candidate : candidates) {
         if (candidate.size() > 2 * name.size() + 2)
             continue;
-        const std::size_t distance = edit_distance(name.substr(0, 100), candidate);
+        const std::size_t distance = edit_distance(name, candidate);
         if (distance < best) {
             best = distance;
             nearest = candidate;
@@ -140,6 +143,18 @@ std::string quoted_excerpt(std::string_view text) {
     result.append(text.substr(0, 24));
     result.append("\"");
     return result;
+}
+
+std::string shortened(std::string_view text, std::size_t most) {
+    if (text.size() <= most)
+        return std::string(text);
+    const auto inside_a_letter = [&](std::size_t at) { return (text[at] & 0xc0) == 0x80; }; // of UTF-8
+    std::size_t head = most * 3 / 4, tail = text.size() - most / 4;
+    while (head > 0 && inside_a_letter(head))
+        --head;
+    while (tail < text.size() && inside_a_letter(tail))
+        ++tail;
+    return std::string(text.substr(0, head)) + "..." + std::string(text.substr(tail));
 }
 
 std::string join(const std::vector<std::string> &items) {

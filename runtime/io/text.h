@@ -31,6 +31,9 @@ std::optional<std::vector<double>> parse_numbers(std::string_view text);
 std::optional<std::string> nearest_name(const std::string &name, const std::vector<std::string> &candidates);
 /// The beginning of the text between double quotes, for messages.
 std::string quoted_excerpt(std::string_view text);
+/// The text, or its beginning and its end with "..." between them where it has more than `most` bytes: what a file says
+/// may be of any length, a message not.
+std::string shortened(std::string_view text, std::size_t most);
 /// Items joined by ", ".
 std::string join(const std::vector<std::string> &items);
 

@@ -51,12 +51,19 @@ std::size_t drop_degenerate(Mesh &mesh) {
     const auto end = std::remove_if(mesh.triangles.begin(), mesh.triangles.end(), is_degenerate);
     const std::size_t dropped = std::size_t(mesh.triangles.end() - end);
     mesh.triangles.erase(end, mesh.triangles.end());
-    // What no triangle uses must not spoil bounds that someone takes over all positions.
-    if (!mesh.triangles.empty())
-        for (Vector3 &p : mesh.positions)
-            if (!is_finite(p))
-                p = mesh.positions[mesh.triangles[0][0]];
     return dropped;
+}
+
+/// What no triangle uses goes to where one is: bounds that someone takes over all positions are of what can be hit.
+void hide_unused(Mesh &mesh) {
+    std::vector<bool> used(mesh.positions.size(), false);
+    for (const auto &t : mesh.triangles)
+        for (const std::uint32_t index : t)
+            used[index] = true;
+    const Vector3 place = mesh.triangles.empty() ? Vector3{} : mesh.positions[mesh.triangles[0][0]];
+    for (std::size_t i = 0; i < used.size(); ++i)
+        if (!used[i])
+            mesh.positions[i] = place;
 }
 
 /// The file's normals tell the front: a triangle that is wound against the sum of its three is turned round.
@@ -124,6 +131,7 @@ BuiltMesh build_mesh(Mesh mesh, const Matrix4 &to_world, const MeshOptions &opti
     transform_positions(mesh, to_world);
     transform_normals(mesh, to_world);
     built.degenerate = drop_degenerate(mesh);
+    hide_unused(mesh);
 
     if (options.front_from_local_winding) {
         // A mirror turns the winding over but not the side that a mapped normal points to.

@@ -15,17 +15,26 @@ using namespace lib_float;
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-// Positions are exact to a few units in the last place of the largest coordinate; 32 of those (2^-24 each, so
-// 2^-18 with room) keep a new ray off the surface it starts from.
-constexpr float offset_scale = 0x1p-18f;
+/// What the tracer errs by in meeting a primitive, relative to its size: 4 units of 2^-24, four times what was found
+/// (tests/trace/self_hit_test.cpp).
+constexpr double tracer_error = 0x1p-22;
+/// Times the edges' product over the doubled area where that is large; found: a fifth of it. Of longer splinters than
+/// most_slant some rays are caught.
+constexpr double least_slant = 4, most_slant = 1024;
 
 Vector3 operator-(Vector3 a, Vector3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 Vector3 operator+(Vector3 a, Vector3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 Vector3 operator*(float s, Vector3 a) { return {s * a.x, s * a.y, s * a.z}; }
 Vector3 cross(Vector3 a, Vector3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
 double length(Vector3 a) { return std::sqrt(double(a.x) * a.x + double(a.y) * a.y + double(a.z) * a.z); }
-float largest(Vector3 a) { return std::max({std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)}); }
 double luminance(Rgb c) { return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b; }
+
+/// What a triangle adds to how far rays start off it.
+float triangle_offset_of(Vector3 e1, Vector3 e2, double area) {
+    const double slant = area > 0 ? length(e1) * length(e2) / (2 * area) : most_slant;
+    const double longest = std::max({length(e1), length(e2), length(e2 - e1)});
+    return static_cast<float>(tracer_error * longest * std::clamp(slant / least_slant, 1.0, most_slant / least_slant));
+}
 
 void put(float *record, int field, Vector3 v) {
     record[field] = v.x;
@@ -120,9 +129,9 @@ void add_mesh(const Scene &scene, const Shape &shape, const TraitMap &traits, Sc
     for (const auto &t : mesh.triangles) {
         const Vector3 p0 = mesh.positions[t[0]];
         const Vector3 e1 = mesh.positions[t[1]] - p0, e2 = mesh.positions[t[2]] - p0;
-        const float offset = offset_scale * (largest(p0) + std::max(largest(e1), largest(e2)));
         const Vector3 area_normal = cross(e1, e2);
         const double area = 0.5 * length(area_normal);
+        const float offset = triangle_offset_of(e1, e2, area);
 
         tables.triangles.resize(tables.triangles.size() + triangle_stride, 0.0f);
         float *record = &tables.triangles[tables.triangles.size() - triangle_stride];
@@ -171,7 +180,7 @@ void add_mesh(const Scene &scene, const Shape &shape, const TraitMap &traits, Sc
 
 void add_sphere(const Scene &scene, const Shape &shape, SceneTables &tables, LightBuilder &lights) {
     const Sphere &sphere = scene.spheres[shape.geometry];
-    const float offset = offset_scale * (largest(sphere.center) + sphere.radius);
+    const float offset = static_cast<float>(tracer_error * sphere.radius);
     const float facing = sphere.flip_normals ? -1.0f : 1.0f;
     tables.spheres.resize(tables.spheres.size() + sphere_stride);
     float *record = &tables.spheres[tables.spheres.size() - sphere_stride];

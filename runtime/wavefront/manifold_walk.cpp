@@ -232,6 +232,7 @@ std::vector<std::uint32_t> ManifoldWalk::sort(std::uint32_t rows) {
 }
 
 void ManifoldWalk::trace(std::uint32_t rows) {
+    session_.ask_to_go_on();
     const TraceCounts traced = trace_segments(
         session_.tracer, tables_->precision(),
         {&(*tables_)["walk_ray"], chain_rows_, rows, walk_ray_origin_x, walk_ray_direction_x, walk_ray_primitive}, {},

@@ -21,6 +21,7 @@ TraitMap traits_for(const Scene &scene, const SessionOptions &options, const Tra
         traits = with_all_traits(traits);
     // Settings of a method, which no scene has.
     traits["TRAIT_SHARED_JITTER"] = 0;
+    traits["TRAIT_STRATIFIED"] = 0;
     traits["TRAIT_GRADIENT"] = 0;
     traits["TRAIT_LIGHT_VERTICES"] = 0;
     traits["TRAIT_LIGHT_STARTS"] = 0;

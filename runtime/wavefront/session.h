@@ -38,6 +38,12 @@ struct Session {
     std::map<std::string, std::uint64_t> rays;     ///< traced, by kind
     double trace_seconds = 0;
 
+    /// To be called before each longer piece of work. Throws Stopped where the caller wants no more.
+    void ask_to_go_on() const {
+        if (options.stop && options.stop())
+            throw Stopped();
+    }
+
     bool has(const char *trait) const { return traits.at(trait) != 0; }
     std::uint32_t pixels() const { return film.crop_width * film.crop_height; }
     std::uint32_t max_depth() const;

@@ -10,6 +10,10 @@
 
 namespace gradus {
 
+/// Thrown where SessionOptions::stop has asked for it. The samples of that batch are lost, those before are not; only
+/// an image may be asked for then.
+struct Stopped {};
+
 struct SessionOptions {
     std::uint64_t seed = 0;
     int threads = 0;                         ///< host threads that trace; 0: all
@@ -21,6 +25,8 @@ struct SessionOptions {
     enum class Strategy { mis, light, bsdf };
     Strategy strategy = Strategy::mis; ///< for tests: light sampling alone or BSDF sampling alone
     std::string dump_kernels;          ///< folder for the source of each kernel as it was compiled; empty: none
+    /// Asked every few milliseconds while samples render; true: render_batch() throws Stopped. May be empty.
+    std::function<bool()> stop;
     /// Called when a kernel has been compiled: its name, how many are ready, of how many, and its seconds.
     std::function<void(const std::string &, std::size_t, std::size_t, double)> on_compiled;
 };

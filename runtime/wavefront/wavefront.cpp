@@ -71,6 +71,7 @@ Range Wavefront::refill(std::uint32_t &slot) {
 }
 
 void Wavefront::trace() {
+    session_.ask_to_go_on();
     const std::size_t rows = tables_->rows().paths;
     SegmentTable connections; // stays empty where paths are connected to no light
     if (tables_->has("shadow"))

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """bench/report --draw-only on small JSON files: the page is there, whole, and says what they hold."""
 
+import html
 import json
 import pathlib
 import re
@@ -138,8 +139,9 @@ class DrawOnly(unittest.TestCase):
         self.assertIn("box &lt;1&gt;", page)
         self.assertIn("mitsuba: skipped", page)
         self.assertIn("gbdpt: skipped", page)
-        self.assertIn("box 8x8 4 spp, after 4 passes: error of the reconstruction 0.25 of the throughput's, of the "
-                      "gradients 0.50 of its differences'; 12% of the shifts fail.", page)
+        self.assertIn(html.escape("box 8x8 4 spp, after 4 passes: error of the reconstruction 0.25 of the "
+                                  "throughput's, of the gradients 0.50 of its differences'; 12% of the shifts fail."),
+                      page)
         self.assertIn("<td>gpm</td><td>2.5e+06</td><td>1.60</td><td>0.25</td><td>6.40</td>", page)
         self.assertIn("<td>sppm</td><td>2e+06</td><td></td><td>0.125</td><td></td>", page)
         self.assertIn("a processor, 2 processors; a device", page)

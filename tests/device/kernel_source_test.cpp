@@ -88,10 +88,10 @@ TEST(KernelTraits, AreUsedByEachStageThatHasThem) {
 TEST(KernelTraits, AreThoseThatAMethodKnows) {
     // Of the render and of the solver, not of the scene.
     std::set<std::string> known = {
-        "TRAIT_AOV",       "TRAIT_SHARED_JITTER",  "TRAIT_APART",        "TRAIT_SHIFT_DISTANCE",
-        "TRAIT_GRADIENT",  "TRAIT_LIGHT_VERTICES", "TRAIT_LIGHT_STARTS", "TRAIT_ONLY_CHAINS",
-        "SAMPLES_LIGHTS",  "FEW_LIGHTS",           "STRATEGY",           "SOLVER_CHANNELS",
-        "SOLVER_WEIGHTED", "SOLVER_JOINT"};
+        "TRAIT_AOV",         "TRAIT_SHARED_JITTER",  "TRAIT_APART",        "TRAIT_SHIFT_DISTANCE",
+        "TRAIT_GRADIENT",    "TRAIT_LIGHT_VERTICES", "TRAIT_LIGHT_STARTS", "TRAIT_STRATIFIED",
+        "TRAIT_ONLY_CHAINS", "SAMPLES_LIGHTS",       "FEW_LIGHTS",         "STRATEGY",
+        "SOLVER_CHANNELS",   "SOLVER_WEIGHTED",      "SOLVER_JOINT"};
     for (const auto &[name, value] : scene_traits(Scene{}))
         known.insert(name);
     std::set<std::string> declared;

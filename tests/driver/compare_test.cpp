@@ -114,6 +114,29 @@ TEST_F(Compare, TheSameSeedTwiceFails) {
     EXPECT_THAT(outcome.out, HasSubstr("the same seed 1"));
 }
 
+TEST_F(Compare, ACheckNeedsSomethingToJudgeBy) {
+    write_image(make_gray(2, 1, {1, 2}), at("image.exr"));
+    const Outcome outcome = run({"compare", "image.exr", "image.exr", "--check"});
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_THAT(outcome.err, HasSubstr("nothing to judge by: give several seeds"));
+    EXPECT_EQ(run({"compare", "image.exr", "image.exr"}).exit_code, 0);
+    EXPECT_EQ(run({"compare", "image.exr", "image.exr", "--check", "--max-relmse", "1"}).exit_code, 0);
+    // What differs beyond doubt needs no measure.
+    write_image(make_gray(2, 1, {1, std::numeric_limits<float>::infinity()}), at("infinite.exr"));
+    EXPECT_EQ(run({"compare", "infinite.exr", "image.exr", "--check"}).exit_code, 1);
+}
+
+TEST_F(Compare, OutputsOverInputsAreRefused) {
+    write_image(make_gray(2, 1, {1, 2}), at("image.exr"));
+    const std::string before = text_of("image.exr");
+    for (const char *option : {"--error-image", "--json"})
+        for (const char *name : {"image.exr", "./image.exr"}) {
+            EXPECT_EQ(run({"compare", "image.exr", "image.exr", option, name}).exit_code, 2) << option;
+            EXPECT_EQ(text_of("image.exr"), before);
+        }
+    EXPECT_EQ(run({"compare", "image.exr", "image.exr", "--json", "a.exr", "--error-image", "./a.exr"}).exit_code, 2);
+}
+
 TEST_F(Compare, NonFiniteValuesAreReportedAndFail) {
     write_image(make_gray(2, 1, {1, std::numeric_limits<float>::quiet_NaN()}), at("image.exr"));
     write_image(make_gray(2, 1, {1, 1}), at("reference.exr"));

@@ -229,6 +229,27 @@ TEST_P(EndToEndOf, TimeEndsTheRender) {
     expect_valid_image();
 }
 
+/// Facing mirrors, of which no ray and no roulette frees a path.
+constexpr const char *endless_scene = R"(<scene version="3.0.0">
+  <integrator type="path"><integer name="rr_depth" value="1000000"/></integrator>
+  <sensor type="perspective"><film type="hdrfilm"><rfilter type="box"/></film></sensor>
+  <emitter type="constant"/>
+  <shape type="sphere"><float name="radius" value="2"/><boolean name="flip_normals" value="true"/>
+    <bsdf type="conductor"><string name="material" value="none"/></bsdf></shape>
+</scene>
+)";
+
+// The time is a second past which batches are waited for; a batch of this scene takes minutes.
+TEST_F(EndToEnd, ABatchThatDoesNotEndIsGivenUp) {
+    std::ofstream(at("endless.xml")) << endless_scene;
+    const Outcome outcome = run({"render", at("endless.xml"), "-o", "out.exr", "--method", "pt", "--size", "128x128",
+                                 "--time", "0.2", "--stats", "out.json"});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("no batch of samples came to its end"));
+    EXPECT_EQ(nlohmann::json::parse(text_of("out.json")).at("samples"), 0);
+    EXPECT_EQ(count_non_finite(read_image(at("out.exr"))), 0u);
+}
+
 INSTANTIATE_TEST_SUITE_P(Methods, EndToEndOf, ::testing::Values("pt", "gpt", "sppm", "gpm"),
                          [](const auto &info) { return std::string(info.param); });
 

@@ -1,6 +1,9 @@
 // The gradus program with a scene loader and a method that tests control by scene parameters (-D):
 //   batch_ms=N   what a batch of one sample a pixel takes (0)
-//   fail=memory  the render runs out of memory; fail=strange: throws what is no exception
+//   fail=memory  the render runs out of memory; fail=strange: throws what is no exception; memory-later, device-later:
+//                after three samples a pixel; memory-image: and in image(), too; memory-partial: in the first image()
+//   reads=FILE   the loader says that it read this file, too
+//   spp=N        the samples that the scene asks for (4)
 //   nan=1        one value of the image is NaN
 //   warn=TEXT    the loader warns
 //   pilot_ms=N   what the pilot of method auto takes (0)
@@ -38,6 +41,9 @@ LoadedScene load_fake_scene(const std::string &path, const LoadOptions &options)
     loaded.scene.settings.samples_per_pixel = 4;
     if (!parameter("warn").empty())
         loaded.warnings.push_back(path + ":2: " + parameter("warn"));
+    loaded.files = {path, parameter("reads")};
+    if (!parameter("spp").empty())
+        loaded.scene.settings.samples_per_pixel = std::stoull(parameter("spp"));
     return loaded;
 }
 
@@ -62,12 +68,18 @@ class FakeMethod : public Method {
             throw std::bad_alloc();
         if (parameter("fail") == "strange")
             throw 7;
+        if (done_ == 3 && (parameter("fail") == "memory-later" || parameter("fail") == "memory-image"))
+            throw std::bad_alloc();
+        if (done_ == 3 && parameter("fail") == "device-later")
+            throw Error(ExitCode::device, "the fake device is lost");
         if (!parameter("batch_ms").empty())
             std::this_thread::sleep_for(std::chrono::milliseconds(std::stoi(parameter("batch_ms"))));
         ++done_;
         return done_ < samples_per_pixel_;
     }
     Image image() override {
+        if (parameter("fail") == "memory-image" || (parameter("fail") == "memory-partial" && done_ == 1))
+            throw std::bad_alloc();
         Image image;
         image.width = width_;
         image.height = height_;

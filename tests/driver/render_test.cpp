@@ -7,7 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include <chrono>
-#include <cmath>
+#include <fcntl.h>
+#include <fstream>
+#include <sys/file.h>
+#include <unistd.h>
 
 namespace gradus {
 namespace {
@@ -132,12 +135,104 @@ TEST_F(Render, SamplesEndATimedRenderWhereBothAreGiven) {
     EXPECT_EQ(value(read_image(at("out.exr")), "G"), 3);
 }
 
-TEST_F(Render, WarnsOfTheSceneAndOfValuesThatAreNotFinite) {
-    const Outcome outcome = render({"-o", "out.exr", "-D", "warn=a strange parameter", "-D", "nan=1"});
+TEST_F(Render, WarnsOfTheScene) {
+    const Outcome outcome = render({"-o", "out.exr", "-D", "warn=a strange parameter"});
     EXPECT_EQ(outcome.exit_code, 0);
     EXPECT_THAT(outcome.err, HasSubstr("warning: scene.xml:2: a strange parameter"));
-    EXPECT_THAT(outcome.err, HasSubstr("1 values of the image are NaN or infinite"));
-    EXPECT_TRUE(std::isnan(value(read_image(at("out.exr")), "B")));
+}
+
+TEST_F(Render, ValuesThatAreNotFiniteAreAnErrorAndNotInTheFile) {
+    for (const char *partial : {"1000", "1e-9"}) {
+        const Outcome outcome = render({"-o", "out.exr", "-D", "nan=1", "--quiet", "--write-partial", partial});
+        EXPECT_EQ(outcome.exit_code, 1);
+        const std::string said = "gradus: error: 1 pixels have a value that is NaN or infinite";
+        EXPECT_THAT(outcome.err, HasSubstr(said));
+        EXPECT_EQ(outcome.err.find(said), outcome.err.rfind(said)) << "said once";
+        const Image image = read_image(at("out.exr"));
+        EXPECT_EQ(value(image, "B"), 0);
+        EXPECT_EQ(image.find("B")->values[1], 0.5f);
+        EXPECT_EQ(image.find("G")->values[0], 4);
+    }
+}
+
+TEST_F(Render, OutputsOverInputsOrEachOtherAreRefusedHoweverTheyAreWritten) {
+    std::filesystem::create_directory(folder / "sub");
+    std::filesystem::create_symlink("scene.xml", folder / "link.json");
+    std::filesystem::create_symlink("new.exr", folder / "link.exr");
+    std::filesystem::create_symlink(".", folder / "here");
+    std::filesystem::create_hard_link(folder / "scene.xml", folder / "hard.json");
+    const std::string scene = text_of("scene.xml");
+    const std::vector<std::vector<std::string>> cases = {
+        {"-o", "out.exr", "--stats", "scene.xml"},
+        {"-o", "out.exr", "--stats", "./sub/../scene.xml"},
+        {"-o", "out.exr", "--stats", at("scene.xml")},
+        {"-o", "out.exr", "--stats", "link.json"},
+        {"-o", "out.exr", "--stats", "hard.json"},
+        {"-o", "out.exr", "--stats", "here/scene.xml"},
+        {"-o", "out.exr", "--stats", "out.exr"},
+        {"-o", "out.exr", "--stats", "sub/../out.exr"},
+        {"-o", "new.exr", "--stats", "link.exr"},
+        {"-o", "new.exr", "--stats", "here/new.exr"},
+        {"-o", "out.exr", "--png", "--stats", "./out.png"},
+    };
+    for (std::vector<std::string> options : cases) {
+        options.insert(options.end(), {"-D", "batch_ms=60000"});
+        const Outcome outcome = render(options);
+        EXPECT_EQ(outcome.exit_code, 2) << options[3] << ": " << outcome.err;
+        EXPECT_EQ(text_of("scene.xml"), scene);
+    }
+    EXPECT_EQ(render({"-o", "link.exr"}).exit_code, 0) << "a link that leads elsewhere is none of these";
+    EXPECT_TRUE(std::filesystem::is_regular_file(folder / "new.exr"));
+}
+
+/// Meshes and included files are inputs, too: the fake loader says that it read one.
+TEST_F(Render, OutputsOverFilesThatTheSceneNamesAreRefused) {
+    std::ofstream(folder / "mesh.ply") << "ply";
+    const std::vector<std::string> options{"-D", "reads=mesh.ply", "-D",      "batch_ms=60000",
+                                           "-o", "out.exr",        "--stats", "./mesh.ply"};
+    const Outcome outcome = render(options);
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("file to read"));
+    EXPECT_EQ(text_of("mesh.ply"), "ply");
+}
+
+TEST_F(Render, TooManySamplesToCountAreRefused) {
+    EXPECT_EQ(render({"-o", "out.exr", "-D", "spp=1099511627776", "--size", "4096x4096"}).exit_code, 2);
+    EXPECT_EQ(render({"-o", "out.exr", "--spp", "1073741824", "--size", "65536x65536"}).exit_code, 2);
+    EXPECT_THAT(files(), ElementsAre("scene.xml"));
+}
+
+TEST_F(Render, WhatWasRenderedIsSavedWhereMemoryOrTheDeviceFails) {
+    for (const char *fail : {"memory-later", "device-later"}) {
+        std::filesystem::remove(at("out.exr"));
+        const Outcome outcome = render({"-o", "out.exr", "--spp", "10", "-D", std::string("fail=") + fail});
+        EXPECT_EQ(outcome.exit_code, 4);
+        EXPECT_THAT(outcome.err, HasSubstr("wrote out.exr of what was rendered: 3 samples"));
+        EXPECT_THAT(outcome.err, HasSubstr("gradus: error: "));
+        const Image image = read_image(at("out.exr"));
+        EXPECT_EQ(image.metadata.at("partial"), "true");
+        EXPECT_EQ(value(image, "G"), 3);
+    }
+    // Nothing can be saved where the image itself does not fit.
+    const Outcome outcome = render({"-o", "none.exr", "--spp", "10", "-D", "fail=memory-image"});
+    EXPECT_EQ(outcome.exit_code, 4);
+    EXPECT_FALSE(std::filesystem::exists(folder / "none.exr"));
+    // An image under way is no reason to stop.
+    EXPECT_EQ(render({"-o", "out.exr", "-D", "fail=memory-partial", "--write-partial", "1e-9"}).exit_code, 0);
+}
+
+/// A file of a run that was killed goes; one that somebody writes, or that is not ours, stays.
+TEST_F(Render, AbandonedTemporaryFilesAreRemovedByTheNextRun) {
+    std::ofstream(folder / ".gradus-1-0.part") << "abandoned";
+    std::ofstream(folder / ".gradus-2-0.part") << "held";
+    std::ofstream(folder / ".other.part") << "of another program";
+    const int held = ::open((folder / ".gradus-2-0.part").c_str(), O_RDONLY | O_CLOEXEC);
+    ASSERT_EQ(::flock(held, LOCK_EX), 0);
+    ASSERT_EQ(render({"-o", "out.exr"}).exit_code, 0);
+    EXPECT_THAT(files(), ElementsAre(".gradus-2-0.part", ".other.part", "out.exr", "scene.xml"));
+    ::close(held);
+    ASSERT_EQ(render({"-o", "out.exr"}).exit_code, 0);
+    EXPECT_THAT(files(), ElementsAre(".other.part", "out.exr", "scene.xml"));
 }
 
 TEST_F(Render, OutputsAreCheckedBeforeTheRender) {

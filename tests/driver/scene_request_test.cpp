@@ -94,6 +94,9 @@ TEST(SceneRequest, LoadHandsOnParametersAndWarnings) {
         EXPECT_EQ(path, "a.xml");
         EXPECT_TRUE(options.strict);
         EXPECT_EQ(options.parameters.at("light"), "2,3");
+        EXPECT_TRUE(options.confined);
+        EXPECT_THAT(options.allowed_folders, ElementsAre("meshes"));
+        EXPECT_EQ(options.limits.includes, 3 * LoadLimits().includes);
         LoadedScene loaded;
         loaded.warnings = {"first", "second"};
         return loaded;
@@ -102,6 +105,9 @@ TEST(SceneRequest, LoadHandsOnParametersAndWarnings) {
     request.path = "a.xml";
     request.definitions = {"light=2,3"};
     request.strict = true;
+    request.confined = true;
+    request.allowed_folders = {"meshes"};
+    request.limits = 3;
     request.max_depth = 9;
     std::vector<std::string> warnings;
     const Scene scene =

@@ -4,6 +4,7 @@
 #include "tests/kernels/precision.h"
 
 #include <cmath>
+#include <random>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -74,6 +75,15 @@ inline lib::vec3 direction(double angle, double azimuth) {
     const double theta = angle * M_PI / 180, phi = azimuth * M_PI / 180;
     return lib::v3(static_cast<real>(std::sin(theta) * std::cos(phi)),
                    static_cast<real>(std::sin(theta) * std::sin(phi)), static_cast<real>(std::cos(theta)));
+}
+
+/// From [0, 1), as kernels draw it.
+inline real draw(std::mt19937_64 &random) { return static_cast<real>(std::ldexp(double(random() >> 40), -24)); }
+
+/// Uniform over the sphere.
+inline lib::vec3 draw_direction(std::mt19937_64 &random) {
+    const real u1 = draw(random), u2 = draw(random);
+    return lib::warp_uniform_sphere(u1, u2);
 }
 
 struct BsdfCase {

@@ -10,8 +10,6 @@ using namespace gradus::testing;
 
 namespace {
 
-real draw(std::mt19937_64 &random) { return static_cast<real>(std::ldexp(double(random() >> 40), -24)); }
-
 struct Estimate {
     double mean, error; ///< error: standard error of the mean
 };

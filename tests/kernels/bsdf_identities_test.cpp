@@ -8,13 +8,6 @@ using namespace gradus::testing;
 
 namespace {
 
-real draw(std::mt19937_64 &random) { return static_cast<real>(std::ldexp(double(random() >> 40), -24)); }
-
-lib::vec3 draw_direction(std::mt19937_64 &random) {
-    const real u1 = draw(random), u2 = draw(random);
-    return lib::warp_uniform_sphere(u1, u2);
-}
-
 double index_ratio(const lib::material &m, lib::vec3 wi) { return wi.z > 0 ? m.ior : 1 / double(m.ior); }
 
 } // namespace

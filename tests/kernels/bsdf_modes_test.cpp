@@ -11,13 +11,6 @@ namespace {
 
 constexpr int modes[] = {lib::transport_radiance, lib::transport_importance};
 
-real draw(std::mt19937_64 &random) { return static_cast<real>(std::ldexp(double(random() >> 40), -24)); }
-
-lib::vec3 draw_direction(std::mt19937_64 &random) {
-    const real u1 = draw(random), u2 = draw(random);
-    return lib::warp_uniform_sphere(u1, u2);
-}
-
 /// Roughness 0.1 to 1, other along the second axis; glass and its inverse.
 lib::material draw_material(std::mt19937_64 &random) {
     const double alpha = 0.1 + 0.9 * double(draw(random));

@@ -15,8 +15,6 @@ namespace {
 
 constexpr int resolution = 20; // cells along each axis of a chart
 
-real draw(std::mt19937_64 &random) { return static_cast<real>(std::ldexp(double(random() >> 40), -24)); }
-
 LobeCharts charts_of(const BsdfCase &test) {
     const bool rough = is_rough(test.kind);
     return lobe_charts(test.wi, is_dielectric(test.kind) ? test.material.ior : 1.0,

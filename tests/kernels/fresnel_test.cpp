@@ -8,7 +8,7 @@ using namespace gradus::testing;
 
 namespace {
 
-constexpr double tolerance = bound(3e-7, 1e-14);
+constexpr double fresnel_tolerance = bound(3e-7, 1e-14);
 
 /// The textbook amplitudes in complex arithmetic: n relative index, Snell's law with a complex angle.
 double reflectance_by_complex_numbers(long double cosine, std::complex<long double> n) {
@@ -22,12 +22,13 @@ double reflectance_by_complex_numbers(long double cosine, std::complex<long doub
 TEST(FresnelDielectric, HandDerivedValues) {
     for (const double eta : {1.0 / 2.4, 1 / 1.5, 1.1, 1.5, 2.4}) {
         const double normal = std::pow((eta - 1) / (eta + 1), 2);
-        EXPECT_NEAR(lib::fresnel_dielectric(1, real(eta)).reflectance, normal, tolerance) << eta;
-        EXPECT_NEAR(lib::fresnel_dielectric(1, real(eta)).cosine_transmitted, 1, tolerance) << eta;
-        EXPECT_NEAR(lib::fresnel_dielectric(0, real(eta)).reflectance, 1, tolerance) << eta;
+        EXPECT_NEAR(lib::fresnel_dielectric(1, real(eta)).reflectance, normal, fresnel_tolerance) << eta;
+        EXPECT_NEAR(lib::fresnel_dielectric(1, real(eta)).cosine_transmitted, 1, fresnel_tolerance) << eta;
+        EXPECT_NEAR(lib::fresnel_dielectric(0, real(eta)).reflectance, 1, fresnel_tolerance) << eta;
         // Brewster's angle, tan = eta: the p amplitude is 0, the s amplitude (1 - eta^2) / (1 + eta^2).
         const double brewster = 1 / std::sqrt(1 + eta * eta), s = (1 - eta * eta) / (1 + eta * eta);
-        EXPECT_NEAR(lib::fresnel_dielectric(real(brewster), real(eta)).reflectance, 0.5 * s * s, tolerance) << eta;
+        EXPECT_NEAR(lib::fresnel_dielectric(real(brewster), real(eta)).reflectance, 0.5 * s * s, fresnel_tolerance)
+            << eta;
     }
 }
 
@@ -57,7 +58,7 @@ TEST(FresnelDielectric, MatchesComplexArithmeticAndIsSymmetric) {
                 continue; // at the critical angle the slope is infinite
             // Ten roundings of half an ULP reach an amplitude's square; the condition number of the square root in it
             // grows as the critical angle comes near.
-            const double allowed = tolerance * (2 + 1 / std::sqrt(std::fabs(square)));
+            const double allowed = fresnel_tolerance * (2 + 1 / std::sqrt(std::fabs(square)));
             ASSERT_NEAR(result.reflectance, reflectance_by_complex_numbers(cosine, {eta, 0}), allowed)
                 << eta << " " << cosine;
             if (result.reflectance < 1) {
@@ -76,8 +77,8 @@ TEST(FresnelDielectric, MatchesComplexArithmeticAndIsSymmetric) {
 TEST(FresnelConductor, HandDerivedValues) {
     for (const auto &[eta, k] : {std::pair{0.2, 3.9}, {1.4, 7.6}, {2.0, 0.5}, {0.05, 4.2}}) {
         const double normal = ((eta - 1) * (eta - 1) + k * k) / ((eta + 1) * (eta + 1) + k * k);
-        EXPECT_NEAR(lib::fresnel_conductor(1, real(eta), real(k)), normal, tolerance);
-        EXPECT_NEAR(lib::fresnel_conductor(0, real(eta), real(k)), 1, tolerance);
+        EXPECT_NEAR(lib::fresnel_conductor(1, real(eta), real(k)), normal, fresnel_tolerance);
+        EXPECT_NEAR(lib::fresnel_conductor(0, real(eta), real(k)), 1, fresnel_tolerance);
     }
 }
 
@@ -95,7 +96,7 @@ TEST(FresnelConductor, MatchesComplexArithmetic) {
                                              static_cast<long double>(eta) * eta + static_cast<long double>(k) * k;
                 const double away = std::sqrt(static_cast<double>(std::hypot(critical, 2.0L * eta * k)));
                 ASSERT_NEAR(lib::fresnel_conductor(cosine, eta, k), reflectance_by_complex_numbers(cosine, {eta, k}),
-                            tolerance * (2 + 1 / (away + 1e-7)))
+                            fresnel_tolerance * (2 + 1 / (away + 1e-7)))
                     << eta << " " << k << " " << cosine;
             }
 }
@@ -104,7 +105,7 @@ TEST(FresnelConductor, WithoutAbsorptionIsADielectric) {
     for (int i = 1; i <= 100; ++i) {
         const real cosine = static_cast<real>(i / 100.0);
         EXPECT_NEAR(lib::fresnel_conductor(cosine, R(1.5), 0), lib::fresnel_dielectric(cosine, R(1.5)).reflectance,
-                    tolerance);
+                    fresnel_tolerance);
     }
 }
 

@@ -1,5 +1,5 @@
 // Half-vector copies against the copy in long double, and their Jacobians against its differences.
-#include "tests/kernels/precision.h"
+#include "tests/kernels/lib_vector.h"
 #include "tests/kernels/shift_case.h"
 #include "tests/support/stability.h"
 
@@ -11,12 +11,6 @@
 using namespace gradus::testing;
 
 namespace {
-
-constexpr double epsilon = std::numeric_limits<real>::epsilon();
-
-lib::vec3 as_real(LongVector v) { return lib::v3(real(v.x), real(v.y), real(v.z)); }
-LongVector as_long(lib::vec3 v) { return {v.x, v.y, v.z}; }
-double distance(LongVector a, LongVector b) { return double(length(a - b)); }
 
 lib::shifted_direction shifted(const ShiftCase &c) {
     return lib::shift_half_vector(as_real(c.wi_base), as_real(c.wo_base), real(c.ior_base), as_real(c.wi_offset),

@@ -1,7 +1,6 @@
 // The shift of photons between two gather points: there and back, its Jacobian against differences, and which photons
 // arrive.
-#include "tests/kernels/long_direction.h"
-#include "tests/kernels/precision.h"
+#include "tests/kernels/lib_vector.h"
 
 #include "kernels/lib/shift_photon.h"
 
@@ -11,9 +10,6 @@
 using namespace gradus::testing;
 
 namespace {
-
-lib::vec3 as_real(LongVector v) { return lib::v3(real(v.x), real(v.y), real(v.z)); }
-LongVector as_long(lib::vec3 v) { return {v.x, v.y, v.z}; }
 
 struct Disc {
     LongVector position, normal;

@@ -1,6 +1,5 @@
 // The Jacobian of reconnections against differences of the shift itself.
-#include "tests/kernels/long_direction.h"
-#include "tests/kernels/precision.h"
+#include "tests/kernels/lib_vector.h"
 #include "tests/support/stability.h"
 
 #include "kernels/lib/shift_reconnection.h"
@@ -11,9 +10,6 @@
 using namespace gradus::testing;
 
 namespace {
-
-lib::vec3 as_real(LongVector v) { return lib::v3(real(v.x), real(v.y), real(v.z)); }
-LongVector as_long(lib::vec3 v) { return {v.x, v.y, v.z}; }
 
 /// (v + move) / |v + move| - v / |v| without cancellation: far ends hardly turn.
 LongVector moved_direction(LongVector v, LongVector move) {
@@ -84,8 +80,6 @@ class Connections {
     std::mt19937_64 random;
     double smallest;
 };
-
-constexpr double epsilon = std::numeric_limits<real>::epsilon();
 
 /// What roundings do: a few to lengths, and n.d is known to a few epsilon |d|.
 double allowed(const Connection &c) { return epsilon * (16 + 4 / c.cosine(c.base) + 4 / c.cosine(c.offset)); }

@@ -1,20 +1,11 @@
 // The shift at Dirac vertices against what the smooth dielectric samples.
 #include "tests/kernels/bsdf_case.h"
+#include "tests/kernels/lib_vector.h"
 #include "tests/kernels/shift_case.h"
 
 #include "kernels/lib/shift_specular.h"
 
 using namespace gradus::testing;
-
-namespace {
-
-constexpr double epsilon = std::numeric_limits<real>::epsilon();
-
-lib::vec3 as_real(LongVector v) { return lib::v3(real(v.x), real(v.y), real(v.z)); }
-
-double distance(lib::vec3 a, lib::vec3 b) { return std::sqrt(double(lib::v3_length_squared(lib::v3_sub(a, b)))); }
-
-} // namespace
 
 TEST(ShiftSpecular, IsWhatTheDielectricSamples) {
     ShiftCases cases(1, 0.01);

@@ -234,7 +234,12 @@ TEST(RussianRoulette, BeginsAtItsDepth) {
         EXPECT_NEAR(segments, rr_depth + go_on / (1 - a), 4 * error) << "rr_depth " << rr_depth;
     }
     maker.scene.settings.rr_depth = -1;
-    EXPECT_EQ(render(maker.scene, options).statistics.rays.at("extension"), std::uint64_t(60 * samples));
+    // Of 3e7 rays that start at a wall one misses the next wall: it starts at the very edge where both meet, nearer
+    // than rounding tells apart. So a path in 500,000 is lost, whatever the distance by which rays start off their own
+    // wall.
+    const double rays = double(render(maker.scene, options).statistics.rays.at("extension"));
+    EXPECT_LE(rays, 60 * samples);
+    EXPECT_GE(rays, 60 * (samples - 8));
 }
 
 } // namespace

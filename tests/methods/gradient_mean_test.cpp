@@ -14,14 +14,14 @@
 namespace gradus::testing {
 namespace {
 
-constexpr std::size_t seeds = 64;
+constexpr std::size_t mean_seeds = 64;
 
 /// At a fixed alpha the reconstruction is linear in samples that are unbiased; at one from their variances it is not.
 TEST(GradientMean, OfL2IsUnbiased) {
     Scene scene = own_scene("cornell-box.xml", 48, 48);
     scene.settings.samples_per_pixel = 64;
     std::vector<std::vector<double>> truths;
-    for (const Image &image : render_seeds(scene, seeds, {}, 1 + seeds, "pt"))
+    for (const Image &image : render_seeds(scene, mean_seeds, {}, 1 + mean_seeds, "pt"))
         truths.push_back(values_of(image));
     scene.settings.samples_per_pixel = 4;
     for (const bool fixed : {true, false}) {
@@ -30,7 +30,7 @@ TEST(GradientMean, OfL2IsUnbiased) {
         if (fixed)
             options.alpha = 0.2;
         std::vector<std::vector<double>> estimates;
-        for (const Image &image : render_seeds(scene, seeds, options, 1, "gpt"))
+        for (const Image &image : render_seeds(scene, mean_seeds, options, 1, "gpt"))
             estimates.push_back(values_of(image));
         const BiasEstimate bias = estimate_bias(estimates, truths);
         std::printf("L2, alpha %s: squared bias %.1f standard errors, relative bias at most %.2g\n",

@@ -18,7 +18,7 @@ struct ReferenceCase {
     double distance = 0;
 };
 
-std::string name_of(const ::testing::TestParamInfo<ReferenceCase> &info) {
+std::string name_of_reference(const ::testing::TestParamInfo<ReferenceCase> &info) {
     return test_name(info.param.scene) + (info.param.distance > 0 ? "_near" : "");
 }
 
@@ -109,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(Image, GradientReference,
                                            ReferenceCase{"holes-7"}, ReferenceCase{"holes-14"},
                                            ReferenceCase{"holes-28"}, ReferenceCase{"door-ajar"},
                                            ReferenceCase{"materials"}),
-                         name_of);
+                         name_of_reference);
 
 /// The difference between two pixels that look alike is nothing, whatever the noise of the primal.
 TEST(GradientNoise, OfAPlainWallIsFarBelowThePrimals) {

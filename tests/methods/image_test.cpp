@@ -9,11 +9,11 @@
 namespace gradus::testing {
 namespace {
 
-constexpr std::size_t seeds = 8;
+constexpr std::size_t image_seeds = 8;
 
 ::testing::AssertionResult renders_as_referenced(ReferenceScene reference, std::uint64_t samples_per_pixel) {
     reference.scene.settings.samples_per_pixel = samples_per_pixel;
-    return agrees(render_seeds(reference.scene, seeds), double(samples_per_pixel), reference);
+    return agrees(render_seeds(reference.scene, image_seeds), double(samples_per_pixel), reference);
 }
 
 class OwnReference : public ::testing::TestWithParam<const char *> {};

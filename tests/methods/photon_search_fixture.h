@@ -5,6 +5,7 @@
 #include "tests/support/small_scenes.h"
 
 #include <array>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -131,6 +132,13 @@ class PhotonSearch {
         const auto gather = (*tables_)["gather"].map(Access::read);
         const float *sum = gather.as<float>() + std::size_t(gather_sum_r) * capacity;
         return {sum, sum + points_};
+    }
+
+    /// How many photons were looked at to list the pairs of the last search.
+    std::uint64_t looked_at() const {
+        std::vector<std::uint32_t> looked(points_);
+        (*tables_)["pair_looked"].read(looked.data(), looked.size() * sizeof(looked[0]));
+        return std::accumulate(looked.begin(), looked.end(), std::uint64_t(0));
     }
 
     std::uint64_t total = 0;

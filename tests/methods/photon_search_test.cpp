@@ -152,6 +152,32 @@ TEST(PhotonHash, DoesNotCountPhotonsTwice) {
     EXPECT_GT(search.windows, 20u * 6000u / PhotonPairs::pair_rows(64));
 }
 
+// What listing looks at goes by the photons near gather points, not by the windows times these: a search of hundreds of
+// windows looks once at each, and once more at those of the block in which a window ends.
+TEST(PhotonSearch, LooksAtEachPhotonOnceWhateverTheWindows) {
+    constexpr std::uint32_t block = 32; // PHOTON_BLOCK of kernels/stages/photon_pairs.cl
+    const Case c{"", {-1, -1, -1}, {1, 1, 1}, 0.8f, 0.3};
+    Scattered all = scattered(c, 6000, 64);
+    for (SyntheticGatherPoint &point : all.points)
+        point.radius = 5; // all photons of its direction
+    std::vector<FoundPair> found[2];
+    std::uint64_t looked[2];
+    std::size_t windows[2];
+    for (int i = 0; i < 2; ++i) {
+        PhotonSearch search(shared_device(), c.low, c.high, 6000, i == 0 ? 64 : 65536);
+        search.place(all.photons, all.points);
+        found[i] = search.find(c.edge);
+        looked[i] = search.looked_at();
+        windows[i] = search.windows;
+    }
+    fmt::print("{} windows: {} photons looked at; {} window: {}\n", windows[0], looked[0], windows[1], looked[1]);
+    EXPECT_GT(windows[0], 200u);
+    EXPECT_EQ(windows[1], 1u);
+    EXPECT_EQ(found[0], found[1]);
+    EXPECT_GE(looked[1], found[1].size());
+    EXPECT_LE(looked[0], looked[1] + block * windows[0]);
+}
+
 // Windows of any size give the same sums, bit for bit; one gather point has more pairs than a window has room for.
 TEST(PhotonSums, DoNotDependOnWindows) {
     const Case c{"", {-1, -1, -1}, {1, 1, 1}, 0.8f, 0.3};

@@ -1,4 +1,5 @@
 // Scenes of other sizes and far from the origin.
+#include "runtime/scene/own_scale.h"
 #include "tests/methods/gradient_bias.h"
 #include "tests/methods/reference_scene.h"
 #include "tests/support/placed_scene.h"
@@ -47,6 +48,20 @@ TEST_P(Scaled, CornellBoxStaysAsItIs) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Numbers, Scaled, ::testing::Values(1e-3, 1e4));
+
+// Past these areas' squares are no floats. Once such a scene was black, without a word.
+class OwnScale : public ::testing::TestWithParam<double> {};
+
+TEST_P(OwnScale, CornellBoxStaysAsItIs) {
+    ReferenceScene reference = own_reference("cornell-box");
+    reference.name = fmt::format("cornell-box-times-{}", GetParam());
+    place(reference.scene, GetParam(), {0, 0, 0});
+    bring_to_own_scale(reference.scene);
+    reference.scene.settings.samples_per_pixel = 32;
+    expect_agreement(reference, other_size, fmt::format("scenes/cornell-box.xml times {}", GetParam()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Numbers, OwnScale, ::testing::Values(1e-10, 1e10));
 
 /// The scene moved away from the origin by so many times its extent, along the diagonal.
 ReferenceScene moved(double extents) {

@@ -74,7 +74,7 @@ TEST_P(ShiftInverse, BringsEveryPathBack) {
     record(c, "Half-vector copy", "copies", inverter.copies(), 0.01);
 }
 
-std::string name_of(const ::testing::TestParamInfo<InverseCase> &info) { return info.param.name; }
+std::string name_of_inverse(const ::testing::TestParamInfo<InverseCase> &info) { return info.param.name; }
 
 INSTANTIATE_TEST_SUITE_P(
     Methods, ShiftInverse,
@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(
                       InverseCase{"materials_copied", "materials", 0.21}, InverseCase{"plates", "plates", 0.01},
                       InverseCase{"torus", "torus-rough-glass", 0.01},
                       InverseCase{"torus_near", "torus-rough-glass", 0.01, 0.02}),
-    name_of);
+    name_of_inverse);
 
 #if GRADUS_SHIFT_SAMPLES > 2
 /// Kernels that no other test compiles.
@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(Copies, ShiftInverse,
                          ::testing::Values(InverseCase{"plates_copied", "plates", 0.2},
                                            InverseCase{"torus_copied", "torus-rough-glass", 0.2},
                                            InverseCase{"materials_near", "materials", 0.01, 0.02}),
-                         name_of);
+                         name_of_inverse);
 #endif
 
 } // namespace

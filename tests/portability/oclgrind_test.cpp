@@ -60,7 +60,9 @@ class Oclgrind : public ProgramTest {
         arguments.insert(arguments.end(), more.begin(), more.end());
         const Outcome outcome = run(arguments);
         EXPECT_EQ(outcome.signal, 0);
-        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        EXPECT_EQ(outcome.exit_code, 0);
+        // The compiler counts its warnings there: the same clang as PoCL's, on all kernels.
+        EXPECT_EQ(outcome.err, "");
         EXPECT_EQ(report(scene), "");
         if (outcome.exit_code != 0)
             return {};

@@ -8,7 +8,7 @@ namespace gradus {
 
 ShapeGeometry shape_ply(Properties &properties, SceneBuilder &builder) {
     const std::filesystem::path path = builder.find_file(properties);
-    Mesh mesh = parse_ply(builder.file_bytes(path, properties.location()), path.string());
+    Mesh mesh = parse_ply(builder.file_bytes(path, properties.location(), true), path.string());
     if (properties.boolean("flip_tex_coords", false))
         for (auto &[u, v] : mesh.texcoords)
             v = 1 - v;

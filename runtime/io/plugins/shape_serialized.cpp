@@ -9,7 +9,9 @@ namespace gradus {
 ShapeGeometry shape_serialized(Properties &properties, SceneBuilder &builder) {
     const std::filesystem::path path = builder.find_file(properties);
     const auto index = std::uint64_t(properties.integer("shape_index", 0, 0, 0xffffffff));
-    SerializedMesh serialized = parse_serialized(builder.file_bytes(path, properties.location()), path.string(), index);
+    const std::string &data = builder.file_bytes(path, properties.location(), false);
+    SerializedMesh serialized = parse_serialized(data, path.string(), index, builder.limits());
+    builder.count_mesh_bytes(serialized.unfolded_bytes, properties.location());
     MeshOptions options;
     // The flag in the file counts in 0.x; Mitsuba 3 goes by the parameter alone.
     options.face_normals = serialized.face_normals && properties.element().is_legacy();

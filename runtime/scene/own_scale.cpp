@@ -1,0 +1,110 @@
+#include "runtime/scene/own_scale.h"
+
+#include "runtime/error.h"
+#include "runtime/scene/transform.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace gradus {
+namespace {
+
+constexpr double least_extent = 1e-3, most_extent = 1e6; ///< of scenes that stay as they are
+/// Of a shape over the scene: the fourth power of its size is then just above the least of floats.
+constexpr double least_share = 1e-9;
+/// Past it differences of coordinates overflow.
+constexpr double largest_float_extent = 1e37;
+
+struct Box {
+    Double3 low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
+    void add(const Vector3 &p, double radius = 0) {
+        const Double3 at = to_double(p);
+        for (int axis = 0; axis < 3; ++axis) {
+            low[axis] = std::min(low[axis], at[axis] - radius);
+            high[axis] = std::max(high[axis], at[axis] + radius);
+        }
+    }
+    void add(const Box &box) {
+        for (int axis = 0; axis < 3; ++axis) {
+            low[axis] = std::min(low[axis], box.low[axis]);
+            high[axis] = std::max(high[axis], box.high[axis]);
+        }
+    }
+    /// The longest edge; 0 of nothing.
+    double extent() const { return std::max({0.0, high[0] - low[0], high[1] - low[1], high[2] - low[2]}); }
+};
+
+/// What of the shape can be hit.
+Box box_of(const Scene &scene, const Shape &shape) {
+    Box box;
+    if (shape.kind == Shape::Kind::sphere) {
+        const Sphere &sphere = scene.spheres.at(shape.geometry);
+        box.add(sphere.center, sphere.radius);
+        return box;
+    }
+    const Mesh &mesh = scene.meshes.at(shape.geometry);
+    for (const auto &triangle : mesh.triangles)
+        for (const std::uint32_t index : triangle)
+            box.add(mesh.positions[index]);
+    return box;
+}
+
+void multiply(Vector3 &v, float factor) { v = {v.x * factor, v.y * factor, v.z * factor}; }
+
+} // namespace
+
+double bring_to_own_scale(Scene &scene) {
+    Box all;
+    double least = INFINITY, most = 0;
+    const Shape *smallest = nullptr, *largest = nullptr;
+    for (const Shape &shape : scene.shapes) {
+        const Box box = box_of(scene, shape);
+        const double extent = box.extent();
+        if (extent <= 0)
+            continue;
+        all.add(box);
+        if (extent < least)
+            least = extent, smallest = &shape;
+        if (extent > most)
+            most = extent, largest = &shape;
+    }
+    if (!smallest)
+        return 1;
+    const double extent = all.extent();
+    if (extent > largest_float_extent)
+        throw Error(ExitCode::scene,
+                    fmt::format("the scene is {:.3g} large, more than single precision holds; its largest shape is "
+                                "{}, {:.3g} large",
+                                extent, largest->name, most));
+    if (least < least_share * extent)
+        throw Error(
+            ExitCode::scene,
+            fmt::format("{} is {:.3g} large in a scene of {:.3g}, too small a share for single precision to see "
+                        "it: leave it out, or make what is large smaller (the largest shape is {}, {:.3g} large)",
+                        smallest->name, least, extent, largest->name, most));
+    if (extent >= least_extent && extent <= most_extent)
+        return 1;
+    const double factor = std::exp2(-std::floor(std::log2(extent)));
+    for (Mesh &mesh : scene.meshes)
+        for (Vector3 &p : mesh.positions)
+            multiply(p, float(factor));
+    for (Sphere &sphere : scene.spheres) {
+        multiply(sphere.center, float(factor));
+        sphere.radius *= float(factor);
+    }
+    for (Emitter &emitter : scene.emitters) {
+        multiply(emitter.position, float(factor));
+        if (emitter.kind == Emitter::Kind::point)
+            for (float Rgb::*channel : {&Rgb::r, &Rgb::g, &Rgb::b})
+                emitter.value.*channel = float(emitter.value.*channel * factor * factor);
+    }
+    for (int axis = 0; axis < 3; ++axis)
+        scene.camera.to_world.m[std::size_t(axis) * 4 + 3] *= factor;
+    return factor;
+}
+
+} // namespace gradus

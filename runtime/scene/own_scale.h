@@ -1,0 +1,17 @@
+// Scenes of any unit, rendered in one in which areas, squared areas and squared radii stay within what a float holds.
+#pragma once
+
+#include "runtime/scene/scene.h"
+
+namespace gradus {
+
+/// Multiplies all lengths of a scene by the returned power of two, by which it becomes about 1 large; by 1, so not at
+/// all, where it is from a thousandth to a million large. The picture stays as it is: lengths alone change, and
+/// intensities of point lights with their square. Depths of the image are to be divided by the factor. Scenes that are
+/// larger or smaller and have not been through this lose light without a word.
+///
+/// Throws Error(ExitCode::scene) where a shape is a billion times smaller than the scene, or the scene is larger than
+/// floats are: then one shape or the other cannot be seen.
+double bring_to_own_scale(Scene &scene);
+
+} // namespace gradus

@@ -1,0 +1,37 @@
+#!/usr/bin/env bash
+# Searches for inputs that break the readers of files: libFuzzer, under the address and undefined-behaviour sanitizers.
+#
+#   scripts/fuzz.sh [SECONDS] [NAME...]
+#
+# SECONDS a reader, 60 unless given; NAMEs are those of tests/fuzz/corpus, all unless given. What is found on the way is
+# kept in build-fuzz/corpus and is where the next run begins. An input that breaks a reader ends it, and its path is
+# printed. Without clang nothing is done.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+seconds=${1:-60}
+shift || true
+[ $# -gt 0 ] || set -- xml ply obj serialized exr
+if ! command -v clang++ > /dev/null || ! clang++ -fsanitize=fuzzer -x c++ - -o /dev/null 2> /dev/null <<< \
+    'extern "C" int LLVMFuzzerTestOneInput(const unsigned char *, unsigned long) { return 0; }'; then
+    echo "fuzz: skipped: no clang++ with libFuzzer (Debian: clang)"
+    exit 0
+fi
+cmake --preset fuzz > /dev/null
+cmake --build --preset fuzz --parallel "$(nproc)"
+failed=0
+for name in "$@"; do
+    found=build-fuzz/corpus/$name
+    mkdir -p "$found"
+    options=(-max_total_time="$seconds" -timeout=20 -rss_limit_mb=4096 -max_len=16384 -print_final_stats=1
+        -verbosity=0 -artifact_prefix="build-fuzz/$name-")
+    [ ! -f "tests/fuzz/$name.dict" ] || options+=(-dict="tests/fuzz/$name.dict")
+    if build-fuzz/tests/fuzz/fuzz_"$name" "${options[@]}" "$found" "tests/fuzz/corpus/$name" &> "build-fuzz/$name.log"; then
+        echo "$name: $(sed -n 's/^stat::number_of_executed_units: *//p' "build-fuzz/$name.log") runs, nothing found"
+    else
+        tail -n 40 "build-fuzz/$name.log"
+        echo "$name: broken by $(ls -t build-fuzz/"$name"-* | head -n 1)"
+        failed=1
+    fi
+done
+exit $failed

@@ -1,0 +1,78 @@
+// Lengths of scenes of any unit, in the one that they are rendered in.
+#include "runtime/error.h"
+#include "runtime/scene/mesh_builder.h"
+#include "runtime/scene/own_scale.h"
+#include "tests/support/placed_scene.h"
+#include "tests/support/small_scenes.h"
+
+#include <gmock/gmock.h>
+
+namespace gradus::testing {
+namespace {
+
+SceneMaker room(float size) {
+    SceneMaker maker(8, 1);
+    maker.look({0, size / 4, size}, {0, 0, 0}, 40);
+    maker.floor(-size / 2, size / 2, size / 2, maker.material(diffuse(0.5)));
+    maker.sphere({0, size / 8, 0}, size / 8, 0);
+    maker.point_light({2, 2, 2}, {0, size / 2, 0});
+    return maker;
+}
+
+TEST(OwnScale, UsualScenesStayAsTheyAre) {
+    for (const float size : {0.01f, 1.0f, 1e5f}) {
+        Scene scene = room(size).scene;
+        EXPECT_EQ(bring_to_own_scale(scene), 1);
+        EXPECT_EQ(scene.spheres[0].radius, size / 8);
+    }
+}
+
+TEST(OwnScale, OthersBecomeAboutOneLarge) {
+    for (const float size : {1e-10f, 3e-6f, 1e10f, 1e20f}) {
+        Scene scene = room(size).scene;
+        const double factor = bring_to_own_scale(scene);
+        EXPECT_EQ(std::exp2(std::round(std::log2(factor))), factor) << "a power of two rounds nothing";
+        EXPECT_EQ(scene.spheres[0].radius, float(size / 8 * factor));
+        EXPECT_GE(8 * scene.spheres[0].radius, 1);
+        EXPECT_LT(8 * scene.spheres[0].radius, 2);
+        EXPECT_EQ(scene.camera.to_world.m[11], double(size) * factor);
+        // The light that arrives at a place stays: intensity over the square of a length.
+        EXPECT_FLOAT_EQ(scene.emitters[0].value.r, float(2 * factor * factor));
+        EXPECT_EQ(scene.emitters[0].position.y, float(size / 2 * factor));
+    }
+}
+
+TEST(OwnScale, WhatNoFloatHoldsIsRefusedWithItsName) {
+    const auto refusal = [](Scene scene) {
+        try {
+            bring_to_own_scale(scene);
+        } catch (const Error &error) {
+            EXPECT_EQ(error.code, ExitCode::scene);
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    SceneMaker sky = room(1);
+    sky.sphere({0, 0, 0}, 1e20f, 0);
+    EXPECT_THAT(refusal(sky.scene), ::testing::HasSubstr("shape 2, 2e+20 large"));
+    SceneMaker dust = room(1);
+    dust.sphere({0, 0, 0}, 1e-11f, 0);
+    EXPECT_THAT(refusal(dust.scene), ::testing::HasSubstr("shape 2 is 2e-11 large"));
+    SceneMaker beyond = room(1);
+    beyond.sphere({3e38f, 0, 0}, 1, 0);
+    EXPECT_THAT(refusal(beyond.scene), ::testing::HasSubstr("more than single precision holds"));
+    EXPECT_EQ(refusal(room(1).scene), "");
+}
+
+// A vertex far away that no face uses made a scene of 1e37 once.
+TEST(OwnScale, VerticesThatNothingUsesDoNotCount) {
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1e37f, 0, 0}, {2e37f, 1e30f, 0}};
+    mesh.triangles = {{0, 1, 2}};
+    const BuiltMesh built = build_mesh(mesh, Matrix4(), {});
+    for (const Vector3 &p : built.mesh.positions)
+        EXPECT_LE(std::fabs(p.x), 1);
+}
+
+} // namespace
+} // namespace gradus::testing
