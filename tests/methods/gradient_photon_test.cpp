@@ -11,7 +11,7 @@ namespace gradus::testing {
 namespace {
 
 // Pixels are large, so shifts go far and their Jacobians are far from 1.
-constexpr std::size_t seeds = 16;
+constexpr std::size_t image_seeds = 16;
 constexpr std::uint64_t passes = 16;
 
 struct PhotonCase {
@@ -48,7 +48,7 @@ TEST_P(GradientPhotons, DifferencesAreThoseOfThePrimal) {
     Scene scene = own_scene(fmt::format("{}.xml", GetParam().scene), 32, 24);
     scene.settings.samples_per_pixel = passes;
     RenderOptions options = few_photons(GetParam().direct_photons);
-    const std::vector<Image> images = render_seeds(scene, seeds, options, 1, "gpm");
+    const std::vector<Image> images = render_seeds(scene, image_seeds, options, 1, "gpm");
     options.seed = 4711;
     const Image other = render(scene, options, "gpm").image;
     double noise = 0, plain = 0;

@@ -187,12 +187,13 @@ TEST_F(Oclgrind, Photons) {
 
 // Photons shifted by reconnections and walks.
 TEST_F(Oclgrind, GradientsOfPhotons) {
-    EXPECT_THAT(render("lamp-in-egg.xml", {"--method", "gpm", "--size", "8x6", "--photons", "150", "--radius", "10%"}),
+    EXPECT_THAT(render("lamp-in-egg.xml", {"--method", "gpm", "--norm", "L2", "--size", "6x5", "--photons", "100",
+                                           "--radius", "10%", "--batch-size", "64"}),
                 IsSupersetOf({"photon_shift diffuse", "photon_reconnect diffuse", "photon_arrive diffuse",
                               "photon_project", "photon_walk", "photon_leave light", "photon_pass dielectric",
                               "photon_pass end", "pair_difference_sum", "gradient_gather"}));
-    render("cornell-box.xml", {"--method", "gpm", "--size", "8x8", "--photons", "100", "--radius", "5%", "--direct",
-                               "photons", "--batch-size", "64"});
+    render("cornell-box.xml", {"--method", "gpm", "--norm", "L2", "--size", "6x5", "--photons", "100", "--radius", "5%",
+                               "--direct", "photons", "--batch-size", "64"});
 }
 
 } // namespace
