@@ -54,7 +54,7 @@ class PixelLimit {
         most_bytes_ = (always + (not_there ? 0 : std::uint64_t(size)) * unfolding) * limits;
         if (const std::optional<ExrSize> declared = exr_size(path); declared && !not_there) {
             check_bytes(declared->bytes);
-            if (declared->blocks > size / 8)
+            if (!declared->is_whole || declared->blocks > size / 8)
                 fail_read(path, "it is truncated: its size and its pixels do not agree");
         }
     }
