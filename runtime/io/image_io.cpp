@@ -37,6 +37,11 @@ void set_up_library() {
 }
 
 [[noreturn]] void fail_write(const std::string &path, const std::string &reason) {
+    // Without memory the library has no words for its error either. Encoding meets no disk.
+    if (reason.empty())
+        throw Error(ExitCode::device, fmt::format("cannot write '{}': there is not enough memory to encode it; try a "
+                                                  "smaller --size, or a --crop",
+                                                  path));
     throw Error(ExitCode::output, fmt::format("cannot write '{}': {}", path, reason));
 }
 

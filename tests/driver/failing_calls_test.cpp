@@ -74,6 +74,34 @@ class FailingCalls : public ProgramTest {
 #ifdef GRADUS_ALL_CALLS
 TEST_F(FailingCalls, EachCallOfPathTracing) { fail_calls("pt", 0); }
 TEST_F(FailingCalls, ManyCallsOfGradientDomainPathTracing) { fail_calls("gpt", 400); }
+
+/// An address space from too small for anything to large enough: an error that says so, or the whole image.
+TEST_F(FailingCalls, MemoryForAnyPartOfTheRender) {
+    ::unsetenv("LD_PRELOAD");
+    int refused = 0, rendered = 0;
+    for (std::size_t limit = 600; limit <= 1800; limit += 25)
+        for (const char *method : {"pt", "gpt"}) {
+            std::filesystem::remove(at("out.exr"));
+            const Outcome outcome = run({"render", GRADUS_SCENES "/cornell-box.xml", "-o", "out.exr", "--size",
+                                         "256x256", "--spp", "2", "--method", method, "-q"},
+                                        0, limit << 20);
+            if (outcome.exit_code == 127) // not even the libraries
+                continue;
+            const std::string which = std::string(method) + " in " + std::to_string(limit) + " MB: " + outcome.err;
+            EXPECT_EQ(outcome.signal, 0) << which;
+            if (outcome.exit_code == 0) {
+                ++rendered;
+                EXPECT_EQ(read_image(at("out.exr")).metadata.at("partial"), "false") << which;
+                continue;
+            }
+            ++refused;
+            EXPECT_EQ(outcome.exit_code, 4) << which;
+            EXPECT_THAT(outcome.err, HasSubstr("gradus: error: ")) << which;
+        }
+    std::printf("%d renders in too little memory ended with an error, %d were whole\n", refused, rendered);
+    EXPECT_GT(refused, 0);
+    EXPECT_GT(rendered, 0);
+}
 #else
 TEST_F(FailingCalls, SomeCallsOfPathTracing) { fail_calls("pt", 7); }
 #endif
