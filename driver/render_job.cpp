@@ -1,6 +1,7 @@
 #include "driver/render_job.h"
 
 #include "driver/interrupt.h"
+#include "driver/memory_check.h"
 #include "driver/program.h"
 #include "driver/progress.h"
 #include "driver/standard_streams.h"
@@ -61,6 +62,7 @@ class RenderJob {
             [this](const std::string &warning) { progress_.message("gradus: warning: " + warning); }, &files_read_);
         check_distinct(output_list(request_.outputs), files_read_);
         check_counts(scene);
+        check_memory(scene, request_.method.options);
         if (request_.time_limit > 0 && !request_.scene.samples_per_pixel)
             scene.settings.samples_per_pixel = endless_samples_per_pixel;
         own_scale_ = bring_to_own_scale(scene);

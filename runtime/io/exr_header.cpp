@@ -26,8 +26,10 @@ class Header {
         ExrSize sum;
         do {
             const std::optional<ExrSize> part = read_part();
-            if (!part)
-                return std::nullopt;
+            if (!part) {
+                sum.is_whole = false;
+                return sum;
+            }
             sum.bytes = plus(sum.bytes, part->bytes);
             sum.blocks = plus(sum.blocks, part->blocks);
         } while (has_parts && file_.peek() != 0); // an empty header ends the list

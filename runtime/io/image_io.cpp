@@ -37,6 +37,11 @@ void set_up_library() {
 }
 
 [[noreturn]] void fail_write(const std::string &path, const std::string &reason) {
+    // Without memory the library has no words for its error either. Encoding meets no disk.
+    if (reason.empty())
+        throw Error(ExitCode::device, fmt::format("cannot write '{}': there is not enough memory to encode it; try a "
+                                                  "smaller --size, or a --crop",
+                                                  path));
     throw Error(ExitCode::output, fmt::format("cannot write '{}': {}", path, reason));
 }
 
@@ -54,7 +59,7 @@ class PixelLimit {
         most_bytes_ = (always + (not_there ? 0 : std::uint64_t(size)) * unfolding) * limits;
         if (const std::optional<ExrSize> declared = exr_size(path); declared && !not_there) {
             check_bytes(declared->bytes);
-            if (declared->blocks > size / 8)
+            if (!declared->is_whole || declared->blocks > size / 8)
                 fail_read(path, "it is truncated: its size and its pixels do not agree");
         }
     }

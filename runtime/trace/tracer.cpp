@@ -172,7 +172,10 @@ Tracer::Tracer(const Scene &s, int threads) : implementation_(std::make_unique<I
     i.arena.initialize(threads > 0 ? threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency())));
     i.device = rtcNewDevice(threads > 0 ? fmt::format("threads={},set_affinity=0", threads).c_str() : nullptr);
     if (!i.device)
-        throw Error(ExitCode::failure, "Embree does not start on this processor");
+        throw rtcGetDeviceError(nullptr) == RTC_ERROR_UNSUPPORTED_CPU
+            ? Error(ExitCode::failure, "Embree does not start on this processor")
+            : Error(ExitCode::device,
+                    "Embree does not start: there is not enough memory, or there are too many threads");
     rtcSetDeviceMemoryMonitorFunction(
         i.device,
         [](void *user, ssize_t bytes, bool) {

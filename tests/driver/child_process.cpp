@@ -29,7 +29,7 @@ fs::path printed_folder(const fs::path &folder) { return folder.string() + "-pri
 } // namespace
 
 ChildProcess::ChildProcess(const std::vector<std::string> &arguments, const fs::path &folder,
-                           std::size_t file_size_limit) {
+                           std::size_t file_size_limit, std::size_t address_limit) {
     static int count = 0;
     out_ = printed_folder(folder) / ("out" + std::to_string(count));
     err_ = printed_folder(folder) / ("err" + std::to_string(count++));
@@ -49,12 +49,15 @@ ChildProcess::ChildProcess(const std::vector<std::string> &arguments, const fs::
     const int err = ::open(err_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     ::dup2(out, 1);
     ::dup2(err, 2);
-    if (file_size_limit > 0) {
+    const auto set_limit = [](int resource, std::size_t bytes) {
         struct rlimit limit = {};
-        getrlimit(RLIMIT_FSIZE, &limit);
-        limit.rlim_cur = file_size_limit;
-        setrlimit(RLIMIT_FSIZE, &limit);
-    }
+        getrlimit(resource, &limit);
+        limit.rlim_cur = bytes;
+        if (bytes > 0)
+            setrlimit(resource, &limit);
+    };
+    set_limit(RLIMIT_FSIZE, file_size_limit);
+    set_limit(RLIMIT_AS, address_limit);
     if (::chdir(folder.c_str()) == 0)
         ::execv(GRADUS_PROGRAM, pointers.data());
     ::_exit(126);
@@ -102,8 +105,9 @@ void ProgramTest::TearDown() {
     fs::remove_all(printed);
 }
 
-Outcome ProgramTest::run(const std::vector<std::string> &arguments, std::size_t file_size_limit) const {
-    return ChildProcess(arguments, folder, file_size_limit).wait();
+Outcome ProgramTest::run(const std::vector<std::string> &arguments, std::size_t file_size_limit,
+                         std::size_t address_limit) const {
+    return ChildProcess(arguments, folder, file_size_limit, address_limit).wait();
 }
 
 std::string ProgramTest::text_of(const std::string &name) const { return read_all(folder / name); }

@@ -20,9 +20,10 @@ struct Outcome {
 
 class ChildProcess {
   public:
-    /// Starts GRADUS_PROGRAM with the arguments in the folder; `file_size_limit` in bytes, 0: none.
+    /// Starts GRADUS_PROGRAM with the arguments in the folder; limits of its files and of its address space in bytes,
+    /// 0: none.
     ChildProcess(const std::vector<std::string> &arguments, const std::filesystem::path &folder,
-                 std::size_t file_size_limit = 0);
+                 std::size_t file_size_limit = 0, std::size_t address_limit = 0);
     ~ChildProcess();
     ChildProcess(const ChildProcess &) = delete;
     ChildProcess &operator=(const ChildProcess &) = delete;
@@ -41,7 +42,8 @@ class ProgramTest : public ::testing::Test {
     void SetUp() override;
     void TearDown() override;
 
-    Outcome run(const std::vector<std::string> &arguments, std::size_t file_size_limit = 0) const;
+    Outcome run(const std::vector<std::string> &arguments, std::size_t file_size_limit = 0,
+                std::size_t address_limit = 0) const;
     std::string at(const std::string &name) const { return (folder / name).string(); }
     std::string text_of(const std::string &name) const;
     /// Names of the files in the folder, hidden ones too, sorted.

@@ -202,6 +202,14 @@ TEST_F(Render, TooManySamplesToCountAreRefused) {
     EXPECT_THAT(files(), ElementsAre("scene.xml"));
 }
 
+TEST_F(Render, MemoryIsCheckedBeforeTheRender) {
+    // 2^32 pixels: 172 GB for the film and the image.
+    const Outcome outcome = render({"-o", "out.exr", "--size", "65536x65536", "--spp", "1", "-D", "batch_ms=60000"});
+    EXPECT_EQ(outcome.exit_code, 4);
+    EXPECT_THAT(outcome.err, HasSubstr("not enough memory: rendering 65536x65536 pixels takes 163840 MB"));
+    EXPECT_THAT(files(), ElementsAre("scene.xml"));
+}
+
 TEST_F(Render, WhatWasRenderedIsSavedWhereMemoryOrTheDeviceFails) {
     for (const char *fail : {"memory-later", "device-later"}) {
         std::filesystem::remove(at("out.exr"));

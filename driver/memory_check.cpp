@@ -1,0 +1,87 @@
+#include "driver/memory_check.h"
+
+#include "driver/scene_request.h"
+#include "driver/scene_summary.h"
+#include "methods/method.h"
+#include "runtime/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <string>
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace gradus {
+
+namespace {
+
+constexpr std::uint64_t unlimited = std::numeric_limits<std::uint64_t>::max();
+
+/// The number in a file that has one; `unlimited` for all others ("max").
+std::uint64_t number_in(const char *path) {
+    std::uint64_t number = 0;
+    return std::ifstream(path) >> number ? number : unlimited;
+}
+
+/// What the system says may be had without swapping, and its swap.
+std::uint64_t system_bytes() {
+    std::ifstream file("/proc/meminfo");
+    std::uint64_t sum = 0, number = 0;
+    bool known = false;
+    for (std::string name, line; file >> name >> number; std::getline(file, line))
+        if (name == "MemAvailable:" || name == "SwapFree:") {
+            sum += number << 10;
+            known = true;
+        }
+    return known ? sum : unlimited;
+}
+
+std::uint64_t container_bytes() {
+    const std::uint64_t most = number_in("/sys/fs/cgroup/memory.max"),
+                        used = number_in("/sys/fs/cgroup/memory.current");
+    return most == unlimited || used == unlimited ? unlimited : most - std::min(most, used);
+}
+
+std::uint64_t address_space_bytes() {
+    struct rlimit limit = {};
+    if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+        return unlimited;
+    const std::uint64_t pages = number_in("/proc/self/statm");
+    const std::uint64_t used = pages == unlimited ? 0 : pages * std::uint64_t(::sysconf(_SC_PAGESIZE));
+    // Threads, PoCL and the compiler in it take this much, and end the process where they do not get it.
+    constexpr std::uint64_t implementation = 600u << 20;
+    return limit.rlim_cur - std::min<std::uint64_t>(limit.rlim_cur, used + implementation);
+}
+
+} // namespace
+
+std::uint64_t least_render_bytes(const Scene &scene, const RenderOptions &options) {
+    std::uint64_t channels = 3;
+    if (options.aov)
+        channels += 3 + 3 + 1 + 3; // albedo, normal, depth, variance
+    if (options.layers)
+        channels += 4 * 3; // primal, dx, dy, direct
+    const auto [width, height] = image_size(scene.film);
+    const SceneSummary summary = summarize(scene);
+    // An image is planes, and once more the bytes of its file.
+    return summary.geometry_bytes + summary.tree_bytes + summary.film_bytes +
+           std::uint64_t(width) * height * channels * 2 * sizeof(float);
+}
+
+void check_memory(const Scene &scene, const RenderOptions &options) {
+    const std::uint64_t needed = least_render_bytes(scene, options);
+    const std::uint64_t there = std::min({system_bytes(), container_bytes(), address_space_bytes()});
+    if (needed <= there)
+        return;
+    const auto [width, height] = image_size(scene.film);
+    throw Error(
+        ExitCode::device,
+        fmt::format("not enough memory: rendering {}x{} pixels takes {} MB at the least, and {} MB are left; try "
+                    "a smaller --size, or a --crop",
+                    width, height, (needed + (1 << 20) - 1) >> 20, there >> 20));
+}
+
+} // namespace gradus
