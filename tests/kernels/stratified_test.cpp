@@ -1,9 +1,6 @@
 // Stratified random numbers: their strata, that they are uniform, and that pixels and dimensions do not know each
 // other; and the choices that are made with them.
 #define TRAIT_STRATIFIED 1
-#include "kernels/lib/bsdf_dielectric.h"
-#include "kernels/lib/stratified.h"
-
 #include "tests/kernels/precision.h"
 #include "tests/support/chi_square.h"
 
@@ -12,6 +9,10 @@
 #include <cstdio>
 #include <gtest/gtest.h>
 #include <vector>
+
+// After GoogleTest, which has template parameters of the names of its macros.
+#include "kernels/lib/bsdf_dielectric.h"
+#include "kernels/lib/stratified.h"
 
 using namespace gradus::testing;
 
