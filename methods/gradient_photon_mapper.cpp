@@ -40,7 +40,8 @@ std::vector<std::uint32_t> material_bins(const Scene &scene, const Session &sess
     return bins;
 }
 
-/// Camera paths of a pixel are stratified. Where light may come straight from a light, or by specular vertices alone, shifts ask how it left.
+/// Camera paths of a pixel are stratified. Where light may come straight from a light, or by specular vertices alone,
+/// shifts ask how it left.
 TraitMap light_vertex_traits(const Scene &scene, const RenderOptions &options) {
     bool starts = options.direct_photons || options.all_traits;
     for_each_bsdf(scene, [&](const Bsdf &bsdf) { starts = starts || bsdf_kind_is_dirac(bsdf_kind_name(bsdf)); });

@@ -1,9 +1,11 @@
-/* A smooth dielectric interface: mirror reflection or refraction, the lobe chosen by Fresnel. The normal points
- * outside; ior is the index inside over the index outside. */
+/* A smooth dielectric interface: mirror reflection or refraction, the lobe chosen by Fresnel, or nearly so where camera
+ * paths are stratified (kernels/lib/lobe_chance.h). The normal points outside; ior is the index inside over the index
+ * outside. */
 #ifndef GRADUS_LIB_BSDF_DIELECTRIC_H
 #define GRADUS_LIB_BSDF_DIELECTRIC_H
 #include "kernels/lib/bsdf_sample.h"
 #include "kernels/lib/fresnel.h"
+#include "kernels/lib/lobe_chance.h"
 
 GRADUS_LIB_BEGIN
 
@@ -19,12 +21,15 @@ GRADUS_FN bsdf_sample dielectric_sample(material m, vec3 wi, real u_lobe, real u
     const real eta = side > R(0) ? m.ior : R(1) / m.ior;
     const real inverse_eta = R(1) / eta;
     const fresnel_dielectric_result fresnel = fresnel_dielectric(r_min(r_abs(wi.z), R(1)), eta);
-    const int is_reflected = u_lobe < fresnel.reflectance;
+    const real chance = reflection_chance(fresnel.reflectance, mode == transport_radiance);
+    const int is_reflected = u_lobe < chance;
     sample.wo = v3(is_reflected ? -wi.x : -wi.x * inverse_eta, is_reflected ? -wi.y : -wi.y * inverse_eta,
                    is_reflected ? wi.z : -side * fresnel.cosine_transmitted);
     const rgb transmitted = rgb_scale(material_specular_transmittance(m), transport_scale(inverse_eta, mode));
-    sample.weight = rgb_select(is_reflected, material_specular_reflectance(m), transmitted);
-    sample.pdf = is_reflected ? fresnel.reflectance : R(1) - fresnel.reflectance;
+    const real share = is_reflected ? fresnel.reflectance : R(1) - fresnel.reflectance;
+    sample.pdf = is_reflected ? chance : R(1) - chance;
+    sample.weight = rgb_scale(rgb_select(is_reflected, material_specular_reflectance(m), transmitted),
+                              share == sample.pdf ? R(1) : share / r_max(sample.pdf, R(1e-6)));
     /* Fresnel's reflectance is the same from both sides of a refracted ray. */
     sample.pdf_reverse = sample.pdf;
     sample.eta = is_reflected ? R(1) : eta;

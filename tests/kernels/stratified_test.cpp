@@ -1,7 +1,6 @@
 // Stratified random numbers: their strata, that they are uniform, and that pixels and dimensions do not know each
-// other.
-#include "kernels/lib/stratified.h"
-
+// other; and the choices that are made with them.
+#define TRAIT_STRATIFIED 1
 #include "tests/kernels/precision.h"
 #include "tests/support/chi_square.h"
 
@@ -10,6 +9,10 @@
 #include <cstdio>
 #include <gtest/gtest.h>
 #include <vector>
+
+// After GoogleTest, which has template parameters of the names of its macros.
+#include "kernels/lib/bsdf_dielectric.h"
+#include "kernels/lib/stratified.h"
 
 using namespace gradus::testing;
 
@@ -114,4 +117,39 @@ TEST(Stratified, AnEdgeHasFarLessVariance) {
                 variance / independent);
     EXPECT_NEAR(mean, area, 4 * std::sqrt(variance / pixels));
     EXPECT_LT(variance, 0.25 * independent);
+}
+
+// Each lobe of smooth glass brings on average what it does where it is chosen by its share, as importance does.
+TEST(StratifiedChoice, OfALobeBringsItsShare) {
+    for (const double ior : {1.0001, 1.33, 1.5, 2.4, 0.7})
+        for (int i = 1; i <= 400; ++i)
+            for (const int side : {1, -1}) {
+                lib::material glass{};
+                glass.ior = real(ior);
+                glass.specular_reflectance_r = R(1);
+                glass.specular_transmittance_r = R(1);
+                const double cosine = i / 400.0;
+                const lib::vec3 wi = lib::v3(real(std::sqrt(1 - cosine * cosine)), R(0), real(side * cosine));
+                for (const bool reflects : {true, false}) {
+                    const real u = reflects ? R(0) : R(1 - 0x1p-24);
+                    const auto ours = lib::dielectric_sample(glass, wi, u, 0, 0, lib::transport_radiance);
+                    const auto plain = lib::dielectric_sample(glass, wi, u, 0, 0, lib::transport_importance);
+                    ASSERT_GT(ours.wo.z * plain.wo.z, 0);
+                    const double scale = 1 / (double(ours.eta) * ours.eta);
+                    EXPECT_NEAR(ours.pdf * ours.weight.r, plain.pdf * plain.weight.r * scale, 1e-6 * scale);
+                    EXPECT_LE(ours.weight.r, 1.5001 * scale);
+                }
+            }
+}
+
+// The levels are eighths, so that eight samples have no noise, and none is far below the share of either lobe.
+TEST(StratifiedChoice, IsAtLevels) {
+    for (int i = 6; i <= 994; ++i) {
+        const double share = i / 1000.0, level = double(lib::level_near(real(share)));
+        EXPECT_EQ(level * 8, std::floor(level * 8)) << share;
+        EXPECT_LT(share / level, 1.51) << share;
+        EXPECT_LT((1 - share) / (1 - level), 1.51) << share;
+    }
+    for (const double share : {0.0, 0.004, 0.996, 1.0})
+        EXPECT_EQ(lib::level_near(real(share)), real(share));
 }

@@ -1,0 +1,34 @@
+/* With which probability a smooth interface reflects a path. */
+#ifndef GRADUS_LIB_LOBE_CHANCE_H
+#define GRADUS_LIB_LOBE_CHANCE_H
+//! traits: TRAIT_STRATIFIED
+#include "kernels/shared/compat.h"
+
+GRADUS_LIB_BEGIN
+
+/* A level near the reflectance, where the choice is stratified over the samples of a pixel: of 8 samples an eighth,
+ * a quarter, a half... reflect, exactly, so that the choice has no noise at all; and neighbouring pixels, whose paths
+ * take the same numbers, make the same choice. Glass that reflects a twenty-fifth does so with every eighth sample:
+ * what is seen in it is often far brighter than what is seen through it. Each lobe is weighted by its share over its
+ * probability, at most one and a half. Where nearly all or nothing is reflected there is no choice. */
+GRADUS_FN real level_near(real reflectance) {
+    /* A sum: nested choices would become a switch (docs/design.md). */
+    const real level = R(0.125) + (reflectance > R(0.1875) ? R(0.125) : R(0)) +
+                       (reflectance > R(0.375) ? R(0.25) : R(0)) + (reflectance > R(0.625) ? R(0.25) : R(0)) +
+                       (reflectance > R(0.8125) ? R(0.125) : R(0));
+    const int has_both = (reflectance > R(0.005)) & (reflectance < R(0.995));
+    return has_both ? level : reflectance;
+}
+
+/* is_stratified: the path is one of those of TRAIT_STRATIFIED (kernels/lib/path_draw.h). */
+GRADUS_FN real reflection_chance(real reflectance, int is_stratified) {
+#if TRAIT_STRATIFIED
+    return is_stratified ? level_near(reflectance) : reflectance;
+#else
+    (void)is_stratified;
+    return reflectance;
+#endif
+}
+
+GRADUS_LIB_END
+#endif
