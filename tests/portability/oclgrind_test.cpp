@@ -176,15 +176,17 @@ TEST_F(Oclgrind, Photons) {
                                          "photon_lines", "photon_starts", "photon_pairs count", "photon_pairs list",
                                          "pair_scan",    "pair_sum",      "gather_add"};
     expected.push_back("photon_evaluate diffuse");
-    EXPECT_THAT(render("materials.xml", {"--method", "sppm", "--size", "8x8", "--photons", "200", "--radius", "5%"}),
+    EXPECT_THAT(render("materials.xml", {"--method", "sppm", "--size", "8x8", "--photons", "200", "--radius", "5%",
+                                         "--batch-size", "64"}),
                 IsSupersetOf(expected));
-    render("cornell-box.xml",
-           {"--method", "sppm", "--size", "8x8", "--photons", "200", "--radius", "5%", "--direct", "photons", "--aov"});
+    render("cornell-box.xml", {"--method", "sppm", "--size", "8x8", "--photons", "200", "--radius", "5%", "--direct",
+                               "photons", "--aov", "--batch-size", "64"});
 }
 
 // Photons shifted by reconnections and walks.
 TEST_F(Oclgrind, GradientsOfPhotons) {
-    EXPECT_THAT(render("lamp-in-egg.xml", {"--method", "gpm", "--size", "8x6", "--photons", "150", "--radius", "10%"}),
+    EXPECT_THAT(render("lamp-in-egg.xml", {"--method", "gpm", "--size", "8x6", "--photons", "150", "--radius", "10%",
+                                           "--batch-size", "256"}),
                 IsSupersetOf({"photon_shift diffuse", "photon_reconnect diffuse", "photon_arrive diffuse",
                               "photon_project", "photon_walk", "photon_leave light", "photon_pass dielectric",
                               "photon_pass end", "pair_difference_sum", "gradient_gather"}));
