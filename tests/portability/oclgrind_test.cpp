@@ -178,10 +178,11 @@ TEST_F(Oclgrind, Photons) {
                                          "photon_lines", "photon_starts", "photon_pairs count", "photon_pairs list",
                                          "pair_scan",    "pair_sum",      "gather_add"};
     expected.push_back("photon_evaluate diffuse");
-    EXPECT_THAT(render("materials.xml", {"--method", "sppm", "--size", "8x8", "--photons", "200", "--radius", "5%"}),
+    EXPECT_THAT(render("materials.xml", {"--method", "sppm", "--size", "8x8", "--photons", "200", "--radius", "5%",
+                                         "--batch-size", "64"}),
                 IsSupersetOf(expected));
     EXPECT_THAT(render("cornell-box.xml", {"--method", "sppm", "--size", "8x8", "--photons", "200", "--radius", "5%",
-                                           "--direct", "photons", "--aov"}),
+                                           "--direct", "photons", "--aov", "--batch-size", "64"}),
                 IsSupersetOf({"bias_sum", "bias_add"}));
 }
 
