@@ -204,7 +204,7 @@ TEST(GradientPhotonStability, WhereFewPhotonsAreSeen) {
 
 TEST(GradientPhotonStability, UnderGlass) {
     for (const char *piece : {"a block", "a coarse lens", "a smooth lens"}) {
-        SceneMaker maker = scene_of(10);
+        SceneMaker maker = scene_of(16);
         add_floor_under_glass(maker, piece);
         const bool is_block = std::string(piece) == "a block", is_smooth = std::string(piece) == "a smooth lens";
         record_stability(
