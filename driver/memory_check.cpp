@@ -51,8 +51,9 @@ std::uint64_t address_space_bytes() {
         return unlimited;
     const std::uint64_t pages = number_in("/proc/self/statm");
     const std::uint64_t used = pages == unlimited ? 0 : pages * std::uint64_t(::sysconf(_SC_PAGESIZE));
-    // Threads, PoCL and the compiler in it take this much, and end the process where they do not get it.
-    constexpr std::uint64_t implementation = 600u << 20;
+    // Threads, PoCL and the compiler in it take this much; they end the process, or wait for ever, where they do not
+    // get it (found by trying with PoCL 3.1).
+    constexpr std::uint64_t implementation = 900u << 20;
     return limit.rlim_cur - std::min<std::uint64_t>(limit.rlim_cur, used + implementation);
 }
 

@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstdio>
 #include <new>
+#include <system_error>
 
 namespace gradus {
 namespace {
@@ -43,6 +44,14 @@ int run_chosen(const std::function<int()> &chosen) {
     } catch (const std::bad_alloc &) {
         print_message("gradus: error: out of memory: try a smaller --size, a --crop, or a smaller --batch-size\n");
         return static_cast<int>(ExitCode::device);
+    } catch (const std::system_error &error) {
+        // A thread or a process that could not be started.
+        if (error.code() == std::errc::resource_unavailable_try_again || error.code() == std::errc::not_enough_memory) {
+            print_message(fmt::format("gradus: error: {}: not enough memory, or too many threads: try --nthreads 1\n",
+                                      error.what()));
+            return static_cast<int>(ExitCode::device);
+        }
+        print_message(fmt::format("gradus: error: {}\n", error.what()));
     } catch (const std::exception &error) {
         print_message(fmt::format("gradus: error: {}\n", error.what()));
     } catch (...) {

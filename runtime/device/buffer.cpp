@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <exception>
 
 namespace gradus {
 
@@ -16,7 +17,12 @@ struct Buffer::Handle {
         device.allocated_bytes += bytes;
         device.peak_bytes = std::max(device.peak_bytes, device.allocated_bytes);
     }
-    ~Handle() { device.allocated_bytes -= bytes; }
+    ~Handle() {
+        device.allocated_bytes -= bytes;
+        // Where an error unwinds, what was queued before it may still use this memory.
+        if (std::uncaught_exceptions() > 0)
+            device.finish_quietly();
+    }
 
     Device::Implementation &device;
     cl::Buffer memory;
@@ -26,7 +32,17 @@ struct Buffer::Handle {
 };
 
 struct Buffer::Event {
+    explicit Event(Device::Implementation &device) : device(device) {}
+    ~Event() {
+        if (!is_done) // an error came first, and the caller's memory goes
+            device.finish_quietly();
+    }
+    Event(const Event &) = delete;
+    Event &operator=(const Event &) = delete;
+
+    Device::Implementation &device;
     cl::Event event;
+    bool is_done = false;
 };
 
 Buffer::Buffer(Device &device, const std::string &name, std::size_t bytes)
@@ -97,7 +113,8 @@ void Buffer::clear() {
 
 void Buffer::read(void *data, std::size_t bytes) const { start_read(data, bytes).wait(); }
 
-Buffer::Reading::Reading(const Buffer &buffer, void *data, std::size_t bytes) : done_(std::make_shared<Event>()) {
+Buffer::Reading::Reading(const Buffer &buffer, void *data, std::size_t bytes)
+    : done_(std::make_shared<Event>(buffer.handle_->device)) {
     const Handle &handle = *buffer.handle_;
     opencl_call("reading " + buffer.name_, [&] {
         handle.device.queue.enqueueReadBuffer(handle.memory, CL_FALSE, 0, bytes, data, nullptr, &done_->event);
@@ -107,6 +124,7 @@ Buffer::Reading::Reading(const Buffer &buffer, void *data, std::size_t bytes) : 
 
 void Buffer::Reading::wait() {
     opencl_call("reading", [&] { done_->event.wait(); });
+    done_->is_done = true;
 }
 
 Buffer::Mapping::Mapping(const Buffer &buffer, Access access, Wait wait) : buffer_(buffer) {

@@ -42,6 +42,13 @@ struct Device::Implementation {
     ProgramStore store;                            ///< what other processes built
     std::size_t compiled = 0;                      ///< programs that were not taken from there
     LaunchObserver observer;                       ///< empty: none
+
+    ~Implementation() { finish_quietly(); } // threads of the implementation must not outlive the program's memory
+    /// Waits for all that is queued, where nobody could do anything about an error.
+    void finish_quietly() noexcept {
+        if (queue())
+            ::clFinish(queue());
+    }
 };
 
 struct FoundDevice {

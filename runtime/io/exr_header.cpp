@@ -75,8 +75,12 @@ class Header {
                 file_.get();
             } else if (attribute == "channels") {
                 const std::streamoff end = file_.tellg() + std::streamoff(size);
-                for (; file_ && !name().empty(); ++channels)
-                    file_.seekg(16, std::ios::cur);
+                for (; file_ && !name().empty(); ++channels) {
+                    // uint, half or float; OpenImageIO 2.4 ends the process at others.
+                    if (number() > 2)
+                        return std::nullopt;
+                    file_.seekg(12, std::ios::cur);
+                }
                 file_.seekg(end);
             } else
                 file_.seekg(size, std::ios::cur);

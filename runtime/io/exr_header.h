@@ -10,7 +10,8 @@ namespace gradus {
 struct ExrSize {
     std::uint64_t bytes = 0;  ///< of all parts' pixels as floats
     std::uint64_t blocks = 0; ///< of scanlines or tiles at least; each has 8 bytes in the file's table of offsets
-    bool is_whole = true;     ///< false: the headers end early, or an attribute is longer than the file
+    bool is_whole =
+        true; ///< false: the headers end early, an attribute is longer than the file, or a channel of no known type
 };
 
 /// Sums over all parts. Nothing for what is no OpenEXR file. Sums that are too large for 64 bits are the largest

@@ -60,7 +60,7 @@ class PixelLimit {
         if (const std::optional<ExrSize> declared = exr_size(path); declared && !not_there) {
             check_bytes(declared->bytes);
             if (!declared->is_whole || declared->blocks > size / 8)
-                fail_read(path, "it is truncated: its size and its pixels do not agree");
+                fail_read(path, "it is truncated or damaged: its header and its size do not agree");
         }
     }
 

@@ -83,16 +83,22 @@ TEST_F(HostileImage, PixelsThatNoFileHolds) {
 /// Within the limit of pixels, but its table of lines would have to be longer than the file.
 TEST_F(HostileImage, MoreLinesThanTheFileHolds) {
     write_with("dataWindow", to_box, bytes_of(0) + bytes_of(0) + bytes_of(3) + bytes_of(2000000));
-    EXPECT_THAT(error(), HasSubstr("truncated"));
+    EXPECT_THAT(error(), HasSubstr("truncated or damaged"));
 }
 
 /// An attribute of half a gigabyte in a file of less than a kilobyte; a header without an end.
 TEST_F(HostileImage, HeadersLongerThanTheFile) {
     write_with("lineOrder", sizeof "lineOrder" + sizeof "lineOrder", bytes_of(0x20000000u));
     EXPECT_FALSE(exr_size(path_)->is_whole);
-    EXPECT_THAT(error(), HasSubstr("truncated"));
+    EXPECT_THAT(error(), HasSubstr("truncated or damaged"));
     std::filesystem::resize_file(path_, 100);
-    EXPECT_THAT(error(), HasSubstr("truncated"));
+    EXPECT_THAT(error(), HasSubstr("truncated or damaged"));
+}
+
+/// Found by fuzzing: a channel of a type that there is not.
+TEST_F(HostileImage, UnknownPixelType) {
+    write_with("chlist", sizeof "chlist" + 4 + sizeof "B", bytes_of(3));
+    EXPECT_THAT(error(), HasSubstr("truncated or damaged"));
 }
 
 TEST_F(HostileImage, ManyChannels) {
