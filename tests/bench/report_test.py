@@ -195,4 +195,8 @@ class PartsOfStages(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    program = unittest.main(exit=False)
+    if not program.result.wasSuccessful():
+        sys.exit(1)
+    # What was skipped shall not hide what fails.
+    sys.exit(77 if program.result.skipped else 0)
