@@ -71,9 +71,10 @@ TEST_P(PhotonInvariance, ToTheCropAndToLayers) {
         const Image features = render(part, with, "pt").image;
         for (const char *channel : {"albedo.R", "albedo.B"})
             expect_alike_where_uniform(features, layered, channel);
-        if (sampled)
+        if (sampled) {
             for (const char *channel : {"albedo.R", "albedo.B", "normal.X", "normal.Z", "depth.Z"})
                 EXPECT_EQ(sampled->find(channel)->values, layered.find(channel)->values) << channel;
+        }
         sampled = layered;
     }
     part.film.crop_x = 13;
