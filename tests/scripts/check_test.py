@@ -36,7 +36,7 @@ class Check(unittest.TestCase):
             (self.folder / name).mkdir()
         for name in ("check", "scripts/check_skips.py"):
             shutil.copy(ROOT / name, self.folder / name)
-        for name in ("demo", "scripts/build.sh", "scripts/install_dependencies.sh", *(
+        for name in ("demo", "scripts/build.sh", "scripts/fuzz.sh", "scripts/install_dependencies.sh", *(
                 f"programs/{program}" for program in ("cmake", "ctest", "python3"))):
             (self.folder / name).write_text(STUB)
             (self.folder / name).chmod(0o755)
@@ -76,6 +76,8 @@ class Check(unittest.TestCase):
             "all tests, slow ones too": "SKIPPED: 1 were skipped",
             "tests under the sanitizers": "SKIPPED: 1 were skipped",
             "tests under the sanitizers that open a device": "SKIPPED: 1 were skipped",
+            "planted defects": "passed",
+            "readers of files, fuzzed for a minute each": "passed",
             "the demo with empty caches": "passed",
             "a second OpenCL implementation": "SKIPPED: no second OpenCL implementation",
             "Mitsuba 3": "passed",
@@ -84,6 +86,7 @@ class Check(unittest.TestCase):
 
     def test_full_goes_on_after_a_failure(self):
         for fails, part in (("cmake --build*", "tests under the sanitizers"), ("*compare.py*", "Mitsuba 3"),
+                            ("fuzz.sh*", "readers of files, fuzzed for a minute each"), ("*run.py*", "planted defects"),
                             ("ctest*Stability*", "tests under the sanitizers that open a device")):
             code, summary = self.summary(fails=fails)
             self.assertEqual(code, 1)
