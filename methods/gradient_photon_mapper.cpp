@@ -217,6 +217,7 @@ void GradientPhotonMapper::gather_photons(const Strip &strip) {
         for (std::uint32_t from = 0; from < all.count; from += most)
             statistics_.photon_pairs +=
                 pairs_.find({all.first + from, std::min(most, all.count - from)}, [&](const PairWindow &window) {
+                    session_.ask_to_go_on();
                     evaluate_.run_kind(kind, window.pairs);
                     shift_photons(kind, window);
                     pairs_.sum(window);

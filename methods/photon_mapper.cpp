@@ -84,6 +84,7 @@ void PhotonMapper::gather_photons(const Hits &hits, std::uint32_t first_pixel, s
         const double radii_before = pairs_.radius_sum();
         statistics_.gather_points += rows.count;
         statistics_.photon_pairs += pairs_.find(rows, [&](const PairWindow &window) {
+            session_.ask_to_go_on();
             evaluate_.run_kind(kind, window.pairs);
             pairs_.sum(window);
             bias_.sum(window);
