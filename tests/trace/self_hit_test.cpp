@@ -1,6 +1,12 @@
 // Rays that start at surfaces do not meet the surface that they start from, and connections meet neither of their ends,
 // for triangles of all shapes and spheres, near the origin and far from it; and they start so near that panes of a few
 // units in the last place are not lost.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
 #include "runtime/scene/scene_tables.h"
 #include "runtime/trace/tracer.h"
 
@@ -9,11 +15,6 @@
 #include "kernels/lib/frame.h"
 #include "kernels/lib/scene_hit.h"
 #include "kernels/shared/tables.h"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <random>
 
 namespace gradus::testing {
 namespace {
