@@ -169,10 +169,4 @@ Scene load_requested_scene(const SceneRequest &request, const Services &services
     return std::move(loaded.scene);
 }
 
-std::array<std::uint32_t, 2> image_size(const FilmSettings &film) {
-    if (film.crop_width == 0)
-        return {film.width, film.height};
-    return {film.crop_width, film.crop_height};
-}
-
 } // namespace gradus

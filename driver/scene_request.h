@@ -49,7 +49,4 @@ Scene load_requested_scene(const SceneRequest &request, const Services &services
                            const std::function<void(const std::string &)> &warn,
                            std::vector<std::string> *files = nullptr);
 
-/// Width and height of the image to render: the crop's, or the film's where there is none.
-std::array<std::uint32_t, 2> image_size(const FilmSettings &film);
-
 } // namespace gradus

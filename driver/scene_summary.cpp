@@ -1,6 +1,7 @@
 #include "driver/scene_summary.h"
 
-#include "driver/scene_request.h"
+#include "runtime/scene/bounds.h"
+#include "runtime/scene/mesh_builder.h"
 #include "runtime/scene/traits.h"
 
 #include <algorithm>
@@ -20,21 +21,6 @@ std::string material_name(const Material &material) {
     const std::string back = bsdf_kind_name(material.back);
     return front == back ? "twosided " + front : "twosided " + front + "/" + back;
 }
-
-struct Bounds {
-    std::array<double, 3> lower, upper;
-    Bounds() {
-        lower.fill(std::numeric_limits<double>::infinity());
-        upper.fill(-std::numeric_limits<double>::infinity());
-    }
-    void add(const Vector3 &point, double radius) {
-        const double values[3] = {point.x, point.y, point.z};
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            lower[axis] = std::min(lower[axis], values[axis] - radius);
-            upper[axis] = std::max(upper[axis], values[axis] + radius);
-        }
-    }
-};
 
 } // namespace
 
@@ -84,23 +70,13 @@ SceneSummary summarize(const Scene &scene) {
     SceneSummary summary;
     Bounds bounds;
     for (const Shape &shape : scene.shapes) {
-        if (shape.kind == Shape::Kind::sphere) {
-            ++summary.spheres;
-            const Sphere &sphere = scene.spheres.at(shape.geometry);
-            bounds.add(sphere.center, sphere.radius);
-            continue;
-        }
-        ++summary.meshes;
-        const Mesh &mesh = scene.meshes.at(shape.geometry);
-        for (const Vector3 &position : mesh.positions)
-            bounds.add(position, 0);
+        ++(shape.kind == Shape::Kind::sphere ? summary.spheres : summary.meshes);
+        bounds.add(bounds_of(scene, shape));
     }
     for (const Mesh &mesh : scene.meshes) {
         summary.triangles += mesh.triangles.size();
         summary.vertices += mesh.positions.size();
-        summary.geometry_bytes += mesh.positions.size() * sizeof(Vector3) + mesh.normals.size() * sizeof(Vector3) +
-                                  mesh.texcoords.size() * sizeof mesh.texcoords[0] +
-                                  mesh.triangles.size() * sizeof mesh.triangles[0];
+        summary.geometry_bytes += mesh_bytes(mesh);
     }
     summary.tree_bytes = summary.triangles * tree_bytes_per_triangle;
     if (!scene.shapes.empty()) {

@@ -108,6 +108,8 @@ void DifferenceFilm::add_to(Statistics &statistics) const {
 }
 
 void DifferenceFilm::clear() {
+    edge_rays_ = 0;
+    edge_seconds_ = 0;
     film_.clear();
     (*tables_)["gradient_film"].clear();
 }

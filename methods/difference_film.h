@@ -37,7 +37,7 @@ class DifferenceFilm {
     /// as they have been read.
     Image image(std::uint64_t samples, bool layers, bool last, std::uint64_t &non_finite);
 
-    /// All sums zero again. Edges of lights that have been sampled stay.
+    /// All sums and counts zero again. Edges of lights that have been sampled stay.
     void clear();
     /// Adds what sampling the edges of lights took.
     void add_to(Statistics &statistics) const;

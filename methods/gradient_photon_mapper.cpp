@@ -191,20 +191,12 @@ bool GradientPhotonMapper::render_batch() {
     }
     film_.add(strip.first, strip.rows, 1);
     finish(session_.device);
-    count_radii(pass, strip, statistics_.gather_points - points_before, pairs_.radius_sum() - radii_before);
+    count_radii(statistics_, pass, strip.first == 0,
+                {statistics_.gather_points - points_before, pairs_.radius_sum() - radii_before});
     done_ += strip.pixels;
     statistics_.samples += strip.pixels;
     statistics_.render_seconds += seconds_since(start);
     return done_ < total_;
-}
-
-void GradientPhotonMapper::count_radii(std::uint64_t pass, const Strip &strip, std::uint64_t points, double radii) {
-    if (strip.first == 0)
-        statistics_.last_radii = {};
-    statistics_.last_radii.points += points;
-    statistics_.last_radii.sum += radii;
-    if (pass == 0)
-        statistics_.first_radii = statistics_.last_radii;
 }
 
 void GradientPhotonMapper::gather_photons(const Strip &strip) {
@@ -302,12 +294,7 @@ Image GradientPhotonMapper::make_image(bool layers, bool last) {
     statistics_.non_finite = 0;
     const std::optional<BiasEstimates> bias = bias_.estimates(done_);
     Image image = film_.image(done_, layers, last, statistics_.non_finite);
-    statistics_.relative_variance = relative_variance_of_passes(image);
-    if (bias) {
-        bias->add_layer(image);
-        if (bias->has_halves)
-            statistics_.relative_squared_bias = bias->relative_square(image);
-    }
+    add_pass_errors(bias, image, statistics_);
     return image;
 }
 

@@ -52,7 +52,6 @@ class GradientPhotonMapper final : public Method {
     TableList tables() const;
     Strip next_strip() const;
     void begin_strip(const Strip &strip);
-    void count_radii(std::uint64_t pass, const Strip &strip, std::uint64_t points, double radii);
     void gather_photons(const Strip &strip);
     void shift_photons(std::size_t kind, const PairWindow &window);
     void move_chains(Range chains, std::uint32_t pairs);

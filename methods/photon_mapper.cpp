@@ -58,21 +58,21 @@ bool PhotonMapper::render_batch() {
     const std::uint64_t pass = done_ / session_.pixels();
     const auto first_pixel = static_cast<std::uint32_t>(done_ % session_.pixels());
     const std::uint32_t paths = std::min(camera_paths_, session_.pixels() - first_pixel);
+    const double radii_before = pairs_.radius_sum();
+    const std::uint64_t points_before = statistics_.gather_points;
     if (session_.max_depth() == 0) { // no path begins, so none sets its slot to zero
         (*tables_)["radiance"].clear();
         if (tables_->has("feature"))
             (*tables_)["feature"].clear();
     } else {
-        if (first_pixel == 0)
-            statistics_.last_radii = {};
         photons_.begin(pass);
         paths_.trace(paths, first_pixel, pass, [&](const Hits &hits) { gather_photons(hits, first_pixel, pass); });
     }
     film_.add(paths, first_pixel);
     finish(session_.device);
+    count_radii(statistics_, pass, first_pixel == 0,
+                {statistics_.gather_points - points_before, pairs_.radius_sum() - radii_before});
     done_ += paths;
-    if (pass == 0)
-        statistics_.first_radii = statistics_.last_radii;
     statistics_.samples += paths;
     statistics_.render_seconds += seconds_since(start);
     return done_ < total_;
@@ -81,7 +81,6 @@ bool PhotonMapper::render_batch() {
 void PhotonMapper::gather_photons(const Hits &hits, std::uint32_t first_pixel, std::uint64_t pass) {
     for (std::size_t kind = 0; kind < paths_.kinds(); ++kind) {
         const Range rows = paths_.gather_points(hits, kind);
-        const double radii_before = pairs_.radius_sum();
         statistics_.gather_points += rows.count;
         statistics_.photon_pairs += pairs_.find(rows, [&](const PairWindow &window) {
             session_.ask_to_go_on();
@@ -91,20 +90,13 @@ void PhotonMapper::gather_photons(const Hits &hits, std::uint32_t first_pixel, s
         });
         add_.run(rows.count, {{"first", rows.first}});
         bias_.add(rows, first_pixel, pass);
-        statistics_.last_radii.points += rows.count;
-        statistics_.last_radii.sum += pairs_.radius_sum() - radii_before;
     }
 }
 
 Image PhotonMapper::image() {
     statistics_.non_finite = 0;
     Image image = film_.image(done_, statistics_.non_finite);
-    statistics_.relative_variance = relative_variance_of_passes(image);
-    if (const std::optional<BiasEstimates> bias = bias_.estimates(done_)) {
-        bias->add_layer(image);
-        if (bias->has_halves)
-            statistics_.relative_squared_bias = bias->relative_square(image);
-    }
+    add_pass_errors(bias_.estimates(done_), image, statistics_);
     return image;
 }
 

@@ -85,8 +85,8 @@ PhotonPilot run_photon_pilot(Device &device, const Scene &scene, const RenderOpt
     Scene one_pass = scene;
     one_pass.settings.samples_per_pixel = 1;
     RenderOptions with = options;
-    const std::uint64_t pixels = std::uint64_t(scene.film.crop_width ? scene.film.crop_width : scene.film.width) *
-                                 (scene.film.crop_height ? scene.film.crop_height : scene.film.height);
+    const auto [width, height] = image_size(scene.film);
+    const std::uint64_t pixels = std::uint64_t(width) * height;
     const std::uint64_t samples = std::min(scene.settings.samples_per_pixel, most_light_paths * samples_a_light_path);
     with.photons = std::clamp(samples * pixels / samples_a_light_path, fewest_light_paths, most_light_paths);
     if (options.photons > 0)

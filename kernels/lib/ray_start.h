@@ -4,8 +4,7 @@
  * With u = 2^-24, half a unit in the last place: a point p computed on a surface of normal n is off it by at most
  * 2 u (|n_x p_x| + |n_y p_y| + |n_z p_z|), and a ray's origin that is stored once more by half of that. Then there is
  * what the tracer itself errs by in meeting the surface, which goes with the size of the primitive and the angles of a
- * triangle
- * (`offset` of its record, runtime/scene/scene_tables.cpp), and for a ray from far away with its length. */
+ * triangle (`offset` of its record, runtime/scene/scene_tables.cpp), and for a ray from far away with its length. */
 #ifndef GRADUS_LIB_RAY_START_H
 #define GRADUS_LIB_RAY_START_H
 #include "kernels/lib/vector.h"
@@ -30,9 +29,16 @@ GRADUS_FN vec3 ray_origin(vec3 position, vec3 geometric, real offset, vec3 direc
     return v3_mad(position, offset * r_copysign1(v3_dot(geometric, direction)), geometric);
 }
 
-/* Where a connection `way` long that comes to a surface ends: on the side that it comes from. */
+/* The end, or the whole, of a connection `way` long to a surface, moved off that towards where `facing`, its unit
+ * normal, points. */
+GRADUS_FN vec3 connection_before(vec3 end, vec3 facing, real offset, vec3 way) {
+    return v3_mad(end, offset + rounding_along(facing, way), facing);
+}
+
+/* Where such a connection ends: on the side that it comes from. */
 GRADUS_FN vec3 connection_end(vec3 position, vec3 geometric, real offset, vec3 way) {
-    return ray_origin(position, geometric, offset + rounding_along(geometric, way), v3_neg(way));
+    const real side = r_copysign1(v3_dot(geometric, v3_neg(way)));
+    return connection_before(position, v3_scale(geometric, side), offset, way);
 }
 
 GRADUS_LIB_END

@@ -14,9 +14,7 @@ STAGE bias_sum(uint count, uint first, uint from, uint window_first, uint window
     if (item >= count)
         return;
     const uint place = from + item, row = GATHER_ROW(first + place);
-    const uint begin = pair_chunk_first[place / PAIR_CHUNK] + pair_offset[place];
-    const uint window_end = window_first + window_pairs;
-    const uint low = max(begin, window_first), high = min(begin + pair_count[place], window_end);
+    PAIRS_IN_WINDOW(place)
     const vec3 at = AT_V3(gather, position, row);
     const real distance = AT(gather, radius, row), squared = R(0.5) * distance * distance;
     rgb sum = rgb_scale(AT_RGB(gather_inner, value, row), begin >= window_first ? R(0) : R(1));

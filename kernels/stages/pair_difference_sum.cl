@@ -11,9 +11,7 @@ STAGE pair_difference_sum(uint count, uint first, uint from, uint window_first, 
     if (item >= count)
         return;
     const uint place = from + item;
-    const uint begin = pair_chunk_first[place / PAIR_CHUNK] + pair_offset[place];
-    const uint window_end = window_first + window_pairs;
-    const uint low = max(begin, window_first), high = min(begin + pair_count[place], window_end);
+    PAIRS_IN_WINDOW(place)
     const size_t j = get_global_id(2), to = j * slots + GATHER_ROW(first + place), line = j * pair_rows;
     rgb sum = AT_RGB(difference, value, to);
     for (uint i = low; i < high; ++i)

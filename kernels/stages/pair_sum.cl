@@ -4,16 +4,14 @@
 #include "kernels/lib/gather_row.h"
 #include "kernels/shared/stage.h"
 
-STAGE pair_sum(uint count, uint first, uint from, uint window_first, uint window_pairs, uint gather_rows, uint pair_rows,
-               __global const uint *pair_chunk_first, __global const uint *pair_offset, __global const uint *pair_count,
-               __global const real *pair_value, __global real *gather GATHER_INDEX) {
+STAGE pair_sum(uint count, uint first, uint from, uint window_first, uint window_pairs, uint gather_rows,
+               uint pair_rows, __global const uint *pair_chunk_first, __global const uint *pair_offset,
+               __global const uint *pair_count, __global const real *pair_value, __global real *gather GATHER_INDEX) {
     const uint item = (uint)work_item();
     if (item >= count)
         return;
     const uint place = from + item, row = GATHER_ROW(first + place);
-    const uint begin = pair_chunk_first[place / PAIR_CHUNK] + pair_offset[place];
-    const uint window_end = window_first + window_pairs;
-    const uint low = max(begin, window_first), high = min(begin + pair_count[place], window_end);
+    PAIRS_IN_WINDOW(place)
     rgb sum = AT_RGB(gather, sum, row);
     for (uint i = low; i < high; ++i)
         sum = rgb_add(sum, AT_RGB(pair_value, value, i - window_first));

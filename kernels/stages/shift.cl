@@ -73,8 +73,8 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
     const primitive_hit hit =
         primitive_hit_of(triangles, spheres, unit, triangle_count, present, AT_V3(ray, origin, row), base_direction);
     const real base_side = v3_dot(hit.normal, v3_sub(base, hit.position));
-    const real end_offset = offset_at(hit.position, hit.normal,
-                                      primitive_offset(triangles, spheres, unit, triangle_count, present));
+    const real end_offset =
+        offset_at(hit.position, hit.normal, primitive_offset(triangles, spheres, unit, triangle_count, present));
     const vec3 end_normal = v3_scale(hit.normal, r_copysign1(base_side));
     const real pdf = AT(event, pdf, row);
     const int goes_on = (is_hit | is_escaped) & (pdf > R(0));
@@ -175,8 +175,7 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         const size_t light_link = (size_t)j * stride + row;
         SET_V3(link, origin, light_link, light_origin);
         const vec3 light_way = v3_sub(light_end, light_origin);
-        SET_V3(link, direction, light_link,
-               v3_mad(light_way, light_gap + rounding_along(s.normal, light_way), s.normal));
+        SET_V3(link, direction, light_link, connection_before(light_way, s.normal, light_gap, light_way));
 #endif
         AT_UINT(link, open, (size_t)j * stride + row) = asks_light ? 1u : 0u;
 
@@ -257,7 +256,7 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         const size_t step_link = (size_t)(4u + j) * stride + row;
         SET_V3(link, origin, step_link, origin);
         const vec3 to_hit = v3_sub(hit.position, origin);
-        const vec3 to_end = v3_mad(to_hit, end_offset + rounding_along(end_normal, to_hit), end_normal);
+        const vec3 to_end = connection_before(to_hit, end_normal, end_offset, to_hit);
         const vec3 way_out = v3_select(is_escaped, v3_scale(direction, scene_diameter), to_end);
         SET_V3(link, direction, step_link, way_out);
         AT_UINT(link, open, step_link) = (own.is_own & reconnects & works & has_density) ? 1u : 0u;

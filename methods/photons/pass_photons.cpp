@@ -50,6 +50,15 @@ double radius_shrinkage(std::uint64_t pass, double alpha) {
     return std::exp(std::lgamma(n + 1 + alpha) - std::lgamma(1 + alpha) - std::lgamma(n + 2));
 }
 
+void count_radii(Statistics &statistics, std::uint64_t pass, bool begins, const GatherRadii &radii) {
+    if (begins)
+        statistics.last_radii = {};
+    statistics.last_radii.points += radii.points;
+    statistics.last_radii.sum += radii.sum;
+    if (pass == 0)
+        statistics.first_radii = statistics.last_radii;
+}
+
 bool has_smooth_surface(const Scene &scene, const RenderOptions &options) {
     return any_bsdf(scene, options.gather_roughness, false);
 }

@@ -12,6 +12,9 @@ namespace gradus {
 /// The square of the radius of pass `pass`, from 0 on, over that of the first: Knaus and Zwicker 2011, eq. 20.
 double radius_shrinkage(std::uint64_t pass, double alpha);
 
+/// Counts gather points of pass `pass` and the sum of their radii. `begins`: they are the first of their pass.
+void count_radii(Statistics &statistics, std::uint64_t pass, bool begins, const GatherRadii &radii);
+
 /// Whether some surfaces are too smooth to gather at.
 bool has_smooth_surface(const Scene &scene, const RenderOptions &options);
 

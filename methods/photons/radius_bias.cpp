@@ -20,6 +20,20 @@ StageDeclaration sum_stage(const PhotonPairs &pairs, bool is_wanted) {
     return stage;
 }
 
+/// Nothing where the image has no variance.
+std::optional<double> relative_variance_of_passes(const Image &image) {
+    Image variance;
+    variance.width = image.width;
+    variance.height = image.height;
+    for (const char *color : colors) {
+        const Channel *channel = image.find(std::string("variance.") + color);
+        if (!channel || channel->values.empty())
+            return std::nullopt;
+        variance.channels.push_back({color, channel->values});
+    }
+    return relative_variance(variance, image);
+}
+
 } // namespace
 
 void BiasEstimates::add_layer(Image &image) const {
@@ -45,17 +59,13 @@ double BiasEstimates::relative_square(const Image &image) const {
     return sum / double(mean.size());
 }
 
-std::optional<double> relative_variance_of_passes(const Image &image) {
-    Image variance;
-    variance.width = image.width;
-    variance.height = image.height;
-    for (const char *color : colors) {
-        const Channel *channel = image.find(std::string("variance.") + color);
-        if (!channel || channel->values.empty())
-            return std::nullopt;
-        variance.channels.push_back({color, channel->values});
-    }
-    return relative_variance(variance, image);
+void add_pass_errors(const std::optional<BiasEstimates> &bias, Image &image, Statistics &statistics) {
+    statistics.relative_variance = relative_variance_of_passes(image);
+    if (!bias)
+        return;
+    bias->add_layer(image);
+    if (bias->has_halves)
+        statistics.relative_squared_bias = bias->relative_square(image);
 }
 
 RadiusBias::RadiusBias(Session &session, Stages &stages, const PhotonPairs &pairs, const RenderOptions &options,

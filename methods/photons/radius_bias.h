@@ -34,9 +34,10 @@ struct BiasEstimates {
     double relative_square(const Image &image) const;
 };
 
-/// What noise adds to relMSE, from an image with its layer `variance`: passes are independent samples of each pixel.
-/// Nothing where there is none.
-std::optional<double> relative_variance_of_passes(const Image &image);
+/// Adds the layer `bias` to an image of photons, where it was estimated, and to the statistics what its passes say of
+/// its errors: of the noise where the image has the layer `variance`, passes being independent samples of each pixel;
+/// of the bias where there are two of them.
+void add_pass_errors(const std::optional<BiasEstimates> &bias, Image &image, Statistics &statistics);
 
 class RadiusBias {
   public:

@@ -5,10 +5,10 @@
 #define TRAIT_LIGHT_TRIANGLE 1
 #define TRAIT_LIGHT_SPHERE 1
 #include "kernels/lib/additive_sequence.h"
-#include "kernels/lib/camera_ray.h"
 #include "kernels/lib/light_found.h"
 #include "kernels/shared/tables.h"
 #include "runtime/direct_light/lit_rectangle.h"
+#include "runtime/trace/camera_rays.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,32 +35,8 @@ class DirectRays {
     /// The light along `count` rays: ray i goes through the point place(i) of the full film, in pixels.
     template <class Place>
     const std::vector<rgb> &trace(std::size_t count, const Place &place) {
-        for (std::vector<float> &column : columns_)
-            column.resize(count);
-        primitive_.assign(count, ray_pending);
+        rays_ += camera_rays_.trace(tables_, tracer_, count, place);
         light_.resize(count);
-        tracer_.in_parallel(count, [&](std::size_t begin, std::size_t end) {
-            const float *camera = tables_.camera.data();
-            for (std::size_t i = begin; i < end; ++i) {
-                const point2 film = place(i);
-                const vec3 direction = camera_direction(camera, unit, film.x, film.y);
-                const float values[] = {camera[camera_origin_x],
-                                        camera[camera_origin_y],
-                                        camera[camera_origin_z],
-                                        direction.x,
-                                        direction.y,
-                                        direction.z};
-                for (int column = 0; column < 6; ++column)
-                    columns_[column][i] = values[column];
-            }
-        });
-        RayColumns columns{};
-        for (int axis = 0; axis < 3; ++axis) {
-            columns.origin[axis] = columns_[axis].data();
-            columns.direction[axis] = columns_[3 + axis].data();
-        }
-        columns.primitive = primitive_.data();
-        rays_ += tracer_.trace(columns, count, ShadowColumns{}, 0).extension;
         tracer_.in_parallel(count, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
                 light_[i] = light_along(i);
@@ -73,13 +49,12 @@ class DirectRays {
 
     rgb light_along(std::size_t i) const {
         const float *lights = tables_.lights.data();
-        const std::uint32_t primitive = primitive_[i];
+        const std::uint32_t primitive = camera_rays_.primitive(i);
         if (primitive == ray_escaped)
             return FIELD_RGB(light, lights, tables_.environment_light, value);
         if (tables_.primitive_light[primitive] == no_light)
             return rgb_gray(0);
-        const vec3 origin = v3(columns_[0][i], columns_[1][i], columns_[2][i]);
-        const vec3 direction = v3(columns_[3][i], columns_[4][i], columns_[5][i]);
+        const vec3 origin = camera_rays_.origin(i), direction = camera_rays_.direction(i);
         const primitive_hit hit = primitive_hit_of(tables_.triangles.data(), tables_.spheres.data(), unit,
                                                    tables_.triangle_count, primitive, origin, direction);
         return light_found_at(tables_.primitive_light.data(), lights, tables_.light_count, unit, tables_.triangle_count,
@@ -90,8 +65,7 @@ class DirectRays {
     const SceneTables &tables_;
     Tracer &tracer_;
     std::uint64_t &rays_;
-    std::vector<float> columns_[6];
-    std::vector<std::uint32_t> primitive_;
+    CameraRays camera_rays_;
     std::vector<rgb> light_;
 };
 
@@ -152,12 +126,9 @@ std::vector<std::size_t> edge_pixels(const FilmSettings &film, const PixelRectan
         }
         begin = end;
     }
-    const auto seen_at = [&](int x, int y) {
-        return lit.contains(x, y) ? seen[std::size_t(y - int(lit.top)) * lit.width() + x - lit.left] : rgb_gray(0);
-    };
-    const auto is_mixed = [&](int x, int y) {
-        return lit.contains(x, y) && mixed[std::size_t(y - int(lit.top)) * lit.width() + x - lit.left];
-    };
+    const auto number_of = [&](int x, int y) { return std::size_t(y - int(lit.top)) * lit.width() + x - lit.left; };
+    const auto seen_at = [&](int x, int y) { return lit.contains(x, y) ? seen[number_of(x, y)] : rgb_gray(0); };
+    const auto is_mixed = [&](int x, int y) { return lit.contains(x, y) && mixed[number_of(x, y)]; };
     // A pixel is at an edge where one of its window is mixed, or where two that lie side by side in it differ. Beyond
     // the lit ones all are dark.
     const int width = int(film.crop_width), height = int(film.crop_height);

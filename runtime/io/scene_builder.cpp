@@ -3,6 +3,7 @@
 #include "runtime/io/file_search.h"
 #include "runtime/io/plugins/plugin.h"
 #include "runtime/io/text.h"
+#include "runtime/scene/mesh_builder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -178,9 +179,7 @@ void SceneBuilder::count_mesh_bytes(std::uint64_t bytes, const Location &locatio
 }
 
 void SceneBuilder::count_geometry(const Mesh &mesh, const Location &location) {
-    geometry_bytes_ += mesh.positions.size() * sizeof mesh.positions[0] + mesh.normals.size() * sizeof mesh.normals[0] +
-                       mesh.texcoords.size() * sizeof mesh.texcoords[0] +
-                       mesh.triangles.size() * sizeof mesh.triangles[0];
+    geometry_bytes_ += mesh_bytes(mesh);
     if (geometry_bytes_ > limits_.geometry_bytes)
         throw SceneError(location, "the meshes up to this one have more than " +
                                        std::to_string(limits_.geometry_bytes >> 20) + " MiB of vertices and triangles" +

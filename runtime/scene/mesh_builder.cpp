@@ -124,6 +124,11 @@ double surface_area(const Mesh &mesh) {
     return area;
 }
 
+std::uint64_t mesh_bytes(const Mesh &mesh) {
+    return mesh.positions.size() * sizeof mesh.positions[0] + mesh.normals.size() * sizeof mesh.normals[0] +
+           mesh.texcoords.size() * sizeof mesh.texcoords[0] + mesh.triangles.size() * sizeof mesh.triangles[0];
+}
+
 BuiltMesh build_mesh(Mesh mesh, const Matrix4 &to_world, const MeshOptions &options) {
     BuiltMesh built;
     if (options.face_normals)

@@ -33,4 +33,7 @@ std::vector<Vector3> smooth_vertex_normals(const Mesh &mesh);
 /// Sum of the areas of the triangles, in square scene units.
 double surface_area(const Mesh &mesh);
 
+/// That its vertices and triangles take.
+std::uint64_t mesh_bytes(const Mesh &mesh);
+
 } // namespace gradus

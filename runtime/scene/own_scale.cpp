@@ -1,14 +1,11 @@
 #include "runtime/scene/own_scale.h"
 
 #include "runtime/error.h"
-#include "runtime/scene/transform.h"
+#include "runtime/scene/bounds.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
-#include <optional>
 
 namespace gradus {
 namespace {
@@ -19,54 +16,20 @@ constexpr double least_share = 1e-9;
 /// Past it differences of coordinates overflow.
 constexpr double largest_float_extent = 1e37;
 
-struct Box {
-    Double3 low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
-    void add(const Vector3 &p, double radius = 0) {
-        const Double3 at = to_double(p);
-        for (int axis = 0; axis < 3; ++axis) {
-            low[axis] = std::min(low[axis], at[axis] - radius);
-            high[axis] = std::max(high[axis], at[axis] + radius);
-        }
-    }
-    void add(const Box &box) {
-        for (int axis = 0; axis < 3; ++axis) {
-            low[axis] = std::min(low[axis], box.low[axis]);
-            high[axis] = std::max(high[axis], box.high[axis]);
-        }
-    }
-    /// The longest edge; 0 of nothing.
-    double extent() const { return std::max({0.0, high[0] - low[0], high[1] - low[1], high[2] - low[2]}); }
-};
-
-/// What of the shape can be hit.
-Box box_of(const Scene &scene, const Shape &shape) {
-    Box box;
-    if (shape.kind == Shape::Kind::sphere) {
-        const Sphere &sphere = scene.spheres.at(shape.geometry);
-        box.add(sphere.center, sphere.radius);
-        return box;
-    }
-    const Mesh &mesh = scene.meshes.at(shape.geometry);
-    for (const auto &triangle : mesh.triangles)
-        for (const std::uint32_t index : triangle)
-            box.add(mesh.positions[index]);
-    return box;
-}
-
 void multiply(Vector3 &v, float factor) { v = {v.x * factor, v.y * factor, v.z * factor}; }
 
 } // namespace
 
 double bring_to_own_scale(Scene &scene) {
-    Box all;
+    Bounds all;
     double least = INFINITY, most = 0;
     const Shape *smallest = nullptr, *largest = nullptr;
     for (const Shape &shape : scene.shapes) {
-        const Box box = box_of(scene, shape);
-        const double extent = box.extent();
+        const Bounds bounds = bounds_of(scene, shape);
+        const double extent = bounds.extent();
         if (extent <= 0)
             continue;
-        all.add(box);
+        all.add(bounds);
         if (extent < least)
             least = extent, smallest = &shape;
         if (extent > most)

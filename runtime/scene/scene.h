@@ -109,6 +109,13 @@ struct FilmSettings {
     float filter_stddev = 0.5f; ///< gaussian, in pixels
 };
 
+/// Width and height of the image to render: the crop's, or the film's where there is none.
+inline std::array<std::uint32_t, 2> image_size(const FilmSettings &film) {
+    if (film.crop_width == 0)
+        return {film.width, film.height};
+    return {film.crop_width, film.crop_height};
+}
+
 /// What the file asks of the renderer; the command line may override each.
 struct RenderSettings {
     int max_depth = -1; ///< path edges at most; 1: directly seen emitters only; -1: no limit

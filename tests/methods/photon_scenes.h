@@ -3,8 +3,6 @@
 
 #include "tests/support/small_scenes.h"
 
-#include <cmath>
-#include <numbers>
 #include <string>
 
 namespace gradus::testing {
@@ -24,32 +22,6 @@ inline Scene thin_walls(double between, bool both_sides) {
             p = {factor * p.x, factor * p.y, factor * p.z};
     }
     return maker.scene;
-}
-
-/// A ball of some facets, with the ball's normals where `smooth`.
-inline Mesh coarse_ball(const Vector3 &center, double radius, bool smooth) {
-    constexpr std::uint32_t stacks = 6, slices = 9;
-    Mesh mesh;
-    for (std::uint32_t i = 0; i <= stacks; ++i)
-        for (std::uint32_t j = 0; j < slices; ++j) {
-            const double polar = std::numbers::pi * i / stacks, around = 2 * std::numbers::pi * j / slices;
-            const Vector3 normal{float(std::sin(polar) * std::cos(around)), float(std::cos(polar)),
-                                 float(std::sin(polar) * std::sin(around))};
-            mesh.positions.push_back({float(center.x + radius * normal.x), float(center.y + radius * normal.y),
-                                      float(center.z + radius * normal.z)});
-            if (smooth)
-                mesh.normals.push_back(normal);
-        }
-    for (std::uint32_t i = 0; i < stacks; ++i)
-        for (std::uint32_t j = 0; j < slices; ++j) {
-            const std::uint32_t next = (j + 1) % slices, a = i * slices + j, b = i * slices + next;
-            const std::uint32_t c = a + slices, d = b + slices;
-            if (i > 0)
-                mesh.triangles.push_back({a, b, c});
-            if (i + 1 < stacks)
-                mesh.triangles.push_back({b, d, c});
-        }
-    return mesh;
 }
 
 /// A block of glass on the floor but for 1 mm, in which light goes around by total internal reflection, or a lens of 90

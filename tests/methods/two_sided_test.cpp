@@ -1,43 +1,19 @@
 // The picture of a surface depends on that surface, not on what else the scene has.
-#include "runtime/scene/mesh_builder.h"
 #include "tests/support/render.h"
 #include "tests/support/small_scenes.h"
 
 namespace gradus::testing {
 namespace {
 
-/// A ball of few facets with smooth normals: at its rim the shading normal and the facet are often seen from different
-/// sides.
-void add_coarse_ball(SceneMaker &maker, std::uint32_t material) {
-    constexpr int around = 8, down = 5;
-    Mesh mesh;
-    for (int i = 0; i <= down; ++i)
-        for (int j = 0; j < around; ++j) {
-            const double polar = 3.14159265358979 * i / down, azimuth = 2 * 3.14159265358979 * j / around;
-            mesh.positions.push_back({float(std::sin(polar) * std::cos(azimuth)), float(std::cos(polar)),
-                                      float(std::sin(polar) * std::sin(azimuth))});
-        }
-    mesh.normals = mesh.positions;
-    for (std::uint32_t i = 0; i < down; ++i)
-        for (std::uint32_t j = 0; j < around; ++j) {
-            const std::uint32_t next = (j + 1) % around;
-            const std::uint32_t a = i * around + j, b = i * around + next, c = a + around, d = b + around;
-            if (i > 0)
-                mesh.triangles.push_back({a, b, d});
-            if (i + 1 < down)
-                mesh.triangles.push_back({a, d, c});
-        }
-    maker.scene.meshes.push_back(mesh);
-    maker.shape(Shape::Kind::mesh, maker.scene.meshes.size() - 1, material, -1);
-}
-
-/// The ball under a point light; light that bounced is left out, so that no card can shade it or light it.
+/// A ball of few facets with smooth normals, which at its rim are often seen from the other side than the facet, under
+/// a point light; light that bounced is left out, so that no card can shade it or light it.
 SceneMaker lit_ball(const Material &material) {
     SceneMaker maker(64, 4);
     maker.look({0, 0.5, -4}, {0, 0, 0}, 32);
     maker.scene.settings.max_depth = 2;
     maker.point_light({20, 20, 20}, {2, 3, -3});
-    add_coarse_ball(maker, maker.material(material));
+    maker.scene.meshes.push_back(coarse_ball({0, 0, 0}, 1, true, 5, 8));
+    maker.shape(Shape::Kind::mesh, maker.scene.meshes.size() - 1, maker.material(material), -1);
     return maker;
 }
 

@@ -6,9 +6,37 @@
 #include "tests/support/materials.h"
 
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <string>
 
 namespace gradus::testing {
+
+/// A ball of some facets, with the ball's normals where `smooth`.
+inline Mesh coarse_ball(const Vector3 &center, double radius, bool smooth, std::uint32_t stacks = 6,
+                        std::uint32_t slices = 9) {
+    Mesh mesh;
+    for (std::uint32_t i = 0; i <= stacks; ++i)
+        for (std::uint32_t j = 0; j < slices; ++j) {
+            const double polar = std::numbers::pi * i / stacks, around = 2 * std::numbers::pi * j / slices;
+            const Vector3 normal{float(std::sin(polar) * std::cos(around)), float(std::cos(polar)),
+                                 float(std::sin(polar) * std::sin(around))};
+            mesh.positions.push_back({float(center.x + radius * normal.x), float(center.y + radius * normal.y),
+                                      float(center.z + radius * normal.z)});
+            if (smooth)
+                mesh.normals.push_back(normal);
+        }
+    for (std::uint32_t i = 0; i < stacks; ++i)
+        for (std::uint32_t j = 0; j < slices; ++j) {
+            const std::uint32_t next = (j + 1) % slices, a = i * slices + j, b = i * slices + next;
+            const std::uint32_t c = a + slices, d = b + slices;
+            if (i > 0)
+                mesh.triangles.push_back({a, b, c});
+            if (i + 1 < stacks)
+                mesh.triangles.push_back({b, d, c});
+        }
+    return mesh;
+}
 
 /// Grows a scene. The functions return the index of what they add.
 struct SceneMaker {
