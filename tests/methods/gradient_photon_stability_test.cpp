@@ -5,8 +5,8 @@
 // for gpt (gradient_bias.h), which finds what is wrong in single pixels; and their mean product with the differences of
 // independent primal images, over the mean square of those: the share of the differences that is lost or added. That
 // sums over the image, so it finds what is wrong in proportion with far fewer samples. It misses errors that have
-// nothing in common with the differences, which the first finds. Limits are about six of the standard errors that so many
-// samples give: noise passes, four of them and what a defect adds do not.
+// nothing in common with the differences, which the first finds. Limits are about six of the standard errors that so
+// many samples give: noise passes, four of them and what a defect adds do not.
 #include "tests/methods/gradient_bias.h"
 #include "tests/methods/photon_case.h"
 #include "tests/methods/photon_scenes.h"

@@ -148,7 +148,7 @@ TEST_F(Oclgrind, GradientsOfOneMaterialAndLight) {
 
 // In strips of two rows, the last of one: passes are 256 paths, four batches.
 TEST_F(Oclgrind, GradientsInStripsOfACrop) {
-    render("door-ajar.xml", {"--method", "gpt", "--norm", "L2", "--size", "96x72", "--crop", "5,7,86,5", "--batch-size",
+    render("door-ajar.xml", {"--method", "gpt", "--norm", "L2", "--size", "96x72", "--crop", "5,7,86,3", "--batch-size",
                              "64", "--rr-depth", "2", "--spp", "1"});
 }
 
@@ -188,12 +188,12 @@ TEST_F(Oclgrind, Photons) {
 
 // Photons shifted by reconnections and walks.
 TEST_F(Oclgrind, GradientsOfPhotons) {
-    EXPECT_THAT(render("lamp-in-egg.xml", {"--method", "gpm", "--norm", "L2", "--size", "6x5", "--photons", "100",
+    EXPECT_THAT(render("lamp-in-egg.xml", {"--method", "gpm", "--norm", "L2", "--size", "6x5", "--photons", "60",
                                            "--radius", "10%", "--batch-size", "64"}),
                 IsSupersetOf({"photon_shift diffuse", "photon_reconnect diffuse", "photon_arrive diffuse",
                               "photon_project", "photon_walk", "photon_leave light", "photon_pass dielectric",
                               "photon_pass end", "pair_difference_sum", "gradient_gather"}));
-    render("cornell-box.xml", {"--method", "gpm", "--norm", "L2", "--size", "6x5", "--photons", "100", "--radius", "5%",
+    render("cornell-box.xml", {"--method", "gpm", "--norm", "L2", "--size", "6x5", "--photons", "30", "--radius", "5%",
                                "--direct", "photons", "--batch-size", "64"});
 }
 

@@ -46,14 +46,14 @@ class L2Accuracy : public ::testing::TestWithParam<LinearMethod> {
 TEST_P(L2Accuracy, OfTinyImages) {
     constexpr std::uint32_t sizes[][2] = {{1, 1}, {2, 1}, {1, 2}, {2, 2}, {3, 2}, {5, 4}, {17, 9}, {16, 16}, {33, 3}};
     for (const auto &[width, height] : sizes)
-        check(width, height, 3, alphas());
+        check(width, height, 1, alphas());
 }
 
 TEST_P(L2Accuracy, OfLines) {
     check(1, 301, 3, alphas());
-    check(301, 1, 3, alphas());
-    check(1024, 1, 3, alphas());
-    check(2, 257, 3, alphas());
+    check(301, 1, 1, alphas());
+    check(1024, 1, 1, alphas());
+    check(2, 257, 1, alphas());
     record_stability({"Reconstruction", "1 x N images: grids that cannot be halved, pixels without neighbours",
                       "301, 1024 and 514 pixels in lines, alpha 0.02 to 2, L2, every method", "solved as any other",
                       "largest error against double, over tolerance and rounding", worst_, 1});

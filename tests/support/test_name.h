@@ -1,4 +1,4 @@
-// Names of tests whose parameter is a scene.
+// Names of tests whose parameter is a scene, and of suites.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,5 +16,10 @@ inline std::string test_name(std::string scene) {
 
 /// For INSTANTIATE_TEST_SUITE_P, where the parameter is the scene's name.
 inline std::string name_of_scene(const ::testing::TestParamInfo<const char *> &info) { return test_name(info.param); }
+
+/// Whether the test that runs is one of those instantiated as `Full`, which ./check --full alone runs.
+inline bool is_full() {
+    return std::string(::testing::UnitTest::GetInstance()->current_test_suite()->name()).starts_with("Full/");
+}
 
 } // namespace gradus::testing
