@@ -20,6 +20,11 @@ std::string described(const Element &element) {
     const std::string type = element.attribute_or("type", "");
     return "<" + element.tag + (type.empty() ? "" : " type=\"" + type + "\"") + ">";
 }
+
+/// A surface that all light passes as if it were not there.
+bool is_never_met(const Material &material) {
+    return material.opacity == 0 || (material.front.kind == BsdfKind::null && !material.two_sided);
+}
 } // namespace
 
 SceneBuilder::SceneBuilder(const Document &document, const LoadLimits &limits, FileFinder &finder,
@@ -370,6 +375,11 @@ void SceneBuilder::build_shape(const Element &element) {
     }
     shape.material = material_of(attachments);
     shape.emitter = emitter_of(attachments);
+    const Material &material = scene_.materials[shape.material];
+    if (shape.emitter < 0 && is_never_met(material))
+        return;
+    if (shape.emitter >= 0 && material.opacity < 1)
+        diagnostics_.warn(element.location, "shape \"" + shape.name + "\" emits: its opacity is taken as 1");
     if (const auto *sphere = std::get_if<Sphere>(&geometry)) {
         shape.kind = Shape::Kind::sphere;
         shape.geometry = std::uint32_t(scene_.spheres.size());

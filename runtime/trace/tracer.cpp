@@ -2,6 +2,7 @@
 
 #include "runtime/error.h"
 #include "runtime/trace/clones.h"
+#include "runtime/trace/opacity.h"
 
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
@@ -44,6 +45,22 @@ void flush_denormals() {
     _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
 }
 
+/// Embree's filter of hits with what rays may pass.
+void drop_passed(const RTCFilterFunctionNArguments *hits) {
+    const auto &opacity = *static_cast<const Opacity *>(hits->geometryUserPtr);
+    RTCRayN *rays = hits->ray;
+    for (unsigned lane = 0; lane < hits->N; ++lane) {
+        if (hits->valid[lane] == 0)
+            continue;
+        const Vector3 origin{RTCRayN_org_x(rays, hits->N, lane), RTCRayN_org_y(rays, hits->N, lane),
+                             RTCRayN_org_z(rays, hits->N, lane)};
+        const Vector3 direction{RTCRayN_dir_x(rays, hits->N, lane), RTCRayN_dir_y(rays, hits->N, lane),
+                                RTCRayN_dir_z(rays, hits->N, lane)};
+        if (!opacity.is_met(RTCHitN_primID(hits->hit, hits->N, lane), origin, direction))
+            hits->valid[lane] = 0;
+    }
+}
+
 } // namespace
 
 struct RecordedRays {
@@ -56,6 +73,12 @@ struct Tracer::Implementation {
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
     std::uint32_t triangles = 0;
+    /// Primitives by the geometry and the number that Embree knows them by. Those that rays may pass have geometries of
+    /// their own, so that hits with all others are not asked about.
+    enum Geometry : unsigned { opaque_triangles, opaque_spheres, passable_triangles, passable_spheres, geometries };
+    std::array<std::vector<std::uint32_t>, 2> numbers; ///< of the opaque ones; empty: in the scene's order
+    std::array<Opacity, 2> passable;
+    bool some_are_passable = false;
     std::atomic<long long> bytes{0};
     tbb::task_arena arena;
     RayOrder extension_order = RayOrder::cell, shadow_order = RayOrder::cell;
@@ -90,8 +113,12 @@ struct Tracer::Implementation {
         return static_cast<Element *>(data);
     }
 
-    void add_triangles(const Scene &s);
-    void add_spheres(const Scene &s);
+    void add_geometry(const Scene &s);
+    void add_triangles(const Scene &s, Geometry place);
+    void add_spheres(const Scene &s, Geometry place);
+    /// Says which primitive of the scene comes next in a geometry.
+    void name(const Scene &s, const Shape &shape, std::uint32_t number, Geometry place);
+    void attach(RTCGeometry geometry, Geometry place);
     std::uint64_t trace_extension(const RayColumns &ray, const RowLines &chunk_rows, RecordedRays *record);
     std::uint64_t trace_shadow(const ShadowColumns &shadow, const RowLines &chunk_rows, RecordedRays *record);
     /// Runs task(0) to task(count - 1) on the threads that trace.
@@ -109,61 +136,108 @@ struct Tracer::Implementation {
     }
     bool beams(RayOrder order) const { return coherent && order != RayOrder::none; }
     std::uint32_t primitive_of(unsigned geometry, unsigned primitive) const {
-        return geometry == RTC_INVALID_GEOMETRY_ID ? ray_escaped : geometry == 0 ? primitive : triangles + primitive;
+        if (geometry >= passable_triangles)
+            return geometry < geometries ? passable[geometry - passable_triangles].primitive(primitive) : ray_escaped;
+        const std::vector<std::uint32_t> &named = numbers[geometry];
+        return !named.empty() ? named[primitive] : geometry == opaque_triangles ? primitive : triangles + primitive;
     }
 };
 
-void Tracer::Implementation::add_triangles(const Scene &s) {
+/// Calls visit(shape, number of its first primitive) for the shapes of that kind that are passable, or those that
+/// aren't.
+template <class Visit>
+void for_each_shape(const Scene &s, Shape::Kind kind, std::uint32_t first, bool are_passable, Visit visit) {
+    for (const Shape &shape : s.shapes) {
+        if (shape.kind != kind)
+            continue;
+        if (is_passable(s, shape) == are_passable)
+            visit(shape, first);
+        first += kind == Shape::Kind::sphere ? 1u : std::uint32_t(s.meshes[shape.geometry].triangles.size());
+    }
+}
+
+void Tracer::Implementation::attach(RTCGeometry geometry, Geometry place) {
+    rtcSetGeometryMask(geometry, 0xFFFFFFFFu);
+    if (place >= passable_triangles) {
+        rtcSetGeometryUserData(geometry, &passable[place - passable_triangles]);
+        rtcSetGeometryIntersectFilterFunction(geometry, drop_passed);
+        rtcSetGeometryOccludedFilterFunction(geometry, drop_passed);
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene, geometry, place);
+    rtcReleaseGeometry(geometry);
+    check("building geometry");
+}
+
+void Tracer::Implementation::name(const Scene &s, const Shape &shape, std::uint32_t number, Geometry place) {
+    if (place >= passable_triangles)
+        passable[place - passable_triangles].add(s, shape, number);
+    else if (some_are_passable)
+        numbers[place].push_back(number);
+}
+
+void Tracer::Implementation::add_triangles(const Scene &s, Geometry place) {
+    const auto for_each_mesh = [&](auto visit) {
+        for_each_shape(s, Shape::Kind::mesh, 0, place == passable_triangles,
+                       [&](const Shape &shape, std::uint32_t first) { visit(shape, s.meshes[shape.geometry], first); });
+    };
     std::size_t vertex_count = 0, triangle_count = 0;
-    for (const Shape &shape : s.shapes)
-        if (shape.kind == Shape::Kind::mesh) {
-            vertex_count += s.meshes[shape.geometry].positions.size();
-            triangle_count += s.meshes[shape.geometry].triangles.size();
-        }
-    if (triangle_count + s.spheres.size() >= ray_first_special || vertex_count >= 0xFFFFFFFFu)
-        throw Error(ExitCode::scene, "the scene has more primitives than 32-bit indices can name");
-    triangles = static_cast<std::uint32_t>(triangle_count);
+    for_each_mesh([&](const Shape &, const Mesh &mesh, std::uint32_t) {
+        vertex_count += mesh.positions.size();
+        triangle_count += mesh.triangles.size();
+    });
     if (triangle_count == 0)
         return;
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto *vertices = new_buffer<Vector3>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, vertex_count);
     auto *indices =
         new_buffer<std::array<std::uint32_t, 3>>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangle_count);
-    std::uint32_t first = 0;
-    for (const Shape &shape : s.shapes) {
-        if (shape.kind != Shape::Kind::mesh)
-            continue;
-        const Mesh &mesh = s.meshes[shape.geometry];
+    std::uint32_t first_vertex = 0;
+    for_each_mesh([&](const Shape &shape, const Mesh &mesh, std::uint32_t number) {
         vertices = std::copy(mesh.positions.begin(), mesh.positions.end(), vertices);
-        for (const auto &t : mesh.triangles)
-            *indices++ = {first + t[0], first + t[1], first + t[2]};
-        first += static_cast<std::uint32_t>(mesh.positions.size());
-    }
-    rtcSetGeometryMask(geometry, 0xFFFFFFFFu);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(scene, geometry, 0);
-    rtcReleaseGeometry(geometry);
-    check("building the triangles");
+        for (const auto &t : mesh.triangles) {
+            *indices++ = {first_vertex + t[0], first_vertex + t[1], first_vertex + t[2]};
+            name(s, shape, number++, place);
+        }
+        first_vertex += static_cast<std::uint32_t>(mesh.positions.size());
+    });
+    attach(geometry, place);
 }
 
-void Tracer::Implementation::add_spheres(const Scene &s) {
+void Tracer::Implementation::add_spheres(const Scene &s, Geometry place) {
+    const auto for_each_sphere = [&](auto visit) {
+        for_each_shape(s, Shape::Kind::sphere, triangles, place == passable_spheres, visit);
+    };
     std::size_t count = 0;
-    for (const Shape &shape : s.shapes)
-        count += shape.kind == Shape::Kind::sphere ? 1 : 0;
+    for_each_sphere([&](const Shape &, std::uint32_t) { ++count; });
     if (count == 0)
         return;
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
     auto *vertices = new_buffer<std::array<float, 4>>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, count);
-    for (const Shape &shape : s.shapes)
-        if (shape.kind == Shape::Kind::sphere) {
-            const Sphere &sphere = s.spheres[shape.geometry];
-            *vertices++ = {sphere.center.x, sphere.center.y, sphere.center.z, sphere.radius};
+    for_each_sphere([&](const Shape &shape, std::uint32_t number) {
+        const Sphere &sphere = s.spheres[shape.geometry];
+        *vertices++ = {sphere.center.x, sphere.center.y, sphere.center.z, sphere.radius};
+        name(s, shape, number, place);
+    });
+    attach(geometry, place);
+}
+
+void Tracer::Implementation::add_geometry(const Scene &s) {
+    std::size_t vertex_count = 0, triangle_count = 0;
+    for (const Shape &shape : s.shapes) {
+        some_are_passable |= is_passable(s, shape);
+        if (shape.kind == Shape::Kind::mesh) {
+            vertex_count += s.meshes[shape.geometry].positions.size();
+            triangle_count += s.meshes[shape.geometry].triangles.size();
         }
-    rtcSetGeometryMask(geometry, 0xFFFFFFFFu);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(scene, geometry, 1);
-    rtcReleaseGeometry(geometry);
-    check("building the spheres");
+    }
+    if (triangle_count + s.spheres.size() >= ray_first_special || vertex_count >= 0xFFFFFFFFu)
+        throw Error(ExitCode::scene, "the scene has more primitives than 32-bit indices can name");
+    triangles = static_cast<std::uint32_t>(triangle_count);
+    add_triangles(s, opaque_triangles);
+    add_spheres(s, opaque_spheres);
+    add_triangles(s, passable_triangles);
+    add_spheres(s, passable_spheres);
 }
 
 Tracer::Tracer(const Scene &s, int threads) : implementation_(std::make_unique<Implementation>()) {
@@ -185,8 +259,7 @@ Tracer::Tracer(const Scene &s, int threads) : implementation_(std::make_unique<I
         &i.bytes);
     i.scene = rtcNewScene(i.device);
     rtcSetSceneBuildQuality(i.scene, RTC_BUILD_QUALITY_HIGH);
-    i.add_triangles(s);
-    i.add_spheres(s);
+    i.add_geometry(s);
     i.arena.execute([&] { rtcCommitScene(i.scene); });
     i.check("building the acceleration structure");
     RTCBounds bounds;

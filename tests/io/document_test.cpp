@@ -149,10 +149,10 @@ TEST(References, FilmAndSamplerOfTheScene) {
 }
 
 TEST(References, IdsMayBeInAnyScript) {
-    const std::string text = scene_around("<bsdf id=\"Плитка №1\" type=\"null\"/><shape type=\"cube\"><ref "
+    const std::string text = scene_around("<bsdf id=\"Плитка №1\" type=\"conductor\"/><shape type=\"cube\"><ref "
                                           "id=\"Плитка №1\"/></shape>",
                                           "3.0.0", "");
-    EXPECT_EQ(load_text(text).scene.materials[0].front.kind, BsdfKind::null);
+    EXPECT_EQ(load_text(text).scene.materials[0].front.kind, BsdfKind::conductor);
 }
 
 TEST(UnknownParameters, WarnWithTheNearestName) {

@@ -1,6 +1,7 @@
 // BSDFs, emitters, sensor, film, filters and integrators in both dialects, value by value.
 #include "tests/io/scene_text.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace gradus {
@@ -157,6 +158,29 @@ TEST(BsdfPlugin, TwoSided) {
 }
 
 TEST(BsdfPlugin, Null) { EXPECT_EQ(material_of("<bsdf type=\"null\"/>").front.kind, BsdfKind::null); }
+
+TEST(BsdfPlugin, Mask) {
+    const std::string nested = "<bsdf type=\"twosided\"><bsdf type=\"diffuse\"/></bsdf></bsdf>";
+    EXPECT_FLOAT_EQ(material_of("<bsdf type=\"mask\">" + nested).opacity, 0.5f);
+    const Material material = material_of("<bsdf type=\"mask\"><float name=\"opacity\" value=\"0.3\"/>" + nested);
+    EXPECT_FLOAT_EQ(material.opacity, 0.3f);
+    EXPECT_TRUE(material.two_sided);
+    EXPECT_FLOAT_EQ(material_of("<bsdf type=\"mask\"><bsdf type=\"mask\">" + nested + "</bsdf>").opacity, 0.25f);
+}
+
+// Light passes them as if they were not there, so they are not; but for those that shine.
+TEST(BsdfPlugin, SurfacesThatNoRayMeetsAreLeftOut) {
+    const std::string never =
+        "<bsdf type=\"mask\"><float name=\"opacity\" value=\"0\"/><bsdf type=\"diffuse\"/></bsdf>";
+    const std::string lamp = "<emitter type=\"area\"/>";
+    const LoadedScene loaded =
+        load_text(scene_around("<shape type=\"cube\"><bsdf type=\"null\"/></shape><shape type=\"cube\" id=\"a\">" +
+                               never + lamp + "</shape><shape type=\"cube\">" + never + "</shape>"));
+    EXPECT_EQ(loaded.scene.shapes.size(), 2u); // with that of scene_around()
+    EXPECT_NE(std::ranges::find(loaded.scene.shapes, "a", &Shape::name), loaded.scene.shapes.end());
+    ASSERT_EQ(loaded.warnings.size(), 1u);
+    EXPECT_NE(loaded.warnings[0].find("emits: its opacity is taken as 1"), std::string::npos);
+}
 
 TEST(EmitterPlugin, Area) {
     const LoadedScene loaded =

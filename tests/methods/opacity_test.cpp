@@ -1,0 +1,79 @@
+// Light through surfaces with holes, which rays pass by chance, by every method.
+#include "tests/methods/gradient_bias.h"
+#include "tests/support/render.h"
+#include "tests/support/small_scenes.h"
+#include "tests/support/stability.h"
+
+#include <fmt/format.h>
+
+namespace gradus::testing {
+namespace {
+
+Material black_screen(float opacity) {
+    Material material = material_of(diffuse(0));
+    material.opacity = opacity;
+    return material;
+}
+
+/// A floor under a lamp, with a black screen between them that some of the light passes, seen from below the screen;
+/// no light but the lamp's own reaches it.
+Scene screened_floor(float opacity, std::uint64_t samples) {
+    SceneMaker maker(16, samples);
+    maker.floor(-4, 4, 4, maker.material(diffuse(0.5)));
+    maker.lamp({0, 3, 0}, 4, 4, 1, maker.material(diffuse(0)));
+    if (opacity > 0)
+        maker.parallelogram({-4, 2, -4}, {8, 0, 0}, {0, 0, 8}, maker.material(black_screen(opacity)));
+    maker.look({0, 1, -1}, {0, 0, 0}, 40);
+    maker.scene.settings.max_depth = 2;
+    return maker.scene;
+}
+
+class ThroughAScreen : public ::testing::TestWithParam<const char *> {};
+
+// Light samples, directions of the BSDF and photons find the lamp with the same chance, so the weights of both need not
+// know of the screen.
+TEST_P(ThroughAScreen, LightIsWhatItsHolesLetThrough) {
+    constexpr float opacity = 0.3f;
+    const std::string method = GetParam();
+    std::vector<RenderOptions::Strategy> strategies{RenderOptions::Strategy::mis};
+    if (method != "sppm")
+        strategies.push_back(RenderOptions::Strategy::bsdf);
+    const std::uint64_t samples = method == "sppm" ? 8 : 512;
+    for (const auto strategy : strategies) {
+        RenderOptions options;
+        options.strategy = strategy;
+        options.photons = 200'000;
+        const Image open = render(screened_floor(0, samples), options, method.c_str()).image;
+        options.seed = 2;
+        const Image screened = render(screened_floor(opacity, samples), options, method.c_str()).image;
+        const Spread a = spread_of(open), b = spread_of(screened);
+        fmt::print("{}: {:.4f} of the light passes\n", method, b.mean / a.mean);
+        const double error = std::hypot(b.standard_error / a.mean, a.standard_error * b.mean / (a.mean * a.mean));
+        EXPECT_NEAR(b.mean / a.mean, 1 - opacity, 4 * error) << int(strategy);
+        EXPECT_LT(error, 0.015); // a screen that one sampler does not see would be 0.3 off, or its weights a part of it
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, ThroughAScreen, ::testing::Values("pt", "gpt", "sppm"));
+
+// A fence of screens, some open, some half open, before a wall: seen through, and between the lamp and the wall.
+TEST(GradientStability, ThroughSurfacesThatAreHalfOpen) {
+    SceneMaker scene = scene_for_bias();
+    const std::uint32_t grey = scene.material(two_sided(diffuse(0.7)));
+    scene.parallelogram({-2, -2, 0}, {0, 4, 0}, {4, 0, 0}, grey);
+    Material half = two_sided(diffuse(0.8));
+    half.opacity = 0.5f;
+    const std::uint32_t screen = scene.material(half);
+    for (int i = 0; i < 4; ++i)
+        scene.parallelogram({0.3f * float(i) - 0.6f, -0.5f, -0.4f}, {0, 1, 0}, {0.15f, 0, 0}, screen);
+    const std::int32_t light = scene.emitter(Emitter::Kind::area, {20, 20, 20});
+    scene.parallelogram({0.6f, 1, -2}, {0, -0.5f, 0}, {0.5f, 0, 0}, grey, light);
+    scene.look({0, 0, -3}, {0, 0, 0}, 22);
+    expect_no_bias(gradient_bias(scene.scene, {8, 48, 512}),
+                   {"Gradients", "opacity by chance: base and offset path meet a surface or pass it each on its own",
+                    "half open cards before a wall, in the way of light and of the camera",
+                    "visibility by a hash of each ray; unbiased", 0.1});
+}
+
+} // namespace
+} // namespace gradus::testing
