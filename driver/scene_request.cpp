@@ -82,6 +82,10 @@ void add_scene_options(CLI::App &command, SceneRequest &request) {
         ->group(group);
     command.add_flag("--strict", request.strict, "Parameters that are not known are errors, not warnings")
         ->group(group);
+    command
+        .add_flag("--ignore-media", request.ignore_media,
+                  "Render a scene with participating media as if these were empty")
+        ->group(group);
     CLI::Option *const confined =
         command
             .add_flag("--confined", request.confined,
@@ -154,6 +158,7 @@ Scene load_requested_scene(const SceneRequest &request, const Services &services
     LoadOptions options;
     options.strict = request.strict;
     options.confined = request.confined;
+    options.ignore_media = request.ignore_media;
     options.allowed_folders.assign(request.allowed_folders.begin(), request.allowed_folders.end());
     options.limits = LoadLimits().times(request.limits);
     for (const std::string &definition : request.definitions) {

@@ -3,6 +3,8 @@
 #include "runtime/error.h"
 #include "runtime/io/text.h"
 
+#include <utility>
+
 namespace gradus {
 
 namespace {
@@ -18,6 +20,10 @@ std::string located(const Location &location, const std::string &message) {
 bool Diagnostics::is_full() const { return warnings_.size() >= most_messages; }
 
 void Diagnostics::warn(const Location &location, const std::string &message) {
+    if (is_holding_) {
+        held_.push_back({Held::Kind::warning, location, message});
+        return;
+    }
     if (is_full()) {
         ++warnings_left_out_;
         return;
@@ -28,13 +34,35 @@ void Diagnostics::warn(const Location &location, const std::string &message) {
 }
 
 void Diagnostics::unknown(const Location &location, const std::string &message) {
-    if (strict_)
+    if (is_holding_)
+        held_.push_back({Held::Kind::unknown, location, message});
+    else if (strict_)
         error(location, message);
     else
         warn(location, message);
 }
 
-void Diagnostics::error(const Location &location, const std::string &message) { add_error(located(location, message)); }
+void Diagnostics::error(const Location &location, const std::string &message) {
+    if (is_holding_)
+        held_.push_back({Held::Kind::error, location, message});
+    else
+        add_error(located(location, message));
+}
+
+std::vector<Diagnostics::Held> Diagnostics::release() {
+    is_holding_ = false;
+    return std::exchange(held_, {});
+}
+
+void Diagnostics::replay(const std::vector<Held> &messages) {
+    for (const auto &[kind, location, message] : messages)
+        if (kind == Held::Kind::warning)
+            warn(location, message);
+        else if (kind == Held::Kind::unknown)
+            unknown(location, message);
+        else
+            error(location, message);
+}
 
 void Diagnostics::error(const SceneError &error) { add_error(error.what()); }
 

@@ -34,6 +34,17 @@ class Diagnostics {
     void error(const Location &location, const std::string &message);
     void error(const SceneError &error);
 
+    /// From now on reports are kept aside, until release() hands them out: for work that is done out of order.
+    struct Held {
+        enum class Kind { warning, unknown, error } kind;
+        Location location;
+        std::string message;
+    };
+    void hold() { is_holding_ = true; }
+    std::vector<Held> release();
+    /// Reports them as if they came now.
+    void replay(const std::vector<Held> &messages);
+
     /// Throws Error with ExitCode::scene and every message so far, one a line, if there is an error.
     void throw_if_errors() const;
     /// Those kept, and how many were not.
@@ -45,7 +56,8 @@ class Diagnostics {
   private:
     void add_error(const std::string &text);
 
-    bool strict_;
+    bool strict_, is_holding_ = false;
+    std::vector<Held> held_;
     std::vector<std::string> warnings_, errors_;
     std::unordered_set<std::string> known_; ///< both, for repetitions
     std::size_t warnings_left_out_ = 0, error_reports_ = 0;

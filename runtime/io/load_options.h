@@ -18,6 +18,7 @@ struct LoadOptions {
     bool confined = false;
     std::vector<std::filesystem::path> allowed_folders = {};
     LoadLimits limits = {};
+    bool ignore_media = false; ///< scenes with participating media as if these were empty; else they are errors
 };
 
 } // namespace gradus

@@ -17,7 +17,7 @@ LoadedScene load_scene(const std::string &path, const LoadOptions &options) {
     }
     const Document document = read_document(path, options, finder, diagnostics);
     LoadedScene loaded;
-    loaded.scene = SceneBuilder(document, options.limits, finder, diagnostics).build();
+    loaded.scene = SceneBuilder(document, options, finder, diagnostics).build();
     diagnostics.throw_if_errors();
     loaded.scene.path = path;
     loaded.warnings = diagnostics.warnings();

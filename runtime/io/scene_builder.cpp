@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <type_traits>
 
 namespace gradus {
@@ -16,20 +17,28 @@ const char *const other_tags[] = {"ref", "alias", "scene"};
 constexpr std::size_t deepest_references = 100; // objects in objects, by <ref>s
 constexpr std::size_t longest_alias = 16;       // names that stand for names
 
+/// What other programs have and this one has not: nobody misspelt it.
+bool is_of_mitsuba(const std::string &tag, const std::string &type) {
+    static const std::set<std::pair<std::string, std::string>> plugins = {
+        {"shape", "hair"},           {"shape", "bsplinecurve"},       {"shape", "linearcurve"},
+        {"shape", "sdfgrid"},        {"shape", "heightfield"},        {"shape", "deformable"},
+        {"shape", "ellipsoids"},     {"shape", "ellipsoidsmesh"},     {"sensor", "irradiancemeter"},
+        {"sensor", "radiancemeter"}, {"sensor", "fluencemeter"},      {"sensor", "spherical"},
+        {"sensor", "distant"},       {"sensor", "distantflux"},       {"sensor", "mradiancemeter"},
+        {"sensor", "batch"},         {"sensor", "perspective_rdist"}, {"sensor", "telecentric"}};
+    return plugins.contains({tag, type});
+}
+
 std::string described(const Element &element) {
     const std::string type = element.attribute_or("type", "");
     return "<" + element.tag + (type.empty() ? "" : " type=\"" + type + "\"") + ">";
 }
-
-/// A surface that all light passes as if it were not there.
-bool is_never_met(const Material &material) {
-    return material.opacity == 0 || (material.front.kind == BsdfKind::null && !material.two_sided);
-}
 } // namespace
 
-SceneBuilder::SceneBuilder(const Document &document, const LoadLimits &limits, FileFinder &finder,
+SceneBuilder::SceneBuilder(const Document &document, const LoadOptions &options, FileFinder &finder,
                            Diagnostics &diagnostics)
-    : document_(document), limits_(limits), finder_(finder), diagnostics_(diagnostics),
+    : document_(document), limits_(options.limits), ignore_media_(options.ignore_media), finder_(finder),
+      diagnostics_(diagnostics),
       resolve_([this](const Element &reference) -> const Element & { return resolve(reference); }) {}
 
 /// Reports tags that mean nothing, in every object.
@@ -116,7 +125,9 @@ Result SceneBuilder::build_object(const Element &element) {
         const std::vector<std::string> known = plugin_names(element.tag);
         std::string message =
             type.empty() ? "<" + element.tag + "> needs a type" : "unknown " + element.tag + " plugin \"" + type + "\"";
-        if (const auto nearest = nearest_name(type, known))
+        if (is_of_mitsuba(element.tag, type))
+            message = "the " + element.tag + " \"" + type + "\" is not supported";
+        else if (const auto nearest = nearest_name(type, known))
             message += "; did you mean \"" + *nearest + "\"?";
         throw SceneError(element.location, message + " (known: " + join(known) + ")");
     }
@@ -160,37 +171,6 @@ std::filesystem::path SceneBuilder::find_file(Properties &properties) {
     return found->path;
 }
 
-const std::string &SceneBuilder::file_bytes(const std::filesystem::path &path, const Location &location, bool whole) {
-    std::error_code not_there;
-    const std::uintmax_t size =
-        path == cached_path_ ? cached_bytes_.size() : std::filesystem::file_size(path, not_there);
-    if (!not_there && (whole || path != cached_path_))
-        count_mesh_bytes(size, location);
-    if (path != cached_path_) {
-        std::optional<std::string> bytes = read_whole_file(path);
-        if (!bytes)
-            throw SceneError(location, "cannot read " + path.string());
-        cached_bytes_ = std::move(*bytes);
-        cached_path_ = path;
-    }
-    return cached_bytes_;
-}
-
-void SceneBuilder::count_mesh_bytes(std::uint64_t bytes, const Location &location) {
-    mesh_bytes_ += std::min(bytes, limits_.mesh_bytes + 1);
-    if (mesh_bytes_ > limits_.mesh_bytes)
-        throw SceneError(location, "the shapes up to this one read more than " +
-                                       std::to_string(limits_.mesh_bytes >> 20) + " MiB of meshes" + limits_hint);
-}
-
-void SceneBuilder::count_geometry(const Mesh &mesh, const Location &location) {
-    geometry_bytes_ += mesh_bytes(mesh);
-    if (geometry_bytes_ > limits_.geometry_bytes)
-        throw SceneError(location, "the meshes up to this one have more than " +
-                                       std::to_string(limits_.geometry_bytes >> 20) + " MiB of vertices and triangles" +
-                                       limits_hint);
-}
-
 Scene SceneBuilder::build() {
     const Element &root = document_.root;
     index(root, 0);
@@ -207,12 +187,11 @@ Scene SceneBuilder::build() {
         each("integrator", [&](const Element &element) { build_integrator(element); });
         each("sensor", [&](const Element &element) { build_sensor(element); });
         each("emitter", [&](const Element &element) { build_emitter(element); });
-        each("shape", [&](const Element &element) { build_shape(element); });
+        std::vector<const Element *> shapes;
+        each("shape", [&](const Element &element) { shapes.push_back(&element); });
+        build_shapes(shapes, nullptr);
         each("bsdf", [&](const Element &element) { check_unused_bsdf(element); });
-        for (const char *tag : {"medium", "volume", "phase", "subsurface"})
-            each(tag, [&](const Element &element) {
-                throw SceneError(element.location, described(element) + ": participating media are not supported");
-            });
+        check_media(scene);
         for (const char *tag : {"film", "sampler", "rfilter", "texture", "alias"})
             scene.objects(tag); // shared ones, built where they are referenced
         scene.report_unread();
@@ -266,8 +245,19 @@ void SceneBuilder::build_sensor(const Element &element) {
     }
     sensor_ = &element;
     Properties properties(element, resolve_, diagnostics_);
-    if (const auto films = properties.objects("film"); !films.empty())
-        scene_.film = build_object<FilmSettings>(*films.front().element);
+    if (const auto films = properties.objects("film"); !films.empty()) {
+        const Element &film = *films.front().element;
+        const std::string type(trimmed(film.attribute_or("type", "")));
+        if (!type.empty() && !find_plugin<FilmSettings>(type)) {
+            // Of a film that we do not have, size, crop and filter still count.
+            diagnostics_.warn(film.location, "the film \"" + type + "\" is not known here; it is read as hdrfilm");
+            Properties inner(film, resolve_, diagnostics_);
+            scene_.film = film_hdrfilm(inner, *this);
+        } else {
+            scene_.film = build_object<FilmSettings>(film);
+        }
+    }
+    check_media(properties);
     if (const auto samplers = properties.objects("sampler"); !samplers.empty()) {
         // Of a sampler only its count matters: the methods bring their own random numbers.
         Properties sampler(*samplers.front().element, resolve_, diagnostics_);
@@ -352,44 +342,6 @@ std::int32_t SceneBuilder::emitter_of(Properties &shape) {
         return -1;
     scene_.emitters.push_back(emitter);
     return std::int32_t(scene_.emitters.size() - 1);
-}
-
-void SceneBuilder::build_shape(const Element &element) {
-    Properties attachments(element, resolve_, diagnostics_);
-    for (const char *tag : {"medium", "subsurface", "volume"})
-        if (const auto found = attachments.objects(tag); !found.empty())
-            throw SceneError(found.front().location, "participating media are not supported");
-    const ShapeGeometry geometry = build_object<ShapeGeometry>(element);
-    Shape shape;
-    shape.name = element.attribute_or("id", element.attribute_or("type", "") + " at " + element.location.text());
-    if (const auto *built = std::get_if<BuiltMesh>(&geometry)) {
-        if (built->degenerate > 0)
-            diagnostics_.warn(element.location, std::to_string(built->degenerate) +
-                                                    " degenerate triangles of shape \"" + shape.name +
-                                                    "\" are left out");
-        count_geometry(built->mesh, element.location);
-        if (built->mesh.triangles.empty()) {
-            diagnostics_.warn(element.location, "shape \"" + shape.name + "\" has no area and is left out");
-            return;
-        }
-    }
-    shape.material = material_of(attachments);
-    shape.emitter = emitter_of(attachments);
-    const Material &material = scene_.materials[shape.material];
-    if (shape.emitter < 0 && is_never_met(material))
-        return;
-    if (shape.emitter >= 0 && material.opacity < 1)
-        diagnostics_.warn(element.location, "shape \"" + shape.name + "\" emits: its opacity is taken as 1");
-    if (const auto *sphere = std::get_if<Sphere>(&geometry)) {
-        shape.kind = Shape::Kind::sphere;
-        shape.geometry = std::uint32_t(scene_.spheres.size());
-        scene_.spheres.push_back(*sphere);
-    } else {
-        shape.kind = Shape::Kind::mesh;
-        shape.geometry = std::uint32_t(scene_.meshes.size());
-        scene_.meshes.push_back(std::get<BuiltMesh>(geometry).mesh);
-    }
-    scene_.shapes.push_back(std::move(shape));
 }
 
 } // namespace gradus

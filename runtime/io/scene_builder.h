@@ -3,20 +3,43 @@
 
 #include "runtime/io/diagnostics.h"
 #include "runtime/io/document.h"
+#include "runtime/io/load_options.h"
 #include "runtime/io/properties.h"
+#include "runtime/scene/mesh_builder.h"
 #include "runtime/scene/scene.h"
 
+#include <deque>
 #include <filesystem>
 #include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 namespace gradus {
 
+struct ShapeGroup;
+
+/// A file of meshes, which several threads may ask for; it is read once.
+class MeshFile {
+  public:
+    MeshFile(std::filesystem::path path, Location location) : path_(std::move(path)), location_(std::move(location)) {}
+    const std::filesystem::path &path() const { return path_; }
+    /// Throws SceneError at the shape that asked first where it cannot be read.
+    const std::string &bytes();
+
+  private:
+    std::filesystem::path path_;
+    Location location_;
+    std::mutex mutex_;
+    std::optional<std::string> bytes_;
+};
+
 class SceneBuilder {
   public:
-    SceneBuilder(const Document &document, const LoadLimits &limits, FileFinder &finder, Diagnostics &diagnostics);
+    SceneBuilder(const Document &document, const LoadOptions &options, FileFinder &finder, Diagnostics &diagnostics);
 
     /// Errors go to the diagnostics; the scene is of use only if there are none.
     Scene build();
@@ -25,9 +48,10 @@ class SceneBuilder {
 
     /// The file that the string parameter "filename" names. A missing one is a SceneError.
     std::filesystem::path find_file(Properties &properties);
-    /// A file's bytes. The last file is kept, since many shapes may come from one. They count as read where they come
-    /// from the disk, and each time where the shape takes the file as a `whole`.
-    const std::string &file_bytes(const std::filesystem::path &path, const Location &location, bool whole);
+    /// A file that a shape takes as a whole; it counts as read. Throws SceneError where that is too much.
+    std::shared_ptr<MeshFile> mesh_file(const std::filesystem::path &path, const Location &location);
+    /// The same of a file that many shapes may come from: the last one is kept, and counts once.
+    std::shared_ptr<MeshFile> shared_mesh_file(const std::filesystem::path &path, const Location &location);
     /// Counts what a shape reads. Throws SceneError where all of them read more than the limit.
     void count_mesh_bytes(std::uint64_t bytes, const Location &location);
     const LoadLimits &limits() const { return limits_; }
@@ -43,16 +67,31 @@ class SceneBuilder {
     const Element &resolve(const Element &reference);
     void build_sensor(const Element &element);
     void build_integrator(const Element &element);
-    void build_shape(const Element &element);
+    struct ShapeInLine;
+    /// A shape of a shapegroup.
+    struct Prototype {
+        const Element *element;
+        std::variant<BuiltMesh, Sphere> geometry;
+    };
+    void build_shapes(const std::vector<const Element *> &elements, std::vector<Prototype> *group);
+    void put_in_line(const Element &element, bool in_group, std::vector<const Element *> &parents,
+                     std::deque<ShapeInLine> &line);
+    void build_line(std::deque<ShapeInLine> &line, std::vector<Prototype> *group);
+    void finish(ShapeInLine &shape, std::vector<Prototype> *group);
+    void add_shape(const Element &element, std::variant<BuiltMesh, Sphere> geometry);
+    void add_instance(const Element &element, const ShapeGroup &instance);
+    void check_media(Properties &properties);
+    std::uint32_t boundary_material();
     void build_emitter(const Element &element);
     void check_unused_bsdf(const Element &element);
     std::uint32_t material_of(Properties &shape);
     std::int32_t emitter_of(Properties &shape);
-    void count_geometry(const Mesh &mesh, const Location &location);
+    void count_geometry(std::uint64_t bytes, const Location &location);
     void check_whole();
 
     const Document &document_;
     const LoadLimits limits_;
+    const bool ignore_media_;
     FileFinder &finder_;
     Diagnostics &diagnostics_;
     ResolveReference resolve_;
@@ -63,12 +102,12 @@ class SceneBuilder {
     /// Each is built once, however many refer to it, and fails once.
     std::map<const Element *, std::variant<Material, SceneError>> built_materials_;
     std::map<const Element *, Emitter> area_emitters_;
-    std::int64_t default_material_ = -1, default_emitter_material_ = -1;
+    std::int64_t default_material_ = -1, default_emitter_material_ = -1, boundary_material_ = -1;
     const Element *sensor_ = nullptr, *integrator_ = nullptr, *environment_ = nullptr;
     std::vector<const Element *> open_; ///< objects that are being built, outermost first
-    std::filesystem::path cached_path_;
-    std::string cached_bytes_;
-    std::uint64_t mesh_bytes_ = 0, geometry_bytes_ = 0;
+    std::shared_ptr<MeshFile> shared_file_;
+    std::uint64_t mesh_bytes_ = 0, geometry_bytes_ = 0, shapes_in_line_ = 0;
+    std::map<const Element *, std::vector<Prototype>> groups_; ///< by shapegroup
 };
 
 } // namespace gradus

@@ -136,6 +136,7 @@ struct Scene {
     Camera camera;
     FilmSettings film;
     RenderSettings settings;
+    std::uint64_t instances = 0; ///< of groups of shapes, which are copies by now; informative
 };
 
 } // namespace gradus

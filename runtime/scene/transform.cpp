@@ -111,6 +111,20 @@ double determinant(const Matrix4 &matrix) {
 }
 
 // The columns of the cofactor matrix are the cross products of the columns of the matrix.
+double uniform_scale(const Matrix4 &matrix) {
+    std::array<Double3, 3> columns;
+    for (std::size_t i = 0; i < 3; ++i)
+        columns[i] = {matrix.m[i], matrix.m[4 + i], matrix.m[8 + i]};
+    const double factor = std::cbrt(std::fabs(determinant(matrix)));
+    // Files carry five or six digits; anything beyond that is meant.
+    const double tolerance = 1e-3 * factor * factor;
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = i; j < 3; ++j)
+            if (!(std::fabs(dot(columns[i], columns[j]) - (i == j ? factor * factor : 0)) <= tolerance))
+                return 0;
+    return factor;
+}
+
 NormalMap::NormalMap(const Matrix4 &matrix) {
     const auto c = columns(matrix);
     const double sign = determinant(matrix) < 0 ? -1 : 1;

@@ -36,6 +36,8 @@ Double3 transform_point(const Matrix4 &matrix, const Double3 &point);
 Double3 transform_vector(const Matrix4 &matrix, const Double3 &vector);
 /// Determinant of the upper left 3x3 part; negative where the map mirrors.
 double determinant(const Matrix4 &matrix);
+/// The factor by which a map stretches all directions alike, or 0 if it does not.
+double uniform_scale(const Matrix4 &matrix);
 
 /// Maps normals: proportional to the inverse transpose, and defined for flat maps too (it is the cofactor matrix
 /// times the sign of the determinant, which counts as +1 where it is 0). Results are not normalised.

@@ -315,6 +315,61 @@ TEST(FilterPlugin, BoxTentGaussian) {
     EXPECT_FLOAT_EQ(gaussian.filter_radius, 1.6f);
 }
 
+TEST(FilterPlugin, UnknownKindsWarnAndAreGaussian) {
+    const LoadedScene loaded = load_text("<scene version=\"0.5.0\"><sensor type=\"perspective\"><film "
+                                         "type=\"hdrfilm\">\n<rfilter type=\"wsinc\"><integer name=\"lobes\" "
+                                         "value=\"4\"/></rfilter></film></sensor><emitter type=\"constant\"/></scene>");
+    EXPECT_THAT(loaded.warnings, ElementsAre(HasSubstr("scene.xml:2: the filter \"wsinc\" is not known")));
+    EXPECT_EQ(loaded.scene.film.filter, FilmSettings::Filter::gaussian);
+}
+
+TEST(FilmPlugin, OtherKindsWarnAndKeepSizeCropAndFilter) {
+    for (const char *type : {"ldrfilm", "specfilm", "mfilm", "tiledhdrfilm", "multichannel"}) {
+        const LoadedScene loaded =
+            load_text(std::string("<scene version=\"0.6.0\"><sensor type=\"perspective\">\n<film type=\"") + type +
+                      "\"><integer name=\"width\" value=\"40\"/><integer name=\"cropWidth\" value=\"20\"/><string "
+                      "name=\"variable\" value=\"x\"/><float name=\"gamma\" value=\"2.2\"/><rfilter type=\"box\"/>"
+                      "</film></sensor><emitter type=\"constant\"/></scene>");
+        EXPECT_THAT(loaded.warnings, ElementsAre(HasSubstr(std::string("scene.xml:2: the film \"") + type)));
+        EXPECT_EQ(loaded.scene.film.width, 40u);
+        EXPECT_EQ(loaded.scene.film.crop_width, 20u);
+        EXPECT_EQ(loaded.scene.film.filter, FilmSettings::Filter::box);
+    }
+}
+
+TEST(SamplerPlugin, OfAnyKindItsCountIsTaken) {
+    for (const char *type : {"independent", "stratified", "ldsampler", "multijitter", "orthogonal", "sobol", "halton",
+                             "hammersley", "theirs"}) {
+        const LoadedScene loaded =
+            load_text(std::string("<scene version=\"0.6.0\"><sensor type=\"perspective\"><sampler type=\"") + type +
+                      "\"><integer name=\"sampleCount\" value=\"12\"/><integer name=\"scramble\" value=\"-1\"/>"
+                      "</sampler></sensor><emitter type=\"constant\"/></scene>");
+        EXPECT_THAT(loaded.warnings, IsEmpty());
+        EXPECT_EQ(loaded.scene.settings.samples_per_pixel, 12u);
+    }
+}
+
+TEST(Media, AreLeftOutOnRequest) {
+    const std::string body = "<medium type=\"heterogeneous\" id=\"m\"><volume name=\"density\" type=\"gridvolume\"/>"
+                             "<phase type=\"hg\"/></medium><shape type=\"cube\"><ref name=\"interior\" id=\"m\"/>"
+                             "</shape><shape type=\"sphere\"><ref name=\"exterior\" id=\"m\"/><bsdf "
+                             "type=\"dielectric\"/></shape><shape type=\"cube\"><subsurface type=\"dipole\"/></shape>"
+                             "<emitter type=\"constant\"/>";
+    LoadOptions options;
+    options.ignore_media = true;
+    const LoadedScene old = load_text(scene_around(body, "0.6.0", ""), options);
+    EXPECT_THAT(old.warnings, testing::Contains(HasSubstr("<medium type=\"heterogeneous\"> is left out")));
+    EXPECT_THAT(old.warnings, testing::Contains(HasSubstr("<subsurface type=\"dipole\"> is left out")));
+    ASSERT_EQ(old.scene.shapes.size(), 3u);
+    // A boundary without a BSDF is not seen in 0.x; Mitsuba 3 makes it diffuse.
+    EXPECT_EQ(old.scene.materials[old.scene.shapes[0].material].front.kind, BsdfKind::null);
+    EXPECT_EQ(old.scene.materials[old.scene.shapes[1].material].front.kind, BsdfKind::dielectric);
+    EXPECT_EQ(old.scene.materials[old.scene.shapes[2].material].front.kind, BsdfKind::diffuse);
+    const LoadedScene newer = load_text(scene_around(body, "3.0.0", ""), options);
+    EXPECT_EQ(newer.scene.materials[newer.scene.shapes[0].material].front.kind, BsdfKind::diffuse);
+    EXPECT_THAT(error_of_text(scene_around(body)), HasSubstr("--ignore-media"));
+}
+
 TEST(IntegratorPlugin, Path) {
     const RenderSettings settings =
         scene_with_sensor("", "0.6.0",

@@ -1,6 +1,7 @@
 // <film type="hdrfilm">: the size of the image and its reconstruction filter.
 //   width (768), height (576); crop_offset_x, crop_offset_y, crop_width, crop_height; a nested rfilter (gaussian)
 #include "runtime/io/plugins/plugin.h"
+#include "runtime/io/text.h"
 
 namespace gradus {
 
@@ -23,7 +24,16 @@ FilmSettings film_hdrfilm(Properties &properties, SceneBuilder &builder) {
             std::uint32_t(properties.integer("crop_height", film.height - film.crop_y, 1, film.height - film.crop_y));
     }
     if (const auto filters = properties.objects("rfilter"); !filters.empty()) {
-        const auto filter = builder.build_object<ReconstructionFilter>(*filters.front().element);
+        const Element &element = *filters.front().element;
+        const std::string type = element.attribute_or("type", "");
+        ReconstructionFilter filter; // a Gaussian
+        if (type.empty() || find_plugin<ReconstructionFilter>(std::string(trimmed(type))))
+            filter = builder.build_object<ReconstructionFilter>(element);
+        else
+            properties.diagnostics().warn(element.location, "the filter \"" + type +
+                                                                "\" is not known here; gaussian takes its place "
+                                                                "(known: " +
+                                                                join(plugin_names("rfilter")) + ")");
         film.filter = filter.filter;
         film.filter_radius = filter.radius;
         film.filter_stddev = filter.stddev;

@@ -3,12 +3,14 @@
 // the project is configured.
 #pragma once
 
+#include "runtime/io/mesh_files.h"
 #include "runtime/io/plugins/plugin_list.h"
 #include "runtime/io/properties.h"
 #include "runtime/io/scene_builder.h"
 #include "runtime/scene/mesh_builder.h"
 #include "runtime/scene/scene.h"
 
+#include <functional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -20,7 +22,22 @@ struct ReconstructionFilter {
     float radius = 2.0f, stddev = 0.5f; ///< in pixels
 };
 
-using ShapeGeometry = std::variant<BuiltMesh, Sphere>;
+/// A mesh that is still to be read and built, by any thread.
+struct PendingMesh {
+    std::function<SerializedMesh()> read; ///< may throw SceneError; its face_normals is or-ed to that of the options
+    Matrix4 to_world;
+    MeshOptions options;
+};
+
+/// Shapes in a shape.
+struct ShapeGroup {
+    std::vector<const Element *> shapes;
+    const Element *instanced = nullptr; ///< the shapegroup that they are of, which is built once; else they stand here
+    Matrix4 to_world = {};              ///< of an instance
+    Location location = {};
+};
+
+using ShapeGeometry = std::variant<BuiltMesh, Sphere, PendingMesh, ShapeGroup>;
 
 using bsdf_result = Material;
 using emitter_result = Emitter;

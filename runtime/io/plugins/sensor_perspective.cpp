@@ -62,6 +62,7 @@ Camera sensor_perspective(Properties &properties, SceneBuilder &) {
     properties.ignore({"near_clip", "far_clip", "focus_distance", "shutter_open", "shutter_close", "aperture_radius"});
     properties.objects("film");
     properties.objects("sampler");
+    properties.objects("medium");
     return camera;
 }
 

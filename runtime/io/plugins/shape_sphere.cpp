@@ -8,25 +8,6 @@
 
 namespace gradus {
 
-namespace {
-
-/// The factor by which a map stretches all directions alike, or 0 if it does not.
-double uniform_scale(const Matrix4 &matrix) {
-    std::array<Double3, 3> columns;
-    for (int i = 0; i < 3; ++i)
-        columns[i] = {matrix.m[i], matrix.m[4 + i], matrix.m[8 + i]};
-    const double factor = std::cbrt(std::fabs(determinant(matrix)));
-    // Files carry five or six digits; anything beyond that is meant.
-    const double tolerance = 1e-3 * factor * factor;
-    for (int i = 0; i < 3; ++i)
-        for (int j = i; j < 3; ++j)
-            if (!(std::fabs(dot(columns[i], columns[j]) - (i == j ? factor * factor : 0)) <= tolerance))
-                return 0;
-    return factor;
-}
-
-} // namespace
-
 ShapeGeometry shape_sphere(Properties &properties, SceneBuilder &) {
     claim_attachments(properties);
     const Double3 center = properties.point("center", {0, 0, 0});

@@ -1,0 +1,274 @@
+// Shapes of a scene file. Plugins say what is to be read, one after the other; then all cores read it; then shapes come
+// into the scene, and what is said of them into the diagnostics, in the file's order.
+#include "runtime/io/file_search.h"
+#include "runtime/io/plugins/plugin.h"
+#include "runtime/io/scene_builder.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <utility>
+
+namespace gradus {
+
+namespace {
+constexpr std::size_t longest_line = 256;
+/// Of mesh files in a line: what is read at once lies in memory beside what is built.
+constexpr std::uint64_t most_line_bytes = 256u << 20;
+/// What an instance of a shape takes beside its mesh.
+constexpr std::uint64_t instance_bytes = 256;
+
+/// A surface that all light passes as if it were not there.
+bool is_never_met(const Material &material) {
+    return material.opacity == 0 || (material.front.kind == BsdfKind::null && !material.two_sided);
+}
+} // namespace
+
+/// A shape between its plugin and the scene.
+struct SceneBuilder::ShapeInLine {
+    const Element *element = nullptr;
+    ShapeGeometry geometry = ShapeGroup();
+    std::optional<SceneError> error;
+    std::vector<Diagnostics::Held> messages; ///< of its plugin
+    std::uint64_t unfolded_bytes = 0;
+};
+
+const std::string &MeshFile::bytes() {
+    const std::lock_guard lock(mutex_);
+    if (!bytes_)
+        bytes_ = read_whole_file(path_);
+    if (!bytes_)
+        throw SceneError(location_, "cannot read " + path_.string());
+    return *bytes_;
+}
+
+std::shared_ptr<MeshFile> SceneBuilder::mesh_file(const std::filesystem::path &path, const Location &location) {
+    std::error_code not_there;
+    const std::uintmax_t size = std::filesystem::file_size(path, not_there);
+    if (!not_there)
+        count_mesh_bytes(size, location);
+    return std::make_shared<MeshFile>(path, location);
+}
+
+std::shared_ptr<MeshFile> SceneBuilder::shared_mesh_file(const std::filesystem::path &path, const Location &location) {
+    if (!shared_file_ || shared_file_->path() != path)
+        shared_file_ = mesh_file(path, location);
+    return shared_file_;
+}
+
+void SceneBuilder::count_mesh_bytes(std::uint64_t bytes, const Location &location) {
+    mesh_bytes_ += std::min(bytes, limits_.mesh_bytes + 1);
+    if (mesh_bytes_ > limits_.mesh_bytes)
+        throw SceneError(location, "the shapes up to this one read more than " +
+                                       std::to_string(limits_.mesh_bytes >> 20) + " MiB of meshes" + limits_hint);
+}
+
+void SceneBuilder::count_geometry(std::uint64_t bytes, const Location &location) {
+    geometry_bytes_ += bytes;
+    if (geometry_bytes_ > limits_.geometry_bytes)
+        throw SceneError(location, "the meshes up to this one have more than " +
+                                       std::to_string(limits_.geometry_bytes >> 20) + " MiB of vertices and triangles" +
+                                       limits_hint);
+}
+
+/// Where media are not to be ignored, an error at the first of the object.
+void SceneBuilder::check_media(Properties &properties) {
+    for (const char *tag : {"medium", "subsurface", "volume", "phase"})
+        for (const Properties::Object &found : properties.objects(tag)) {
+            const std::string type = found.element->attribute_or("type", "");
+            const std::string what = "<" + found.element->tag + (type.empty() ? "" : " type=\"" + type + "\"") + ">";
+            if (!ignore_media_)
+                throw SceneError(found.location, what + ": participating media are not supported; --ignore-media "
+                                                        "renders the scene without them");
+            diagnostics_.warn(found.location, what + " is left out (--ignore-media)");
+        }
+}
+
+/// Runs the plugin of a shape, or of the shapes in it. `parents`: those that it is in.
+void SceneBuilder::put_in_line(const Element &element, bool in_group, std::vector<const Element *> &parents,
+                               std::deque<ShapeInLine> &line) {
+    ShapeInLine &shape = line.emplace_back();
+    shape.element = &element;
+    diagnostics_.hold();
+    try {
+        if (++shapes_in_line_ > limits_.elements)
+            throw SceneError(element.location, "more than " + std::to_string(limits_.elements) +
+                                                   " shapes, as often as shapes contain them" + limits_hint);
+        if (std::find(parents.begin(), parents.end(), &element) != parents.end())
+            throw SceneError(element.location, "a shape contains itself through a <ref>");
+        Properties attachments(element, resolve_, diagnostics_);
+        check_media(attachments);
+        shape.geometry = build_object<ShapeGeometry>(element);
+        if (const auto *group = std::get_if<ShapeGroup>(&shape.geometry); group && group->instanced && in_group)
+            throw SceneError(element.location, "an instance in a shapegroup is not supported, nor is it by Mitsuba");
+    } catch (const SceneError &error) {
+        shape.error = error;
+    }
+    shape.messages = diagnostics_.release();
+    const auto *group = std::get_if<ShapeGroup>(&shape.geometry);
+    if (shape.error || !group || group->instanced)
+        return;
+    const std::vector<const Element *> inside = group->shapes; // `line` grows
+    parents.push_back(&element);
+    for (const Element *child : inside)
+        put_in_line(*child, in_group, parents, line);
+    parents.pop_back();
+}
+
+/// Into the scene, or into `group` where that is given.
+void SceneBuilder::build_shapes(const std::vector<const Element *> &elements, std::vector<Prototype> *group) {
+    std::deque<ShapeInLine> line;
+    std::uint64_t bytes = mesh_bytes_;
+    for (const Element *element : elements) {
+        std::vector<const Element *> parents;
+        put_in_line(*element, group != nullptr, parents, line);
+        if (line.size() >= longest_line || mesh_bytes_ - bytes > most_line_bytes) {
+            build_line(line, group);
+            bytes = mesh_bytes_;
+        }
+    }
+    build_line(line, group);
+}
+
+void SceneBuilder::build_line(std::deque<ShapeInLine> &line, std::vector<Prototype> *group) {
+    const auto read = [](ShapeInLine &shape) {
+        auto &pending = std::get<PendingMesh>(shape.geometry);
+        try {
+            SerializedMesh mesh = pending.read();
+            shape.unfolded_bytes = mesh.unfolded_bytes;
+            pending.options.face_normals |= mesh.face_normals;
+            shape.geometry = build_mesh(std::move(mesh.mesh), pending.to_world, pending.options);
+        } catch (const SceneError &error) {
+            shape.error = error;
+        }
+    };
+    // What is past the limit is left for one after the other, where the first that is too much is told.
+    std::atomic<std::uint64_t> unfolded = mesh_bytes_;
+    tbb::parallel_for(std::size_t(0), line.size(), [&](std::size_t i) {
+        if (std::holds_alternative<PendingMesh>(line[i].geometry) && unfolded <= limits_.mesh_bytes) {
+            read(line[i]);
+            unfolded += line[i].unfolded_bytes;
+        }
+    });
+    for (ShapeInLine &shape : line) {
+        diagnostics_.replay(shape.messages);
+        try {
+            if (!shape.error && std::holds_alternative<PendingMesh>(shape.geometry))
+                read(shape);
+            if (shape.error)
+                throw *shape.error;
+            count_mesh_bytes(shape.unfolded_bytes, shape.element->location);
+            finish(shape, group);
+        } catch (const SceneError &error) {
+            diagnostics_.error(error);
+        }
+        shape.geometry = ShapeGroup();
+    }
+    line.clear();
+}
+
+void SceneBuilder::finish(ShapeInLine &shape, std::vector<Prototype> *group) {
+    if (const auto *inside = std::get_if<ShapeGroup>(&shape.geometry)) {
+        if (inside->instanced)
+            add_instance(*shape.element, *inside);
+        return;
+    }
+    std::variant<BuiltMesh, Sphere> geometry = Sphere();
+    if (auto *built = std::get_if<BuiltMesh>(&shape.geometry))
+        geometry = std::move(*built);
+    else
+        geometry = std::get<Sphere>(shape.geometry);
+    if (group)
+        group->push_back({shape.element, std::move(geometry)});
+    else
+        add_shape(*shape.element, std::move(geometry));
+}
+
+void SceneBuilder::add_shape(const Element &element, std::variant<BuiltMesh, Sphere> geometry) {
+    Properties attachments(element, resolve_, diagnostics_);
+    Shape shape;
+    shape.name = element.attribute_or("id", element.attribute_or("type", "") + " at " + element.location.text());
+    if (const auto *built = std::get_if<BuiltMesh>(&geometry)) {
+        if (built->degenerate > 0)
+            diagnostics_.warn(element.location, std::to_string(built->degenerate) +
+                                                    " degenerate triangles of shape \"" + shape.name +
+                                                    "\" are left out");
+        count_geometry(mesh_bytes(built->mesh), element.location);
+        if (built->mesh.triangles.empty()) {
+            diagnostics_.warn(element.location, "shape \"" + shape.name + "\" has no area and is left out");
+            return;
+        }
+    }
+    // In 0.x a boundary of media without a BSDF is not seen itself.
+    const bool is_boundary = element.is_legacy() && !attachments.objects("medium").empty();
+    shape.material =
+        is_boundary && attachments.objects("bsdf").empty() ? boundary_material() : material_of(attachments);
+    shape.emitter = emitter_of(attachments);
+    const Material &material = scene_.materials[shape.material];
+    if (shape.emitter < 0 && is_never_met(material))
+        return;
+    if (shape.emitter >= 0 && material.opacity < 1)
+        diagnostics_.warn(element.location, "shape \"" + shape.name + "\" emits: its opacity is taken as 1");
+    if (const auto *sphere = std::get_if<Sphere>(&geometry)) {
+        shape.kind = Shape::Kind::sphere;
+        shape.geometry = std::uint32_t(scene_.spheres.size());
+        scene_.spheres.push_back(*sphere);
+    } else {
+        shape.kind = Shape::Kind::mesh;
+        shape.geometry = std::uint32_t(scene_.meshes.size());
+        scene_.meshes.push_back(std::move(std::get<BuiltMesh>(geometry).mesh));
+    }
+    scene_.shapes.push_back(std::move(shape));
+}
+
+std::uint32_t SceneBuilder::boundary_material() {
+    if (boundary_material_ < 0) {
+        boundary_material_ = std::int64_t(scene_.materials.size());
+        scene_.materials.push_back({});
+        scene_.materials.back().front.kind = BsdfKind::null;
+        scene_.materials.back().name = "boundary of a medium";
+    }
+    return std::uint32_t(boundary_material_);
+}
+
+/// Instances are copies. `element`: the instance.
+void SceneBuilder::add_instance(const Element &element, const ShapeGroup &instance) {
+    auto known = groups_.find(instance.instanced);
+    if (known == groups_.end()) {
+        known = groups_.emplace(instance.instanced, std::vector<Prototype>()).first;
+        std::vector<Prototype> prototypes;
+        build_shapes(instance.shapes, &prototypes);
+        known->second = std::move(prototypes);
+    }
+    for (const Prototype &prototype : known->second) {
+        count_geometry(instance_bytes, element.location);
+        if (const auto *sphere = std::get_if<Sphere>(&prototype.geometry)) {
+            const double factor = uniform_scale(instance.to_world);
+            if (!(factor > 0))
+                throw SceneError(element.location,
+                                 "an instance with a sphere in it must scale all directions alike: no "
+                                 "other scale, no shear");
+            Sphere placed = *sphere;
+            placed.center = to_float(transform_point(instance.to_world, to_double(sphere->center)));
+            placed.radius = float(sphere->radius * factor);
+            if (!std::isnormal(placed.radius) || !std::isfinite(placed.center.x + placed.center.y + placed.center.z))
+                throw SceneError(element.location, "a sphere in this instance is out of range");
+            add_shape(*prototype.element, placed);
+            continue;
+        }
+        const auto &mesh = std::get<BuiltMesh>(prototype.geometry).mesh;
+        if (geometry_bytes_ + mesh_bytes(mesh) > limits_.geometry_bytes) // before it takes the memory
+            count_geometry(mesh_bytes(mesh), element.location);
+        MeshOptions options;
+        options.front_from_local_winding = true;
+        options.compute_normals = false;
+        BuiltMesh placed = build_mesh(mesh, instance.to_world, options);
+        placed.degenerate += std::get<BuiltMesh>(prototype.geometry).degenerate;
+        add_shape(*prototype.element, std::move(placed));
+    }
+    ++scene_.instances;
+}
+
+} // namespace gradus
