@@ -34,6 +34,10 @@ const char *name_of(Emitter::Kind kind) {
         return "point";
     case Emitter::Kind::directional:
         return "directional";
+    case Emitter::Kind::environment:
+        return "envmap";
+    case Emitter::Kind::spot:
+        return "spot";
     }
     return "unknown";
 }

@@ -103,6 +103,21 @@ GRADUS_FN light_choice light_from_point(rgb intensity, vec3 point, vec3 place) {
     return s;
 }
 
+/* How much of a spot's intensity goes into a direction from it: all within the beam, none beyond the cutoff, in between
+ * linear in the angle from the axis. cutoff: that angle in turns; steepness: one over what it lies beyond the beam. */
+GRADUS_FN real light_spot_falloff(vec3 axis, vec3 direction, real cutoff, real steepness) {
+    const vec3 across = v3_cross(axis, direction);
+    const real angle = approx_turn(r_sqrt(v3_dot(across, across)), v3_dot(axis, direction));
+    return r_clamp((cutoff - angle) * steepness, R(0), R(1));
+}
+
+/* A point that shines along its axis. */
+GRADUS_FN light_choice light_from_spot(rgb intensity, vec3 point, vec3 axis, real cutoff, real steepness, vec3 place) {
+    light_choice s = light_from_point(intensity, point, place);
+    s.value = rgb_scale(s.value, light_spot_falloff(axis, v3_neg(s.direction), cutoff, steepness));
+    return s;
+}
+
 /* Parallel light, which comes from the direction `towards`. `beyond`: longer than the scene. */
 GRADUS_FN light_choice light_from_direction(rgb irradiance, vec3 towards, real beyond) {
     light_choice s;

@@ -6,6 +6,7 @@
 #ifndef GRADUS_LIB_LIGHT_EMISSION_H
 #define GRADUS_LIB_LIGHT_EMISSION_H
 //! traits: TRAIT_LIGHT_TRIANGLE TRAIT_LIGHT_SPHERE TRAIT_LIGHT_POINT TRAIT_LIGHT_DIRECTIONAL TRAIT_LIGHT_CONSTANT
+//! traits: TRAIT_LIGHT_ENVIRONMENT TRAIT_LIGHT_SPOT
 #include "kernels/lib/light_sampling.h"
 
 GRADUS_LIB_BEGIN
@@ -15,7 +16,7 @@ typedef struct {
     vec3 direction; /* unit vector */
     rgb power;
     vec3 normal; /* of the surface, on the side that emits; 0 for points */
-    int is_far;  /* at infinity */
+    int is_far;  /* at infinity, or a spot: nobody may turn the ray and take its power for what it was */
     GRADUS_NOT_IN_REGISTERS
 } light_emission;
 
@@ -79,6 +80,27 @@ GRADUS_FN light_emission emission_from_constant(rgb radiance, vec3 center, real 
                                    center, radius, place);
 }
 
+/* The environment's map, whose axes are x, y and z in world space, by the density of its directions. */
+GRADUS_FN light_emission emission_from_environment(rgb value, vec3 x, vec3 y, vec3 z, vec3 center, real radius,
+                                                   point2 on_disk, environment_choice place) {
+    const light_choice s = light_from_environment(value, x, y, z, radius, place);
+    return emission_from_direction(s.value, s.direction, center, radius, on_disk);
+}
+
+/* A spot, uniform over the cone that its cutoff bounds, `one_minus_cosine` deep. */
+GRADUS_FN light_emission emission_from_spot(rgb intensity, vec3 point, vec3 axis, real cutoff, real steepness,
+                                            real one_minus_cosine, point2 leaving) {
+    light_emission e;
+    e.direction = v3_normalize(
+        frame_to_world(frame_from_normal(axis), warp_uniform_cone(one_minus_cosine, leaving.x, leaving.y)));
+    e.origin = point;
+    e.power = rgb_scale(intensity,
+                        R(2) * GRADUS_PI * one_minus_cosine * light_spot_falloff(axis, e.direction, cutoff, steepness));
+    e.normal = v3(R(0), R(0), R(0));
+    e.is_far = 1;
+    return e;
+}
+
 GRADUS_FN light_emission light_emission_select(int first, light_emission a, light_emission b) {
     light_emission e;
     e.origin = v3_select(first, a.origin, b.origin);
@@ -97,7 +119,8 @@ GRADUS_FN light_emission light_emission_select(int first, light_emission a, ligh
 GRADUS_FN light_emission emission_sampling(GRADUS_GLOBAL const real *lights, GRADUS_GLOBAL const uint *light_kinds,
                                            GRADUS_GLOBAL const real *emissions,
                                            GRADUS_GLOBAL const uint *emission_alias, uint light_count, vec3 center,
-                                           real radius, uint unit, random4 choice, random4 leaving) {
+                                           real radius, uint unit, random4 choice,
+                                           random4 leaving ENVIRONMENT_PARAMETERS) {
     (void)light_kinds, (void)center, (void)radius;
     const uint column = min((uint)(choice.a * (real)light_count), light_count - 1u);
     const uint light =
@@ -106,8 +129,10 @@ GRADUS_FN light_emission emission_sampling(GRADUS_GLOBAL const real *lights, GRA
         rgb_scale(rgb3(LIGHT_FIELD(light, value_r), LIGHT_FIELD(light, value_g), LIGHT_FIELD(light, value_b)),
                   R(1) / EMISSION_FIELD(light, probability));
     const vec3 p = LIGHT_V3(light, p);
-#if TRAIT_LIGHT_TRIANGLE || TRAIT_LIGHT_SPHERE
+#if TRAIT_LIGHT_TRIANGLE || TRAIT_LIGHT_SPHERE || TRAIT_LIGHT_ENVIRONMENT || TRAIT_LIGHT_SPOT
     const vec3 e1 = LIGHT_V3(light, e1);
+#endif
+#if TRAIT_LIGHT_TRIANGLE || TRAIT_LIGHT_SPHERE
     const real offset = LIGHT_FIELD(light, offset);
 #endif
     uint kind = 0u;
@@ -143,6 +168,19 @@ GRADUS_FN light_emission emission_sampling(GRADUS_GLOBAL const real *lights, GRA
 #if TRAIT_LIGHT_CONSTANT
     e = light_emission_select(IS_LIGHT_KIND(constant), emission_from_constant(value, center, radius, on_light, away),
                               e);
+#endif
+#if TRAIT_LIGHT_SPOT
+    e = light_emission_select(IS_LIGHT_KIND(spot),
+                              emission_from_spot(value, p, e1, LIGHT_FIELD(light, e2_x), LIGHT_FIELD(light, e2_y),
+                                                 LIGHT_FIELD(light, e2_z), away),
+                              e);
+#endif
+#if TRAIT_LIGHT_ENVIRONMENT
+    const environment_choice direction =
+        environment_sample(leaving, LIGHT_FIELD(light, inverse_area), unit ENVIRONMENT_ARGUMENTS);
+    e = light_emission_select(
+        IS_LIGHT_KIND(environment),
+        emission_from_environment(value, p, e1, LIGHT_V3(light, e2), center, radius, on_light, direction), e);
 #endif
     return e;
 }

@@ -2,12 +2,14 @@
 #ifndef GRADUS_LIB_LIGHT_SAMPLING_H
 #define GRADUS_LIB_LIGHT_SAMPLING_H
 //! traits: TRAIT_LIGHT_TRIANGLE TRAIT_LIGHT_SPHERE TRAIT_LIGHT_POINT TRAIT_LIGHT_DIRECTIONAL TRAIT_LIGHT_CONSTANT
-//! traits: FEW_LIGHTS
+//! traits: TRAIT_LIGHT_ENVIRONMENT TRAIT_LIGHT_SPOT FEW_LIGHTS
+#include "kernels/lib/environment.h"
 #include "kernels/lib/light.h"
 #include "kernels/lib/random.h"
 
 #define LIGHT_KINDS                                                                                                    \
-    (TRAIT_LIGHT_TRIANGLE + TRAIT_LIGHT_SPHERE + TRAIT_LIGHT_POINT + TRAIT_LIGHT_DIRECTIONAL + TRAIT_LIGHT_CONSTANT)
+    (TRAIT_LIGHT_TRIANGLE + TRAIT_LIGHT_SPHERE + TRAIT_LIGHT_POINT + TRAIT_LIGHT_DIRECTIONAL + TRAIT_LIGHT_CONSTANT +  \
+     TRAIT_LIGHT_ENVIRONMENT + TRAIT_LIGHT_SPOT)
 #if LIGHT_KINDS > 1
 #define IS_LIGHT_KIND(name) (kind == light_kind_##name)
 #define IS_LIGHT(chosen, name, trait) ((trait) && (chosen).kind == light_kind_##name)
@@ -52,16 +54,28 @@ typedef struct {
     real probability; /* of choosing the light */
 } chosen_light;
 
+/* The environment's map, whose axes are x, y and z in world space. */
+GRADUS_FN light_choice light_from_environment(rgb value, vec3 x, vec3 y, vec3 z, real beyond,
+                                              environment_choice place) {
+    light_choice s;
+    s.direction = v3_mad(v3_mad(v3_scale(x, place.direction.x), place.direction.y, y), place.direction.z, z);
+    s.connection = v3_scale(s.direction, beyond);
+    s.normal = v3(R(0), R(0), R(0));
+    s.pdf = place.pdf;
+    s.value = rgb_scale(rgb_mul(value, place.radiance), place.pdf > R(0) ? R(1) / place.pdf : R(0));
+    return s;
+}
+
 GRADUS_FN chosen_light light_sampling(GRADUS_GLOBAL const real *lights, GRADUS_GLOBAL const uint *light_kinds,
                                       GRADUS_GLOBAL const uint *light_alias, uint light_count, real scene_diameter,
-                                      uint unit, vec3 position, random4 u) {
+                                      uint unit, vec3 position, random4 u ENVIRONMENT_PARAMETERS) {
     (void)light_kinds, (void)scene_diameter;
     const uint column = min((uint)(u.a * (real)light_count), light_count - 1u);
     const uint light = u.b < LIGHT_FIELD(column, alias_threshold) ? column : OF_LIGHT(light_alias, column, 1u, 0u);
     const real probability = LIGHT_FIELD(light, probability);
     const rgb value = rgb3(LIGHT_FIELD(light, value_r), LIGHT_FIELD(light, value_g), LIGHT_FIELD(light, value_b));
     const vec3 p = LIGHT_V3(light, p);
-#if TRAIT_LIGHT_TRIANGLE || TRAIT_LIGHT_SPHERE
+#if TRAIT_LIGHT_TRIANGLE || TRAIT_LIGHT_SPHERE || TRAIT_LIGHT_ENVIRONMENT || TRAIT_LIGHT_SPOT
     const vec3 e1 = LIGHT_V3(light, e1);
 #endif
     uint kind = 0u;
@@ -93,6 +107,17 @@ GRADUS_FN chosen_light light_sampling(GRADUS_GLOBAL const real *lights, GRADUS_G
 #endif
 #if TRAIT_LIGHT_CONSTANT
     s = light_choice_select(IS_LIGHT_KIND(constant), light_from_constant(value, scene_diameter, u.c, u.d), s);
+#endif
+#if TRAIT_LIGHT_SPOT
+    s = light_choice_select(IS_LIGHT_KIND(spot),
+                            light_from_spot(value, p, e1, LIGHT_FIELD(light, e2_x), LIGHT_FIELD(light, e2_y), position),
+                            s);
+#endif
+#if TRAIT_LIGHT_ENVIRONMENT
+    const environment_choice chosen_place =
+        environment_sample(u, LIGHT_FIELD(light, inverse_area), unit ENVIRONMENT_ARGUMENTS);
+    s = light_choice_select(IS_LIGHT_KIND(environment),
+                            light_from_environment(value, p, e1, LIGHT_V3(light, e2), scene_diameter, chosen_place), s);
 #endif
 
     chosen_light chosen;

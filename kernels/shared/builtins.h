@@ -36,6 +36,7 @@ real GRADUS_BUILTIN exp(real);
 real GRADUS_BUILTIN log(real);
 real GRADUS_BUILTIN sinpi(real);
 real GRADUS_BUILTIN cospi(real);
+real GRADUS_BUILTIN atan2(real, real);
 real GRADUS_BUILTIN erf(real);
 real GRADUS_BUILTIN erfc(real);
 GRADUS_DECLARE_VECTORS(double8, double16)

@@ -66,6 +66,12 @@ static inline __attribute__((unused)) float as_float(uint bits) {
     return x;
 }
 
+GRADUS_LIB_BEGIN
+GRADUS_FN uint min(uint a, uint b) { return a < b ? a : b; }
+GRADUS_FN uint max(uint a, uint b) { return a > b ? a : b; }
+GRADUS_FN uint mul_hi(uint a, uint b) { return (uint)((ulong)a * b >> 32); }
+GRADUS_LIB_END
+
 #endif
 
 /* Ends every small struct. The x86-64 calling convention passes a struct of up to 16 bytes as short vectors, and PoCL

@@ -46,13 +46,15 @@
     FIELD(sphere, facing, "1: the normal points out; -1: to the center")                                               \
     FIELD(sphere, offset, "what its size adds to how far rays start off")
 
-/* A light is one emitting triangle or sphere, a point, a direction or the constant environment. Which members of p
- * and the edges mean what is said by kind: triangle: p0, e1, e2; sphere: center, radius in e1_x, facing in e1_y;
- * point: position; directional: the unit vector towards the light. */
+/* A light is one emitting triangle or sphere, a point, a spot, a direction or the environment, constant or a map. Which
+ * members of p and the edges mean what is said by kind: triangle: p0, e1, e2; sphere: center, radius in e1_x, facing in
+ * e1_y; point: position; directional: the unit vector towards the light; spot: position, unit axis, and in e2_x to e2_z
+ * the cutoff in turns, one over the turns from the beam to it, and 1 - its cosine; environment map: its x, y and z axes
+ * in world space. */
 #define GRADUS_LIGHT_FIELDS(FIELD)                                                                                     \
     FIELD(light, alias_threshold, "a draw below it keeps this light, above it takes its alias")                        \
     FIELD(light, probability, "with which the light is chosen, by power")                                              \
-    FIELD(light, value_r, "radiance, intensity or irradiance")                                                         \
+    FIELD(light, value_r, "radiance, intensity or irradiance; of a map, what its numbers are times")                                                         \
     FIELD(light, value_g, "")                                                                                          \
     FIELD(light, value_b, "")                                                                                          \
     FIELD(light, p_x, "")                                                                                              \
@@ -64,7 +66,7 @@
     FIELD(light, e2_x, "")                                                                                             \
     FIELD(light, e2_y, "")                                                                                             \
     FIELD(light, e2_z, "")                                                                                             \
-    FIELD(light, inverse_area, "triangles and spheres; for the density of hits")                                       \
+    FIELD(light, inverse_area, "triangles and spheres; for the density of hits; of a map, its scale (environment.h)")                                       \
     FIELD(light, offset, "of the triangle or sphere")
 
 /* How light paths choose among the lights. */
@@ -105,7 +107,9 @@ enum light_kind {
     light_kind_sphere,
     light_kind_point,
     light_kind_directional,
-    light_kind_constant
+    light_kind_constant,
+    light_kind_environment,
+    light_kind_spot
 };
 
 /* primitive_light of a primitive that does not emit. */

@@ -2,11 +2,16 @@
  *
  * DIRECT_APART: what the camera sees of it goes to `direct`. */
 //! traits: TRAIT_HIDE_EMITTERS
+#include "kernels/lib/escaped_light.h"
 #include "kernels/lib/mis.h"
 #include "kernels/shared/stage.h"
 
 STAGE escape(uint count, uint unit, uint first, uint capacity, uint slots, __global const uint *index,
              __global const real *path, __global real *radiance, __global const real *lights, uint environment_light
+#if TRAIT_LIGHT_ENVIRONMENT
+             ,
+             __global const real *ray ENVIRONMENT_PARAMETERS
+#endif
 #if DIRECT_APART
              ,
              __global real *direct
@@ -17,12 +22,16 @@ STAGE escape(uint count, uint unit, uint first, uint capacity, uint slots, __glo
         return;
     const uint row = index[first + i];
     const uint slot = AT_UINT(path, slot, row);
-    const real pdf_light = FIELD_OF(light, lights, environment_light, probability) * (R(0.25) * GRADUS_INV_PI);
-    real weight = mis_weight_bsdf(AT(path, pdf, row), pdf_light);
+    vec3 direction = v3(R(0), R(0), R(1));
+#if TRAIT_LIGHT_ENVIRONMENT
+    direction = AT_V3(ray, direction, row);
+#endif
+    const light_found found = light_escaped(lights, environment_light, unit, direction ENVIRONMENT_ARGUMENTS);
+    real weight = mis_weight_bsdf(AT(path, pdf, row), found.pdf);
 #if TRAIT_HIDE_EMITTERS
     weight = AT_UINT(path, depth, row) > 0u ? weight : R(0);
 #endif
-    const rgb gained = rgb_mul(rgb_scale(FIELD_RGB(light, lights, environment_light, value), weight), AT_RGB(path, throughput, row));
+    const rgb gained = rgb_mul(rgb_scale(found.radiance, weight), AT_RGB(path, throughput, row));
 #if DIRECT_APART
     const int is_seen = AT_UINT(path, depth, row) == 0u;
     const rgb seen = rgb_add(AT_RGB_IN(direct, radiance, value, slot), rgb_select(is_seen, gained, rgb_gray(R(0))));

@@ -5,7 +5,7 @@
  * TRAIT_APART: others may be elsewhere and find a light where the base path does not. Then light sampling would shift
  * these paths in another way, so each sampler is an integrand of its own, weighted by its share within each path. */
 //! traits: TRAIT_LIGHT_TRIANGLE TRAIT_LIGHT_SPHERE TRAIT_APART
-#include "kernels/lib/light_found.h"
+#include "kernels/lib/escaped_light.h"
 #include "kernels/lib/mis.h"
 #include "kernels/lib/weighted_difference.h"
 #include "kernels/shared/stage.h"
@@ -16,7 +16,11 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint stride, uint cap
                         __global const real *lights
 #if ESCAPED
                         ,
-                        uint environment_light
+                        uint environment_light ENVIRONMENT_PARAMETERS
+#if TRAIT_LIGHT_ENVIRONMENT
+                        ,
+                        __global const real *ray
+#endif
 #else
                         ,
                         __global const real *ray, __global const real *triangles, __global const real *spheres,
@@ -35,9 +39,11 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint stride, uint cap
     const real bsdf_pdf = AT(path, pdf, row);
     const rgb throughput = AT_RGB(path, throughput, row);
 #if ESCAPED
-    light_found found;
-    found.radiance = FIELD_RGB(light, lights, environment_light, value);
-    found.pdf = FIELD_OF(light, lights, environment_light, probability) * (R(0.25) * GRADUS_INV_PI);
+    vec3 direction = v3(R(0), R(0), R(1));
+#if TRAIT_LIGHT_ENVIRONMENT
+    direction = AT_V3(ray, direction, row);
+#endif
+    const light_found found = light_escaped(lights, environment_light, unit, direction ENVIRONMENT_ARGUMENTS);
 #else
     const uint primitive = AT_UINT(ray, primitive, row);
     const vec3 origin = AT_V3(ray, origin, row), direction = AT_V3(ray, direction, row);
@@ -101,7 +107,14 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint stride, uint cap
         const size_t sent = (size_t)j * stride + row;
         const uint offset_primitive = AT_UINT(offset_ray, primitive, sent);
 #if ESCAPED
+#if TRAIT_LIGHT_ENVIRONMENT
+        /* A path that copied has a direction of its own; of one that sent no ray what is there is not used. */
+        const light_found own = light_escaped(
+            lights, environment_light, unit,
+            v3_select(is_apart, AT_V3(offset_ray, direction, sent), direction) ENVIRONMENT_ARGUMENTS);
+#else
         const light_found own = found;
+#endif
         marker =
             is_apart && offset_primitive != ray_escaped ? r_min(ratio, shift_failed(outcome_failed_nothing)) : ratio;
 #else

@@ -40,7 +40,7 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
 #if SAMPLES_LIGHTS
             ,
             __global const real *lights, __global const uint *light_kinds, __global const uint *light_alias,
-            uint light_count
+            uint light_count ENVIRONMENT_PARAMETERS
 #endif
 #if TRAIT_APART
             ,
@@ -98,11 +98,12 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
     const random4 u = random_draw(AT_UINT(path, key_0, row), AT_UINT(path, key_1, row),
                                   random_dimension_light(AT_UINT(path, depth, row) - 1u));
     const chosen_light chosen =
-        light_sampling(lights, light_kinds, light_alias, light_count, scene_diameter, unit, base, u);
+        light_sampling(lights, light_kinds, light_alias, light_count, scene_diameter, unit, base, u ENVIRONMENT_ARGUMENTS);
     const light_choice s = chosen.choice;
     const int is_surface =
         IS_LIGHT(chosen, triangle, TRAIT_LIGHT_TRIANGLE) | IS_LIGHT(chosen, sphere, TRAIT_LIGHT_SPHERE);
-    const int is_point = IS_LIGHT(chosen, point, TRAIT_LIGHT_POINT);
+    const int is_spot = IS_LIGHT(chosen, spot, TRAIT_LIGHT_SPOT);
+    const int is_point = IS_LIGHT(chosen, point, TRAIT_LIGHT_POINT) | is_spot;
     const int is_finite_light = is_surface | is_point;
     const real base_distance_squared = v3_dot(s.connection, s.connection);
     const real base_cosine = -v3_dot(s.normal, s.direction);
@@ -110,6 +111,11 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
     const vec3 light_point = v3_after(v3_add(base, s.connection), base_cosine);
     const real light_gap = offset_at(light_point, s.normal, LIGHT_FIELD(chosen.light, offset));
     const int arrives = rgb_max(AT_RGB(event, arriving, row)) > R(0);
+#if TRAIT_LIGHT_SPOT
+    const vec3 spot_axis = LIGHT_V3(chosen.light, e1);
+    const real spot_cutoff = LIGHT_FIELD(chosen.light, e2_x), spot_steepness = LIGHT_FIELD(chosen.light, e2_y);
+    const real base_falloff = light_spot_falloff(spot_axis, v3_neg(s.direction), spot_cutoff, spot_steepness);
+#endif
 #endif
 #pragma unroll
     for (uint j = 0; j < 4; ++j) {
@@ -141,6 +147,14 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         const real nearer = base_distance_squared / point_distance_squared;
         /* The Jacobian by solid angle; for a point light, which has none, the ratio of what arrives. */
         real light_jacobian = is_point ? nearer : R(1);
+#if TRAIT_LIGHT_SPOT
+        /* A vertex beyond the cutoff has no light sample of a spot, as one behind a lamp has none of that. */
+        const real spot_change =
+            base_falloff > R(0)
+                ? light_spot_falloff(spot_axis, v3_neg(to_point_unit), spot_cutoff, spot_steepness) / base_falloff
+                : R(0);
+        light_jacobian *= is_spot ? spot_change : R(1);
+#endif
         light_jacobian =
             is_surface ? (cosine > R(0) && base_cosine > R(0) ? nearer * cosine / base_cosine : R(0)) : light_jacobian;
         /* The same point of the same light, chosen with the same density by area. Spheres are sampled by cones. */

@@ -4,10 +4,13 @@
 #define TRAIT_SPHERES 1
 #define TRAIT_LIGHT_TRIANGLE 1
 #define TRAIT_LIGHT_SPHERE 1
+#define TRAIT_LIGHT_CONSTANT 1
+#define TRAIT_LIGHT_ENVIRONMENT 1
 #include "kernels/lib/additive_sequence.h"
-#include "kernels/lib/light_found.h"
+#include "kernels/lib/escaped_light.h"
 #include "kernels/shared/tables.h"
 #include "runtime/direct_light/lit_rectangle.h"
+#include "runtime/scene/environment_map.h"
 #include "runtime/trace/camera_rays.h"
 
 #include <algorithm>
@@ -32,14 +35,15 @@ class DirectRays {
     DirectRays(const SceneTables &tables, Tracer &tracer, std::uint64_t &rays)
         : tables_(tables), tracer_(tracer), rays_(rays) {}
 
-    /// The light along `count` rays: ray i goes through the point place(i) of the full film, in pixels.
+    /// The light along `count` rays: ray i goes through the point place(i) of the full film, in pixels. `as_one`: an
+    /// environment's map is taken for one colour, since it changes everywhere and it is its border that is sought.
     template <class Place>
-    const std::vector<rgb> &trace(std::size_t count, const Place &place) {
+    const std::vector<rgb> &trace(std::size_t count, bool as_one, const Place &place) {
         rays_ += camera_rays_.trace(tables_, tracer_, count, place);
         light_.resize(count);
         tracer_.in_parallel(count, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
-                light_[i] = light_along(i);
+                light_[i] = light_along(i, as_one);
         });
         return light_;
     }
@@ -47,11 +51,18 @@ class DirectRays {
   private:
     static constexpr std::uint32_t unit = 1; // of FIELD_OF
 
-    rgb light_along(std::size_t i) const {
+    rgb light_along(std::size_t i, bool as_one) const {
         const float *lights = tables_.lights.data();
         const std::uint32_t primitive = camera_rays_.primitive(i);
-        if (primitive == ray_escaped)
-            return FIELD_RGB(light, lights, tables_.environment_light, value);
+        if (primitive == ray_escaped) {
+            if (as_one || !tables_.environment)
+                return FIELD_RGB(light, lights, tables_.environment_light, value);
+            const EnvironmentMap &map = *tables_.environment;
+            return light_escaped(lights, tables_.environment_light, unit, camera_rays_.direction(i), map.texels.data(),
+                                 map.cells.data(), map.strips.data(), map.columns, map.rows,
+                                 std::uint32_t(map.strips.size() / 2))
+                .radiance;
+        }
         if (tables_.primitive_light[primitive] == no_light)
             return rgb_gray(0);
         const vec3 origin = camera_rays_.origin(i), direction = camera_rays_.direction(i);
@@ -112,7 +123,7 @@ std::vector<std::size_t> edge_pixels(const FilmSettings &film, const PixelRectan
     std::vector<char> mixed(seen.size(), 0);
     for (std::size_t begin = 0; begin < seen.size();) {
         const std::size_t end = std::min(seen.size(), begin + batch / pilots);
-        const std::vector<rgb> &light = rays.trace(pilots * (end - begin), [&](std::size_t ray) {
+        const std::vector<rgb> &light = rays.trace(pilots * (end - begin), true, [&](std::size_t ray) {
             const std::size_t number = begin + ray / pilots, i = ray % pilots;
             const std::size_t x = film.crop_x + lit.left + number % lit.width();
             const std::size_t y = film.crop_y + lit.top + number / lit.width();
@@ -172,7 +183,7 @@ std::vector<DirectPixel> sample_direct_edges(const SceneTables &tables, const Fi
     std::vector<DirectPixel> found;
     for (std::size_t begin = 0; begin < edges.size();) {
         const std::size_t end = std::min(edges.size(), begin + std::max<std::size_t>(batch / count, 1));
-        const std::vector<rgb> &light = direct.trace((end - begin) * count, [&](std::size_t ray) {
+        const std::vector<rgb> &light = direct.trace((end - begin) * count, false, [&](std::size_t ray) {
             const std::size_t pixel = edges[begin + ray / count];
             const std::uint32_t x = film.crop_x + static_cast<std::uint32_t>(pixel % film.crop_width);
             const std::uint32_t y = film.crop_y + static_cast<std::uint32_t>(pixel / film.crop_width);

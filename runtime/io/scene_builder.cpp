@@ -271,7 +271,7 @@ void SceneBuilder::build_emitter(const Element &element) {
     if (type == "area")
         throw SceneError(element.location, "an area emitter belongs inside the shape that emits");
     const Emitter emitter = build_object<Emitter>(element);
-    if (emitter.kind == Emitter::Kind::constant) {
+    if (emitter.kind == Emitter::Kind::constant || emitter.kind == Emitter::Kind::environment) {
         if (environment_)
             throw SceneError(element.location,
                              "a second environment emitter; the first is at " + environment_->location.text());

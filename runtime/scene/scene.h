@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -79,18 +80,27 @@ struct Material {
     std::string name;
 };
 
+struct EnvironmentMap; // runtime/scene/environment_map.h
+
 struct Emitter {
     enum class Kind {
-        area,       ///< emits from the front side of a shape
-        constant,   ///< the same radiance from every direction
-        point,      ///< at position
-        directional ///< travels along direction
+        area,        ///< emits from the front side of a shape
+        constant,    ///< the same radiance from every direction
+        point,       ///< at position
+        directional, ///< travels along direction
+        environment, ///< from every direction what its map says
+        spot         ///< from position around direction
     };
     Kind kind = Kind::area;
     Rgb value; ///< area, constant: radiance (W sr^-1 m^-2); point: intensity (W sr^-1); directional: irradiance on a
-               ///< plane across the direction (W m^-2)
-    Vector3 position;  ///< point
-    Vector3 direction; ///< directional: unit vector, the way that light travels
+               ///< plane across the direction (W m^-2); spot: intensity within the beam; environment: what the map's
+               ///< radiance is times
+    Vector3 position;  ///< point, spot
+    Vector3 direction; ///< directional, spot: unit vector, the way that light travels
+    float cutoff = 0;  ///< spot: the angle from the direction beyond which nothing goes, in radians, at most pi
+    float beam = 0;    ///< spot: the angle up to which all does; in between intensity is linear in the angle
+    std::array<Vector3, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}; ///< environment: the map's, in world space
+    std::shared_ptr<const EnvironmentMap> map;                      ///< environment
 };
 
 /// A pinhole camera that looks along its local +z with +y up and +x to the left of the image, as Mitsuba has it.

@@ -3,6 +3,7 @@
 #include "kernels/shared/material.h"
 #include "kernels/shared/scene_records.h"
 #include "runtime/scene/camera_record.h"
+#include "runtime/scene/environment_map.h"
 #include "runtime/scene/light_table.h"
 
 #include <algorithm>
@@ -221,6 +222,34 @@ void add_other_lights(const Scene &scene, double radius, SceneTables &tables, Li
                 lights.add(light_kind_constant, emitter.value, {pi * value * disk, number, true}, record);
             lights.emitted.back().power = 4 * pi * value * disk; // from all directions
             lights.has_environment = true;
+        } else if (emitter.kind == Emitter::Kind::environment) {
+            // A plane of any direction gets a quarter of what comes from all of them, in the mean.
+            const Rgb sent = emitter.map->integral;
+            const double all =
+                luminance({emitter.value.r * sent.r, emitter.value.g * sent.g, emitter.value.b * sent.b});
+            if (!(all > 0))
+                continue;
+            const float unit = emitter.map->unit;
+            const Rgb scaled{emitter.value.r * unit, emitter.value.g * unit, emitter.value.b * unit};
+            tables.environment_light =
+                lights.add(light_kind_environment, scaled, {all / 4 * disk, number, true}, record);
+            lights.emitted.back().power = all * disk;
+            lights.has_environment = true;
+            put(record, light_p_x, emitter.axes[0]);
+            put(record, light_e1_x, emitter.axes[1]);
+            put(record, light_e2_x, emitter.axes[2]);
+            record[light_inverse_area] = emitter.map->scale;
+            tables.environment = emitter.map;
+        } else if (emitter.kind == Emitter::Kind::spot) {
+            const double cutoff = emitter.cutoff, beam = emitter.beam, ramp = cutoff - beam;
+            const double sent = ramp > 0 ? 1 - (std::sin(cutoff) - std::sin(beam)) / ramp : 1 - std::cos(cutoff);
+            lights.add(light_kind_spot, emitter.value, {2 * pi * value * sent, number, false}, record);
+            put(record, light_p_x, emitter.position);
+            put(record, light_e1_x, emitter.direction);
+            const double half_sine = std::sin(cutoff / 2);
+            put(record, light_e2_x,
+                {float(cutoff / (2 * pi)), float(std::min(ramp > 0 ? 2 * pi / ramp : 1e30, 1e30)),
+                 float(2 * half_sine * half_sine)});
         } else if (emitter.kind == Emitter::Kind::point) {
             lights.add(light_kind_point, emitter.value, {4 * pi * value, number, false}, record);
             put(record, light_p_x, emitter.position);
@@ -284,6 +313,8 @@ SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits) {
     tables.scene_center = {bounds.center().x, bounds.center().y, bounds.center().z};
     add_other_lights(scene, radius, tables, lights);
     lights.finish();
+    if (!tables.environment && traits.at("TRAIT_LIGHT_ENVIRONMENT"))
+        tables.environment = std::make_shared<const EnvironmentMap>(no_environment_map());
     add_materials(scene, tables);
     tables.camera = make_camera_record(scene.camera, scene.film);
     // Kernels compiled for both kinds of primitives read a record of each, whichever they then take.
@@ -295,11 +326,12 @@ SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits) {
 }
 
 std::size_t table_bytes(const SceneTables &t) {
-    return 4 *
-           (t.triangles.size() + t.triangle_normals.size() + t.triangle_tangents.size() + t.spheres.size() +
-            t.materials.size() + t.lights.size() + t.camera.size() + t.primitive_material.size() +
-            t.primitive_light.size() + t.primitive_bin.size() + t.primitive_back_bin.size() + t.material_back.size() +
-            t.light_kinds.size() + t.light_alias.size() + t.emissions.size() + t.emission_alias.size());
+    return (t.environment ? environment_bytes(*t.environment) : 0) +
+           4 * (t.triangles.size() + t.triangle_normals.size() + t.triangle_tangents.size() + t.spheres.size() +
+                t.materials.size() + t.lights.size() + t.camera.size() + t.primitive_material.size() +
+                t.primitive_light.size() + t.primitive_bin.size() + t.primitive_back_bin.size() +
+                t.material_back.size() + t.light_kinds.size() + t.light_alias.size() + t.emissions.size() +
+                t.emission_alias.size());
 }
 
 } // namespace gradus

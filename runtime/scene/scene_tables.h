@@ -20,6 +20,7 @@ struct SceneTables {
     /// By light, what light paths choose by: records of kernels/shared/scene_records.h, and the alias.
     std::vector<float> emissions;
     std::vector<std::uint32_t> emission_alias;
+    std::shared_ptr<const EnvironmentMap> environment; ///< where the environment is a map, or kernels expect one
     std::vector<std::string> kinds; ///< the BSDF kinds of the scene: kind k has the bins 1 + 2 k and 2 + 2 k
     std::uint32_t triangle_count = 0, light_count = 0, environment_light = 0;
     float scene_diameter = 1;               ///< longer than any segment within the scene; of a sphere that holds it

@@ -27,6 +27,8 @@ constexpr TraitText descriptions[] = {
     {"TRAIT_LIGHT_POINT", "point lights"},
     {"TRAIT_LIGHT_DIRECTIONAL", "directional lights"},
     {"TRAIT_LIGHT_CONSTANT", "sampling of a constant environment"},
+    {"TRAIT_LIGHT_ENVIRONMENT", "an environment map"},
+    {"TRAIT_LIGHT_SPOT", "spots"},
     {"TRAIT_HIDE_EMITTERS", "emitters that the camera does not see"},
     {"TRAIT_FILTER_TENT", "tent pixel filter"},
     {"TRAIT_FILTER_GAUSSIAN", "Gaussian pixel filter"},
@@ -128,6 +130,13 @@ TraitMap scene_traits(const Scene &scene) {
             break;
         case Emitter::Kind::directional:
             traits["TRAIT_LIGHT_DIRECTIONAL"] = 1;
+            break;
+        case Emitter::Kind::environment:
+            traits["TRAIT_ENVIRONMENT"] = 1;
+            traits["TRAIT_LIGHT_ENVIRONMENT"] = 1;
+            break;
+        case Emitter::Kind::spot:
+            traits["TRAIT_LIGHT_SPOT"] = 1;
             break;
         }
     }

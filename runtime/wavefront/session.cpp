@@ -1,6 +1,7 @@
 #include "runtime/wavefront/session.h"
 
 #include "runtime/error.h"
+#include "runtime/scene/environment_map.h"
 #include "runtime/wavefront/invariant_division.h"
 
 #include <fmt/format.h>
@@ -76,6 +77,11 @@ std::vector<Buffer> make_scene_buffers(Device &device, const SceneTables &t, Pre
     numbers("light_alias", t.light_alias);
     reals("emissions", t.emissions);
     numbers("emission_alias", t.emission_alias);
+    if (t.environment) {
+        numbers("environment_texels", t.environment->texels);
+        numbers("environment_cells", t.environment->cells);
+        numbers("environment_strips", t.environment->strips);
+    }
     return buffers;
 }
 
@@ -103,6 +109,11 @@ Session::Session(Device &session_device, const Scene &s, const SessionOptions &s
                {"film_width", film.width},
                {"seed_low", static_cast<std::uint32_t>(options.seed)},
                {"seed_high", static_cast<std::uint32_t>(options.seed >> 32)}};
+    if (scene.environment) {
+        numbers["environment_columns"] = scene.environment->columns;
+        numbers["environment_rows"] = scene.environment->rows;
+        numbers["environment_strip_count"] = static_cast<std::uint32_t>(scene.environment->strips.size() / 2);
+    }
     set_divisor(*this, "pixels", "pixels", pixels());
     set_divisor(*this, "width", "crop_width", film.crop_width);
     reals["scene_diameter"] = scene.scene_diameter;

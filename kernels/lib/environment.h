@@ -1,0 +1,170 @@
+/* Light from an image of all directions: its radiance, and sampling of directions by its luminance.
+ *
+ * The image is bilinear in the two angles, as Mitsuba's is: texel i of a row lies at (i + 1/2) / columns of a turn
+ * about the map's y axis, which begins at -z and goes by +x; row j lies at the angle pi j / rows from +y, so the first
+ * and the last row are the poles. Between four texels lies a cell; `rows` counts those.
+ *
+ * Sampling chooses a cell and then a place in it with exactly the density that environment_lookup() states. A texel has
+ * beside its colour an importance, its luminance times the share of its row in the sphere; in a cell the density by
+ * place is the bilinear function of the importances at its corners, normalised over all cells. By solid angle that is
+ * the importance over the sine of the angle from the pole, times one number: `scale` below. So all that is interpolated
+ * is loaded for the colour in any case, and a bright texel among dark ones is found with its own shape.
+ *
+ * Cells lie in strips of environment_strip along a row, padded with cells of importance 0. Alias tables (Vose 1991)
+ * choose the strip and the cell in it. runtime/scene/environment_map.h makes all of this. */
+#ifndef GRADUS_LIB_ENVIRONMENT_H
+#define GRADUS_LIB_ENVIRONMENT_H
+//! traits: TRAIT_LIGHT_ENVIRONMENT
+#include "kernels/lib/random.h"
+#include "kernels/lib/vector.h"
+#include "kernels/lib/warp.h"
+
+#define environment_strip 256u
+
+/* What functions and kernels take that look into the map: texels (two words each: r and g, b and importance, in
+ * environment_number() each), cells (24 bits of threshold, 8 of alias) and strips (threshold of 32 bits, alias). */
+#if TRAIT_LIGHT_ENVIRONMENT
+#define ENVIRONMENT_PARAMETERS                                                                                         \
+    , GRADUS_GLOBAL const uint *environment_texels, GRADUS_GLOBAL const uint *environment_cells,                       \
+        GRADUS_GLOBAL const uint *environment_strips, uint environment_columns, uint environment_rows,                 \
+        uint environment_strip_count
+#define ENVIRONMENT_ARGUMENTS                                                                                          \
+    , environment_texels, environment_cells, environment_strips, environment_columns, environment_rows,                \
+        environment_strip_count
+#else
+#define ENVIRONMENT_PARAMETERS
+#define ENVIRONMENT_ARGUMENTS
+#endif
+
+GRADUS_LIB_BEGIN
+
+/* A number from 0 to 2^33 in 16 bits: 6 of exponent and 10 of mantissa. All that half floats hold are among them, and
+ * with them what RGBE files do. */
+GRADUS_FN real environment_number(uint code) {
+    const real value = (real)as_float((code << 13) + 0x30000000u);
+    return code != 0u ? value : R(0);
+}
+
+typedef struct {
+    rgb radiance;    /* over the light's value */
+    real importance; /* bilinear */
+    GRADUS_NOT_IN_REGISTERS
+} environment_texel;
+
+GRADUS_FN environment_texel environment_load(GRADUS_GLOBAL const uint *environment_texels, uint texel, uint unit) {
+    const uint first = environment_texels[(size_t)texel * 2u];
+    const uint second = environment_texels[(size_t)texel * 2u + unit];
+    environment_texel t;
+    t.radiance = rgb3(environment_number(first & 0xFFFFu), environment_number(first >> 16),
+                      environment_number(second & 0xFFFFu));
+    t.importance = environment_number(second >> 16);
+    return t;
+}
+
+/* The four corners of a cell. */
+typedef struct {
+    environment_texel t00, t10, t01, t11; /* t10: the next column; t01: the next row */
+    GRADUS_NOT_IN_REGISTERS
+} environment_corners;
+
+GRADUS_FN environment_corners environment_cell(GRADUS_GLOBAL const uint *environment_texels, uint environment_columns,
+                                               uint column, uint row, uint unit) {
+    /* A row has one texel more than the map: its first again. */
+    const uint above = row * (environment_columns + 1u) + column, below = above + environment_columns + 1u;
+    environment_corners c;
+    c.t00 = environment_load(environment_texels, above, unit);
+    c.t10 = environment_load(environment_texels, above + 1u, unit);
+    c.t01 = environment_load(environment_texels, below, unit);
+    c.t11 = environment_load(environment_texels, below + 1u, unit);
+    return c;
+}
+
+GRADUS_FN environment_texel environment_between(environment_corners c, real s, real t) {
+    const real w00 = (R(1) - s) * (R(1) - t), w10 = s * (R(1) - t), w01 = (R(1) - s) * t, w11 = s * t;
+    environment_texel e;
+    e.radiance.r = c.t00.radiance.r * w00 + c.t10.radiance.r * w10 + c.t01.radiance.r * w01 + c.t11.radiance.r * w11;
+    e.radiance.g = c.t00.radiance.g * w00 + c.t10.radiance.g * w10 + c.t01.radiance.g * w01 + c.t11.radiance.g * w11;
+    e.radiance.b = c.t00.radiance.b * w00 + c.t10.radiance.b * w10 + c.t01.radiance.b * w01 + c.t11.radiance.b * w11;
+    e.importance = c.t00.importance * w00 + c.t10.importance * w10 + c.t01.importance * w01 + c.t11.importance * w11;
+    return e;
+}
+
+/* What a direction sees, and the density by solid angle with which environment_sample() finds it. */
+typedef struct {
+    rgb radiance;
+    real pdf;
+    GRADUS_NOT_IN_REGISTERS
+} environment_light_value;
+
+/* At the poles themselves the density has no bound; it is that of a millionth beside them. */
+GRADUS_FN real environment_pdf(real importance, real scale, real sine) {
+    return importance * scale / r_max(sine, R(1e-6));
+}
+
+#if TRAIT_LIGHT_ENVIRONMENT
+/* direction: in the map's frame, of unit length. scale: see above. Where there is no map (environment_rows is 0) what
+ * is returned has no meaning. */
+GRADUS_FN environment_light_value environment_lookup(vec3 direction, real scale, uint unit ENVIRONMENT_PARAMETERS) {
+    (void)environment_cells, (void)environment_strips, (void)environment_strip_count;
+    const real sine = r_sqrt(direction.x * direction.x + direction.z * direction.z);
+    const real along = approx_turn(direction.x, -direction.z) * (real)environment_columns - R(0.5);
+    const real place = along < R(0) ? along + (real)environment_columns : along;
+    const real height = R(2) * approx_turn(sine, direction.y) * (real)environment_rows;
+    const uint column = min((uint)place, environment_columns - 1u);
+    const uint row = min((uint)height, max(environment_rows, 1u) - 1u);
+    const environment_corners corners = environment_cell(environment_texels, environment_columns, column, row, unit);
+    const environment_texel e = environment_between(corners, place - (real)column, height - (real)row);
+    environment_light_value found;
+    found.radiance = e.radiance;
+    found.pdf = environment_pdf(e.importance, scale, sine);
+    return found;
+}
+#endif
+
+/* Where x lies for a number u of [0, 1) if its density on [0, 1] goes linearly from a to b. */
+GRADUS_FN real environment_linear(real a, real b, real u) {
+    const real root = r_sqrt(r_max(a * a + u * (b * b - a * a), R(0)));
+    return r_min(u * (a + b) / r_max(a + root, R(1e-30)), R(1));
+}
+
+typedef struct {
+    vec3 direction; /* in the map's frame, unit length */
+    rgb radiance;
+    real pdf; /* solid angle */
+    GRADUS_NOT_IN_REGISTERS
+} environment_choice;
+
+#if TRAIT_LIGHT_ENVIRONMENT
+/* The cell by a hash of all four numbers, since one of 24 bits does not tell the cells of a large map apart; the place
+ * in it by u.c and u.d. */
+GRADUS_FN environment_choice environment_sample(random4 u, real scale, uint unit ENVIRONMENT_PARAMETERS) {
+    const random_bits bits = random_hash((uint)(u.a * R(16777216)), (uint)(u.b * R(16777216)),
+                                         (uint)(u.c * R(16777216)), (uint)(u.d * R(16777216)));
+    const uint drawn = mul_hi(bits.x, environment_strip_count);
+    const uint limit = environment_strips[(size_t)drawn * 2u], other = environment_strips[(size_t)drawn * 2u + unit];
+    const uint strip = bits.y < limit ? drawn : other;
+    const uint drawn_cell = bits.z >> 24;
+    const uint cell = environment_cells[(size_t)strip * environment_strip + drawn_cell];
+    const uint in_strip = (bits.w >> 8) < (cell >> 8) ? drawn_cell : (cell & 255u);
+    /* A division in real, for vector units have no other: exact, as there are fewer than 2^22 strips. */
+    const uint strips_a_row = (environment_columns + environment_strip - 1u) / environment_strip;
+    const uint row = min((uint)(((real)strip + R(0.5)) / (real)strips_a_row), max(environment_rows, 1u) - 1u);
+    const uint column = min((strip - row * strips_a_row) * environment_strip + in_strip, environment_columns - 1u);
+    const environment_corners c = environment_cell(environment_texels, environment_columns, column, row, unit);
+    const real t = environment_linear(c.t00.importance + c.t10.importance, c.t01.importance + c.t11.importance, u.d);
+    const real s = environment_linear(c.t00.importance * (R(1) - t) + c.t01.importance * t,
+                                      c.t10.importance * (R(1) - t) + c.t11.importance * t, u.c);
+    const environment_texel e = environment_between(c, s, t);
+    const real along = ((real)column + s + R(0.5)) / (real)environment_columns;
+    const sine_cosine turn = approx_sine_cosine_2pi(along < R(1) ? along : along - R(1));
+    const sine_cosine from_pole = approx_sine_cosine_2pi(R(0.5) * ((real)row + t) / (real)max(environment_rows, 1u));
+    environment_choice chosen;
+    chosen.direction = v3(from_pole.sine * turn.sine, from_pole.cosine, -from_pole.sine * turn.cosine);
+    chosen.radiance = e.radiance;
+    chosen.pdf = environment_pdf(e.importance, scale, from_pole.sine);
+    return chosen;
+}
+#endif
+
+GRADUS_LIB_END
+#endif
