@@ -15,6 +15,7 @@
 #include "kernels/lib/mis.h"
 #include "kernels/lib/path_draw.h"
 #include "kernels/lib/surface_point.h"
+#include "kernels/lib/textured_material.h"
 #include "kernels/lib/vertex_frame.h"
 #include "kernels/shared/stage.h"
 
@@ -24,7 +25,7 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
             __global const real *triangle_normals, __global const real *triangle_tangents, __global const real *spheres,
             uint triangle_count, __global const uint *primitive_material, __global const uint *material_back,
             __global const real *materials, __global const real *lights, __global const uint *light_kinds,
-            __global const uint *light_alias, uint light_count, real scene_diameter
+            __global const uint *light_alias, uint light_count, real scene_diameter SURFACE_ARGUMENT
 #if TRAIT_AOV
             ,
             __global real *feature, uint slots
@@ -49,7 +50,7 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
     const surface_point point =
         surface_point_of(triangles, triangle_normals, triangle_tangents, spheres, unit, triangle_count,
                          primitive_material, material_back, AT_UINT_IN(ray_old, ray, primitive, old), from, direction);
-    const material m = material_load(materials, point.material, unit);
+    const material m = HIT_MATERIAL(point.material, capacity, old);
     const frame axes = surface_frame(point.shading, point.along, m);
     const vec3 wi = frame_to_local(axes, v3_neg(direction));
     const int goes_on = depth + 1u < max_depth;
@@ -65,6 +66,7 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
 #endif
 #if WITH_OFFSETS
     SET_SURFACE_VERTEX(vertex, row, material_kind[point.material], point, direction)
+    SET_VERTEX_TEXTURED(vertex, row, capacity, old)
 #endif
 
 #if SAMPLES_LIGHTS && !BSDF_IS_DIRAC

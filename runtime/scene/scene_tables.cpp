@@ -4,6 +4,7 @@
 #include "kernels/shared/scene_records.h"
 #include "runtime/scene/camera_record.h"
 #include "runtime/scene/light_table.h"
+#include "runtime/scene/texture_tables.h"
 
 #include <algorithm>
 #include <cmath>
@@ -147,6 +148,8 @@ void add_mesh(const Scene &scene, const Shape &shape, const TraitMap &traits, Sc
                 tables.triangle_normals.insert(tables.triangle_normals.end(), {n.x, n.y, n.z});
             }
         }
+        if (traits.at("TRAIT_TEXTURED"))
+            add_triangle_texcoords(mesh, t, tables);
         if (traits.at("TRAIT_ANISOTROPIC")) {
             Vector3 along{};
             if (!mesh.texcoords.empty()) {
@@ -285,6 +288,8 @@ SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits) {
     add_other_lights(scene, radius, tables, lights);
     lights.finish();
     add_materials(scene, tables);
+    if (traits.at("TRAIT_TEXTURED"))
+        add_textures(scene, tables);
     tables.camera = make_camera_record(scene.camera, scene.film);
     // Kernels compiled for both kinds of primitives read a record of each, whichever they then take.
     if (tables.triangles.empty())
@@ -299,7 +304,9 @@ std::size_t table_bytes(const SceneTables &t) {
            (t.triangles.size() + t.triangle_normals.size() + t.triangle_tangents.size() + t.spheres.size() +
             t.materials.size() + t.lights.size() + t.camera.size() + t.primitive_material.size() +
             t.primitive_light.size() + t.primitive_bin.size() + t.primitive_back_bin.size() + t.material_back.size() +
-            t.light_kinds.size() + t.light_alias.size() + t.emissions.size() + t.emission_alias.size());
+            t.light_kinds.size() + t.light_alias.size() + t.emissions.size() + t.emission_alias.size() +
+            t.triangle_texcoords.size() + t.sphere_axes.size() + t.texture_reals.size() + t.texture_decode.size() +
+            t.textures.size() + t.texels.size() + t.material_textures.size());
 }
 
 } // namespace gradus
