@@ -12,6 +12,9 @@ GRADUS_LIB_BEGIN
 
 #define TEXTURES_HAVE(feature) ((TRAIT_TEXTURES & (feature)) != 0)
 
+/* n itself, computed after x, which must be finite (kernels/lib/ordered.h): indices into one array are packed too. */
+GRADUS_FN uint texture_after(uint n, real x) { return n + (uint)(int)(R(0) * x); }
+
 /* Where a coordinate lies in [0, 1]; 0 for what is no finite number. */
 GRADUS_FN real texture_wrapped(real s, uint flags) {
     real place = s - r_floor(s);
@@ -24,12 +27,18 @@ GRADUS_FN real texture_wrapped(real s, uint flags) {
     return r_clamp(place, R(0), R(1));
 }
 
-/* The texel at place i, which is at most one beyond the picture; any other i is brought into it too. */
+/* The texel at place i, which is at most one before the picture; any other i is brought into it too. */
 GRADUS_FN uint texture_texel(int i, uint size, uint flags) {
     const int repeats = !TEXTURES_HAVE(textures_wrapped_otherwise) || texture_wrap(flags) == texture_wrap_repeat;
-    const uint before = repeats ? size - 1u : 0u, beyond = repeats ? 0u : size - 1u;
-    const uint inside = (uint)i < size ? (uint)i : beyond;
-    return i < 0 ? before : inside;
+    const uint inside = r_min((uint)i, size - 1u);
+    return i < 0 ? (repeats ? size - 1u : 0u) : inside;
+}
+
+/* The one after that, texel `before`. */
+GRADUS_FN uint texture_next_texel(int i, uint before, uint size, uint flags) {
+    const int repeats = !TEXTURES_HAVE(textures_wrapped_otherwise) || texture_wrap(flags) == texture_wrap_repeat;
+    const uint inside = before + 1u < size ? before + 1u : (repeats ? 0u : before);
+    return i < 0 ? 0u : inside;
 }
 
 /* Half precision. Denormals lie below 2^-14: their float has the mantissa behind a fixed exponent, less that. */
@@ -62,8 +71,8 @@ GRADUS_FN rgb texture_fetch(GRADUS_GLOBAL const uint *texels, GRADUS_GLOBAL cons
         const real r = texture_decode[curve + ((word >> shift) & 255u)];
         real g = r, b = r;
         if (TEXTURES_HAVE(textures_in_color)) {
-            g = texture_decode[curve + ((word >> (shift + step)) & 255u)];
-            b = texture_decode[curve + ((word >> (shift + 2u * step)) & 255u)];
+            g = texture_decode[texture_after(curve, r) + ((word >> (shift + step)) & 255u)];
+            b = texture_decode[texture_after(curve, g) + ((word >> (shift + 2u * step)) & 255u)];
         }
         value = rgb_select(is_this, rgb3(r, g, b), value);
     }
@@ -77,8 +86,10 @@ GRADUS_FN rgb texture_fetch(GRADUS_GLOBAL const uint *texels, GRADUS_GLOBAL cons
         const uint bits_g = is_color ? first >> 16 : bits_r, bits_b = is_color ? second & 0xFFFFu : bits_r;
         const real scale = R(1) / R(65535);
         const real r = is_half ? texture_half(bits_r) : (real)(int)bits_r * scale;
-        const real g = is_half ? texture_half(bits_g) : (real)(int)bits_g * scale;
-        const real b = is_half ? texture_half(bits_b) : (real)(int)bits_b * scale;
+        const uint after_r = texture_after(bits_g, r);
+        const real g = is_half ? texture_half(after_r) : (real)(int)after_r * scale;
+        const uint after_g = texture_after(bits_b, g);
+        const real b = is_half ? texture_half(after_g) : (real)(int)after_g * scale;
         value = rgb_select(is_this, rgb3(r, g, b), value);
     }
     if (TEXTURES_HAVE(textures_of_reals)) {
@@ -86,7 +97,8 @@ GRADUS_FN rgb texture_fetch(GRADUS_GLOBAL const uint *texels, GRADUS_GLOBAL cons
         const uint at = place.offset + (is_this ? (is_color ? 3u * number : number) : 0u);
         const uint step = (is_this & is_color) ? 1u : 0u;
         const real r = as_float(texels[at]);
-        const real g = as_float(texels[at + step]), b = as_float(texels[at + 2u * step]);
+        const real g = as_float(texels[texture_after(at + step, r)]);
+        const real b = as_float(texels[texture_after(at + 2u * step, g)]);
         value = rgb_select(is_this, rgb3(r, g, b), value);
     }
     return value;
@@ -122,19 +134,19 @@ GRADUS_FN rgb texture_lookup(GRADUS_GLOBAL const uint *textures, GRADUS_GLOBAL c
     const int is_nearest =
         !TEXTURES_HAVE(textures_bilinear) || (TEXTURES_HAVE(textures_nearest) && (place.flags & texture_flag_nearest));
     const real x = texture_wrapped(s, place.flags) * (real)(int)width;
-    const real y = texture_wrapped(t, place.flags) * (real)(int)height;
+    const real y = texture_wrapped(r_after(t, x), place.flags) * (real)(int)height;
     const real to_left = is_nearest ? x : x - R(0.5), to_top = is_nearest ? y : y - R(0.5);
     const real left = r_floor(to_left), top = r_floor(to_top);
-    /* Nearest: what is at the very edge belongs to the texel before it. */
-    const uint x_0 = is_nearest ? r_min((uint)(int)left, width - 1u) : texture_texel((int)left, width, place.flags);
-    const uint y_0 = is_nearest ? r_min((uint)(int)top, height - 1u) : texture_texel((int)top, height, place.flags);
+    /* Nearest: what is at the very edge belongs to the texel before it, which is what texture_texel() says of it. */
+    const uint x_0 = texture_texel((int)left, width, place.flags);
+    const uint y_0 = texture_texel((int)top, height, place.flags);
     value = texture_fetch(texels, texture_decode, place, y_0 * width + x_0);
 #if TRAIT_TEXTURES & textures_bilinear
-    const uint x_1 = is_nearest ? x_0 : texture_texel((int)left + 1, width, place.flags);
-    const uint y_1 = is_nearest ? y_0 : texture_texel((int)top + 1, height, place.flags);
-    const rgb right = texture_fetch(texels, texture_decode, place, y_0 * width + x_1);
-    const rgb below = texture_fetch(texels, texture_decode, place, y_1 * width + x_0);
-    const rgb across = texture_fetch(texels, texture_decode, place, y_1 * width + x_1);
+    const uint x_1 = is_nearest ? x_0 : texture_next_texel((int)left, x_0, width, place.flags);
+    const uint y_1 = is_nearest ? y_0 : texture_next_texel((int)top, y_0, height, place.flags);
+    const rgb right = texture_fetch(texels, texture_decode, place, texture_after(y_0 * width + x_1, value.b));
+    const rgb below = texture_fetch(texels, texture_decode, place, texture_after(y_1 * width + x_0, right.b));
+    const rgb across = texture_fetch(texels, texture_decode, place, texture_after(y_1 * width + x_1, below.b));
     const real x_share = is_nearest ? R(0) : to_left - left, y_share = is_nearest ? R(0) : to_top - top;
     const rgb upper = texture_between(value, right, x_share);
     const rgb lower = texture_between(below, across, r_after(x_share, upper.b));
@@ -153,8 +165,8 @@ GRADUS_FN rgb texture_lookup(GRADUS_GLOBAL const uint *textures, GRADUS_GLOBAL c
     const real lowest = FIELD_OF(texture_real, texture_reals, texture, lowest);
     const real highest = FIELD_OF(texture_real, texture_reals, texture, highest);
     const real r = r_clamp(value.r, lowest, highest);
-    const real g = r_clamp(value.g, lowest, highest);
-    const real b = r_clamp(value.b, lowest, highest);
+    const real g = r_clamp(r_after(value.g, r), lowest, highest);
+    const real b = r_clamp(r_after(value.b, g), lowest, highest);
     return rgb3(r, g, b);
 }
 
