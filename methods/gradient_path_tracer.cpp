@@ -78,12 +78,15 @@ StageDeclaration gradient_emission_stage(const char *name, const char *escaped, 
             .numbers = {"first", "stride"}};
 }
 
-StageDeclaration advance_stage(const char *name, const char *apart, bool is_wanted) {
-    return {.name = name,
-            .file = "advance",
-            .definitions = {{"APART", apart}},
-            .is_wanted = is_wanted,
-            .numbers = {"first", "to", "stride"}};
+StageDeclaration advance_stage(const char *name, const char *apart, bool is_wanted, bool has_textures = false) {
+    StageDeclaration stage = {.name = name,
+                              .file = "advance",
+                              .definitions = {{"APART", apart}},
+                              .is_wanted = is_wanted,
+                              .numbers = {"first", "to", "stride"}};
+    if (has_textures)
+        stage.tables = {{"surface", "offset_surface"}};
+    return stage;
 }
 
 StageDeclaration count_stage() {
@@ -113,7 +116,8 @@ GradientPathTracer::GradientPathTracer(Device &device, const Scene &scene, const
       gradient_emission_(stages_.add(gradient_emission_stage("gradient emission", "0", session_.has_emission()))),
       shade_with_offsets_(stages_.add(shade_stage(true))), shade_(stages_.add(shade_stage(false))),
       advance_(stages_.add(advance_stage("advance", "0", true))),
-      advance_apart_(stages_.add(advance_stage("advance apart", "1", session_.has("TRAIT_APART")))),
+      advance_apart_(stages_.add(
+          advance_stage("advance apart", "1", session_.has("TRAIT_APART"), session_.textured_columns() > 0))),
       join_(stages_.add({.name = "join", .by_kind = true, .dirac = DiracKinds::alike, .numbers = {"first", "keeps"}})),
       count_(stages_.add(count_stage())), film_(session_, stages_, options_, "outcome") {
     const std::vector<std::uint32_t> kinds = material_kinds(scene, options.shift_threshold);
@@ -154,23 +158,24 @@ std::map<std::string, std::string> GradientPathTracer::classify_definitions() co
 
 TableList GradientPathTracer::tables() const {
     const auto with = [&](const char *trait, int columns) { return session_.has(trait) ? std::uint32_t(columns) : 0u; };
-    const std::uint32_t not_needed = session_.vertex_columns_not_needed();
     const std::uint32_t offset_columns_used = session_.has("TRAIT_APART") ? offset_columns : offset_state;
-    return {{.name = "primary", .rows = RowsOf::slot, .columns = primary_columns},
-            {.name = "primary_vertex", .rows = RowsOf::slot, .columns = primary_vertex_columns - not_needed},
-            {.name = "vertex", .columns = vertex_columns - not_needed},
-            {.name = "event", .columns = event_columns},
-            {.name = "offset", .multiple = 4, .columns = offset_columns_used, .alternates = true, .is_cleared = true},
-            {.name = "shift", .multiple = 4, .columns = shift_columns, .is_cleared = true},
-            {.name = "evaluation", .multiple = 8, .columns = evaluation_columns, .is_cleared = true},
-            {.name = "link", .multiple = 8, .columns = link_columns},
-            {.name = "offset_vertex",
-             .multiple = 4,
-             .columns = with("TRAIT_APART", int(offset_vertex_columns - not_needed)),
-             .is_cleared = true},
-            {.name = "offset_ray", .multiple = 4, .columns = with("TRAIT_APART", offset_ray_columns)},
-            {.name = "offsets_state", .columns = with("TRAIT_APART", 1), .is_uint = true},
-            {.name = "outcome", .rows = RowsOf::chunk, .columns = shift_outcomes, .is_uint = true, .is_cleared = true}};
+    return {
+        {.name = "primary", .rows = RowsOf::slot, .columns = primary_columns},
+        {.name = "primary_vertex", .rows = RowsOf::slot, .columns = session_.vertex_columns(primary_vertex_columns)},
+        {.name = "vertex", .columns = session_.vertex_columns(vertex_columns)},
+        {.name = "event", .columns = event_columns},
+        {.name = "offset", .multiple = 4, .columns = offset_columns_used, .alternates = true, .is_cleared = true},
+        {.name = "shift", .multiple = 4, .columns = shift_columns, .is_cleared = true},
+        {.name = "evaluation", .multiple = 8, .columns = evaluation_columns, .is_cleared = true},
+        {.name = "link", .multiple = 8, .columns = link_columns},
+        {.name = "offset_vertex",
+         .multiple = 4,
+         .columns = with("TRAIT_APART", int(session_.vertex_columns(offset_vertex_columns))),
+         .is_cleared = true},
+        {.name = "offset_ray", .multiple = 4, .columns = with("TRAIT_APART", offset_ray_columns)},
+        {.name = "offset_surface", .multiple = 4, .columns = with("TRAIT_APART", int(session_.textured_columns()))},
+        {.name = "offsets_state", .columns = with("TRAIT_APART", 1), .is_uint = true},
+        {.name = "outcome", .rows = RowsOf::chunk, .columns = shift_outcomes, .is_uint = true, .is_cleared = true}};
 }
 
 void GradientPathTracer::allocate() {
@@ -230,6 +235,7 @@ void GradientPathTracer::trace_primaries(const Strip &strip) {
         if (!paths_.is_alive())
             break;
         paths_.trace();
+        paths_.read_materials();
         primary_.run(paths_.rays());
         paths_.drop();
     }
@@ -260,6 +266,9 @@ void GradientPathTracer::step_offset_paths() {
                 offset_ray_direction_x,    offset_ray_primitive, stride};
     const TraceCounts counts = trace_segments(session_.tracer, options_.precision, rays, links, session_.trace_seconds);
     session_.rays["offset"] += counts.extension + counts.shadow;
+    if (tables_->has("offset_surface"))
+        paths_.read_materials((*tables_)["offset_ray"], 4 * stride, std::uint32_t(4 * capacity),
+                              (*tables_)["offset_surface"]);
     for (const OwnVertices &own : vertices) {
         Stage &weigh = own.at_first ? weigh_ : weigh_apart_;
         weigh.bind("own_vertex", (*tables_)[own.table]);

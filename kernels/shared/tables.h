@@ -276,6 +276,16 @@
     REAL(offset_ray, direction_z, "")                                                                                  \
     UINT(offset_ray, primitive, "")
 
+/* Rays that are traced, as an argument: those of any table of rays. */
+#define GRADUS_TRACED_COLUMNS(REAL, UINT)                                                                              \
+    REAL(traced, origin_x, "as in `ray`")                                                                              \
+    REAL(traced, origin_y, "")                                                                                         \
+    REAL(traced, origin_z, "")                                                                                         \
+    REAL(traced, direction_x, "")                                                                                      \
+    REAL(traced, direction_y, "")                                                                                      \
+    REAL(traced, direction_z, "")                                                                                      \
+    UINT(traced, primitive, "")
+
 /* The state of offset paths. All values are over the density of the base path. Two of these tables alternate. */
 #define GRADUS_OFFSET_COLUMNS(REAL, UINT)                                                                              \
     REAL(offset, value_r, "contribution so far, times the Jacobian of the shift")                                      \
@@ -372,6 +382,7 @@
 /* All of these: TABLE(name, columns). */
 #define GRADUS_TABLES(TABLE)                                                                                           \
     TABLE(ray, GRADUS_RAY_COLUMNS)                                                                                     \
+    TABLE(traced, GRADUS_TRACED_COLUMNS)                                                                               \
     TABLE(shadow, GRADUS_SHADOW_COLUMNS)                                                                               \
     TABLE(path, GRADUS_PATH_COLUMNS)                                                                                   \
     TABLE(radiance, GRADUS_RADIANCE_COLUMNS)                                                                           \
@@ -498,6 +509,7 @@ GRADUS_LIB_END
 
 /* Rows of each table: the name of the kernel argument that says so. */
 #define ROWS_OF_ray capacity
+#define ROWS_OF_traced traced_rows
 #define ROWS_OF_shadow capacity
 #define ROWS_OF_path capacity
 #define ROWS_OF_radiance slots

@@ -5,6 +5,7 @@
  * APART: some have vertices of their own, which their rays have met. */
 //! traits: TRAIT_APART
 #include "kernels/lib/surface_point.h"
+#include "kernels/lib/textured_material.h"
 #include "kernels/lib/vertex_frame.h"
 #include "kernels/shared/stage.h"
 
@@ -19,7 +20,7 @@ STAGE advance(uint count, uint unit, uint first, uint to, uint stride, uint capa
               __global const real *offset_ray, __global real *offset_vertex, __global const real *triangles,
               __global const real *triangle_normals, __global const real *triangle_tangents,
               __global const real *spheres, uint triangle_count, __global const uint *primitive_material,
-              __global const uint *material_back, __global const uint *material_kind
+              __global const uint *material_back, __global const uint *material_kind SURFACE_ARGUMENT
 #endif
 ) {
     const size_t i = work_item();
@@ -57,6 +58,7 @@ STAGE advance(uint count, uint unit, uint first, uint to, uint stride, uint capa
             material_back, is_hit ? primitive : 0u, AT_V3(offset_ray, origin, sent), direction);
         const int is_own = is_hit & (ratio >= R(0)) & (state < connection_recent);
         SET_SURFACE_VERTEX(offset_vertex, at, is_own ? material_kind[point.material] : kind_none, point, direction)
+        SET_VERTEX_TEXTURED(offset_vertex, at, 4u * capacity, sent)
 #endif
     }
 }

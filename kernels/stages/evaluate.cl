@@ -6,6 +6,7 @@
  * What has no value asks the tracer nothing. */
 #include "kernels/lib/bsdf_evaluate.h"
 #include "kernels/lib/gradient.h"
+#include "kernels/lib/textured_material.h"
 
 STAGE evaluate(uint count, uint unit, uint first, uint first_line, uint stride, uint capacity, uint slots,
                __global const real *path, OWN_VERTEX, STRIP_PLACE, __global const real *offset,
@@ -29,7 +30,7 @@ STAGE evaluate(uint count, uint unit, uint first, uint first_line, uint stride, 
 #else
     const int is_asked = own.is_own & (kind_number(kind) == PASTE(bsdf_kind_, BSDF));
 #endif
-    const material m = material_load(materials, AT_UINT(own_vertex, material, own.row), unit);
+    const material m = VERTEX_MATERIAL(own_vertex, own.row);
     const frame axes = VERTEX_FRAME(own_vertex, own.row, m);
     const size_t at = (size_t)line * capacity + row;
     const vec3 wo = v3(AT(evaluation, value_r, at), AT(evaluation, value_g, at), AT(evaluation, value_b, at));

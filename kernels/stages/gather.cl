@@ -10,16 +10,17 @@
  * FEATURES: also leaves the features that the camera sees, in the place of `shade` (by BSDF kind). */
 #include "kernels/lib/bsdf.h"
 #include "kernels/lib/surface_point.h"
+#include "kernels/lib/textured_material.h"
 #include "kernels/lib/vertex_frame.h"
 #include "kernels/shared/stage.h"
 
-STAGE gather(uint count, uint unit, uint first, uint to, uint capacity, uint gather_rows, uint max_depth, __global const uint *index,
-             __global const real *path_old, __global const real *ray_old, __global const real *travelled,
-             __global real *gather, __global const real *triangles, __global const real *triangle_normals,
-             __global const real *triangle_tangents, __global const real *spheres, uint triangle_count,
-             __global const uint *primitive_material, __global const uint *material_back,
-             __global const uint *material_kind, real radius_slope, real radius_start, real radius_most,
-             real radius_least, real radius_scale
+STAGE gather(uint count, uint unit, uint first, uint to, uint capacity, uint gather_rows, uint max_depth,
+             __global const uint *index, __global const real *path_old, __global const real *ray_old,
+             __global const real *travelled, __global real *gather, __global const real *triangles,
+             __global const real *triangle_normals, __global const real *triangle_tangents,
+             __global const real *spheres, uint triangle_count, __global const uint *primitive_material,
+             __global const uint *material_back, __global const uint *material_kind, real radius_slope,
+             real radius_start, real radius_most, real radius_least, real radius_scale SURFACE_ARGUMENT
 #if FEATURES
              ,
              __global const real *materials, __global real *feature, uint slots
@@ -52,9 +53,10 @@ STAGE gather(uint count, uint unit, uint first, uint to, uint capacity, uint gat
     SET_RGB(gather, throughput, row, throughput);
     SET_RGB(gather, sum, row, rgb_gray(R(0)));
     SET_SURFACE_VERTEX(gather, row, material_kind[point.material], point, direction)
+    SET_VERTEX_TEXTURED(gather, row, capacity, old)
 #if FEATURES
     if (depth == 0u) {
-        const material m = material_load(materials, point.material, unit);
+        const material m = HIT_MATERIAL(point.material, capacity, old);
         const rgb albedo = PASTE(BSDF, _albedo)(m);
         SET_RGB(feature, albedo, slot, albedo);
         SET_V3(feature, normal, slot, point.shading);

@@ -11,6 +11,7 @@
 #include "kernels/lib/bsdf.h"
 #include "kernels/lib/ordered.h"
 #include "kernels/lib/random.h"
+#include "kernels/lib/textured_material.h"
 #include "kernels/lib/vertex_frame.h"
 #include "kernels/shared/stage.h"
 
@@ -29,7 +30,7 @@ STAGE join(uint count, uint unit, uint first, uint capacity, uint slots, uint ro
     const size_t row = first + i;
     const uint slot = AT_UINT(path, slot, row), depth = AT_UINT(path, depth, row);
 #if !BSDF_IS_DIRAC
-    const material m = material_load(materials, AT_UINT(vertex, material, row), unit);
+    const material m = VERTEX_MATERIAL(vertex, row);
     const frame axes = VERTEX_FRAME(vertex, row, m);
     const vec3 wo = frame_to_local(axes, AT_V3(ray, direction, row));
     const real pdf = AT(event, pdf, row);

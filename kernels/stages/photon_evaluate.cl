@@ -1,6 +1,7 @@
 /* photon_evaluate: what pairs of a gather point of one BSDF kind and a photon are worth: f power, f without its
  * cosine. */
 #include "kernels/lib/photon_value.h"
+#include "kernels/lib/textured_material.h"
 
 STAGE photon_evaluate(uint count, uint unit, uint gather_rows, uint photon_rows, uint pair_rows,
                       __global const uint *pair_gather, __global const uint *pair_photon, __global const real *gather,
@@ -9,7 +10,7 @@ STAGE photon_evaluate(uint count, uint unit, uint gather_rows, uint photon_rows,
     if (i >= count)
         return;
     const uint row = pair_gather[i], from = pair_photon[i];
-    const material m = material_load(materials, AT_UINT(gather, material, row), unit);
+    const material m = VERTEX_MATERIAL(gather, row);
     const rgb value = PHOTON_VALUE(row, m, AT_V3(photon_sorted, wi, from), AT_V3(photon_sorted, normal, from),
                                    AT_RGB(photon_sorted, power, from));
     SET_RGB(pair_value, value, i, value);

@@ -2,6 +2,7 @@
  * paths begin: the first vertices of their own, and those of their neighbours' offset paths. Rows are those of
  * `camera`, after tracing. */
 #include "kernels/lib/surface_point.h"
+#include "kernels/lib/textured_material.h"
 #include "kernels/lib/vertex_frame.h"
 #include "kernels/shared/stage.h"
 
@@ -9,7 +10,7 @@ STAGE primary(uint count, uint unit, uint capacity, uint slots, __global const r
               __global real *primary, __global real *primary_vertex, __global const real *triangles,
               __global const real *triangle_normals, __global const real *triangle_tangents,
               __global const real *spheres, uint triangle_count, __global const uint *primitive_material,
-              __global const uint *material_back, __global const uint *material_kind) {
+              __global const uint *material_back, __global const uint *material_kind SURFACE_ARGUMENT) {
     const size_t row = work_item();
     if (row >= count)
         return;
@@ -25,4 +26,5 @@ STAGE primary(uint count, uint unit, uint capacity, uint slots, __global const r
     AT_UINT(primary, primitive, slot) = primitive;
     SET_V3(primary, direction, slot, direction);
     SET_SURFACE_VERTEX(primary_vertex, slot, is_hit ? material_kind[point.material] : kind_none, point, direction)
+    SET_VERTEX_TEXTURED(primary_vertex, slot, capacity, row)
 }

@@ -16,6 +16,7 @@
 #include "kernels/lib/bsdf.h"
 #include "kernels/lib/random.h"
 #include "kernels/lib/surface_point.h"
+#include "kernels/lib/textured_material.h"
 #include "kernels/lib/vertex_frame.h"
 #include "kernels/shared/light_vertex.h"
 #include "kernels/shared/stage.h"
@@ -25,7 +26,7 @@ STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint ma
               __global const real *ray_old, __global real *ray, __global const real *triangles,
               __global const real *triangle_normals, __global const real *triangle_tangents,
               __global const real *spheres, uint triangle_count, __global const uint *primitive_material,
-              __global const uint *material_back, __global const real *materials
+              __global const uint *material_back, __global const real *materials SURFACE_ARGUMENT
 #if LEAVES_PHOTONS && !BSDF_IS_DIRAC
               ,
               __global const uint *material_gathers, __global real *photon, __global real *photon_origin,
@@ -52,7 +53,7 @@ STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint ma
     const surface_point point =
         surface_point_of(triangles, triangle_normals, triangle_tangents, spheres, unit, triangle_count,
                          primitive_material, material_back, AT_UINT_IN(ray_old, ray, primitive, old), from, direction);
-    const material m = material_load(materials, point.material, unit);
+    const material m = HIT_MATERIAL(point.material, capacity, old);
     const frame axes = surface_frame(point.shading, point.along, m);
     const vec3 wi = frame_to_local(axes, v3_neg(direction));
     const uint edges = before + 1u;

@@ -15,6 +15,7 @@
 #include "kernels/lib/mis.h"
 #include "kernels/lib/path_draw.h"
 #include "kernels/lib/surface_point.h"
+#include "kernels/lib/textured_material.h"
 #include "kernels/lib/vertex_frame.h"
 #include "kernels/shared/stage.h"
 
@@ -24,7 +25,8 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
             __global const real *triangle_normals, __global const real *triangle_tangents, __global const real *spheres,
             uint triangle_count, __global const uint *primitive_material, __global const uint *material_back,
             __global const real *materials, __global const real *lights, __global const uint *light_kinds,
-            __global const uint *light_alias, uint light_count, real scene_diameter ENVIRONMENT_PARAMETERS
+            __global const uint *light_alias, uint light_count,
+            real scene_diameter ENVIRONMENT_PARAMETERS SURFACE_ARGUMENT
 #if TRAIT_AOV
             ,
             __global real *feature, uint slots
@@ -49,7 +51,7 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
     const surface_point point =
         surface_point_of(triangles, triangle_normals, triangle_tangents, spheres, unit, triangle_count,
                          primitive_material, material_back, AT_UINT_IN(ray_old, ray, primitive, old), from, direction);
-    const material m = material_load(materials, point.material, unit);
+    const material m = HIT_MATERIAL(point.material, capacity, old);
     const frame axes = surface_frame(point.shading, point.along, m);
     const vec3 wi = frame_to_local(axes, v3_neg(direction));
     const int goes_on = depth + 1u < max_depth;
@@ -65,12 +67,13 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
 #endif
 #if WITH_OFFSETS
     SET_SURFACE_VERTEX(vertex, row, material_kind[point.material], point, direction)
+    SET_VERTEX_TEXTURED(vertex, row, capacity, old)
 #endif
 
 #if SAMPLES_LIGHTS && !BSDF_IS_DIRAC
     const random4 l = PATH_DRAW(key_0, key_1, random_dimension_light(depth));
-    const chosen_light chosen =
-        light_sampling(lights, light_kinds, light_alias, light_count, scene_diameter, unit, point.position, l ENVIRONMENT_ARGUMENTS);
+    const chosen_light chosen = light_sampling(lights, light_kinds, light_alias, light_count, scene_diameter, unit,
+                                               point.position, l ENVIRONMENT_ARGUMENTS);
     const light_choice light = chosen.choice;
     const vec3 to_light = frame_to_local(axes, light.direction);
     const bsdf_value f = PASTE(BSDF, _evaluate)(m, wi, to_light, transport_radiance);
@@ -93,9 +96,9 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
 #endif
     const vec3 start = ray_origin(point.position, point.geometric, point.offset, light.direction);
     const vec3 light_point = v3_add(point.position, light.connection);
-    const vec3 end = connection_end(light_point, light.normal,
-                                    offset_at(light_point, light.normal, LIGHT_FIELD(chosen.light, offset)),
-                                    light.connection);
+    const vec3 end =
+        connection_end(light_point, light.normal,
+                       offset_at(light_point, light.normal, LIGHT_FIELD(chosen.light, offset)), light.connection);
     SET_V3(shadow, origin, row, start);
     SET_V3(shadow, direction, row, v3_sub(end, start));
     SET_RGB(shadow, value, row, gain);

@@ -23,6 +23,7 @@
 #include "kernels/lib/shift_reconnection.h"
 #include "kernels/lib/shift_specular.h"
 #include "kernels/lib/surface_side.h"
+#include "kernels/lib/textured_material.h"
 
 /* Whether light may be sampled at the vertices. */
 #if defined(BSDF) && BSDF_IS_DIRAC
@@ -80,7 +81,7 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
     const int goes_on = (is_hit | is_escaped) & (pdf > R(0));
 #if TRAIT_APART
     const int base_is_rough = (base_kind & kind_is_rough) != 0u;
-    const material base_material = material_load(materials, AT_UINT(vertex, material, row), unit);
+    const material base_material = VERTEX_MATERIAL(vertex, row);
     const frame base_axes = VERTEX_FRAME(vertex, row, base_material);
     const vec3 base_wi = frame_to_local(base_axes, AT_V3(vertex, wi, row));
     const vec3 base_wo = frame_to_local(base_axes, base_direction);
@@ -97,8 +98,8 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
     /* The base path's light sample, made again. */
     const random4 u = random_draw(AT_UINT(path, key_0, row), AT_UINT(path, key_1, row),
                                   random_dimension_light(AT_UINT(path, depth, row) - 1u));
-    const chosen_light chosen =
-        light_sampling(lights, light_kinds, light_alias, light_count, scene_diameter, unit, base, u ENVIRONMENT_ARGUMENTS);
+    const chosen_light chosen = light_sampling(lights, light_kinds, light_alias, light_count, scene_diameter, unit,
+                                               base, u ENVIRONMENT_ARGUMENTS);
     const light_choice s = chosen.choice;
     const int is_surface =
         IS_LIGHT(chosen, triangle, TRAIT_LIGHT_TRIANGLE) | IS_LIGHT(chosen, sphere, TRAIT_LIGHT_SPHERE);
@@ -131,7 +132,7 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         const int is_dirac = (kind & kind_is_dirac) != 0u;
 #endif
 #if TRAIT_APART || defined(BSDF)
-        const material m = material_load(materials, AT_UINT(own_vertex, material, own.row), unit);
+        const material m = VERTEX_MATERIAL(own_vertex, own.row);
         const frame axes = VERTEX_FRAME(own_vertex, own.row, m);
         const vec3 wi = frame_to_local(axes, AT_V3(own_vertex, wi, own.row));
 #endif

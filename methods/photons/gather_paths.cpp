@@ -57,10 +57,9 @@ GatherPaths::GatherPaths(Session &session, Stages &stages, const Scene &scene, c
 }
 
 TableList GatherPaths::tables() const {
-    const std::uint32_t not_needed = session_.vertex_columns_not_needed();
     return joined(paths_.tables(), {{.name = "gather",
                                      .rows = planes_ ? RowsOf::slot : RowsOf::path,
-                                     .columns = gather_columns - not_needed,
+                                     .columns = session_.vertex_columns(gather_columns),
                                      .is_cleared = planes_},
                                     {.name = "travelled", .rows = RowsOf::slot, .is_cleared = true}});
 }

@@ -1,4 +1,4 @@
-// Image files in and out. The only file that includes OpenImageIO.
+// Image files in and out.
 #pragma once
 
 #include "runtime/film/image.h"

@@ -97,6 +97,27 @@ double Properties::number(const std::string &name, double otherwise, double lowe
     return *value;
 }
 
+Number Properties::textured_number(const std::string &name, const Number &otherwise, double lowest, double highest,
+                                   double least) {
+    const Element *property = find(name);
+    if (!property)
+        return otherwise;
+    const Element *texture = texture_of(*property);
+    if (!texture)
+        return float(std::max(least, number(name, otherwise, lowest, highest)));
+    const FoundTexture found = (*read_texture_)(*texture, std::max(lowest, least), highest);
+    Number result(float(*std::min_element(found.range.least.begin(), found.range.least.end())));
+    result.texture = found.index;
+    return result;
+}
+
+const Element *Properties::texture_of(const Element &property) {
+    if (!read_texture_)
+        return nullptr;
+    const Element &target = property.tag == "ref" ? resolve_(property) : property;
+    return target.tag == "texture" ? &target : nullptr;
+}
+
 std::int64_t Properties::integer(const std::string &name, std::int64_t otherwise, std::int64_t lowest,
                                  std::int64_t highest) {
     const Element *property = find(name);

@@ -20,6 +20,14 @@ namespace gradus {
 /// Finds the element that a <ref> points to; throws SceneError.
 using ResolveReference = std::function<const Element &(const Element &)>;
 
+/// A texture of the scene: its index in Scene::textures and its values.
+struct FoundTexture {
+    std::int32_t index = no_texture;
+    TextureRange range;
+};
+/// The texture that an element describes, whose values are clamped to a range.
+using ReadTexture = std::function<FoundTexture(const Element &, double lowest, double highest)>;
+
 /// Parameters are asked for by their snake_case names; files may spell them in camelCase. Every getter throws
 /// SceneError where the file's value is not of its type or out of range, and returns `otherwise` where the file has
 /// none.
@@ -34,6 +42,9 @@ class Properties {
     Diagnostics &diagnostics() { return diagnostics_; }
 
     bool has(const std::string &name);
+    /// From here on, colours and numbers that materials have may be textures.
+    void accept_textures(const ReadTexture *read) { read_texture_ = read; }
+
     double number(const std::string &name, double otherwise, double lowest = -std::numeric_limits<double>::infinity(),
                   double highest = std::numeric_limits<double>::infinity());
     std::int64_t integer(const std::string &name, std::int64_t otherwise, std::int64_t lowest, std::int64_t highest);
@@ -42,7 +53,12 @@ class Properties {
     Double3 point(const std::string &name, const Double3 &otherwise);
     /// The identity where the file has none.
     Matrix4 transform(const std::string &name);
-    Rgb color(const std::string &name, const Rgb &otherwise, ColorUse use);
+    /// A reflectance may be a texture where those are accepted.
+    Color color(const std::string &name, const Color &otherwise, ColorUse use);
+    /// As number(), but it may be a texture where those are accepted. Both are clamped to `least` at least, and a
+    /// texture to the range.
+    Number textured_number(const std::string &name, const Number &otherwise, double lowest, double highest,
+                           double least);
     /// A number, or the name of a material with an index of refraction.
     double refractive_index(const std::string &name, const std::string &otherwise);
 
@@ -68,11 +84,14 @@ class Properties {
     const Element *find(const std::string &name);
     const std::string &value_of(const Element &property);
     Rgb read_spectrum(const Element &property, const std::string &name, ColorUse use);
+    /// The texture that stands for a parameter, or nullptr.
+    const Element *texture_of(const Element &property);
     Rgb read_color(const Element &property, const std::string &name, ColorUse use);
 
     const Element &element_;
     const ResolveReference &resolve_;
     Diagnostics &diagnostics_;
+    const ReadTexture *read_texture_ = nullptr;
     std::set<const Element *> read_;
     std::vector<std::string> asked_;
     bool ignore_rest_ = false;

@@ -91,9 +91,7 @@ Rgb Properties::read_spectrum(const Element &property, const std::string &name, 
 Rgb Properties::read_color(const Element &property, const std::string &name, ColorUse use) {
     const Element &target = property.tag == "ref" ? resolve_(property) : property;
     if (target.tag == "texture")
-        throw SceneError(property.location, "texture plugin \"" + target.attribute_or("type", "") +
-                                                "\" is not known here (known: none); give \"" + name +
-                                                "\" as <rgb> or <spectrum>");
+        throw SceneError(property.location, "\"" + name + "\" cannot be a texture; give it as <rgb> or <spectrum>");
     if (property.tag == "spectrum")
         return read_spectrum(property, name, use);
     const bool gamma_coded = property.tag == "srgb";
@@ -118,11 +116,17 @@ Rgb Properties::read_color(const Element &property, const std::string &name, Col
     return to_rgb(color);
 }
 
-Rgb Properties::color(const std::string &name, const Rgb &otherwise, ColorUse use) {
+Color Properties::color(const std::string &name, const Color &otherwise, ColorUse use) {
     const Element *property = find(name);
     if (!property)
         return otherwise;
-    Rgb color = read_color(*property, name, use);
+    if (const Element *texture = use == ColorUse::reflectance ? texture_of(*property) : nullptr) {
+        const FoundTexture found = (*read_texture_)(*texture, 0, 1);
+        Color color(float(found.range.mean[0]), float(found.range.mean[1]), float(found.range.mean[2]));
+        color.texture = found.index;
+        return color;
+    }
+    Color color = read_color(*property, name, use);
     for (float value : {color.r, color.g, color.b}) {
         if (value < 0)
             throw SceneError(property->location, "\"" + name + "\" must not be negative");

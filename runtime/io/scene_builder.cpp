@@ -39,7 +39,10 @@ SceneBuilder::SceneBuilder(const Document &document, const LoadOptions &options,
                            Diagnostics &diagnostics)
     : document_(document), limits_(options.limits), ignore_media_(options.ignore_media), finder_(finder),
       diagnostics_(diagnostics),
-      resolve_([this](const Element &reference) -> const Element & { return resolve(reference); }) {}
+      resolve_([this](const Element &reference) -> const Element & { return resolve(reference); }),
+      read_texture_([this](const Element &element, double lowest, double highest) {
+          return texture(element, lowest, highest);
+      }) {}
 
 /// Reports tags that mean nothing, in every object.
 void SceneBuilder::check_children(const Element &element) {
@@ -119,6 +122,8 @@ Result SceneBuilder::build_object(const Element &element) {
             return std::get<Material>(known->second);
         }
     Properties properties(element, resolve_, diagnostics_);
+    if constexpr (std::is_same_v<Result, Material>)
+        properties.accept_textures(&read_texture_);
     const std::string type = properties.type();
     const PluginFunction<Result> plugin = find_plugin<Result>(type);
     if (!plugin) {
@@ -154,6 +159,7 @@ template RenderSettings SceneBuilder::build_object(const Element &);
 template ReconstructionFilter SceneBuilder::build_object(const Element &);
 template Camera SceneBuilder::build_object(const Element &);
 template ShapeGeometry SceneBuilder::build_object(const Element &);
+template Texture SceneBuilder::build_object(const Element &);
 
 std::filesystem::path SceneBuilder::find_file(Properties &properties) {
     const std::string name = properties.string("filename", "");

@@ -15,6 +15,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <variant>
 #include <vector>
 
@@ -55,6 +56,12 @@ class SceneBuilder {
     /// Counts what a shape reads. Throws SceneError where all of them read more than the limit.
     void count_mesh_bytes(std::uint64_t bytes, const Location &location);
     const LoadLimits &limits() const { return limits_; }
+    /// A picture that a texture names, decoded once. `is_srgb` becomes whether what is stored is sRGB. Throws
+    /// SceneError.
+    std::shared_ptr<const Bitmap> bitmap(const std::filesystem::path &path, bool is_linear, const std::string &channel,
+                                         const Location &location, bool &is_srgb);
+    /// The texture that an element describes, with its values clamped to the range: one of the scene's.
+    FoundTexture texture(const Element &element, double lowest, double highest);
     /// Builds a nested object by its plugin. Throws SceneError where its type is not known.
     template <typename Result>
     Result build_object(const Element &element);
@@ -95,6 +102,7 @@ class SceneBuilder {
     FileFinder &finder_;
     Diagnostics &diagnostics_;
     ResolveReference resolve_;
+    ReadTexture read_texture_;
     Scene scene_;
     std::map<std::string, const Element *> by_id_;
     std::map<std::string, std::string> aliases_;
@@ -102,11 +110,18 @@ class SceneBuilder {
     /// Each is built once, however many refer to it, and fails once.
     std::map<const Element *, std::variant<Material, SceneError>> built_materials_;
     std::map<const Element *, Emitter> area_emitters_;
+    std::map<const Element *, std::variant<Texture, SceneError>> built_textures_;
+    std::map<std::tuple<const Element *, double, double>, FoundTexture> textures_;
+    struct DecodedBitmap {
+        std::shared_ptr<const Bitmap> bitmap;
+        bool is_srgb;
+    };
+    std::map<std::tuple<std::filesystem::path, bool, std::string>, DecodedBitmap> bitmaps_;
     std::int64_t default_material_ = -1, default_emitter_material_ = -1, boundary_material_ = -1;
     const Element *sensor_ = nullptr, *integrator_ = nullptr, *environment_ = nullptr;
     std::vector<const Element *> open_; ///< objects that are being built, outermost first
     std::shared_ptr<MeshFile> shared_file_;
-    std::uint64_t mesh_bytes_ = 0, geometry_bytes_ = 0, shapes_in_line_ = 0;
+    std::uint64_t mesh_bytes_ = 0, geometry_bytes_ = 0, shapes_in_line_ = 0, texture_bytes_ = 0;
     std::map<const Element *, std::vector<Prototype>> groups_; ///< by shapegroup
 };
 

@@ -4,8 +4,10 @@
 #pragma once
 
 #include "kernels/shared/bsdf_list.h"
+#include "runtime/scene/texture.h"
 
 #include <array>
+#include <concepts>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -17,6 +19,32 @@ namespace gradus {
 struct Rgb {
     float r = 0, g = 0, b = 0;
     bool operator==(const Rgb &) const = default;
+};
+
+constexpr std::int32_t no_texture = -1;
+
+/// A colour of a material: `texture`, an index into Scene::textures, stands in its place where there is one. The colour
+/// is its mean then.
+struct Color : Rgb {
+    std::int32_t texture = no_texture;
+    Color() = default;
+    Color(const Rgb &rgb) : Rgb(rgb) {}
+    Color(float red, float green, float blue) : Rgb{red, green, blue} {}
+    bool operator==(const Color &) const = default;
+};
+
+/// The same for a number: `value` is then the least that the texture has.
+struct Number {
+    float value = 0;
+    std::int32_t texture = no_texture;
+    Number() = default;
+    Number(float number) : value(number) {}
+    operator float() const { return value; }
+    bool operator==(const Number &) const = default;
+    template <std::floating_point Other>
+    bool operator==(Other other) const {
+        return texture == no_texture && value == other;
+    }
 };
 
 struct Vector3 {
@@ -42,6 +70,8 @@ struct Sphere {
     Vector3 center;
     float radius = 1;
     bool flip_normals = false; ///< true: the normal points to the center
+    /// Unit vectors along which its own x, y and z lie: (u, v) turns with them. A mirrored sphere's are left-handed.
+    std::array<Vector3, 3> axes{Vector3{1, 0, 0}, Vector3{0, 1, 0}, Vector3{0, 0, 1}};
 };
 
 /// A mesh or a sphere, with its material and what it emits.
@@ -60,8 +90,8 @@ enum class BsdfKind : std::uint32_t { GRADUS_BSDF_KINDS(GRADUS_KIND_NAME) };
 #undef GRADUS_KIND_NAME
 
 /// One side of a surface. The members are those of GRADUS_MATERIAL_PARAMETERS; what its kind does not name is ignored.
-#define GRADUS_COLOR_MEMBER(with, name, value, text) Rgb name{value, value, value};
-#define GRADUS_NUMBER_MEMBER(with, name, value, text) float name = value;
+#define GRADUS_COLOR_MEMBER(with, name, value, text) Color name{value, value, value};
+#define GRADUS_NUMBER_MEMBER(with, name, value, text) Number name = value;
 struct Bsdf {
     BsdfKind kind = BsdfKind::diffuse;
     GRADUS_MATERIAL_PARAMETERS(GRADUS_COLOR_MEMBER, GRADUS_NUMBER_MEMBER, )
@@ -142,6 +172,7 @@ struct Scene {
     std::vector<Sphere> spheres;
     std::vector<Shape> shapes;
     std::vector<Material> materials;
+    std::vector<Texture> textures;
     std::vector<Emitter> emitters;
     Camera camera;
     FilmSettings film;

@@ -5,6 +5,7 @@
 #include "runtime/scene/camera_record.h"
 #include "runtime/scene/environment_map.h"
 #include "runtime/scene/light_table.h"
+#include "runtime/scene/texture_tables.h"
 
 #include <algorithm>
 #include <cmath>
@@ -148,6 +149,8 @@ void add_mesh(const Scene &scene, const Shape &shape, const TraitMap &traits, Sc
                 tables.triangle_normals.insert(tables.triangle_normals.end(), {n.x, n.y, n.z});
             }
         }
+        if (traits.at("TRAIT_TEXTURED"))
+            add_triangle_texcoords(mesh, t, tables);
         if (traits.at("TRAIT_ANISOTROPIC")) {
             Vector3 along{};
             if (!mesh.texcoords.empty()) {
@@ -316,6 +319,8 @@ SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits) {
     if (!tables.environment && traits.at("TRAIT_LIGHT_ENVIRONMENT"))
         tables.environment = std::make_shared<const EnvironmentMap>(no_environment_map());
     add_materials(scene, tables);
+    if (traits.at("TRAIT_TEXTURED"))
+        add_textures(scene, tables);
     tables.camera = make_camera_record(scene.camera, scene.film);
     // Kernels compiled for both kinds of primitives read a record of each, whichever they then take.
     if (tables.triangles.empty())
@@ -331,7 +336,8 @@ std::size_t table_bytes(const SceneTables &t) {
                 t.materials.size() + t.lights.size() + t.camera.size() + t.primitive_material.size() +
                 t.primitive_light.size() + t.primitive_bin.size() + t.primitive_back_bin.size() +
                 t.material_back.size() + t.light_kinds.size() + t.light_alias.size() + t.emissions.size() +
-                t.emission_alias.size());
+                t.emission_alias.size() + t.triangle_texcoords.size() + t.sphere_axes.size() + t.texture_reals.size() +
+                t.texture_decode.size() + t.textures.size() + t.texels.size() + t.material_textures.size());
 }
 
 } // namespace gradus

@@ -15,6 +15,9 @@ struct SceneTables {
     std::vector<float> triangles, triangle_normals, triangle_tangents, spheres, materials, lights, camera;
     /// By primitive. The material bears the bit material_two_sided; the bins are those of `classify`, by the side.
     std::vector<std::uint32_t> primitive_material, primitive_light, primitive_bin, primitive_back_bin;
+    /// Only where textures are: kernels/shared/texture.h.
+    std::vector<float> triangle_texcoords, sphere_axes, texture_reals, texture_decode;
+    std::vector<std::uint32_t> textures, texels, material_textures;
     std::vector<std::uint32_t> material_back;            ///< by material record: the record of its back
     std::vector<std::uint32_t> light_kinds, light_alias; ///< by light
     /// By light, what light paths choose by: records of kernels/shared/scene_records.h, and the alias.

@@ -1,5 +1,7 @@
 #include "runtime/scene/traits.h"
 
+#include "kernels/shared/texture.h"
+
 #include <algorithm>
 #include <iterator>
 #include <set>
@@ -30,6 +32,8 @@ constexpr TraitText descriptions[] = {
     {"TRAIT_LIGHT_ENVIRONMENT", "an environment map"},
     {"TRAIT_LIGHT_SPOT", "spots"},
     {"TRAIT_HIDE_EMITTERS", "emitters that the camera does not see"},
+    {"TRAIT_TEXTURED", "parameters of materials that are textures, a bit each"},
+    {"TRAIT_TEXTURES", "what textures have, a bit each"},
     {"TRAIT_FILTER_TENT", "tent pixel filter"},
     {"TRAIT_FILTER_GAUSSIAN", "Gaussian pixel filter"},
 };
@@ -90,6 +94,41 @@ bool bsdf_kind_is_dirac(const std::string &name) {
     return place < kinds().size() && kinds()[place].is_dirac;
 }
 
+int texture_features(const Texture &texture) {
+    using namespace lib_float;
+    int features = texture.to_uv == Texture().to_uv ? 0 : textures_mapped;
+    if (texture.scale != Texture().scale)
+        features |= textures_scaled;
+    if (texture.kind == Texture::Kind::checkerboard)
+        return features | textures_checkerboards;
+    const int formats[] = {textures_of_bytes, textures_of_words, textures_of_halves, textures_of_reals};
+    features |= formats[int(texture.bitmap->format)];
+    features |= texture.bitmap->is_color ? textures_in_color : textures_in_gray;
+    features |= texture.is_nearest ? textures_nearest : textures_bilinear;
+    return features | (texture.wrap == Texture::Wrap::repeat ? 0 : textures_wrapped_otherwise);
+}
+
+std::uint32_t textured_column_count(int textured) {
+    std::uint32_t columns = 0;
+#define GRADUS_COLOR_COLUMNS(with, name, value, text) columns += textured >> lib_float::parameter_##name & 1 ? 3u : 0u;
+#define GRADUS_NUMBER_COLUMN(with, name, value, text)                                                                  \
+    columns += std::uint32_t(textured >> lib_float::parameter_##name & 1);
+    GRADUS_MATERIAL_PARAMETERS(GRADUS_COLOR_COLUMNS, GRADUS_NUMBER_COLUMN, )
+#undef GRADUS_COLOR_COLUMNS
+#undef GRADUS_NUMBER_COLUMN
+    return columns;
+}
+
+void for_each_textured_parameter(const Bsdf &bsdf, const std::function<void(int number, std::int32_t texture)> &visit) {
+    static_assert(lib_float::material_parameters <= 31, "TRAIT_TEXTURED has a bit for each");
+    const std::vector<std::string> &read = bsdf_kind_traits(bsdf.kind).parameters;
+#define GRADUS_VISIT(with, name, value, text)                                                                          \
+    if (bsdf.name.texture != no_texture && std::ranges::count(read, #name) > 0)                                        \
+        visit(lib_float::parameter_##name, bsdf.name.texture);
+    GRADUS_MATERIAL_PARAMETERS(GRADUS_VISIT, GRADUS_VISIT, )
+#undef GRADUS_VISIT
+}
+
 TraitMap scene_traits(const Scene &scene) {
     TraitMap traits;
     for (const TraitText &trait : descriptions)
@@ -114,6 +153,10 @@ TraitMap scene_traits(const Scene &scene) {
             traits["TRAIT_REFRACTION"] = 1;
         if (kind.has_roughness && bsdf.alpha_u != bsdf.alpha_v)
             traits["TRAIT_ANISOTROPIC"] = 1;
+        for_each_textured_parameter(bsdf, [&](int number, std::int32_t texture) {
+            traits["TRAIT_TEXTURED"] |= 1 << number;
+            traits["TRAIT_TEXTURES"] |= texture_features(scene.textures[std::size_t(texture)]);
+        });
     });
     for (const Emitter &emitter : scene.emitters) {
         if (emitter.value == Rgb{})
@@ -164,7 +207,8 @@ std::string trait_description(const std::string &name) {
 TraitMap with_all_traits(TraitMap traits) {
     for (auto &[name, value] : traits) {
         // The filter and hidden emitters change the picture; the rest only makes room for what is not there.
-        const bool setting = name.starts_with("TRAIT_FILTER") || name == "TRAIT_HIDE_EMITTERS";
+        const bool setting =
+            name.starts_with("TRAIT_FILTER") || name == "TRAIT_HIDE_EMITTERS" || name.starts_with("TRAIT_TEXTURE");
         if (!setting)
             value = 1;
     }

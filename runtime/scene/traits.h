@@ -4,6 +4,7 @@
 #include "runtime/scene/scene.h"
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <utility>
@@ -18,6 +19,16 @@ TraitMap scene_traits(const Scene &scene);
 
 /// The same as a list, in the order in which `gradus inspect` prints them.
 std::vector<std::pair<std::string, int>> trait_list(const Scene &scene);
+
+/// Bits of TRAIT_TEXTURES (kernels/shared/texture.h) for what a texture has.
+int texture_features(const Texture &texture);
+
+/// Columns that textured parameters take, for a value of TRAIT_TEXTURED.
+std::uint32_t textured_column_count(int textured);
+
+/// Calls visit(number, parameter) for each parameter of the Bsdf that its kind reads and that is a texture: its number
+/// in GRADUS_MATERIAL_PARAMETERS, its index in Scene::textures.
+void for_each_textured_parameter(const Bsdf &bsdf, const std::function<void(int number, std::int32_t texture)> &visit);
 
 /// One line that says what a trait stands for; empty for an unknown one.
 std::string trait_description(const std::string &name);

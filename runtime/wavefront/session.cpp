@@ -82,6 +82,15 @@ std::vector<Buffer> make_scene_buffers(Device &device, const SceneTables &t, Pre
         numbers("environment_cells", t.environment->cells);
         numbers("environment_strips", t.environment->strips);
     }
+    if (!t.textures.empty()) {
+        reals("triangle_texcoords", t.triangle_texcoords);
+        reals("sphere_axes", t.sphere_axes);
+        reals("texture_reals", t.texture_reals);
+        reals("texture_decode", t.texture_decode);
+        numbers("textures", t.textures);
+        numbers("texels", t.texels);
+        numbers("material_textures", t.material_textures);
+    }
     return buffers;
 }
 

@@ -54,6 +54,12 @@ struct Session {
     std::uint32_t vertex_columns_not_needed() const {
         return has("TRAIT_ANISOTROPIC") ? 0 : has("TRAIT_SHADING_NORMALS") ? 3 : 6;
     }
+    /// Columns that tables of surface vertices have behind those: textured parameters.
+    std::uint32_t textured_columns() const { return textured_column_count(traits.at("TRAIT_TEXTURED")); }
+    /// Of so many columns of a table of surface vertices those that are allocated.
+    std::uint32_t vertex_columns(std::uint32_t all) const {
+        return all - vertex_columns_not_needed() + textured_columns();
+    }
 };
 
 /// Sets `<name>`, `<name>_multiplier` and `<name>_shift`, by which kernels divide by it (kernels/lib/division.h).

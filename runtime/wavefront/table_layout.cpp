@@ -13,8 +13,8 @@ namespace {
 #define GRADUS_LAYOUT(table, COLUMNS)                                                                                  \
     {#table, {{COLUMNS(GRADUS_REAL_COLUMN, GRADUS_UINT_COLUMN)}, [](const TableSizes &sizes) -> std::size_t {          \
                   [[maybe_unused]] const auto [capacity, slots, pixels, crop_width, own_rows, photon_rows,             \
-                                               new_photon_rows, pair_rows, gather_rows, chain_rows, chain_vertices] =  \
-                      sizes;                                                                                           \
+                                               new_photon_rows, pair_rows, gather_rows, chain_rows, chain_vertices,    \
+                                               traced_rows] = sizes;                                                   \
                   return ROWS_OF_##table;                                                                              \
               }}},
 

@@ -15,7 +15,7 @@ struct TableColumn {
 /// What kernels know of the rows of tables: their arguments of these names.
 struct TableSizes {
     std::size_t capacity = 0, slots = 0, pixels = 0, crop_width = 0, own_rows = 0, photon_rows = 0, new_photon_rows = 0,
-                pair_rows = 0, gather_rows = 0, chain_rows = 0, chain_vertices = 0;
+                pair_rows = 0, gather_rows = 0, chain_rows = 0, chain_vertices = 0, traced_rows = 0;
 };
 
 struct TableLayout {

@@ -21,6 +21,14 @@ StageDeclaration partition_stage(const char *entry, const char *name, std::vecto
     return stage;
 }
 
+StageDeclaration material_stage(const Session &session) {
+    return {.name = "material",
+            .entry = "read_material",
+            .is_wanted = session.textured_columns() > 0,
+            .numbers = {"traced_rows"},
+            .tables = {{"traced", "ray"}}};
+}
+
 StageDeclaration classify_stage(const std::map<std::string, std::string> &definitions,
                                 const std::vector<std::string> &numbers) {
     StageDeclaration stage;
@@ -34,7 +42,8 @@ StageDeclaration classify_stage(const std::map<std::string, std::string> &defini
 
 Wavefront::Wavefront(Session &session, Stages &stages, const BinLayout &layout,
                      const std::map<std::string, std::string> &definitions, const std::vector<std::string> &numbers)
-    : session_(session), layout_(layout), classify_(stages.add(classify_stage(definitions, numbers))),
+    : session_(session), layout_(layout), material_(stages.add(material_stage(session))),
+      classify_(stages.add(classify_stage(definitions, numbers))),
       count_(stages.add(partition_stage("partition_count", "partition count", {"bins", "rows"}))),
       scan_(stages.add(partition_stage("partition_scan", "partition scan", {"bins", "chunks"}))),
       scatter_(stages.add(partition_stage("partition_scatter", "partition scatter", {"bins", "rows"}))) {}
@@ -50,6 +59,7 @@ TableList Wavefront::tables() const {
 TableList Wavefront::ray_tables() const {
     const std::uint32_t bins = layout_.bins();
     return {{.name = "ray", .columns = ray_columns, .alternates = true},
+            {.name = "surface", .columns = session_.textured_columns()},
             {.name = "bin", .is_uint = true},
             {.name = "index", .is_uint = true},
             {.name = "chunk_offset", .rows = RowsOf::chunk, .columns = bins, .is_uint = true},
@@ -84,8 +94,23 @@ void Wavefront::trace() {
     session_.rays["shadow"] += counts.shadow;
 }
 
+void Wavefront::read_materials() {
+    if (material_.is_wanted())
+        read_materials((*tables_)["ray"], rays(), tables_->rows().paths, (*tables_)["surface"]);
+}
+
+void Wavefront::read_materials(const Buffer &rays, std::uint32_t rows, std::uint32_t table_rows,
+                               const Buffer &surface) {
+    if (!material_.is_wanted())
+        return;
+    material_.bind("traced", rays);
+    material_.bind("surface", surface);
+    material_.run(rows, {{"traced_rows", table_rows}});
+}
+
 const Hits &Wavefront::partition(LaunchNumbers numbers) {
     const std::uint32_t bins = layout_.bins(), chunks = chunks_of(rays());
+    read_materials();
     classify_.run(rays(), numbers);
     count_.run(chunks, {{"bins", bins}, {"rows", rays()}});
     scan_.run(1, {{"bins", bins}, {"chunks", chunks}});

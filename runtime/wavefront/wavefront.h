@@ -90,6 +90,10 @@ class Wavefront {
 
     /// Traces the rays of all rows and the connections of the newest vertices to lights.
     void trace();
+    /// Reads the textures of what the rays of all rows met; partition() does it by itself.
+    void read_materials();
+    /// The same of `rows` rows of another table of rays.
+    void read_materials(const Buffer &rays, std::uint32_t rows, std::uint32_t table_rows, const Buffer &surface);
     /// Sorts all rows by what they go to next.
     const Hits &partition(LaunchNumbers numbers = {});
     /// Ends the paths of all rows.
@@ -104,7 +108,7 @@ class Wavefront {
   private:
     Session &session_;
     BinLayout layout_;
-    Stage &classify_, &count_, &scan_, &scatter_;
+    Stage &material_, &classify_, &count_, &scan_, &scatter_;
     Tables *tables_ = nullptr;
     Hits hits_;
     std::uint32_t paths_ = 0, begun_ = 0, vertices_ = 0, fresh_ = 0;

@@ -14,9 +14,10 @@ Microfacet read_roughness(Properties &properties, Bsdf &bsdf) {
                                "unknown microfacet distribution \"" + name + "\" (known: beckmann, ggx)");
     // Below this, single precision cannot hold the distribution's peak.
     constexpr double least_alpha = 1e-4;
-    const double alpha = properties.number("alpha", 0.1, 0);
-    bsdf.alpha_u = float(std::max(least_alpha, properties.number("alpha_u", alpha, 0)));
-    bsdf.alpha_v = float(std::max(least_alpha, properties.number("alpha_v", alpha, 0)));
+    constexpr double most_alpha = 1e30;
+    const Number alpha = properties.textured_number("alpha", 0.1f, 0, most_alpha, least_alpha);
+    bsdf.alpha_u = properties.textured_number("alpha_u", alpha, 0, most_alpha, least_alpha);
+    bsdf.alpha_v = properties.textured_number("alpha_v", alpha, 0, most_alpha, least_alpha);
     properties.ignore({"sample_visible"}); // visible normals are always sampled
     return name == "ggx" ? Microfacet::ggx : Microfacet::beckmann;
 }

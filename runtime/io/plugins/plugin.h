@@ -46,6 +46,7 @@ using integrator_result = RenderSettings;
 using rfilter_result = ReconstructionFilter;
 using sensor_result = Camera;
 using shape_result = ShapeGeometry;
+using texture_result = Texture;
 
 #define GRADUS_PLUGIN_DECLARATION(category, name)                                                                      \
     category##_result category##_##name(Properties &properties, SceneBuilder &builder);

@@ -41,6 +41,7 @@ template PluginFunction<RenderSettings> find_plugin(const std::string &);
 template PluginFunction<ReconstructionFilter> find_plugin(const std::string &);
 template PluginFunction<Camera> find_plugin(const std::string &);
 template PluginFunction<ShapeGeometry> find_plugin(const std::string &);
+template PluginFunction<Texture> find_plugin(const std::string &);
 
 std::vector<std::string> plugin_names(const std::string &category) {
     std::vector<std::string> names;

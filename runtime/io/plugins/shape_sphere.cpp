@@ -26,6 +26,9 @@ ShapeGeometry shape_sphere(Properties &properties, SceneBuilder &) {
     // Mitsuba 3 turns a sphere inside out when it is mirrored or its radius is negative; 0.x does not.
     const bool is_mirrored = (determinant(to_world) < 0) != (radius < 0);
     sphere.flip_normals = properties.boolean("flip_normals", false) != (is_mirrored && !is_legacy);
+    for (int axis = 0; axis < 3; ++axis)
+        sphere.axes[std::size_t(axis)] =
+            to_float(scale({to_world.m[axis], to_world.m[4 + axis], to_world.m[8 + axis]}, 1 / factor));
     properties.ignore({"face_normals"});
     if (!std::isfinite(sphere.center.x) || !std::isfinite(sphere.center.y) || !std::isfinite(sphere.center.z))
         throw properties.error("center", "the sphere's center is out of range");

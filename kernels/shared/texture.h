@@ -1,0 +1,111 @@
+/* How textures lie in device memory, for host and device.
+ *
+ * `texels` holds the words of all pictures as files store them (Bitmap in runtime/scene/texture.h), `textures` a record
+ * of whole numbers for each texture, `texture_reals` one of reals. `material_textures` has material_parameters numbers
+ * for each material record: the texture that stands for the parameter, or texture_none. `texture_decode` has what a
+ * byte is worth: 256 as they are, then 256 of sRGB.
+ *
+ * TRAIT_TEXTURED has a bit for each parameter of GRADUS_MATERIAL_PARAMETERS that some material has as a texture,
+ * TRAIT_TEXTURES one for each of the features below that some texture has. */
+#ifndef GRADUS_SHARED_TEXTURE_H
+#define GRADUS_SHARED_TEXTURE_H
+//! traits: TRAIT_TEXTURED
+#include "kernels/shared/bsdf_list.h"
+#include "kernels/shared/compat.h"
+
+#if TRAIT_TEXTURED || !defined(__OPENCL_VERSION__)
+
+#define GRADUS_TEXTURE_FIELDS(FIELD)                                                                                   \
+    FIELD(texture, flags, "bits of texture_flag_...")                                                                  \
+    FIELD(texture, offset, "its first word of `texels`")                                                               \
+    FIELD(texture, width, "in texels")                                                                                 \
+    FIELD(texture, height, "")
+
+#define GRADUS_TEXTURE_REAL_FIELDS(FIELD)                                                                              \
+    FIELD(texture_real, u_of_u, "the map of the surface's (u, v) to the texture's")                                    \
+    FIELD(texture_real, u_of_v, "")                                                                                    \
+    FIELD(texture_real, u_of_1, "")                                                                                    \
+    FIELD(texture_real, v_of_u, "")                                                                                    \
+    FIELD(texture_real, v_of_v, "")                                                                                    \
+    FIELD(texture_real, v_of_1, "")                                                                                    \
+    FIELD(texture_real, lowest, "the result is clamped to these")                                                      \
+    FIELD(texture_real, highest, "")                                                                                   \
+    FIELD(texture_real, scale_r, "factor on what is looked up")                                                        \
+    FIELD(texture_real, scale_g, "")                                                                                   \
+    FIELD(texture_real, scale_b, "")                                                                                   \
+    FIELD(texture_real, color_0_r, "of a checkerboard")                                                                \
+    FIELD(texture_real, color_0_g, "")                                                                                 \
+    FIELD(texture_real, color_0_b, "")                                                                                 \
+    FIELD(texture_real, color_1_r, "")                                                                                 \
+    FIELD(texture_real, color_1_g, "")                                                                                 \
+    FIELD(texture_real, color_1_b, "")
+
+/* (u, v) at the three vertices of a triangle, and the axes of a sphere. */
+#define GRADUS_TRIANGLE_TEXCOORDS_FIELDS(FIELD)                                                                        \
+    FIELD(texcoords, u_0, "")                                                                                          \
+    FIELD(texcoords, v_0, "")                                                                                          \
+    FIELD(texcoords, u_1, "")                                                                                          \
+    FIELD(texcoords, v_1, "")                                                                                          \
+    FIELD(texcoords, u_2, "")                                                                                          \
+    FIELD(texcoords, v_2, "")
+#define GRADUS_SPHERE_AXES_FIELDS(FIELD)                                                                               \
+    FIELD(sphere_axes, first_x, "")                                                                                    \
+    FIELD(sphere_axes, first_y, "")                                                                                    \
+    FIELD(sphere_axes, first_z, "")                                                                                    \
+    FIELD(sphere_axes, second_x, "")                                                                                   \
+    FIELD(sphere_axes, second_y, "")                                                                                   \
+    FIELD(sphere_axes, second_z, "")                                                                                   \
+    FIELD(sphere_axes, third_x, "the poles")                                                                           \
+    FIELD(sphere_axes, third_y, "")                                                                                    \
+    FIELD(sphere_axes, third_z, "")
+
+/* texture_flags: the lowest two bits are the format (Bitmap::Format), bits 4 and 5 how it wraps (Texture::Wrap). */
+#define texture_format(flags) ((flags)&3u)
+#define texture_format_byte 0u
+#define texture_format_word 1u
+#define texture_format_half 2u
+#define texture_format_real 3u
+#define texture_flag_color 4u
+#define texture_flag_nearest 8u
+#define texture_wrap(flags) (((flags) >> 4) & 3u)
+#define texture_wrap_repeat 0u
+#define texture_wrap_mirror 1u
+#define texture_flag_checkerboard 64u
+#define texture_flag_srgb 128u
+
+#define texture_none 0xFFFFFFFFu
+
+/* Bits of TRAIT_TEXTURES. */
+#define textures_of_bytes 1
+#define textures_of_words 2
+#define textures_of_halves 4
+#define textures_of_reals 8
+#define textures_in_color 16
+#define textures_in_gray 32
+#define textures_nearest 64
+#define textures_bilinear 128
+#define textures_wrapped_otherwise 256 /* than by repeating */
+#define textures_mapped 512            /* by to_uv */
+#define textures_scaled 1024
+#define textures_checkerboards 2048
+
+GRADUS_LIB_BEGIN
+
+#define GRADUS_TEXTURE_INDEX(record, field, text) record##_##field,
+enum texture_field { GRADUS_TEXTURE_FIELDS(GRADUS_TEXTURE_INDEX) texture_stride };
+enum texture_real_field { GRADUS_TEXTURE_REAL_FIELDS(GRADUS_TEXTURE_INDEX) texture_real_stride };
+enum texcoords_field { GRADUS_TRIANGLE_TEXCOORDS_FIELDS(GRADUS_TEXTURE_INDEX) texcoords_stride };
+enum sphere_axes_field { GRADUS_SPHERE_AXES_FIELDS(GRADUS_TEXTURE_INDEX) sphere_axes_stride };
+#undef GRADUS_TEXTURE_INDEX
+
+/* The parameters of materials, numbered. */
+#define GRADUS_PARAMETER_INDEX(with, name, value, text) parameter_##name,
+enum material_parameter {
+    GRADUS_MATERIAL_PARAMETERS(GRADUS_PARAMETER_INDEX, GRADUS_PARAMETER_INDEX, ) material_parameters
+};
+#undef GRADUS_PARAMETER_INDEX
+
+GRADUS_LIB_END
+
+#endif
+#endif

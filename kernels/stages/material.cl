@@ -1,0 +1,85 @@
+/* material: reads the textures of what each ray met, before `classify`: leaves in its row of `surface` the textured
+ * parameters of the material there, those of GRADUS_MATERIAL_PARAMETERS in TRAIT_TEXTURED. A parameter that this
+ * material has as a constant is left as that. `traced` is a table of rays, of traced_rows rows like `surface`. Rays
+ * that met nothing leave what nobody reads. */
+//! traits: TRAIT_TEXTURED TRAIT_TWO_FACED TRAIT_SPHERES TRAIT_TRIANGLES
+#include "kernels/lib/angle.h"
+#include "kernels/lib/surface_side.h"
+#include "kernels/lib/texture_lookup.h"
+#include "kernels/lib/textured_material.h"
+#include "kernels/shared/stage.h"
+
+#define LOOK_UP(name)                                                                                                  \
+    const uint number = material_textures[(size_t)record * material_parameters + parameter_##name * (size_t)unit];     \
+    const int is_constant = number == texture_none;                                                                    \
+    const rgb looked_up =                                                                                              \
+        texture_lookup(textures, texture_reals, texels, texture_decode, unit, is_constant ? 0u : number, u, v);        \
+    GRADUS_GLOBAL const real *constants = materials + (size_t)record * material_stride;
+#define LEAVE(column, constant, value)                                                                                 \
+    surface[(size_t)textured_##column * traced_rows + row] =                                                           \
+        is_constant ? constants[material_##constant * (size_t)unit] : (value);
+#define LEAVE_COLOR(with, name, value, text)                                                                           \
+    if (IS_TEXTURED(name)) {                                                                                           \
+        LOOK_UP(name)                                                                                                  \
+        LEAVE(name##_r, name##_r, looked_up.r)                                                                         \
+        LEAVE(name##_g, name##_g, looked_up.g)                                                                         \
+        LEAVE(name##_b, name##_b, looked_up.b)                                                                         \
+    }
+/* Of a coloured texture its luminance. */
+#define LEAVE_NUMBER(with, name, value, text)                                                                          \
+    if (IS_TEXTURED(name)) {                                                                                           \
+        LOOK_UP(name)                                                                                                  \
+        LEAVE(name, name, R(0.212671) * looked_up.r + R(0.715160) * looked_up.g + R(0.072169) * looked_up.b)           \
+    }
+
+STAGE read_material(uint count, uint unit, uint traced_rows, __global const real *traced, __global real *surface,
+                    __global const real *triangles, __global const real *triangle_texcoords,
+                    __global const real *spheres, __global const real *sphere_axes, uint triangle_count,
+                    __global const uint *primitive_material, __global const real *materials,
+                    __global const uint *material_textures, __global const uint *textures,
+                    __global const real *texture_reals, __global const uint *texels, __global const real *texture_decode
+#if TRAIT_TWO_FACED
+                    ,
+                    __global const real *triangle_normals, __global const uint *material_back
+#endif
+) {
+    const size_t row = work_item();
+    if (row >= count)
+        return;
+    const uint met = AT_UINT(traced, primitive, row);
+    const uint primitive = met < ray_first_special ? met : 0u;
+    const vec3 direction = AT_V3(traced, direction, row);
+    const primitive_hit hit =
+        primitive_hit_of(triangles, spheres, unit, triangle_count, primitive, AT_V3(traced, origin, row), direction);
+    const uint sided_material = primitive_material[primitive];
+    uint record = material_record(sided_material);
+#if TRAIT_TWO_FACED
+    const int behind = is_met_from_behind(triangle_normals, unit, triangle_count, primitive, hit, direction);
+    const uint back = material_back[record];
+    record = (sided_material & material_two_sided) != 0u && behind ? back : record;
+#endif
+    real u = R(0), v = R(0);
+#if TRAIT_TRIANGLES
+    const uint triangle = TRIANGLE_OF(primitive);
+    const real rest = R(1) - hit.u - hit.v;
+    u = rest * FIELD_OF(texcoords, triangle_texcoords, triangle, u_0) +
+        hit.u * FIELD_OF(texcoords, triangle_texcoords, triangle, u_1) +
+        hit.v * FIELD_OF(texcoords, triangle_texcoords, triangle, u_2);
+    v = rest * FIELD_OF(texcoords, triangle_texcoords, triangle, v_0) +
+        hit.u * FIELD_OF(texcoords, triangle_texcoords, triangle, v_1) +
+        hit.v * FIELD_OF(texcoords, triangle_texcoords, triangle, v_2);
+#endif
+#if TRAIT_SPHERES
+    const uint sphere = SPHERE_OF(primitive);
+    const vec3 outwards = v3_scale(hit.normal, FIELD_OF(sphere, spheres, sphere, facing));
+    const real x = v3_dot(outwards, FIELD_V3(sphere_axes, sphere_axes, sphere, first));
+    const real y = v3_dot(outwards, FIELD_V3(sphere_axes, sphere_axes, sphere, second));
+    const real z = v3_dot(outwards, FIELD_V3(sphere_axes, sphere_axes, sphere, third));
+    const real around = angle_in_turns(x, y);
+    const real down = R(2) * angle_in_turns(r_after(z, around), r_sqrt(x * x + y * y));
+    const int is_sphere = !TRAIT_TRIANGLES || primitive >= triangle_count;
+    u = is_sphere ? around : u;
+    v = is_sphere ? down : v;
+#endif
+    GRADUS_MATERIAL_PARAMETERS(LEAVE_COLOR, LEAVE_NUMBER, )
+}

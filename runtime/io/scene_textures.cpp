@@ -1,0 +1,79 @@
+// The part of the scene builder that reads textures: each picture once, each texture once for each range.
+#include "runtime/error.h"
+#include "runtime/io/bitmap_reader.h"
+#include "runtime/io/scene_builder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace gradus {
+
+std::shared_ptr<const Bitmap> SceneBuilder::bitmap(const std::filesystem::path &path, bool is_linear,
+                                                   const std::string &channel, const Location &location,
+                                                   bool &is_srgb) {
+    const auto key = std::make_tuple(path, is_linear, channel);
+    auto known = bitmaps_.find(key);
+    if (known == bitmaps_.end()) {
+        ReadBitmap read;
+        try {
+            read = read_bitmap(path.string(), {is_linear, channel, limits_.texture_bytes / LoadLimits().texture_bytes});
+        } catch (const Error &error) {
+            throw SceneError(location, error.what());
+        }
+        if (read.not_numbers > 0)
+            diagnostics_.warn(location, fmt::format("{}: {} values that are no finite numbers become 0", path.string(),
+                                                    read.not_numbers));
+        texture_bytes_ += read.bitmap.words.size() * sizeof(read.bitmap.words[0]);
+        if (texture_bytes_ > limits_.texture_bytes)
+            throw SceneError(location, fmt::format("the textures up to this one have more than {} MiB of pixels{}",
+                                                   limits_.texture_bytes >> 20, limits_hint));
+        known =
+            bitmaps_.emplace(key, DecodedBitmap{std::make_shared<const Bitmap>(std::move(read.bitmap)), read.is_srgb})
+                .first;
+    }
+    is_srgb = known->second.is_srgb;
+    return known->second.bitmap;
+}
+
+FoundTexture SceneBuilder::texture(const Element &element, double lowest, double highest) {
+    const auto key = std::make_tuple(&element, lowest, highest);
+    if (const auto known = textures_.find(key); known != textures_.end())
+        return known->second;
+    auto built = built_textures_.find(&element);
+    if (built == built_textures_.end()) {
+        try {
+            built = built_textures_.emplace(&element, build_object<Texture>(element)).first;
+        } catch (const SceneError &error) {
+            built = built_textures_.emplace(&element, error).first;
+        }
+    }
+    if (const auto *error = std::get_if<SceneError>(&built->second))
+        throw *error;
+    Texture texture = std::get<Texture>(built->second);
+    texture.name = element.attribute_or("id", element.attribute_or("type", "") + " at " + element.location.text());
+    texture.lowest = std::numeric_limits<float>::lowest();
+    texture.highest = std::numeric_limits<float>::max();
+    FoundTexture found;
+    found.range = texture_range(texture);
+    const double least = *std::min_element(found.range.least.begin(), found.range.least.end());
+    const double most = *std::max_element(found.range.most.begin(), found.range.most.end());
+    texture.lowest = float(lowest);
+    texture.highest = float(highest);
+    constexpr double rounding = 1e-6;
+    if (least < lowest || most > highest) {
+        if (least < lowest - rounding || most > highest + rounding)
+            diagnostics_.warn(element.location,
+                              fmt::format("the texture has values from {:.4g} to {:.4g}; they are clamped to {:.4g} to "
+                                          "{:.4g}",
+                                          least, most, lowest, highest));
+        found.range = texture_range(texture);
+    }
+    found.index = std::int32_t(scene_.textures.size());
+    scene_.textures.push_back(std::move(texture));
+    textures_.emplace(key, found);
+    return found;
+}
+
+} // namespace gradus

@@ -1,0 +1,85 @@
+#include "runtime/scene/texture_tables.h"
+
+#include "kernels/shared/texture.h"
+#include "runtime/error.h"
+
+#include <map>
+
+namespace gradus {
+
+using namespace lib_float;
+
+namespace {
+
+/// The pictures one after the other, each once. By picture: its first word.
+std::map<const Bitmap *, std::uint32_t> add_bitmaps(const Scene &scene, SceneTables &tables) {
+    std::map<const Bitmap *, std::uint32_t> offsets;
+    std::uint64_t words = 0;
+    for (const Texture &texture : scene.textures)
+        if (texture.bitmap && offsets.emplace(texture.bitmap.get(), std::uint32_t(words)).second)
+            words += texture.bitmap->words.size();
+    if (words >= 0xFFFFFFFFu)
+        throw Error(ExitCode::device, "the scene's textures have more than 16 GiB of pixels");
+    tables.texels.resize(std::size_t(words) + 1); // one at least
+    for (const auto &[bitmap, offset] : offsets)
+        std::copy(bitmap->words.begin(), bitmap->words.end(), tables.texels.begin() + offset);
+    return offsets;
+}
+
+std::uint32_t flags_of(const Texture &texture) {
+    std::uint32_t flags = std::uint32_t(texture.wrap) << 4;
+    flags |= texture.is_nearest ? texture_flag_nearest : 0;
+    flags |= texture.is_srgb ? texture_flag_srgb : 0;
+    if (texture.kind == Texture::Kind::checkerboard)
+        return flags | texture_flag_checkerboard;
+    return flags | std::uint32_t(texture.bitmap->format) | (texture.bitmap->is_color ? texture_flag_color : 0);
+}
+
+void add_decoding(SceneTables &tables) {
+    for (const bool is_srgb : {false, true})
+        for (int value = 0; value < 256; ++value)
+            tables.texture_decode.push_back(float(is_srgb ? srgb_to_linear_value(value / 255.0) : value / 255.0));
+}
+
+} // namespace
+
+void add_triangle_texcoords(const Mesh &mesh, const std::array<std::uint32_t, 3> &triangle, SceneTables &tables) {
+    constexpr std::array<float, 2> unit[] = {{0, 0}, {1, 0}, {0, 1}};
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+        const auto &[u, v] = mesh.texcoords.empty() ? unit[corner] : mesh.texcoords[triangle[corner]];
+        tables.triangle_texcoords.insert(tables.triangle_texcoords.end(), {u, v});
+    }
+}
+
+void add_textures(const Scene &scene, SceneTables &tables) {
+    for (const Shape &shape : scene.shapes)
+        if (shape.kind == Shape::Kind::sphere)
+            for (const Vector3 &axis : scene.spheres[shape.geometry].axes)
+                tables.sphere_axes.insert(tables.sphere_axes.end(), {axis.x, axis.y, axis.z});
+    // Kernels compiled for both kinds of primitives read a record of each.
+    tables.sphere_axes.resize(std::max<std::size_t>(tables.sphere_axes.size(), sphere_axes_stride));
+    tables.triangle_texcoords.resize(std::max<std::size_t>(tables.triangle_texcoords.size(), texcoords_stride));
+
+    const std::map<const Bitmap *, std::uint32_t> offsets = add_bitmaps(scene, tables);
+    add_decoding(tables);
+    for (const Texture &texture : scene.textures) {
+        const bool has_bitmap = texture.bitmap != nullptr;
+        tables.textures.insert(tables.textures.end(),
+                               {flags_of(texture), has_bitmap ? offsets.at(texture.bitmap.get()) : 0,
+                                has_bitmap ? texture.bitmap->width : 1, has_bitmap ? texture.bitmap->height : 1});
+        auto &reals = tables.texture_reals;
+        reals.insert(reals.end(), texture.to_uv.begin(), texture.to_uv.end());
+        reals.insert(reals.end(), {texture.lowest, texture.highest});
+        for (const auto *color : {&texture.scale, &texture.color_0, &texture.color_1})
+            reals.insert(reals.end(), color->begin(), color->end());
+    }
+    for (const Bsdf &bsdf : material_records(scene)) {
+        const std::size_t first = tables.material_textures.size();
+        tables.material_textures.resize(first + material_parameters, texture_none);
+        for_each_textured_parameter(bsdf, [&](int number, std::int32_t texture) {
+            tables.material_textures[first + std::size_t(number)] = std::uint32_t(texture);
+        });
+    }
+}
+
+} // namespace gradus
