@@ -2,6 +2,7 @@
 
 #include "kernels/shared/tables.h"
 #include "methods/path_stages.h"
+#include "runtime/error.h"
 #include "runtime/seconds_since.h"
 #include "runtime/wavefront/segments.h"
 
@@ -51,6 +52,13 @@ TraitMap light_vertex_traits(const Scene &scene, const RenderOptions &options) {
             {"TRAIT_STRATIFIED", 1}};
 }
 
+/// Shifted photons leave vertices again whose textures nobody has kept.
+const Scene &checked_for_shifts(const Scene &scene) {
+    if (has_textures(scene))
+        throw Error(ExitCode::usage, "gpm knows no textures yet; pt, gpt and sppm do");
+    return scene;
+}
+
 /// What is done by the kind of the vertex that light leaves, or where that is on a light.
 StageDeclaration leaving_stage(const char *name, bool is_light, bool is_wanted, std::vector<std::string> numbers) {
     return {.name = std::string(name) + (is_light ? " light" : ""),
@@ -68,8 +76,8 @@ const std::vector<std::string> chain_numbers = {"first", "pairs", "chain_rows", 
 } // namespace
 
 GradientPhotonMapper::GradientPhotonMapper(Device &device, const Scene &scene, const RenderOptions &options)
-    : options_(options),
-      session_(device, checked_for_gathering(scene, options), options, light_vertex_traits(scene, options)),
+    : options_(options), session_(device, checked_for_gathering(checked_for_shifts(scene), options), options,
+                                  light_vertex_traits(scene, options)),
       paths_(session_, stages_, scene, options, true), photons_(session_, stages_, scene, options, 0.5),
       pairs_(stages_, true), bin_(stages_.add({.name = "gather_bin"})),
       order_(stages_, "gather", first_kind_bin + std::uint32_t(session_.scene.kinds.size()), RowsOf::slot),

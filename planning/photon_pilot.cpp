@@ -3,6 +3,7 @@
 #include "planning/make_method.h"
 #include "runtime/film/metrics.h"
 #include "runtime/scene/roughness.h"
+#include "runtime/scene/traits.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,7 +51,7 @@ struct Mean {
 
 bool may_ask_for_photons(const Scene &scene, const RenderOptions &options) {
     const GatheringSurfaces surfaces = gathering_surfaces(scene, options.gather_roughness);
-    return !surfaces.passed.empty() && !surfaces.gathered.empty() && !scene.emitters.empty() &&
+    return !has_textures(scene) && !surfaces.passed.empty() && !surfaces.gathered.empty() && !scene.emitters.empty() &&
            scene.settings.max_depth != 0 && scene.settings.max_depth != 1;
 }
 

@@ -5,7 +5,7 @@ import plotting
 # What a stage's name begins with: the part that it is counted to. The first that fits counts.
 PARTS = [
     ("primary", "camera"), ("camera", "camera"),
-    ("shade", "shading"),
+    ("shade", "shading"), ("material", "shading"),
     ("light paths, ", "light paths"),
     ("photon_shift", "shifts"), ("photon_reconnect", "shifts"), ("photon_arrive", "shifts"), ("walk", "walks"),
     ("photon", "photons"), ("pair", "photons"), ("gather", "photons"), ("bias", "photons"), ("travel", "photons"), ("sort", "photons"),

@@ -61,9 +61,9 @@ FoundTexture SceneBuilder::texture(const Element &element, double lowest, double
     const double most = *std::max_element(found.range.most.begin(), found.range.most.end());
     texture.lowest = float(lowest);
     texture.highest = float(highest);
-    constexpr double rounding = 1e-6;
+    constexpr double not_worth_a_word = 1e-3;
     if (least < lowest || most > highest) {
-        if (least < lowest - rounding || most > highest + rounding)
+        if (least < lowest - not_worth_a_word || most > highest + not_worth_a_word)
             diagnostics_.warn(element.location,
                               fmt::format("the texture has values from {:.4g} to {:.4g}; they are clamped to {:.4g} to "
                                           "{:.4g}",

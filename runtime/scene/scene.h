@@ -40,6 +40,7 @@ struct Number {
     Number() = default;
     Number(float number) : value(number) {}
     operator float() const { return value; }
+    Number &operator*=(float factor) { return value *= factor, *this; }
     bool operator==(const Number &) const = default;
     template <std::floating_point Other>
     bool operator==(Other other) const {

@@ -129,6 +129,13 @@ void for_each_textured_parameter(const Bsdf &bsdf, const std::function<void(int 
 #undef GRADUS_VISIT
 }
 
+bool has_textures(const Scene &scene) {
+    bool found = false;
+    for_each_bsdf(
+        scene, [&](const Bsdf &bsdf) { for_each_textured_parameter(bsdf, [&](int, std::int32_t) { found = true; }); });
+    return found;
+}
+
 TraitMap scene_traits(const Scene &scene) {
     TraitMap traits;
     for (const TraitText &trait : descriptions)

@@ -30,6 +30,9 @@ std::uint32_t textured_column_count(int textured);
 /// in GRADUS_MATERIAL_PARAMETERS, its index in Scene::textures.
 void for_each_textured_parameter(const Bsdf &bsdf, const std::function<void(int number, std::int32_t texture)> &visit);
 
+/// Whether a shape has a material with textures.
+bool has_textures(const Scene &scene);
+
 /// One line that says what a trait stands for; empty for an unknown one.
 std::string trait_description(const std::string &name);
 

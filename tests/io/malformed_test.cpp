@@ -98,7 +98,7 @@ const std::vector<Case> cases{
     {"texture",
      in_bsdf("<bsdf type=\"diffuse\">\n<texture name=\"reflectance\" type=\"bitmap\"/></bsdf>"),
      "scene.xml:5",
-     {"texture plugin \"bitmap\"", "reflectance"}},
+     {"bitmap needs a filename"}},
     {"no_type", in_bsdf("<bsdf/>"), "scene.xml:4", {"<bsdf>", "type"}},
     {"medium", scene_around("<medium type=\"homogeneous\"/>"), "scene.xml:3", {"media", "--ignore-media"}},
     {"medium_of_a_shape",

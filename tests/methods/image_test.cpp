@@ -100,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(
                                  bsdf.alpha_u = bsdf.alpha_v = 0.3f; // 0.22
                              }},
                       Defect{"denser_glass", "materials",
-                             [](Scene &scene) { material_named(scene, "rough-glass-ggx").front.ior *= 1.2f; }},
+                             [](Scene &scene) { material_named(scene, "rough-glass-ggx").front.ior.value *= 1.2f; }},
                       Defect{"screen_swapped", "materials",
                              [](Scene &scene) {
                                  Material &screen = material_named(scene, "screen-left");
@@ -109,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Defect{"caustic_3_percent_brighter", "slab-and-ball-soft",
                              [](Scene &scene) { scale_emitters(scene, Emitter::Kind::area, 1.03f); }},
                       Defect{"egg_of_denser_glass", "lamp-in-egg-soft",
-                             [](Scene &scene) { material_named(scene, "egg").front.ior *= 1.1f; }},
+                             [](Scene &scene) { material_named(scene, "egg").front.ior.value *= 1.1f; }},
                       Defect{"sky_10_percent_darker", "plates",
                              [](Scene &scene) { scale_emitters(scene, Emitter::Kind::constant, 0.9f); }}),
     [](const auto &info) { return info.param.name; });

@@ -143,7 +143,7 @@ TEST(Materials, LieAsTheirListSays) {
     Bsdf bsdf;
     bsdf.kind = BsdfKind::roughconductor_beckmann;
     float next = 0;
-#define GRADUS_SET_COLOR(with, name, value, text) bsdf.name = {++next, ++next, ++next};
+#define GRADUS_SET_COLOR(with, name, value, text) bsdf.name = Color(next + 1, next + 2, next + 3), next += 3;
 #define GRADUS_SET_NUMBER(with, name, value, text) bsdf.name = ++next;
     GRADUS_MATERIAL_PARAMETERS(GRADUS_SET_COLOR, GRADUS_SET_NUMBER, )
 #undef GRADUS_SET_COLOR

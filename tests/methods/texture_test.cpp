@@ -1,0 +1,174 @@
+// Textures in the renderer: exact values where the light is the same from everywhere.
+#include "kernels/lib/additive_sequence.h"
+#include "kernels/lib/random.h"
+#include "kernels/shared/scene_records.h"
+#include "runtime/error.h"
+#include "runtime/scene/camera_record.h"
+#include "tests/support/gradient_layers.h"
+#include "tests/support/render.h"
+#include "tests/support/small_scenes.h"
+#include "tests/support/textures.h"
+
+#include <array>
+#include <functional>
+#include <numbers>
+
+namespace gradus::testing {
+namespace {
+
+constexpr std::uint32_t size = 24;
+/// A sample's value goes through some ten roundings by 2^-24, and (u, v) through as many, by which a texture of eight
+/// texels changes eight times as fast: values and differences of two.
+constexpr double rounding = 2 * 10 * 9 * 0x1p-24;
+
+Color textured(SceneMaker &maker, const Texture &texture) {
+    maker.scene.textures.push_back(texture);
+    Color color(0.5f, 0.5f, 0.5f);
+    color.texture = std::int32_t(maker.scene.textures.size()) - 1;
+    return color;
+}
+
+Bsdf textured_diffuse(SceneMaker &maker, const Texture &texture) {
+    Bsdf bsdf;
+    bsdf.reflectance = textured(maker, texture);
+    return bsdf;
+}
+
+/// A wall [-2, 2]^2 at z = 0 that a camera at z = 3 sees and nothing else, under light of radiance 1 from everywhere:
+/// each sample is worth the wall's reflectance.
+SceneMaker wall(const Texture &texture) {
+    SceneMaker maker(size, 1);
+    maker.look({0, 0, 3}, {0, 0, 0}, 40);
+    maker.environment(1);
+    maker.parallelogram({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, maker.material(textured_diffuse(maker, texture)));
+    return maker;
+}
+
+/// (u, v) of the wall where the camera sees it through a pixel, at the place that all pixels of sample 0 of a seed
+/// share.
+std::array<double, 2> seen_place(const Scene &scene, std::uint32_t x, std::uint32_t y, std::uint32_t seed) {
+    using namespace lib_float;
+    const random_bits start = random_key(seed, 0, 0xFFFFFFFFu, 0, 0);
+    const point2 place = additive_sequence(start.x, start.y, 0);
+    const std::vector<float> camera = make_camera_record(scene.camera, scene.film);
+    std::array<double, 3> direction, hit;
+    for (int axis = 0; axis < 3; ++axis)
+        direction[axis] = camera[std::size_t(camera_corner_x + axis)] +
+                          (x + double(place.x)) * camera[std::size_t(camera_right_x + axis)] +
+                          (y + double(place.y)) * camera[std::size_t(camera_down_x + axis)];
+    for (int axis = 0; axis < 3; ++axis)
+        hit[axis] =
+            camera[std::size_t(camera_origin_x + axis)] - direction[axis] * camera[camera_origin_z] / direction[2];
+    return {(hit[0] + 2) / 4, (hit[1] + 2) / 4};
+}
+
+RenderOptions exact_options() {
+    RenderOptions options;
+    options.strategy = SessionOptions::Strategy::bsdf;
+    options.norm = PoissonNorm::l2;
+    options.seed = 7;
+    return options;
+}
+
+/// Checks an image's layers against what each pixel is to be worth.
+void expect_layers(const Image &image, const std::function<double(int c, std::uint32_t x, std::uint32_t y)> &expected) {
+    double contrast = 0;
+    for (int c = 0; c < 3; ++c)
+        for (std::uint32_t y = 0; y < size; ++y)
+            for (std::uint32_t x = 0; x < size; ++x) {
+                const double value = expected(c, x, y);
+                ASSERT_NEAR(layer(image, "primal", c, x, y), value, rounding) << x << ", " << y;
+                ASSERT_NEAR(layer(image, "", c, x, y), value, 4 * rounding) << x << ", " << y;
+                if (x + 1 < size) {
+                    const double difference = expected(c, x + 1, y) - value;
+                    ASSERT_NEAR(layer(image, "dx", c, x, y), difference, rounding) << x << ", " << y;
+                    contrast = std::max(contrast, std::fabs(difference));
+                }
+                if (y + 1 < size) {
+                    ASSERT_NEAR(layer(image, "dy", c, x, y), expected(c, x, y + 1) - value, rounding) << x << ", " << y;
+                }
+            }
+    EXPECT_GT(contrast, 0.01);
+}
+
+TEST(Textures, DifferencesOfAWallAreThoseOfItsTexture) {
+    const Texture texture = random_texture();
+    const SceneMaker maker = wall(texture);
+    RenderOptions options = exact_options();
+    options.aov = true;
+    const Image image = render(maker.scene, options, "gpt").image;
+    const auto expected = [&](int c, std::uint32_t x, std::uint32_t y) {
+        const auto [u, v] = seen_place(maker.scene, x, y, std::uint32_t(options.seed));
+        return texture_value(texture, u, v)[std::size_t(c)];
+    };
+    expect_layers(image, expected);
+    for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(layer(image, "albedo", c, 5, 9), expected(c, 5, 9), rounding);
+}
+
+/// What is seen by way of a mirror: offset paths have vertices of their own on the mirror and on the wall.
+TEST(Textures, DifferencesInATexturedMirrorAreThoseOfBothTextures) {
+    SceneMaker maker(size, 1);
+    maker.look({0, 0, 3}, {0, 0, 0}, 40);
+    // Slanting past the mirror onto the wall, where it makes a radiance of the reflectance.
+    const auto irradiance = float(std::numbers::pi * std::sqrt(101.0));
+    const auto length = float(std::sqrt(101.0));
+    maker.directional_light({irradiance, irradiance, irradiance}, {-10 / length, 0, 1 / length});
+    maker.scene.settings.max_depth = 3;
+    Bsdf mirror;
+    mirror.kind = BsdfKind::conductor;
+    mirror.specular_reflectance = textured(maker, random_texture(5, 7, Bitmap::Format::word, true, 3));
+    maker.parallelogram({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, maker.material(mirror));
+    // Behind the camera, its front towards the mirror.
+    maker.parallelogram({8, -8, 4}, {-16, 0, 0}, {0, 16, 0},
+                        maker.material(textured_diffuse(maker, random_texture(6, 8, Bitmap::Format::half, true, 4))));
+    RenderOptions options = exact_options();
+    options.strategy = SessionOptions::Strategy::mis;
+    const Image image = render(maker.scene, options, "gpt").image;
+    expect_layers(image, [&](int c, std::uint32_t x, std::uint32_t y) {
+        const auto [u, v] = seen_place(maker.scene, x, y, std::uint32_t(options.seed));
+        // From z = 3 to 0 the ray has gone as far aside as to (u, v); back to 4, 4 / 3 times as far again.
+        const double across = (4 * u - 2) * (1 + 4.0 / 3), up = (4 * v - 2) * (1 + 4.0 / 3);
+        return texture_value(maker.scene.textures[0], u, v)[std::size_t(c)] *
+               texture_value(maker.scene.textures[1], (8 - across) / 16, (up + 8) / 16)[std::size_t(c)];
+    });
+}
+
+/// Two sides of two textures, and a third material without one, whose record lies between them.
+TEST(Textures, SidesHaveTheirOwn) {
+    for (const bool from_behind : {false, true}) {
+        SceneMaker maker = wall(random_texture());
+        Material &material = maker.scene.materials[0];
+        material.two_sided = true;
+        material.back = textured_diffuse(maker, random_texture(5, 3, Bitmap::Format::real, false, 2));
+        const std::uint32_t other = maker.material(diffuse(0.5));
+        maker.parallelogram({50, 50, 50}, {1, 0, 0}, {0, 1, 0}, other);
+        if (from_behind)
+            maker.look({0, 0, -3}, {0, 0, 0}, 40);
+        const RenderOptions options = exact_options();
+        const Image image = render(maker.scene, options, "gpt").image;
+        expect_layers(image, [&](int c, std::uint32_t x, std::uint32_t y) {
+            const auto [u, v] = seen_place(maker.scene, x, y, std::uint32_t(options.seed));
+            return texture_value(maker.scene.textures[from_behind ? 1 : 0], u, v)[std::size_t(c)];
+        });
+    }
+}
+
+/// Gathered photons are scattered by the texture of the gather point, and by those that they met before.
+TEST(Textures, PhotonsMeetThem) {
+    SceneMaker maker(16, 64);
+    maker.look({0, 0, 0.95}, {0, 0, 0}, 90);
+    maker.cube(maker.material(textured_diffuse(maker, random_texture())), -1, true);
+    maker.lamp({0, 0.9f, 0}, 0.5f, 0.5f, 5, maker.material(diffuse(0)));
+    maker.scene.settings.max_depth = 4;
+    RenderOptions options;
+    const Spread paths = spread_of(render(maker.scene, options, "pt").image);
+    const Spread photons = spread_of(render(maker.scene, options, "sppm").image);
+    std::printf("mean by paths %.5f, by photons %.5f\n", paths.mean, photons.mean);
+    // 16 x 16 x 64 samples, each with a relative deviation of about 1.5: half a percent each; and the photons' bias.
+    EXPECT_NEAR(photons.mean / paths.mean, 1, 0.03);
+    EXPECT_THROW(render(maker.scene, options, "gpm"), Error);
+}
+
+} // namespace
+} // namespace gradus::testing
