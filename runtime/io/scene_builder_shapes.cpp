@@ -22,7 +22,7 @@ constexpr std::uint64_t instance_bytes = 256;
 
 /// A surface that all light passes as if it were not there.
 bool is_never_met(const Material &material) {
-    return material.opacity == 0 || (material.front.kind == BsdfKind::null && !material.two_sided);
+    return material.opacity == 0.0f || (material.front.kind == BsdfKind::null && !material.two_sided);
 }
 } // namespace
 
@@ -209,6 +209,9 @@ void SceneBuilder::add_shape(const Element &element, std::variant<BuiltMesh, Sph
     const Material &material = scene_.materials[shape.material];
     if (shape.emitter < 0 && is_never_met(material))
         return;
+    if (shape.emitter < 0 && material.opacity.texture != no_texture && std::holds_alternative<Sphere>(geometry))
+        throw SceneError(element.location,
+                         "the opacity of a sphere cannot be a texture; give it as a number, or use a mesh");
     if (shape.emitter >= 0 && material.opacity < 1)
         diagnostics_.warn(element.location, "shape \"" + shape.name + "\" emits: its opacity is taken as 1");
     if (const auto *sphere = std::get_if<Sphere>(&geometry)) {

@@ -107,7 +107,8 @@ struct Material {
     Bsdf front;
     Bsdf back;              ///< used only where two_sided
     bool two_sided = false; ///< never true for kinds that transmit, which have both sides by nature
-    float opacity = 1;      ///< share of the rays that meet the surface; the others pass, as if nothing were there
+    Number opacity = 1;     ///< share of the rays that meet the surface, of a coloured texture its luminance; the others
+                            ///< pass, as if nothing were there
     std::string name;
 };
 

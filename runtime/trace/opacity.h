@@ -2,8 +2,11 @@
 #pragma once
 
 #include "runtime/scene/scene.h"
+#include "runtime/scene/texture.h"
 
+#include <array>
 #include <cstdint>
+#include <map>
 #include <vector>
 
 namespace gradus {
@@ -18,8 +21,9 @@ bool is_passable(const Scene &scene, const Shape &shape);
 /// on nothing else: not on the order in which the tracer finds hits, nor on packets, threads or batches.
 class Opacity {
   public:
-    /// Adds a primitive of the scene's numbering. In the order of the geometry that holds them.
-    void add(const Scene &scene, const Shape &shape, std::uint32_t primitive);
+    /// Adds a primitive of the scene's numbering, of a mesh the triangle of that index. In the order of the geometry
+    /// that holds them. Spheres have one opacity all over.
+    void add(const Scene &scene, const Shape &shape, std::size_t triangle, std::uint32_t primitive);
     bool empty() const { return primitives_.empty(); }
     /// In the scene's numbering.
     std::uint32_t primitive(std::size_t i) const { return primitives_[i].number; }
@@ -27,11 +31,23 @@ class Opacity {
     bool is_met(std::size_t i, const Vector3 &origin, const Vector3 &direction) const;
 
   private:
+    /// Where the opacity is a texture: what tells (u, v).
+    struct TexturedTriangle {
+        std::uint32_t texture;
+        Vector3 p0, e1, e2;
+        std::array<std::array<float, 2>, 3> texcoords;
+    };
     struct Primitive {
         std::uint32_t number;
         float opacity;
+        std::int64_t textured; ///< index into triangles_, or -1
     };
+    float opacity_of(const TexturedTriangle &triangle, const Vector3 &origin, const Vector3 &direction) const;
+
     std::vector<Primitive> primitives_;
+    std::vector<TexturedTriangle> triangles_;
+    std::vector<Texture> textures_;               ///< those that are asked for
+    std::map<std::int32_t, std::uint32_t> known_; ///< their places, by those in the scene
 };
 
 } // namespace gradus

@@ -117,7 +117,7 @@ struct Tracer::Implementation {
     void add_triangles(const Scene &s, Geometry place);
     void add_spheres(const Scene &s, Geometry place);
     /// Says which primitive of the scene comes next in a geometry.
-    void name(const Scene &s, const Shape &shape, std::uint32_t number, Geometry place);
+    void name(const Scene &s, const Shape &shape, std::size_t triangle, std::uint32_t number, Geometry place);
     void attach(RTCGeometry geometry, Geometry place);
     std::uint64_t trace_extension(const RayColumns &ray, const RowLines &chunk_rows, RecordedRays *record);
     std::uint64_t trace_shadow(const ShadowColumns &shadow, const RowLines &chunk_rows, RecordedRays *record);
@@ -169,9 +169,10 @@ void Tracer::Implementation::attach(RTCGeometry geometry, Geometry place) {
     check("building geometry");
 }
 
-void Tracer::Implementation::name(const Scene &s, const Shape &shape, std::uint32_t number, Geometry place) {
+void Tracer::Implementation::name(const Scene &s, const Shape &shape, std::size_t triangle, std::uint32_t number,
+                                  Geometry place) {
     if (place >= passable_triangles)
-        passable[place - passable_triangles].add(s, shape, number);
+        passable[place - passable_triangles].add(s, shape, triangle, number);
     else if (some_are_passable)
         numbers[place].push_back(number);
 }
@@ -195,9 +196,10 @@ void Tracer::Implementation::add_triangles(const Scene &s, Geometry place) {
     std::uint32_t first_vertex = 0;
     for_each_mesh([&](const Shape &shape, const Mesh &mesh, std::uint32_t number) {
         vertices = std::copy(mesh.positions.begin(), mesh.positions.end(), vertices);
-        for (const auto &t : mesh.triangles) {
+        for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+            const auto &t = mesh.triangles[i];
             *indices++ = {first_vertex + t[0], first_vertex + t[1], first_vertex + t[2]};
-            name(s, shape, number++, place);
+            name(s, shape, i, number + std::uint32_t(i), place);
         }
         first_vertex += static_cast<std::uint32_t>(mesh.positions.size());
     });
@@ -217,7 +219,7 @@ void Tracer::Implementation::add_spheres(const Scene &s, Geometry place) {
     for_each_sphere([&](const Shape &shape, std::uint32_t number) {
         const Sphere &sphere = s.spheres[shape.geometry];
         *vertices++ = {sphere.center.x, sphere.center.y, sphere.center.z, sphere.radius};
-        name(s, shape, number, place);
+        name(s, shape, 0, number, place);
     });
     attach(geometry, place);
 }

@@ -110,6 +110,34 @@ TEST(Opacity, DependsOnTheRayAlone) {
     }
 }
 
+// A checkerboard of 0 and 1 on a square with (u, v) from 0 to 1.
+TEST(Opacity, IsReadWhereTheRayMeetsTheSurface) {
+    SceneMaker maker(8, 1);
+    Texture board;
+    board.kind = Texture::Kind::checkerboard;
+    board.color_0 = {0, 0, 0};
+    board.color_1 = {1, 1, 1};
+    maker.scene.textures.push_back(board);
+    Material material = with_opacity(1);
+    material.opacity.texture = 0;
+    maker.parallelogram({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.material(material));
+    Tracer tracer(maker.scene, 2);
+    Rays all;
+    const std::vector<std::uint32_t> met = all.trace(tracer, false), open = all.trace(tracer, true);
+    std::size_t passed = 0;
+    for (std::size_t i = 0; i < rays; ++i) {
+        const double u = (all.origin[0][i] + 0.5 * all.direction[0][i] + 1) / 2,
+                     v = (all.origin[1][i] + 0.5 * all.direction[1][i] + 1) / 2;
+        if (std::min({std::fabs(u - 0.5), std::fabs(v - 0.5)}) < 1e-6)
+            continue; // rounding may tell on which field it is
+        const bool is_there = texture_value(board, u, v)[0] > 0.5;
+        ASSERT_EQ(met[i] != ray_escaped, is_there) << u << " " << v;
+        ASSERT_EQ(open[i], is_there ? 0u : 1u);
+        passed += is_there ? 0 : 1;
+    }
+    EXPECT_NEAR(double(passed) / rays, 0.5, 0.1);
+}
+
 TEST(Opacity, OfALampIsOne) {
     SceneMaker maker(8, 1);
     maker.parallelogram({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.material(with_opacity(0.1f)),
