@@ -14,13 +14,13 @@
 #include "kernels/lib/vertex_frame.h"
 #include "kernels/shared/stage.h"
 
-STAGE gather(uint count, uint unit, uint first, uint to, uint capacity, uint gather_rows, uint max_depth, __global const uint *index,
-             __global const real *path_old, __global const real *ray_old, __global const real *travelled,
-             __global real *gather, __global const real *triangles, __global const real *triangle_normals,
-             __global const real *triangle_tangents, __global const real *spheres, uint triangle_count,
-             __global const uint *primitive_material, __global const uint *material_back,
-             __global const uint *material_kind, real radius_slope, real radius_start, real radius_most,
-             real radius_least, real radius_scale SURFACE_ARGUMENT
+STAGE gather(uint count, uint unit, uint first, uint to, uint capacity, uint gather_rows, uint max_depth,
+             __global const uint *index, __global const real *path_old, __global const real *ray_old,
+             __global const real *travelled, __global real *gather, __global const real *triangles,
+             __global const real *triangle_normals, __global const real *triangle_tangents,
+             __global const real *spheres, uint triangle_count, __global const uint *primitive_material,
+             __global const uint *material_back, __global const uint *material_kind, real radius_slope,
+             real radius_start, real radius_most, real radius_least, real radius_scale SURFACE_ARGUMENT
 #if FEATURES
              ,
              __global const real *materials, __global real *feature, uint slots
@@ -33,9 +33,11 @@ STAGE gather(uint count, uint unit, uint first, uint to, uint capacity, uint gat
     const vec3 origin = AT_V3_IN(ray_old, ray, origin, old), direction = AT_V3_IN(ray_old, ray, direction, old);
     const uint depth = AT_UINT_IN(path_old, path, depth, old), slot = AT_UINT_IN(path_old, path, slot, old);
     const rgb throughput = AT_RGB_IN(path_old, path, throughput, old);
-    const surface_point point = surface_point_of(triangles, triangle_normals, triangle_tangents, spheres, unit,
-                                                 triangle_count, primitive_material, material_back,
-                                                 AT_UINT_IN(ray_old, ray, primitive, old), origin, direction);
+    const surface_point point =
+        CHOSEN_POINT(surface_point_of(triangles, triangle_normals, triangle_tangents, spheres, unit, triangle_count,
+                                      primitive_material, material_back, AT_UINT_IN(ray_old, ray, primitive, old),
+                                      origin, direction),
+                     capacity, old);
 #if BY_SLOT
     (void)to;
     const size_t row = slot;

@@ -47,9 +47,10 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
 #if TRAIT_REFRACTION
     const real eta_before = AT_IN(path_old, path, eta, old);
 #endif
-    const surface_point point =
+    const surface_point point = CHOSEN_POINT(
         surface_point_of(triangles, triangle_normals, triangle_tangents, spheres, unit, triangle_count,
-                         primitive_material, material_back, AT_UINT_IN(ray_old, ray, primitive, old), from, direction);
+                         primitive_material, material_back, AT_UINT_IN(ray_old, ray, primitive, old), from, direction),
+        capacity, old);
     const material m = HIT_MATERIAL(point.material, capacity, old);
     const frame axes = surface_frame(point.shading, point.along, m);
     const vec3 wi = frame_to_local(axes, v3_neg(direction));
@@ -95,9 +96,9 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
 #endif
     const vec3 start = ray_origin(point.position, point.geometric, point.offset, light.direction);
     const vec3 light_point = v3_add(point.position, light.connection);
-    const vec3 end = connection_end(light_point, light.normal,
-                                    offset_at(light_point, light.normal, LIGHT_FIELD(chosen.light, offset)),
-                                    light.connection);
+    const vec3 end =
+        connection_end(light_point, light.normal,
+                       offset_at(light_point, light.normal, LIGHT_FIELD(chosen.light, offset)), light.connection);
     SET_V3(shadow, origin, row, start);
     SET_V3(shadow, direction, row, v3_sub(end, start));
     SET_RGB(shadow, value, row, gain);

@@ -148,7 +148,7 @@ void add_mesh(const Scene &scene, const Shape &shape, const TraitMap &traits, Sc
                 tables.triangle_normals.insert(tables.triangle_normals.end(), {n.x, n.y, n.z});
             }
         }
-        if (traits.at("TRAIT_TEXTURED"))
+        if (traits.at("TRAIT_MATERIAL"))
             add_triangle_texcoords(mesh, t, tables);
         if (traits.at("TRAIT_ANISOTROPIC")) {
             Vector3 along{};
@@ -267,6 +267,7 @@ std::vector<Bsdf> material_records(const Scene &scene) {
     for (const Material &material : scene.materials)
         if (has_own_back(material))
             records.push_back(material.back);
+    records.insert(records.end(), scene.blended.begin(), scene.blended.end());
     return records;
 }
 
@@ -288,8 +289,10 @@ SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits) {
     add_other_lights(scene, radius, tables, lights);
     lights.finish();
     add_materials(scene, tables);
-    if (traits.at("TRAIT_TEXTURED"))
+    if (traits.at("TRAIT_MATERIAL")) {
         add_textures(scene, tables);
+        add_blends(scene, tables);
+    }
     tables.camera = make_camera_record(scene.camera, scene.film);
     // Kernels compiled for both kinds of primitives read a record of each, whichever they then take.
     if (tables.triangles.empty())
@@ -300,13 +303,13 @@ SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits) {
 }
 
 std::size_t table_bytes(const SceneTables &t) {
-    return 4 *
-           (t.triangles.size() + t.triangle_normals.size() + t.triangle_tangents.size() + t.spheres.size() +
-            t.materials.size() + t.lights.size() + t.camera.size() + t.primitive_material.size() +
-            t.primitive_light.size() + t.primitive_bin.size() + t.primitive_back_bin.size() + t.material_back.size() +
-            t.light_kinds.size() + t.light_alias.size() + t.emissions.size() + t.emission_alias.size() +
-            t.triangle_texcoords.size() + t.sphere_axes.size() + t.texture_reals.size() + t.texture_decode.size() +
-            t.textures.size() + t.texels.size() + t.material_textures.size());
+    return 4 * (t.triangles.size() + t.triangle_normals.size() + t.triangle_tangents.size() + t.spheres.size() +
+                t.materials.size() + t.lights.size() + t.camera.size() + t.primitive_material.size() +
+                t.primitive_light.size() + t.primitive_bin.size() + t.primitive_back_bin.size() +
+                t.material_back.size() + t.light_kinds.size() + t.light_alias.size() + t.emissions.size() +
+                t.emission_alias.size() + t.triangle_texcoords.size() + t.sphere_axes.size() + t.texture_reals.size() +
+                t.texture_decode.size() + t.textures.size() + t.texels.size() + t.material_textures.size() +
+                t.blends.size() + t.record_kind.size() + t.blend_weights.size());
 }
 
 } // namespace gradus

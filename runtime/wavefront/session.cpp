@@ -76,7 +76,7 @@ std::vector<Buffer> make_scene_buffers(Device &device, const SceneTables &t, Pre
     numbers("light_alias", t.light_alias);
     reals("emissions", t.emissions);
     numbers("emission_alias", t.emission_alias);
-    if (!t.textures.empty()) {
+    if (!t.texture_reals.empty()) {
         reals("triangle_texcoords", t.triangle_texcoords);
         reals("sphere_axes", t.sphere_axes);
         reals("texture_reals", t.texture_reals);
@@ -84,6 +84,9 @@ std::vector<Buffer> make_scene_buffers(Device &device, const SceneTables &t, Pre
         numbers("textures", t.textures);
         numbers("texels", t.texels);
         numbers("material_textures", t.material_textures);
+        numbers("blends", t.blends);
+        numbers("record_kind", t.record_kind);
+        reals("blend_weights", t.blend_weights);
     }
     return buffers;
 }
