@@ -117,7 +117,7 @@ GradientPathTracer::GradientPathTracer(Device &device, const Scene &scene, const
       shade_with_offsets_(stages_.add(shade_stage(true))), shade_(stages_.add(shade_stage(false))),
       advance_(stages_.add(advance_stage("advance", "0", true))),
       advance_apart_(stages_.add(
-          advance_stage("advance apart", "1", session_.has("TRAIT_APART"), session_.textured_columns() > 0))),
+          advance_stage("advance apart", "1", session_.has("TRAIT_APART"), session_.surface_columns() > 0))),
       join_(stages_.add({.name = "join", .by_kind = true, .dirac = DiracKinds::alike, .numbers = {"first", "keeps"}})),
       count_(stages_.add(count_stage())), film_(session_, stages_, options_, "outcome") {
     const std::vector<std::uint32_t> kinds = material_kinds(scene, options.shift_threshold);
@@ -173,7 +173,7 @@ TableList GradientPathTracer::tables() const {
          .columns = with("TRAIT_APART", int(session_.vertex_columns(offset_vertex_columns))),
          .is_cleared = true},
         {.name = "offset_ray", .multiple = 4, .columns = with("TRAIT_APART", offset_ray_columns)},
-        {.name = "offset_surface", .multiple = 4, .columns = with("TRAIT_APART", int(session_.textured_columns()))},
+        {.name = "offset_surface", .multiple = 4, .columns = with("TRAIT_APART", int(session_.surface_columns()))},
         {.name = "offsets_state", .columns = with("TRAIT_APART", 1), .is_uint = true},
         {.name = "outcome", .rows = RowsOf::chunk, .columns = shift_outcomes, .is_uint = true, .is_cleared = true}};
 }
@@ -198,6 +198,7 @@ void GradientPathTracer::allocate() {
     session_.numbers["chunks_at_most"] = tables_->rows().chunks;
     session_.numbers["bins_of_phase"] = static_cast<std::uint32_t>(2 * session_.scene.kinds.size());
     session_.numbers["strip_first"] = session_.numbers["primary_shift"] = 0;
+    session_.numbers["first_sample_low"] = session_.numbers["first_sample_high"] = 0;
     set_divisor(session_, "strip", "strip_pixels", session_.pixels());
     session_.reals["shift_distance"] = options_.shift_distance * session_.scene.scene_diameter;
     stages_.build(session_, *tables_);
@@ -221,6 +222,9 @@ void GradientPathTracer::begin_pass(const Strip &strip) {
     set_divisor(session_, "strip", "strip_pixels", strip.rows * session_.film.crop_width);
     session_.numbers["strip_first"] = strip.first;
     session_.numbers["primary_shift"] = strip.first > 0 ? session_.film.crop_width : 0;
+    const std::uint64_t sample = first_sample_ + done_ / session_.pixels();
+    stages_.set("first_sample_low", std::uint32_t(sample));
+    stages_.set("first_sample_high", std::uint32_t(sample >> 32));
     for (const char *number : {"strip_pixels", "strip_multiplier", "strip_shift", "strip_first", "primary_shift"})
         stages_.set(number, session_.numbers[number]);
 }
@@ -235,7 +239,6 @@ void GradientPathTracer::trace_primaries(const Strip &strip) {
         if (!paths_.is_alive())
             break;
         paths_.trace();
-        paths_.read_materials();
         primary_.run(paths_.rays());
         paths_.drop();
     }
@@ -267,7 +270,7 @@ void GradientPathTracer::step_offset_paths() {
     const TraceCounts counts = trace_segments(session_.tracer, options_.precision, rays, links, session_.trace_seconds);
     session_.rays["offset"] += counts.extension + counts.shadow;
     if (tables_->has("offset_surface"))
-        paths_.read_materials((*tables_)["offset_ray"], 4 * stride, std::uint32_t(4 * capacity),
+        paths_.read_materials((*tables_)["offset_ray"], stride, 4, std::uint32_t(4 * capacity),
                               (*tables_)["offset_surface"]);
     for (const OwnVertices &own : vertices) {
         Stage &weigh = own.at_first ? weigh_ : weigh_apart_;

@@ -51,7 +51,7 @@ struct Mean {
 
 bool may_ask_for_photons(const Scene &scene, const RenderOptions &options) {
     const GatheringSurfaces surfaces = gathering_surfaces(scene, options.gather_roughness);
-    return !has_textures(scene) && !surfaces.passed.empty() && !surfaces.gathered.empty() && !scene.emitters.empty() &&
+    return !needs_material_stage(scene) && !surfaces.passed.empty() && !surfaces.gathered.empty() && !scene.emitters.empty() &&
            scene.settings.max_depth != 0 && scene.settings.max_depth != 1;
 }
 

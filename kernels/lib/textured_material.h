@@ -3,12 +3,13 @@
  * macros here are what they were without textures. */
 #ifndef GRADUS_LIB_TEXTURED_MATERIAL_H
 #define GRADUS_LIB_TEXTURED_MATERIAL_H
-//! traits: TRAIT_TEXTURED TRAIT_ANISOTROPIC TRAIT_SHADING_NORMALS
+//! traits: TRAIT_MATERIAL TRAIT_TEXTURED TRAIT_BLENDS TRAIT_ANISOTROPIC TRAIT_SHADING_NORMALS
+#include "kernels/lib/surface_point.h"
 #include "kernels/shared/material.h"
 #include "kernels/shared/tables.h"
 #include "kernels/shared/texture.h"
 
-#if TRAIT_TEXTURED
+#if TRAIT_MATERIAL
 
 GRADUS_LIB_BEGIN
 
@@ -23,6 +24,12 @@ GRADUS_LIB_BEGIN
 enum textured_column { GRADUS_MATERIAL_PARAMETERS(GRADUS_COLOR_COLUMNS, GRADUS_NUMBER_COLUMN, ) textured_columns };
 #undef GRADUS_COLOR_COLUMNS
 #undef GRADUS_NUMBER_COLUMN
+
+/* Columns of `surface` that follow; they are no part of tables of vertices. */
+enum surface_column {
+    surface_record = textured_columns,
+    surface_columns = surface_record + (TRAIT_BLENDS > 0 ? 1 : 0)
+};
 
 #define GRADUS_TAKE_COLOR(with, name, value, text)                                                                     \
     if (IS_TEXTURED(name)) {                                                                                           \
@@ -41,6 +48,21 @@ GRADUS_FN material material_with_textures(material m, GRADUS_GLOBAL const real *
 #undef GRADUS_TAKE_COLOR
 #undef GRADUS_TAKE_NUMBER
 
+/* The record that a blend has come to in a row of `surface`. */
+GRADUS_FN uint surface_record_at(GRADUS_GLOBAL const real *surface, size_t rows, size_t row) {
+    return *(GRADUS_GLOBAL const uint *)(surface + (size_t)surface_record * rows + row);
+}
+
+/* A hit as the stage `material` has it. */
+GRADUS_FN surface_point surface_point_chosen(surface_point point, GRADUS_GLOBAL const real *surface, size_t rows,
+                                             size_t row) {
+    (void)surface, (void)rows, (void)row;
+#if TRAIT_BLENDS
+    point.material = surface_record_at(surface, rows, row);
+#endif
+    return point;
+}
+
 GRADUS_LIB_END
 
 /* Where these columns begin in a table of vertices, after those that the scene has of GRADUS_SURFACE_VERTEX_COLUMNS. */
@@ -51,6 +73,8 @@ GRADUS_LIB_END
                    (size_t)ROWS_OF_##table)
 
 #define SURFACE_ARGUMENT , __global const real *surface
+/* A surface_point with what `surface` says in a row of it, which has `rows` rows. */
+#define CHOSEN_POINT(point, rows, row) surface_point_chosen(point, surface, rows, row)
 /* The material of a ray's hit, from the record and row `row` of `surface`, which has `rows` rows. */
 #define HIT_MATERIAL(record, rows, row)                                                                                \
     material_with_textures(material_load(materials, record, unit), surface, rows, row)
@@ -66,6 +90,7 @@ GRADUS_LIB_END
 #else
 
 #define SURFACE_ARGUMENT
+#define CHOSEN_POINT(point, rows, row) point
 #define HIT_MATERIAL(record, rows, row) material_load(materials, record, unit)
 #define VERTEX_MATERIAL(table, row) material_load(materials, AT_UINT(table, material, row), unit)
 #define SET_VERTEX_TEXTURED(table, to_row, rows, row)

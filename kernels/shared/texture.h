@@ -9,11 +9,11 @@
  * TRAIT_TEXTURES one for each of the features below that some texture has. */
 #ifndef GRADUS_SHARED_TEXTURE_H
 #define GRADUS_SHARED_TEXTURE_H
-//! traits: TRAIT_TEXTURED
+//! traits: TRAIT_MATERIAL
 #include "kernels/shared/bsdf_list.h"
 #include "kernels/shared/compat.h"
 
-#if TRAIT_TEXTURED || !defined(__OPENCL_VERSION__)
+#if TRAIT_MATERIAL || !defined(__OPENCL_VERSION__)
 
 #define GRADUS_TEXTURE_FIELDS(FIELD)                                                                                   \
     FIELD(texture, flags, "bits of texture_flag_...")                                                                  \
@@ -39,6 +39,12 @@
     FIELD(texture_real, color_1_r, "")                                                                                 \
     FIELD(texture_real, color_1_g, "")                                                                                 \
     FIELD(texture_real, color_1_b, "")
+
+/* By material record: of which others it is a blend. The weight is in `blend_weights`, by record. */
+#define GRADUS_BLEND_FIELDS(FIELD)                                                                                     \
+    FIELD(blend, first, "record of the first; blend_none where this is no blend")                                      \
+    FIELD(blend, second, "")                                                                                           \
+    FIELD(blend, weight_texture, "or texture_none")
 
 /* (u, v) at the three vertices of a triangle, and the axes of a sphere. */
 #define GRADUS_TRIANGLE_TEXCOORDS_FIELDS(FIELD)                                                                        \
@@ -74,6 +80,7 @@
 #define texture_flag_srgb 128u
 
 #define texture_none 0xFFFFFFFFu
+#define blend_none 0xFFFFFFFFu
 
 /* Bits of TRAIT_TEXTURES. */
 #define textures_of_bytes 1
@@ -94,6 +101,7 @@ GRADUS_LIB_BEGIN
 #define GRADUS_TEXTURE_INDEX(record, field, text) record##_##field,
 enum texture_field { GRADUS_TEXTURE_FIELDS(GRADUS_TEXTURE_INDEX) texture_stride };
 enum texture_real_field { GRADUS_TEXTURE_REAL_FIELDS(GRADUS_TEXTURE_INDEX) texture_real_stride };
+enum blend_field { GRADUS_BLEND_FIELDS(GRADUS_TEXTURE_INDEX) blend_stride };
 enum texcoords_field { GRADUS_TRIANGLE_TEXCOORDS_FIELDS(GRADUS_TEXTURE_INDEX) texcoords_stride };
 enum sphere_axes_field { GRADUS_SPHERE_AXES_FIELDS(GRADUS_TEXTURE_INDEX) sphere_axes_stride };
 #undef GRADUS_TEXTURE_INDEX

@@ -53,9 +53,11 @@ STAGE advance(uint count, uint unit, uint first, uint to, uint stride, uint capa
         const uint primitive = AT_UINT(offset_ray, primitive, sent);
         const int is_hit = primitive < ray_first_special;
         const vec3 direction = AT_V3(offset_ray, direction, sent);
-        const surface_point point = surface_point_of(
-            triangles, triangle_normals, triangle_tangents, spheres, unit, triangle_count, primitive_material,
-            material_back, is_hit ? primitive : 0u, AT_V3(offset_ray, origin, sent), direction);
+        const surface_point point =
+            CHOSEN_POINT(surface_point_of(triangles, triangle_normals, triangle_tangents, spheres, unit, triangle_count,
+                                          primitive_material, material_back, is_hit ? primitive : 0u,
+                                          AT_V3(offset_ray, origin, sent), direction),
+                         4u * capacity, sent);
         const int is_own = is_hit & (ratio >= R(0)) & (state < connection_recent);
         SET_SURFACE_VERTEX(offset_vertex, at, is_own ? material_kind[point.material] : kind_none, point, direction)
         SET_VERTEX_TEXTURED(offset_vertex, at, 4u * capacity, sent)

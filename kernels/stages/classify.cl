@@ -11,10 +11,15 @@
 //! traits: TRAIT_ENVIRONMENT TRAIT_TWO_FACED TRAIT_GRADIENT TRAIT_APART
 #include "kernels/lib/gradient.h"
 #include "kernels/lib/surface_side.h"
+#include "kernels/lib/textured_material.h"
 #include "kernels/shared/stage.h"
 
 STAGE classify(uint count, uint unit, uint capacity, __global const real *ray, __global uint *bin,
                __global const uint *primitive_bin
+#if TRAIT_BLENDS
+               ,
+               __global const real *surface, __global const uint *record_kind
+#endif
 #if TRAIT_TWO_FACED
                ,
                __global const uint *primitive_back_bin, __global const real *triangles,
@@ -57,6 +62,11 @@ STAGE classify(uint count, uint unit, uint capacity, __global const real *ray, _
     const uint back_bin = primitive_back_bin[present];
     hit_bin = behind ? back_bin : hit_bin;
 #endif
+#if TRAIT_BLENDS
+    /* Of the kind that the blend has come to; whether it emits is as it was. */
+    const uint chosen = surface_record_at(surface, capacity, row);
+    hit_bin = 1u + 2u * record_kind[hit ? chosen : 0u] + ((hit_bin - 1u) & 1u);
+#endif
     uint escaped_bin = 0u;
 #if GATHER
     const uint sided_material = primitive_material[present];
@@ -64,6 +74,9 @@ STAGE classify(uint count, uint unit, uint capacity, __global const real *ray, _
 #if TRAIT_TWO_FACED
     const uint back = material_back[record];
     record = (sided_material & material_two_sided) != 0u && behind ? back : record;
+#endif
+#if TRAIT_BLENDS
+    record = hit ? chosen : 0u;
 #endif
     const uint gathers = material_gathers[record] != gathers_nowhere ? 1u : 0u;
     const uint emits = (hit_bin & 1u) == 0u ? 1u : 0u;

@@ -1,9 +1,16 @@
 /* material: reads the textures of what each ray met, before `classify`: leaves in its row of `surface` the textured
  * parameters of the material there, those of GRADUS_MATERIAL_PARAMETERS in TRAIT_TEXTURED. A parameter that this
  * material has as a constant is left as that. `traced` is a table of rays, of traced_rows rows like `surface`. Rays
- * that met nothing leave what nobody reads. */
-//! traits: TRAIT_TEXTURED TRAIT_TWO_FACED TRAIT_SPHERES TRAIT_TRIANGLES
+ * that met nothing leave what nobody reads.
+ *
+ * TRAIT_BLENDS: also the record that a blend has come to, chosen by a number of the path's key and depth, which its
+ * offset paths share: so it is a coordinate of the paths that shifts keep. Of first vertices, where offset paths are
+ * those of the neighbours, all pixels of a sample share it (TRAIT_SHARED_JITTER). Plane j has the rays of offset path
+ * j, plane_rows rows further on each. OF_LIGHT_PATHS: rays of light paths. */
+//! traits: TRAIT_TEXTURED TRAIT_TWO_FACED TRAIT_SPHERES TRAIT_TRIANGLES TRAIT_BLENDS TRAIT_SHARED_JITTER
 #include "kernels/lib/angle.h"
+#include "kernels/lib/division.h"
+#include "kernels/lib/random.h"
 #include "kernels/lib/surface_side.h"
 #include "kernels/lib/texture_lookup.h"
 #include "kernels/lib/textured_material.h"
@@ -29,7 +36,7 @@
 #define LEAVE_NUMBER(with, name, value, text)                                                                          \
     if (IS_TEXTURED(name)) {                                                                                           \
         LOOK_UP(name)                                                                                                  \
-        LEAVE(name, name, R(0.212671) * looked_up.r + R(0.715160) * looked_up.g + R(0.072169) * looked_up.b)           \
+        LEAVE(name, name, texture_luminance(looked_up))                                                                \
     }
 
 STAGE read_material(uint count, uint unit, uint traced_rows, __global const real *traced, __global real *surface,
@@ -42,10 +49,30 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
                     ,
                     __global const real *triangle_normals, __global const uint *material_back
 #endif
+#if TRAIT_BLENDS
+                    ,
+                    uint plane_rows, uint capacity, __global const uint *blends, __global const real *blend_weights
+#if OF_LIGHT_PATHS
+                    ,
+                    __global const real *light_path
+#else
+                    ,
+                    __global const real *path
+#endif
+#if TRAIT_SHARED_JITTER
+                    ,
+                    uint first_sample_low, uint first_sample_high, uint pixels_multiplier, uint pixels_shift,
+                    uint seed_low, uint seed_high
+#endif
+#else
+                    ,
+                    uint plane_rows
+#endif
 ) {
-    const size_t row = work_item();
-    if (row >= count)
+    const size_t i = work_item();
+    if (i >= count)
         return;
+    const size_t row = (size_t)get_global_id(2) * plane_rows + i;
     const uint met = AT_UINT(traced, primitive, row);
     const uint primitive = met < ray_first_special ? met : 0u;
     const vec3 direction = AT_V3(traced, direction, row);
@@ -80,6 +107,43 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
     const int is_sphere = !TRAIT_TRIANGLES || primitive >= triangle_count;
     u = is_sphere ? around : u;
     v = is_sphere ? down : v;
+#endif
+#if TRAIT_BLENDS
+#if OF_LIGHT_PATHS
+    const uint key_0 = AT_UINT(light_path, key_0, i), key_1 = AT_UINT(light_path, key_1, i);
+    const uint depth = AT_UINT(light_path, depth, i);
+#else
+    const uint key_0 = AT_UINT(path, key_0, i), key_1 = AT_UINT(path, key_1, i);
+    const uint depth = AT_UINT(path, depth, i);
+#endif
+    real choice = random_draw(key_0, key_1, random_dimension_blend(depth)).a;
+#if TRAIT_SHARED_JITTER
+    /* An additive sequence, as the places within the pixel are: what all pixels share does not average out. */
+    const uint sample = first_sample_low + divide(AT_UINT(path, slot, i), pixels_multiplier, pixels_shift);
+    const uint high = first_sample_high + (sample < first_sample_low ? 1u : 0u);
+    const random_bits start = random_key(seed_low, seed_high, 0xFFFFFFFDu, 0u, high);
+    const real shared = random_unit(start.x + sample * 2654435769u);
+    choice = depth == 0u ? shared : choice;
+#endif
+#pragma unroll
+    for (uint level = 0; level < TRAIT_BLENDS; ++level) {
+        const uint first = FIELD_OF(blend, blends, record, first), second = FIELD_OF(blend, blends, record, second);
+        const int is_blend = first != blend_none;
+        real weight = blend_weights[record];
+#if TRAIT_TEXTURES
+        const uint number = FIELD_OF(blend, blends, record, weight_texture);
+        const int is_constant = number == texture_none;
+        const real looked_up = texture_luminance(
+            texture_lookup(textures, texture_reals, texels, texture_decode, unit, is_constant ? 0u : number, u, v));
+        weight = is_constant ? weight : looked_up;
+#endif
+        /* What is left of the number decides on the next level. */
+        const int takes_second = choice < weight;
+        const real rest = takes_second ? choice / weight : (choice - weight) / (R(1) - weight);
+        record = is_blend ? (takes_second ? second : first) : record;
+        choice = is_blend ? r_min(rest, R(0.99999994)) : choice;
+    }
+    *(GRADUS_GLOBAL uint *)(surface + (size_t)surface_record * traced_rows + row) = record;
 #endif
     GRADUS_MATERIAL_PARAMETERS(LEAVE_COLOR, LEAVE_NUMBER, )
 }

@@ -18,9 +18,11 @@ STAGE primary(uint count, uint unit, uint capacity, uint slots, __global const r
     const uint primitive = AT_UINT(ray, primitive, row);
     const vec3 direction = AT_V3(ray, direction, row);
     const int is_hit = primitive < ray_first_special;
-    const surface_point point = surface_point_of(triangles, triangle_normals, triangle_tangents, spheres, unit,
-                                                 triangle_count, primitive_material, material_back,
-                                                 is_hit ? primitive : 0u, AT_V3(ray, origin, row), direction);
+    const surface_point point =
+        CHOSEN_POINT(surface_point_of(triangles, triangle_normals, triangle_tangents, spheres, unit, triangle_count,
+                                      primitive_material, material_back, is_hit ? primitive : 0u,
+                                      AT_V3(ray, origin, row), direction),
+                     capacity, row);
     AT_UINT(primary, key_0, slot) = AT_UINT(path, key_0, row);
     AT_UINT(primary, key_1, slot) = AT_UINT(path, key_1, row);
     AT_UINT(primary, primitive, slot) = primitive;

@@ -48,9 +48,10 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
 #if TRAIT_REFRACTION
     const real eta_before = AT_IN(path_old, path, eta, old);
 #endif
-    const surface_point point =
+    const surface_point point = CHOSEN_POINT(
         surface_point_of(triangles, triangle_normals, triangle_tangents, spheres, unit, triangle_count,
-                         primitive_material, material_back, AT_UINT_IN(ray_old, ray, primitive, old), from, direction);
+                         primitive_material, material_back, AT_UINT_IN(ray_old, ray, primitive, old), from, direction),
+        capacity, old);
     const material m = HIT_MATERIAL(point.material, capacity, old);
     const frame axes = surface_frame(point.shading, point.along, m);
     const vec3 wi = frame_to_local(axes, v3_neg(direction));

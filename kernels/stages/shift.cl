@@ -37,7 +37,7 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
             __global real *offset, __global real *shift, __global real *evaluation, __global real *link,
             __global const real *materials, __global const real *triangles, __global const real *spheres,
             uint triangle_count, __global const uint *primitive_material, __global const uint *primitive_light,
-            __global const uint *material_back, __global const uint *material_kind, real scene_diameter
+            __global const uint *material_back, __global const uint *material_kind, real scene_diameter SURFACE_ARGUMENT
 #if SAMPLES_LIGHTS
             ,
             __global const real *lights, __global const uint *light_kinds, __global const uint *light_alias,
@@ -90,7 +90,10 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
 #if TRAIT_TWO_FACED
     is_behind = is_met_from_behind(triangle_normals, unit, triangle_count, present, hit, base_direction);
 #endif
-    const uint next_kind = kind_of_primitive(primitive_material, material_back, material_kind, present, is_behind);
+    uint next_kind = kind_of_primitive(primitive_material, material_back, material_kind, present, is_behind);
+#if TRAIT_BLENDS
+    next_kind = material_kind[is_hit ? surface_record_at(surface, capacity, row) : 0u];
+#endif
     const int reconnectable = is_escaped | is_reconnectable(next_kind, next_light);
 #endif
 

@@ -16,6 +16,7 @@
 #include "kernels/lib/gradient.h"
 #include "kernels/lib/reconnectable.h"
 #include "kernels/lib/surface_side.h"
+#include "kernels/lib/textured_material.h"
 #include "kernels/lib/weighted_difference.h"
 
 /* Sums begin at first vertices. */
@@ -40,6 +41,10 @@ STAGE weigh(uint count, uint unit, uint first, uint stride, uint capacity, uint 
             __global const real *triangles, __global const real *spheres, uint triangle_count,
             __global const uint *primitive_material, __global const uint *primitive_light,
             __global const uint *material_back, __global const uint *material_kind
+#if TRAIT_BLENDS
+            ,
+            __global const real *surface, __global const real *offset_surface
+#endif
 #if TRAIT_TWO_FACED
             ,
             __global const real *triangle_normals
@@ -79,8 +84,11 @@ STAGE weigh(uint count, uint unit, uint first, uint stride, uint capacity, uint 
     base_is_behind = primitive_is_behind(triangles, triangle_normals, spheres, unit, triangle_count,
                                          is_hit ? primitive : 0u, AT_V3(ray, origin, row), AT_V3(ray, direction, row));
 #endif
-    const uint next_kind =
+    uint next_kind =
         kind_of_primitive(primitive_material, material_back, material_kind, is_hit ? primitive : 0u, base_is_behind);
+#if TRAIT_BLENDS
+    next_kind = material_kind[is_hit ? surface_record_at(surface, capacity, row) : 0u];
+#endif
     int any_apart = 0, all_alike = 1, meets_light = 0;
 #endif
 #pragma unroll
@@ -146,7 +154,10 @@ STAGE weigh(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         is_behind = primitive_is_behind(triangles, triangle_normals, spheres, unit, triangle_count, met,
                                         AT_V3(offset_ray, origin, sent), AT_V3(offset_ray, direction, sent));
 #endif
-        const uint met_kind = kind_of_primitive(primitive_material, material_back, material_kind, met, is_behind);
+        uint met_kind = kind_of_primitive(primitive_material, material_back, material_kind, met, is_behind);
+#if TRAIT_BLENDS
+        met_kind = material_kind[meets ? surface_record_at(offset_surface, 4u * (size_t)capacity, sent) : 0u];
+#endif
         int would_reconnect = is_reconnectable(met_kind, primitive_light[met]);
 #if TRAIT_SHIFT_DISTANCE
         const vec3 met_position = primitive_hit_of(triangles, spheres, unit, triangle_count, met,

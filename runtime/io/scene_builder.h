@@ -62,6 +62,10 @@ class SceneBuilder {
                                          const Location &location, bool &is_srgb);
     /// The texture that an element describes, with its values clamped to the range: one of the scene's.
     FoundTexture texture(const Element &element, double lowest, double highest);
+    /// A mixture of two sides of surfaces (Blend in runtime/scene/scene.h).
+    Bsdf blend(const Bsdf &first, const Bsdf &second, const Number &weight);
+    /// Whether light passes a side of a surface, or any part of a blend there.
+    bool transmits(const Bsdf &bsdf) const;
     /// Builds a nested object by its plugin. Throws SceneError where its type is not known.
     template <typename Result>
     Result build_object(const Element &element);

@@ -1,7 +1,9 @@
-// The part of the scene builder that reads textures: each picture once, each texture once for each range.
+// The part of the scene builder that reads textures, and keeps blends: each picture once, each texture once for each
+// range.
 #include "runtime/error.h"
 #include "runtime/io/bitmap_reader.h"
 #include "runtime/io/scene_builder.h"
+#include "runtime/scene/traits.h"
 
 #include <fmt/format.h>
 
@@ -73,6 +75,25 @@ FoundTexture SceneBuilder::texture(const Element &element, double lowest, double
     found.index = std::int32_t(scene_.textures.size());
     scene_.textures.push_back(std::move(texture));
     textures_.emplace(key, found);
+    return found;
+}
+
+Bsdf SceneBuilder::blend(const Bsdf &first, const Bsdf &second, const Number &weight) {
+    Blend blend;
+    blend.weight = weight;
+    blend.first = std::uint32_t(scene_.blended.size());
+    scene_.blended.push_back(first);
+    blend.second = std::uint32_t(scene_.blended.size());
+    scene_.blended.push_back(second);
+    Bsdf bsdf;
+    bsdf.blend = std::int32_t(scene_.blends.size());
+    scene_.blends.push_back(blend);
+    return bsdf;
+}
+
+bool SceneBuilder::transmits(const Bsdf &bsdf) const {
+    bool found = false;
+    for_each_part(scene_, bsdf, [&](const Bsdf &part) { found |= bsdf_kind_traits(part.kind).transmits; });
     return found;
 }
 

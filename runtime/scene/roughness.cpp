@@ -23,9 +23,9 @@ GatheringSurfaces gathering_surfaces(const Scene &scene, double threshold) {
     for (const Shape &shape : scene.shapes)
         used.insert(shape.material);
     for (const std::uint32_t material : used) {
-        count(scene.materials[material].front);
+        for_each_part(scene, scene.materials[material].front, count);
         if (scene.materials[material].two_sided)
-            count(scene.materials[material].back);
+            for_each_part(scene, scene.materials[material].back, count);
     }
     return surfaces;
 }

@@ -90,16 +90,26 @@ struct Shape {
 enum class BsdfKind : std::uint32_t { GRADUS_BSDF_KINDS(GRADUS_KIND_NAME) };
 #undef GRADUS_KIND_NAME
 
+constexpr std::int32_t no_blend = -1;
+
 /// One side of a surface. The members are those of GRADUS_MATERIAL_PARAMETERS; what its kind does not name is ignored.
 #define GRADUS_COLOR_MEMBER(with, name, value, text) Color name{value, value, value};
 #define GRADUS_NUMBER_MEMBER(with, name, value, text) Number name = value;
 struct Bsdf {
     BsdfKind kind = BsdfKind::diffuse;
     GRADUS_MATERIAL_PARAMETERS(GRADUS_COLOR_MEMBER, GRADUS_NUMBER_MEMBER, )
+    std::int32_t blend = no_blend; ///< index into Scene::blends, which then says all: a mixture of two others
     bool operator==(const Bsdf &) const = default;
 };
 #undef GRADUS_COLOR_MEMBER
 #undef GRADUS_NUMBER_MEMBER
+
+/// Two BSDFs of Scene::blended, each of which may be a blend again. A path meets one of them at a vertex, the second
+/// with the probability `weight`.
+struct Blend {
+    std::uint32_t first = 0, second = 0;
+    Number weight = 0.5f;
+};
 
 /// A BSDF for the front side of a surface and one for its back. One-sided kinds (diffuse, conductors) absorb what
 /// arrives from behind unless two_sided; then `back` describes the back side as seen from there.
@@ -175,6 +185,8 @@ struct Scene {
     std::vector<Shape> shapes;
     std::vector<Material> materials;
     std::vector<Texture> textures;
+    std::vector<Bsdf> blended; ///< what blends are made of
+    std::vector<Blend> blends;
     std::vector<Emitter> emitters;
     Camera camera;
     FilmSettings film;

@@ -149,7 +149,7 @@ void add_mesh(const Scene &scene, const Shape &shape, const TraitMap &traits, Sc
                 tables.triangle_normals.insert(tables.triangle_normals.end(), {n.x, n.y, n.z});
             }
         }
-        if (traits.at("TRAIT_TEXTURED"))
+        if (traits.at("TRAIT_MATERIAL"))
             add_triangle_texcoords(mesh, t, tables);
         if (traits.at("TRAIT_ANISOTROPIC")) {
             Vector3 along{};
@@ -296,6 +296,7 @@ std::vector<Bsdf> material_records(const Scene &scene) {
     for (const Material &material : scene.materials)
         if (has_own_back(material))
             records.push_back(material.back);
+    records.insert(records.end(), scene.blended.begin(), scene.blended.end());
     return records;
 }
 
@@ -319,8 +320,10 @@ SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits) {
     if (!tables.environment && traits.at("TRAIT_LIGHT_ENVIRONMENT"))
         tables.environment = std::make_shared<const EnvironmentMap>(no_environment_map());
     add_materials(scene, tables);
-    if (traits.at("TRAIT_TEXTURED"))
+    if (traits.at("TRAIT_MATERIAL")) {
         add_textures(scene, tables);
+        add_blends(scene, tables);
+    }
     tables.camera = make_camera_record(scene.camera, scene.film);
     // Kernels compiled for both kinds of primitives read a record of each, whichever they then take.
     if (tables.triangles.empty())
@@ -337,7 +340,8 @@ std::size_t table_bytes(const SceneTables &t) {
                 t.primitive_light.size() + t.primitive_bin.size() + t.primitive_back_bin.size() +
                 t.material_back.size() + t.light_kinds.size() + t.light_alias.size() + t.emissions.size() +
                 t.emission_alias.size() + t.triangle_texcoords.size() + t.sphere_axes.size() + t.texture_reals.size() +
-                t.texture_decode.size() + t.textures.size() + t.texels.size() + t.material_textures.size());
+                t.texture_decode.size() + t.textures.size() + t.texels.size() + t.material_textures.size() +
+                t.blends.size() + t.record_kind.size() + t.blend_weights.size());
 }
 
 } // namespace gradus

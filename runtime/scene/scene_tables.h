@@ -18,6 +18,9 @@ struct SceneTables {
     /// Only where textures are: kernels/shared/texture.h.
     std::vector<float> triangle_texcoords, sphere_axes, texture_reals, texture_decode;
     std::vector<std::uint32_t> textures, texels, material_textures;
+    /// By material record, where materials are blended: records of kernels/shared/texture.h, and the place in `kinds`.
+    std::vector<std::uint32_t> blends, record_kind;
+    std::vector<float> blend_weights;
     std::vector<std::uint32_t> material_back;            ///< by material record: the record of its back
     std::vector<std::uint32_t> light_kinds, light_alias; ///< by light
     /// By light, what light paths choose by: records of kernels/shared/scene_records.h, and the alias.
@@ -33,7 +36,8 @@ struct SceneTables {
 /// Lays out the scene for these traits. `film_width` and `film_height` are those of the full film.
 SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits);
 
-/// The BSDF of each material record: the fronts of all materials, then the backs that differ from them.
+/// The BSDF of each material record: the fronts of all materials, then the backs that differ from them, then what
+/// blends are made of.
 std::vector<Bsdf> material_records(const Scene &scene);
 
 /// Bytes that the tables take.

@@ -3,6 +3,7 @@
 #include "kernels/shared/texture.h"
 #include "runtime/error.h"
 
+#include <algorithm>
 #include <map>
 
 namespace gradus {
@@ -79,6 +80,25 @@ void add_textures(const Scene &scene, SceneTables &tables) {
         for_each_textured_parameter(bsdf, [&](int number, std::int32_t texture) {
             tables.material_textures[first + std::size_t(number)] = std::uint32_t(texture);
         });
+    }
+    if (scene.textures.empty()) { // kernels may ask for one, whatever they then take
+        tables.textures.assign(texture_stride, 0);
+        tables.texture_reals.assign(texture_real_stride, 0);
+    }
+}
+
+void add_blends(const Scene &scene, SceneTables &tables) {
+    const std::vector<Bsdf> records = material_records(scene);
+    const auto parts = std::uint32_t(records.size() - scene.blended.size());
+    for (const Bsdf &bsdf : records) {
+        const auto kind = std::ranges::find(tables.kinds, bsdf_kind_name(bsdf));
+        const bool is_blend = bsdf.blend != no_blend;
+        tables.record_kind.push_back(
+            is_blend || kind == tables.kinds.end() ? 0 : std::uint32_t(kind - tables.kinds.begin()));
+        const Blend blend = is_blend ? scene.blends[std::size_t(bsdf.blend)] : Blend();
+        tables.blends.insert(tables.blends.end(), {is_blend ? parts + blend.first : blend_none, parts + blend.second,
+                                                   std::uint32_t(blend.weight.texture)});
+        tables.blend_weights.push_back(blend.weight.value);
     }
 }
 

@@ -12,4 +12,7 @@ void add_triangle_texcoords(const Mesh &mesh, const std::array<std::uint32_t, 3>
 /// Error(ExitCode::device) for more texels than kernels can name.
 void add_textures(const Scene &scene, SceneTables &tables);
 
+/// By material record, what it blends and the kind that it is of.
+void add_blends(const Scene &scene, SceneTables &tables);
+
 } // namespace gradus

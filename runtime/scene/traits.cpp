@@ -32,6 +32,8 @@ constexpr TraitText descriptions[] = {
     {"TRAIT_LIGHT_ENVIRONMENT", "an environment map"},
     {"TRAIT_LIGHT_SPOT", "spots"},
     {"TRAIT_HIDE_EMITTERS", "emitters that the camera does not see"},
+    {"TRAIT_MATERIAL", "materials that differ from place to place or from path to path"},
+    {"TRAIT_BLENDS", "mixtures of BSDFs, how deeply nested"},
     {"TRAIT_TEXTURED", "parameters of materials that are textures, a bit each"},
     {"TRAIT_TEXTURES", "what textures have, a bit each"},
     {"TRAIT_FILTER_TENT", "tent pixel filter"},
@@ -129,12 +131,24 @@ void for_each_textured_parameter(const Bsdf &bsdf, const std::function<void(int 
 #undef GRADUS_VISIT
 }
 
-bool has_textures(const Scene &scene) {
-    bool found = false;
-    for_each_bsdf(
-        scene, [&](const Bsdf &bsdf) { for_each_textured_parameter(bsdf, [&](int, std::int32_t) { found = true; }); });
-    return found;
+int blend_depth(const Scene &scene, const Bsdf &bsdf) {
+    if (bsdf.blend == no_blend)
+        return 0;
+    const Blend &blend = scene.blends[std::size_t(bsdf.blend)];
+    return 1 +
+           std::max(blend_depth(scene, scene.blended[blend.first]), blend_depth(scene, scene.blended[blend.second]));
 }
+
+void for_each_blend(const Scene &scene, const Bsdf &bsdf, const std::function<void(const Blend &)> &visit) {
+    if (bsdf.blend == no_blend)
+        return;
+    const Blend &blend = scene.blends[std::size_t(bsdf.blend)];
+    visit(blend);
+    for_each_blend(scene, scene.blended[blend.first], visit);
+    for_each_blend(scene, scene.blended[blend.second], visit);
+}
+
+bool needs_material_stage(const Scene &scene) { return scene_traits(scene).at("TRAIT_MATERIAL") != 0; }
 
 TraitMap scene_traits(const Scene &scene) {
     TraitMap traits;
@@ -148,6 +162,13 @@ TraitMap scene_traits(const Scene &scene) {
         if (shape.emitter >= 0)
             traits[mesh ? "TRAIT_LIGHT_TRIANGLE" : "TRAIT_LIGHT_SPHERE"] = 1;
         const Material &material = scene.materials[shape.material];
+        for (const Bsdf *side : {&material.front, &material.back}) {
+            traits["TRAIT_BLENDS"] = std::max(traits["TRAIT_BLENDS"], blend_depth(scene, *side));
+            for_each_blend(scene, *side, [&](const Blend &blend) {
+                if (blend.weight.texture != no_texture)
+                    traits["TRAIT_TEXTURES"] |= texture_features(scene.textures[std::size_t(blend.weight.texture)]);
+            });
+        }
         if (material.two_sided) {
             traits["TRAIT_TWO_SIDED"] = 1;
             if (!(material.front == material.back))
@@ -165,6 +186,7 @@ TraitMap scene_traits(const Scene &scene) {
             traits["TRAIT_TEXTURES"] |= texture_features(scene.textures[std::size_t(texture)]);
         });
     });
+    traits["TRAIT_MATERIAL"] = traits["TRAIT_TEXTURED"] != 0 || traits["TRAIT_BLENDS"] > 0;
     for (const Emitter &emitter : scene.emitters) {
         if (emitter.value == Rgb{})
             continue; // black: no light
@@ -214,8 +236,8 @@ std::string trait_description(const std::string &name) {
 TraitMap with_all_traits(TraitMap traits) {
     for (auto &[name, value] : traits) {
         // The filter and hidden emitters change the picture; the rest only makes room for what is not there.
-        const bool setting =
-            name.starts_with("TRAIT_FILTER") || name == "TRAIT_HIDE_EMITTERS" || name.starts_with("TRAIT_TEXTURE");
+        const bool setting = name.starts_with("TRAIT_FILTER") || name == "TRAIT_HIDE_EMITTERS" ||
+                             name.starts_with("TRAIT_TEXTURE") || name == "TRAIT_MATERIAL" || name == "TRAIT_BLENDS";
         if (!setting)
             value = 1;
     }

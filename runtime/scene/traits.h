@@ -30,8 +30,8 @@ std::uint32_t textured_column_count(int textured);
 /// in GRADUS_MATERIAL_PARAMETERS, its index in Scene::textures.
 void for_each_textured_parameter(const Bsdf &bsdf, const std::function<void(int number, std::int32_t texture)> &visit);
 
-/// Whether a shape has a material with textures.
-bool has_textures(const Scene &scene);
+/// Whether a shape has a material with textures or a blend, which the stage `material` reads.
+bool needs_material_stage(const Scene &scene);
 
 /// One line that says what a trait stands for; empty for an unknown one.
 std::string trait_description(const std::string &name);
@@ -63,16 +63,31 @@ BsdfKind bsdf_kind_named(const std::string &name);
 /// That place for the kind of one Bsdf.
 std::uint32_t bsdf_kind_number(const Bsdf &bsdf);
 
-/// Calls visit(bsdf) for each side of each material that a shape has.
+/// Calls visit(bsdf) for a BSDF, or for those that it blends.
+template <class Visit>
+void for_each_part(const Scene &scene, const Bsdf &bsdf, const Visit &visit) {
+    if (bsdf.blend == no_blend)
+        return visit(bsdf);
+    const Blend &blend = scene.blends[std::size_t(bsdf.blend)];
+    for_each_part(scene, scene.blended[blend.first], visit);
+    for_each_part(scene, scene.blended[blend.second], visit);
+}
+
+/// Calls visit(bsdf) for each side of each material that a shape has; of blends for their parts.
 template <class Visit>
 void for_each_bsdf(const Scene &scene, Visit visit) {
     for (const Shape &shape : scene.shapes) {
         const Material &material = scene.materials[shape.material];
-        visit(material.front);
+        for_each_part(scene, material.front, visit);
         if (material.two_sided)
-            visit(material.back);
+            for_each_part(scene, material.back, visit);
     }
 }
+
+/// Blends within blends that a BSDF has, itself counted in.
+int blend_depth(const Scene &scene, const Bsdf &bsdf);
+/// Calls visit(blend) for each blend within a BSDF.
+void for_each_blend(const Scene &scene, const Bsdf &bsdf, const std::function<void(const Blend &)> &visit);
 
 /// The kinds that occur on the scene's shapes, in the order of GRADUS_BSDF_KINDS.
 std::vector<std::string> bsdf_kinds(const Scene &scene);

@@ -82,7 +82,7 @@ std::vector<Buffer> make_scene_buffers(Device &device, const SceneTables &t, Pre
         numbers("environment_cells", t.environment->cells);
         numbers("environment_strips", t.environment->strips);
     }
-    if (!t.textures.empty()) {
+    if (!t.texture_reals.empty()) {
         reals("triangle_texcoords", t.triangle_texcoords);
         reals("sphere_axes", t.sphere_axes);
         reals("texture_reals", t.texture_reals);
@@ -90,6 +90,9 @@ std::vector<Buffer> make_scene_buffers(Device &device, const SceneTables &t, Pre
         numbers("textures", t.textures);
         numbers("texels", t.texels);
         numbers("material_textures", t.material_textures);
+        numbers("blends", t.blends);
+        numbers("record_kind", t.record_kind);
+        reals("blend_weights", t.blend_weights);
     }
     return buffers;
 }

@@ -56,6 +56,8 @@ struct Session {
     }
     /// Columns that tables of surface vertices have behind those: textured parameters.
     std::uint32_t textured_columns() const { return textured_column_count(traits.at("TRAIT_TEXTURED")); }
+    /// Columns of `surface`: those, and the record that a blend has come to.
+    std::uint32_t surface_columns() const { return textured_columns() + (has("TRAIT_BLENDS") ? 1 : 0); }
     /// Of so many columns of a table of surface vertices those that are allocated.
     std::uint32_t vertex_columns(std::uint32_t all) const {
         return all - vertex_columns_not_needed() + textured_columns();

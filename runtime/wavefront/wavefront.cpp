@@ -21,11 +21,12 @@ StageDeclaration partition_stage(const char *entry, const char *name, std::vecto
     return stage;
 }
 
-StageDeclaration material_stage(const Session &session) {
+StageDeclaration material_stage(const Session &session, bool of_light_paths) {
     return {.name = "material",
             .entry = "read_material",
-            .is_wanted = session.textured_columns() > 0,
-            .numbers = {"traced_rows"},
+            .definitions = {{"OF_LIGHT_PATHS", of_light_paths ? "1" : "0"}},
+            .is_wanted = session.surface_columns() > 0,
+            .numbers = {"traced_rows", "plane_rows"},
             .tables = {{"traced", "ray"}}};
 }
 
@@ -41,8 +42,9 @@ StageDeclaration classify_stage(const std::map<std::string, std::string> &defini
 } // namespace
 
 Wavefront::Wavefront(Session &session, Stages &stages, const BinLayout &layout,
-                     const std::map<std::string, std::string> &definitions, const std::vector<std::string> &numbers)
-    : session_(session), layout_(layout), material_(stages.add(material_stage(session))),
+                     const std::map<std::string, std::string> &definitions, const std::vector<std::string> &numbers,
+                     bool of_light_paths)
+    : session_(session), layout_(layout), material_(stages.add(material_stage(session, of_light_paths))),
       classify_(stages.add(classify_stage(definitions, numbers))),
       count_(stages.add(partition_stage("partition_count", "partition count", {"bins", "rows"}))),
       scan_(stages.add(partition_stage("partition_scan", "partition scan", {"bins", "chunks"}))),
@@ -59,7 +61,7 @@ TableList Wavefront::tables() const {
 TableList Wavefront::ray_tables() const {
     const std::uint32_t bins = layout_.bins();
     return {{.name = "ray", .columns = ray_columns, .alternates = true},
-            {.name = "surface", .columns = session_.textured_columns()},
+            {.name = "surface", .columns = session_.surface_columns()},
             {.name = "bin", .is_uint = true},
             {.name = "index", .is_uint = true},
             {.name = "chunk_offset", .rows = RowsOf::chunk, .columns = bins, .is_uint = true},
@@ -92,25 +94,21 @@ void Wavefront::trace() {
                        session_.trace_seconds);
     session_.rays["extension"] += counts.extension;
     session_.rays["shadow"] += counts.shadow;
-}
-
-void Wavefront::read_materials() {
     if (material_.is_wanted())
-        read_materials((*tables_)["ray"], rays(), tables_->rows().paths, (*tables_)["surface"]);
+        read_materials((*tables_)["ray"], this->rays(), 1, std::uint32_t(rows), (*tables_)["surface"]);
 }
 
-void Wavefront::read_materials(const Buffer &rays, std::uint32_t rows, std::uint32_t table_rows,
+void Wavefront::read_materials(const Buffer &rays, std::uint32_t rows, std::uint32_t planes, std::uint32_t table_rows,
                                const Buffer &surface) {
     if (!material_.is_wanted())
         return;
     material_.bind("traced", rays);
     material_.bind("surface", surface);
-    material_.run(rows, {{"traced_rows", table_rows}});
+    material_.run_planes(0, rows, planes, {{"traced_rows", table_rows}, {"plane_rows", rows}});
 }
 
 const Hits &Wavefront::partition(LaunchNumbers numbers) {
     const std::uint32_t bins = layout_.bins(), chunks = chunks_of(rays());
-    read_materials();
     classify_.run(rays(), numbers);
     count_.run(chunks, {{"bins", bins}, {"rows", rays()}});
     scan_.run(1, {{"bins", bins}, {"chunks", chunks}});

@@ -68,7 +68,8 @@ class Wavefront {
     /// Declares the stages `classify` (with `definitions` and the launch numbers `numbers` of its own) and of the
     /// partition.
     Wavefront(Session &session, Stages &stages, const BinLayout &layout,
-              const std::map<std::string, std::string> &definitions = {}, const std::vector<std::string> &numbers = {});
+              const std::map<std::string, std::string> &definitions = {}, const std::vector<std::string> &numbers = {},
+              bool of_light_paths = false);
 
     /// The tables of paths in flight.
     TableList tables() const;
@@ -88,12 +89,12 @@ class Wavefront {
     std::uint32_t vertices() const { return vertices_; }
     std::uint32_t rays() const { return vertices_ + fresh_; }
 
-    /// Traces the rays of all rows and the connections of the newest vertices to lights.
+    /// Traces the rays of all rows and the connections of the newest vertices to lights, and reads the materials met.
     void trace();
-    /// Reads the textures of what the rays of all rows met; partition() does it by itself.
-    void read_materials();
-    /// The same of `rows` rows of another table of rays.
-    void read_materials(const Buffer &rays, std::uint32_t rows, std::uint32_t table_rows, const Buffer &surface);
+    /// Reads textures and chooses the parts of blends where `planes` times `rows` rows of another table of rays, of
+    /// table_rows rows, have met something. trace() does so for all rows.
+    void read_materials(const Buffer &rays, std::uint32_t rows, std::uint32_t planes, std::uint32_t table_rows,
+                        const Buffer &surface);
     /// Sorts all rows by what they go to next.
     const Hits &partition(LaunchNumbers numbers = {});
     /// Ends the paths of all rows.

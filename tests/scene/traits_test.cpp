@@ -108,10 +108,10 @@ TEST(Traits, AllOnLeavesThePictureAlone) {
     const TraitMap special = scene_traits(triangles().scene), general = with_all_traits(special);
     ASSERT_EQ(general.size(), special.size());
     for (const auto &[name, value] : general)
-        EXPECT_EQ(value,
-                  name.starts_with("TRAIT_FILTER") || name == "TRAIT_HIDE_EMITTERS" || name.starts_with("TRAIT_TEXTURE")
-                      ? special.at(name)
-                      : 1)
+        EXPECT_EQ(value, name.starts_with("TRAIT_FILTER") || name == "TRAIT_HIDE_EMITTERS" ||
+                                 name.starts_with("TRAIT_TEXTURE") || name == "TRAIT_MATERIAL" || name == "TRAIT_BLENDS"
+                             ? special.at(name)
+                             : 1)
             << name;
 }
 

@@ -1,7 +1,6 @@
 // <bsdf type="twosided">: gives a one-sided BSDF a back. One nested BSDF serves both sides; of two, the first is the
 // front and the second the back.
 #include "runtime/io/plugins/plugin.h"
-#include "runtime/scene/traits.h"
 
 namespace gradus {
 
@@ -13,7 +12,7 @@ Material bsdf_twosided(Properties &properties, SceneBuilder &builder) {
     Material sides[2];
     for (std::size_t i = 0; i < nested.size(); ++i) {
         sides[i] = builder.build_object<Material>(*nested[i].element);
-        if (bsdf_kind_traits(sides[i].front.kind).transmits)
+        if (builder.transmits(sides[i].front))
             throw SceneError(nested[i].location, "twosided cannot hold a BSDF that lets light through");
         if (sides[i].two_sided)
             throw SceneError(nested[i].location, "twosided inside twosided");

@@ -1,0 +1,45 @@
+// <bsdf type="blendbsdf">: a mixture of two BSDFs, which may be mixtures again.
+//   weight  of the second, 0.5, a number or a texture; the two BSDFs
+#include "runtime/io/plugins/plugin.h"
+
+namespace gradus {
+
+namespace {
+
+/// What the back of a material is, seen as a front. One-sided BSDFs absorb there.
+Bsdf back_of(const Material &material) {
+    if (material.two_sided)
+        return material.back;
+    Bsdf black;
+    black.reflectance = {0, 0, 0};
+    return black;
+}
+
+} // namespace
+
+Material bsdf_blendbsdf(Properties &properties, SceneBuilder &builder) {
+    const auto nested = properties.objects("bsdf");
+    if (nested.size() != 2)
+        throw SceneError(properties.location(),
+                         "blendbsdf needs two nested BSDFs, not " + std::to_string(nested.size()));
+    Material parts[2];
+    for (std::size_t i = 0; i < 2; ++i)
+        parts[i] = builder.build_object<Material>(*nested[i].element);
+    const Number weight = properties.textured_number("weight", 0.5f, 0, 1, 0);
+    Material material;
+    material.two_sided = parts[0].two_sided || parts[1].two_sided;
+    if (material.two_sided)
+        for (const Material &part : parts)
+            if (builder.transmits(part.front))
+                throw SceneError(properties.location(),
+                                 "a blend of a two-sided BSDF and of one that lets light through is not supported");
+    material.front = builder.blend(parts[0].front, parts[1].front, weight);
+    if (material.two_sided)
+        material.back = parts[0].back == parts[0].front && parts[1].back == parts[1].front && parts[0].two_sided &&
+                                parts[1].two_sided
+                            ? material.front
+                            : builder.blend(back_of(parts[0]), back_of(parts[1]), weight);
+    return material;
+}
+
+} // namespace gradus
