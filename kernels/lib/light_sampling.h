@@ -58,7 +58,13 @@ typedef struct {
 GRADUS_FN light_choice light_from_environment(rgb value, vec3 x, vec3 y, vec3 z, real beyond,
                                               environment_choice place) {
     light_choice s;
-    s.direction = v3_mad(v3_mad(v3_scale(x, place.direction.x), place.direction.y, y), place.direction.z, z);
+    /* One component after the other (kernels/lib/ordered.h). */
+    vec3 d = place.direction;
+    s.direction.x = v3_dot(v3(x.x, y.x, z.x), d);
+    d = v3_after(d, s.direction.x);
+    s.direction.y = v3_dot(v3(x.y, y.y, z.y), d);
+    d = v3_after(d, s.direction.y);
+    s.direction.z = v3_dot(v3(x.z, y.z, z.z), d);
     s.connection = v3_scale(s.direction, beyond);
     s.normal = v3(R(0), R(0), R(0));
     s.pdf = place.pdf;
