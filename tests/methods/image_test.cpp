@@ -4,6 +4,7 @@
 #include "tests/support/render.h"
 #include "tests/support/test_name.h"
 
+#include <cmath>
 #include <functional>
 
 namespace gradus::testing {
@@ -24,7 +25,7 @@ INSTANTIATE_TEST_SUITE_P(Image, OwnReference,
                          ::testing::Values("cornell-box", "torus-rough-glass", "plates", "holes-7", "holes-14",
                                            "holes-28", "door-ajar", "materials", "cornell-box-glossy",
                                            "metal-ring-soft", "torus-smooth-glass-soft", "slab-and-ball-soft",
-                                           "lamp-in-egg-soft"),
+                                           "lamp-in-egg-soft", "sundial"),
                          name_of_scene);
 
 struct SharedCase {
@@ -108,6 +109,22 @@ INSTANTIATE_TEST_SUITE_P(
                              [](Scene &scene) { scale_emitters(scene, Emitter::Kind::area, 1.03f); }},
                       Defect{"egg_of_denser_glass", "lamp-in-egg-soft",
                              [](Scene &scene) { material_named(scene, "egg").front.ior *= 1.1f; }},
+                      Defect{"map_turned_by_half_a_texel", "sundial",
+                             [](Scene &scene) {
+                                 // A texel is 360 / 128 degrees wide.
+                                 const double angle = 3.14159265358979 / 128;
+                                 for (Emitter &emitter : scene.emitters)
+                                     for (Vector3 &axis : emitter.axes)
+                                         axis = {float(std::cos(angle) * axis.x + std::sin(angle) * axis.z), axis.y,
+                                                 float(std::cos(angle) * axis.z - std::sin(angle) * axis.x)};
+                             }},
+                      Defect{"beam_of_the_spot_2_degrees_wider", "sundial",
+                             [](Scene &scene) {
+                                 for (Emitter &emitter : scene.emitters)
+                                     emitter.beam = std::min(emitter.cutoff, emitter.beam + 0.035f);
+                             }},
+                      Defect{"map_3_percent_brighter", "sundial",
+                             [](Scene &scene) { scale_emitters(scene, Emitter::Kind::environment, 1.03f); }},
                       Defect{"sky_10_percent_darker", "plates",
                              [](Scene &scene) { scale_emitters(scene, Emitter::Kind::constant, 0.9f); }}),
     [](const auto &info) { return info.param.name; });
