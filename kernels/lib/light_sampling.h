@@ -5,6 +5,7 @@
 //! traits: TRAIT_LIGHT_ENVIRONMENT TRAIT_LIGHT_SPOT FEW_LIGHTS
 #include "kernels/lib/environment.h"
 #include "kernels/lib/light.h"
+#include "kernels/lib/light_draw.h"
 #include "kernels/lib/random.h"
 
 #define LIGHT_KINDS                                                                                                    \
@@ -76,8 +77,10 @@ GRADUS_FN chosen_light light_sampling(GRADUS_GLOBAL const real *lights, GRADUS_G
                                       GRADUS_GLOBAL const uint *light_alias, uint light_count, real scene_diameter,
                                       uint unit, vec3 position, random4 u ENVIRONMENT_PARAMETERS) {
     (void)light_kinds, (void)scene_diameter;
-    const uint column = min((uint)(u.a * (real)light_count), light_count - 1u);
-    const uint light = u.b < LIGHT_FIELD(column, alias_threshold) ? column : OF_LIGHT(light_alias, column, 1u, 0u);
+    const light_drawn drawn = light_draw(u.a, u.b, light_count);
+    const uint column = drawn.column;
+    const uint light =
+        drawn.keeps < LIGHT_FIELD(column, alias_threshold) ? column : OF_LIGHT(light_alias, column, 1u, 0u);
     const real probability = LIGHT_FIELD(light, probability);
     const rgb value = rgb3(LIGHT_FIELD(light, value_r), LIGHT_FIELD(light, value_g), LIGHT_FIELD(light, value_b));
     const vec3 p = LIGHT_V3(light, p);

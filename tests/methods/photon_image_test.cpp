@@ -236,8 +236,7 @@ TEST_P(PathKinds, AreMadeOnceEach) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Photons, PathKinds,
-                         ::testing::Values("cornell-box", "materials", "plates", "torus-rough-glass", "sundial"),
-                         name_of_scene);
+                         ::testing::Values("cornell-box", "materials", "plates", "torus-rough-glass"), name_of_scene);
 
 // A floor seen in a mirror: both edges of the camera path count, and the photon's.
 TEST(PathLength, CountsBothSides) {
