@@ -274,6 +274,45 @@ def write_serialized(path, meshes):
     path.write_bytes(data)
 
 
+def sky(columns, rows):
+    """Linear RGB by row from the zenith down: a blue sky that is brighter towards the horizon and about the sun, some
+    clouds, brown ground, and a sun of about two texels. A texel's row is that of its angle from the zenith, pi * row /
+    (rows - 1); its column's centre is that share of a turn."""
+    sun = (0.31, 0.27)  # shares of a turn and of half a turn
+    image = []
+    for row in range(rows):
+        height = row / (rows - 1)
+        for column in range(columns):
+            around = (column + 0.5) / columns
+            turn = 2 * math.pi * (around - sun[0])
+            polar, sun_polar = math.pi * height, math.pi * sun[1]
+            cosine = math.cos(polar) * math.cos(sun_polar) + math.sin(polar) * math.sin(sun_polar) * math.cos(turn)
+            angle = math.acos(max(-1.0, min(1.0, cosine)))
+            if height > 0.5:
+                shade = 0.7 + 0.3 * math.cos(9 * 2 * math.pi * around) * math.sin(polar)
+                image.append((0.16 * shade, 0.12 * shade, 0.08 * shade))
+                continue
+            haze = 0.15 + 0.85 * (2 * height) ** 4
+            wave = math.sin(3 * 2 * math.pi * around + 9 * height) * math.sin(5 * 2 * math.pi * around - 14 * height)
+            cloud = max(0.0, wave) ** 2 * (1 - (2 * height) ** 2)
+            glow = 1.2 * math.exp(-((angle / 0.3) ** 2))
+            color = [0.22 + 0.5 * haze, 0.38 + 0.42 * haze, 0.75 + 0.2 * haze]
+            color = [channel + 0.8 * cloud + glow * warm for channel, warm in zip(color, (1.0, 0.9, 0.7))]
+            disc = 1100 * math.exp(-((angle / 0.04) ** 2))
+            image.append(tuple(channel + disc * warm for channel, warm in zip(color, (1.0, 0.88, 0.7))))
+    return image
+
+
+def write_hdr(path, columns, rows, image):
+    """Radiance's RGBE, without run lengths: three mantissas of eight bits and an exponent for each texel."""
+    data = bytearray(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n" + f"-Y {rows} +X {columns}\n".encode())
+    for color in image:
+        _, exponent = math.frexp(max(color))
+        data += bytes(min(255, int(channel * 2.0 ** (8 - exponent) + 0.5)) for channel in color)
+        data.append(exponent + 128)
+    path.write_bytes(data)
+
+
 def main():
     here = pathlib.Path(__file__).resolve().parent
     parser = argparse.ArgumentParser(description="writes the meshes of the project's own scenes")
@@ -290,6 +329,7 @@ def main():
     write_obj(folder / "star.obj", *star(5, 1.0, 0.45, 0.14))
     positions, _, triangles = icosphere(2)
     write_ply_ascii(folder / "ball.ply", positions, triangles)
+    write_hdr(folder / "sky.hdr", 128, 61, sky(128, 61))
     ring = torus(0.7, 0.28, 32, 16)
     write_serialized(folder / "pair.serialized", [("ring", *ring), ("gem", *icosphere(1))])
 

@@ -129,8 +129,9 @@ GRADUS_FN sine_cosine approx_sine_cosine_2pi(real u) {
  * point's distance, if its square is a normal number; 0 at the origin. Relative error of the angle from the nearest
  * axis at most 2.5e-7, so an absolute one of at most 6e-8, the rounding near 1. */
 GRADUS_FN real approx_turn(real y, real x) {
-    const real width = r_abs(x), height = r_abs(y);
-    const real longer = r_max(width, height), shorter = r_min(width, height);
+    /* Plus 0 times what goes before: or the pairs would be packed (kernels/lib/ordered.h). */
+    const real width = r_abs(x), height = r_abs(y + R(0) * width);
+    const real longer = r_max(width, height), shorter = r_min(width + R(0) * longer, height + R(0) * longer);
 #ifdef GRADUS_DOUBLE
     const real eighth = longer > R(0) ? GRADUS_ACCURATE(atan2)(shorter, longer) * (R(0.5) * GRADUS_INV_PI) : R(0);
 #else

@@ -15,6 +15,7 @@
 #ifndef GRADUS_LIB_ENVIRONMENT_H
 #define GRADUS_LIB_ENVIRONMENT_H
 //! traits: TRAIT_LIGHT_ENVIRONMENT
+#include "kernels/lib/ordered.h"
 #include "kernels/lib/random.h"
 #include "kernels/lib/vector.h"
 #include "kernels/lib/warp.h"
@@ -38,11 +39,15 @@
 
 GRADUS_LIB_BEGIN
 
-/* A number from 0 to 2^33 in 16 bits: 6 of exponent and 10 of mantissa. All that half floats hold are among them, and
- * with them what RGBE files do. */
+/* A number from 0 to 2^33 in 16 bits: 6 of exponent and 10 of mantissa. 2^-31 is taken off, so that 0 is 0 without a
+ * choice; of what is larger than 2^-7 nothing is. */
 GRADUS_FN real environment_number(uint code) {
-    const real value = (real)as_float((code << 13) + 0x30000000u);
-    return code != 0u ? value : R(0);
+    return (real)as_float((code << 13) + 0x30000000u) - R(4.656612873077393e-10);
+}
+
+/* The same after `before`, or several would be packed into a vector (kernels/lib/ordered.h). */
+GRADUS_FN real environment_number_after(uint code, real before) {
+    return (real)as_float((code << 13) + 0x30000000u) - r_after(R(4.656612873077393e-10), before);
 }
 
 typedef struct {
@@ -51,13 +56,15 @@ typedef struct {
     GRADUS_NOT_IN_REGISTERS
 } environment_texel;
 
-GRADUS_FN environment_texel environment_load(GRADUS_GLOBAL const uint *environment_texels, uint texel, uint unit) {
+GRADUS_FN environment_texel environment_load(GRADUS_GLOBAL const uint *environment_texels, uint texel, uint unit,
+                                             real before) {
     const uint first = environment_texels[(size_t)texel * 2u];
     const uint second = environment_texels[(size_t)texel * 2u + unit];
     environment_texel t;
-    t.radiance = rgb3(environment_number(first & 0xFFFFu), environment_number(first >> 16),
-                      environment_number(second & 0xFFFFu));
-    t.importance = environment_number(second >> 16);
+    t.importance = environment_number_after(second >> 16, before);
+    t.radiance.r = environment_number_after(first & 0xFFFFu, t.importance);
+    t.radiance.g = environment_number_after(first >> 16, t.radiance.r);
+    t.radiance.b = environment_number_after(second & 0xFFFFu, t.radiance.g);
     return t;
 }
 
@@ -72,20 +79,30 @@ GRADUS_FN environment_corners environment_cell(GRADUS_GLOBAL const uint *environ
     /* A row has one texel more than the map: its first again. */
     const uint above = row * (environment_columns + 1u) + column, below = above + environment_columns + 1u;
     environment_corners c;
-    c.t00 = environment_load(environment_texels, above, unit);
-    c.t10 = environment_load(environment_texels, above + 1u, unit);
-    c.t01 = environment_load(environment_texels, below, unit);
-    c.t11 = environment_load(environment_texels, below + 1u, unit);
+    c.t00 = environment_load(environment_texels, above, unit, R(0));
+    c.t10 = environment_load(environment_texels, above + 1u, unit, c.t00.radiance.b);
+    c.t01 = environment_load(environment_texels, below, unit, c.t10.radiance.b);
+    c.t11 = environment_load(environment_texels, below + 1u, unit, c.t01.radiance.b);
     return c;
 }
 
+/* Between four numbers, after `before`. */
+GRADUS_FN real environment_mix(real n00, real n10, real n01, real n11, real s, real t, real before) {
+    const real above = n00 + r_after(s, before) * (n10 - n00);
+    const real below = n01 + r_after(s, above) * (n11 - n01);
+    return above + t * (below - above);
+}
+
+/* One number after the other, or they would be packed into vectors (kernels/lib/ordered.h). */
 GRADUS_FN environment_texel environment_between(environment_corners c, real s, real t) {
-    const real w00 = (R(1) - s) * (R(1) - t), w10 = s * (R(1) - t), w01 = (R(1) - s) * t, w11 = s * t;
     environment_texel e;
-    e.radiance.r = c.t00.radiance.r * w00 + c.t10.radiance.r * w10 + c.t01.radiance.r * w01 + c.t11.radiance.r * w11;
-    e.radiance.g = c.t00.radiance.g * w00 + c.t10.radiance.g * w10 + c.t01.radiance.g * w01 + c.t11.radiance.g * w11;
-    e.radiance.b = c.t00.radiance.b * w00 + c.t10.radiance.b * w10 + c.t01.radiance.b * w01 + c.t11.radiance.b * w11;
-    e.importance = c.t00.importance * w00 + c.t10.importance * w10 + c.t01.importance * w01 + c.t11.importance * w11;
+    e.importance = environment_mix(c.t00.importance, c.t10.importance, c.t01.importance, c.t11.importance, s, t, s);
+    e.radiance.r = environment_mix(c.t00.radiance.r, c.t10.radiance.r, c.t01.radiance.r, c.t11.radiance.r, s, t,
+                                   e.importance);
+    e.radiance.g = environment_mix(c.t00.radiance.g, c.t10.radiance.g, c.t01.radiance.g, c.t11.radiance.g, s, t,
+                                   e.radiance.r);
+    e.radiance.b = environment_mix(c.t00.radiance.b, c.t10.radiance.b, c.t01.radiance.b, c.t11.radiance.b, s, t,
+                                   e.radiance.g);
     return e;
 }
 
@@ -109,7 +126,8 @@ GRADUS_FN environment_light_value environment_lookup(vec3 direction, real scale,
     const real sine = r_sqrt(direction.x * direction.x + direction.z * direction.z);
     const real along = approx_turn(direction.x, -direction.z) * (real)environment_columns - R(0.5);
     const real place = along < R(0) ? along + (real)environment_columns : along;
-    const real height = R(2) * approx_turn(sine, direction.y) * (real)environment_rows;
+    const real from_pole = approx_turn(r_after(sine, place), r_after(direction.y, place));
+    const real height = R(2) * from_pole * (real)environment_rows;
     const uint column = min((uint)place, environment_columns - 1u);
     const uint row = min((uint)height, max(environment_rows, 1u) - 1u);
     const environment_corners corners = environment_cell(environment_texels, environment_columns, column, row, unit);
@@ -135,11 +153,12 @@ typedef struct {
 } environment_choice;
 
 #if TRAIT_LIGHT_ENVIRONMENT
-/* The cell by a hash of all four numbers, since one of 24 bits does not tell the cells of a large map apart; the place
- * in it by u.c and u.d. */
+/* The cell by a hash of three of the numbers, since one of 24 bits does not tell the cells of a large map apart; the
+ * place in it by u.c and u.d. */
 GRADUS_FN environment_choice environment_sample(random4 u, real scale, uint unit ENVIRONMENT_PARAMETERS) {
-    const random_bits bits = random_hash((uint)(u.a * R(16777216)), (uint)(u.b * R(16777216)),
-                                         (uint)(u.c * R(16777216)), (uint)(u.d * R(16777216)));
+    /* Each number in a way of its own, or they would be packed (kernels/lib/ordered.h). */
+    const random_bits bits = random_hash(as_uint((float)u.a), (uint)(u.b * R(16777216)), as_uint((float)(u.c + R(1))),
+                                         0x656E7669u);
     const uint drawn = mul_hi(bits.x, environment_strip_count);
     const uint limit = environment_strips[(size_t)drawn * 2u], other = environment_strips[(size_t)drawn * 2u + unit];
     const uint strip = bits.y < limit ? drawn : other;
@@ -151,13 +170,17 @@ GRADUS_FN environment_choice environment_sample(random4 u, real scale, uint unit
     const uint row = min((uint)(((real)strip + R(0.5)) / (real)strips_a_row), max(environment_rows, 1u) - 1u);
     const uint column = min((strip - row * strips_a_row) * environment_strip + in_strip, environment_columns - 1u);
     const environment_corners c = environment_cell(environment_texels, environment_columns, column, row, unit);
-    const real t = environment_linear(c.t00.importance + c.t10.importance, c.t01.importance + c.t11.importance, u.d);
-    const real s = environment_linear(c.t00.importance * (R(1) - t) + c.t01.importance * t,
-                                      c.t10.importance * (R(1) - t) + c.t11.importance * t, u.c);
+    /* One after the other, here too. */
+    const real above = c.t00.importance + c.t10.importance;
+    const real below = r_after(c.t01.importance, above) + c.t11.importance;
+    const real t = environment_linear(above, below, u.d);
+    const real left = c.t00.importance + t * (c.t01.importance - c.t00.importance);
+    const real right = c.t10.importance + r_after(t, left) * (c.t11.importance - c.t10.importance);
+    const real s = environment_linear(left, right, u.c);
     const environment_texel e = environment_between(c, s, t);
     const real along = ((real)column + s + R(0.5)) / (real)environment_columns;
     const sine_cosine turn = approx_sine_cosine_2pi(along < R(1) ? along : along - R(1));
-    const sine_cosine from_pole = approx_sine_cosine_2pi(R(0.5) * ((real)row + t) / (real)max(environment_rows, 1u));
+    const sine_cosine from_pole = approx_sine_cosine_2pi(R(0.5) * ((real)row + r_after(t, turn.sine + turn.cosine)) / (real)max(environment_rows, 1u));
     environment_choice chosen;
     chosen.direction = v3(from_pole.sine * turn.sine, from_pole.cosine, -from_pole.sine * turn.cosine);
     chosen.radiance = e.radiance;

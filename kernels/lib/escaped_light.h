@@ -16,9 +16,11 @@ GRADUS_FN light_found light_escaped(GRADUS_GLOBAL const real *lights, uint envir
     found.radiance = FIELD_RGB(light, lights, environment_light, value);
     found.pdf = probability * (R(0.25) * GRADUS_INV_PI);
 #if TRAIT_LIGHT_ENVIRONMENT
-    const vec3 in_map = v3(v3_dot(FIELD_V3(light, lights, environment_light, p), direction),
-                           v3_dot(FIELD_V3(light, lights, environment_light, e1), direction),
-                           v3_dot(FIELD_V3(light, lights, environment_light, e2), direction));
+    /* One after the other (kernels/lib/ordered.h). */
+    vec3 in_map;
+    in_map.x = v3_dot(FIELD_V3(light, lights, environment_light, p), direction);
+    in_map.y = v3_dot(FIELD_V3(light, lights, environment_light, e1), v3_after(direction, in_map.x));
+    in_map.z = v3_dot(FIELD_V3(light, lights, environment_light, e2), v3_after(direction, in_map.y));
     const environment_light_value seen = environment_lookup(
         in_map, FIELD_OF(light, lights, environment_light, inverse_area), unit ENVIRONMENT_ARGUMENTS);
     const rgb through_map = rgb_mul(found.radiance, seen.radiance);

@@ -122,9 +122,10 @@ GRADUS_FN light_emission emission_sampling(GRADUS_GLOBAL const real *lights, GRA
                                            real radius, uint unit, random4 choice,
                                            random4 leaving ENVIRONMENT_PARAMETERS) {
     (void)light_kinds, (void)center, (void)radius;
-    const uint column = min((uint)(choice.a * (real)light_count), light_count - 1u);
+    const light_drawn drawn = light_draw(choice.a, choice.b, light_count);
+    const uint column = drawn.column;
     const uint light =
-        choice.b < EMISSION_FIELD(column, alias_threshold) ? column : OF_LIGHT(emission_alias, column, 1u, 0u);
+        drawn.keeps < EMISSION_FIELD(column, alias_threshold) ? column : OF_LIGHT(emission_alias, column, 1u, 0u);
     const rgb value =
         rgb_scale(rgb3(LIGHT_FIELD(light, value_r), LIGHT_FIELD(light, value_g), LIGHT_FIELD(light, value_b)),
                   R(1) / EMISSION_FIELD(light, probability));

@@ -5,6 +5,7 @@
 //! traits: TRAIT_LIGHT_ENVIRONMENT TRAIT_LIGHT_SPOT FEW_LIGHTS
 #include "kernels/lib/environment.h"
 #include "kernels/lib/light.h"
+#include "kernels/lib/light_draw.h"
 #include "kernels/lib/random.h"
 
 #define LIGHT_KINDS                                                                                                    \
@@ -58,7 +59,13 @@ typedef struct {
 GRADUS_FN light_choice light_from_environment(rgb value, vec3 x, vec3 y, vec3 z, real beyond,
                                               environment_choice place) {
     light_choice s;
-    s.direction = v3_mad(v3_mad(v3_scale(x, place.direction.x), place.direction.y, y), place.direction.z, z);
+    /* One component after the other (kernels/lib/ordered.h). */
+    vec3 d = place.direction;
+    s.direction.x = v3_dot(v3(x.x, y.x, z.x), d);
+    d = v3_after(d, s.direction.x);
+    s.direction.y = v3_dot(v3(x.y, y.y, z.y), d);
+    d = v3_after(d, s.direction.y);
+    s.direction.z = v3_dot(v3(x.z, y.z, z.z), d);
     s.connection = v3_scale(s.direction, beyond);
     s.normal = v3(R(0), R(0), R(0));
     s.pdf = place.pdf;
@@ -70,8 +77,10 @@ GRADUS_FN chosen_light light_sampling(GRADUS_GLOBAL const real *lights, GRADUS_G
                                       GRADUS_GLOBAL const uint *light_alias, uint light_count, real scene_diameter,
                                       uint unit, vec3 position, random4 u ENVIRONMENT_PARAMETERS) {
     (void)light_kinds, (void)scene_diameter;
-    const uint column = min((uint)(u.a * (real)light_count), light_count - 1u);
-    const uint light = u.b < LIGHT_FIELD(column, alias_threshold) ? column : OF_LIGHT(light_alias, column, 1u, 0u);
+    const light_drawn drawn = light_draw(u.a, u.b, light_count);
+    const uint column = drawn.column;
+    const uint light =
+        drawn.keeps < LIGHT_FIELD(column, alias_threshold) ? column : OF_LIGHT(light_alias, column, 1u, 0u);
     const real probability = LIGHT_FIELD(light, probability);
     const rgb value = rgb3(LIGHT_FIELD(light, value_r), LIGHT_FIELD(light, value_g), LIGHT_FIELD(light, value_b));
     const vec3 p = LIGHT_V3(light, p);

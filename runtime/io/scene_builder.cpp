@@ -272,10 +272,33 @@ void SceneBuilder::build_sensor(const Element &element) {
     scene_.camera = build_object<Camera>(element);
 }
 
+namespace {
+
+/// What to do about emitters of Mitsuba's that we do not have.
+void refuse_emitter(const std::string &type, const Location &location) {
+    for (const char *model : {"sky", "sun", "sunsky", "timed_sunsky"})
+        if (type == model)
+            throw SceneError(location, "the sky model \"" + type +
+                                           "\" is not supported: bake it into an image in latitude and longitude, "
+                                           "and give that to an emitter \"envmap\"");
+    if (type == "projector")
+        throw SceneError(location, "a projector is not supported; a spot lights the same cone without its image");
+    if (type == "directionalarea" || type == "collimated")
+        throw SceneError(location, "the emitter \"" + type +
+                                       "\" is not supported; of what shines one way there are \"directional\" and "
+                                       "\"spot\"");
+}
+
+} // namespace
+
 void SceneBuilder::build_emitter(const Element &element) {
     const std::string type(trimmed(element.attribute_or("type", "")));
-    if (type == "area")
+    refuse_emitter(type, element.location);
+    if (type == "area") {
+        if (!element.attribute_or("id", "").empty())
+            return; // for shapes to refer to
         throw SceneError(element.location, "an area emitter belongs inside the shape that emits");
+    }
     const Emitter emitter = build_object<Emitter>(element);
     if (emitter.kind == Emitter::Kind::constant || emitter.kind == Emitter::Kind::environment) {
         if (environment_)
@@ -338,6 +361,7 @@ std::int32_t SceneBuilder::emitter_of(Properties &shape) {
         throw SceneError(emitters[1].location, "a shape has one emitter; this is its second");
     const Element &element = *emitters.front().element;
     const std::string type(trimmed(element.attribute_or("type", "")));
+    refuse_emitter(type, emitters[0].location);
     if (type != "area" && find_plugin<Emitter>(type))
         throw SceneError(emitters[0].location, "only an area emitter can stand inside a shape, not \"" + type + "\"");
     auto known = area_emitters_.find(&element);

@@ -12,8 +12,9 @@ namespace gradus {
 
 namespace {
 
-constexpr std::uint32_t most_few_lights = 4; // kernels/lib/light_sampling.h chooses among so many
-constexpr std::uint32_t deepest = 1u << 16;  // where a file asks for paths without end
+constexpr std::uint32_t most_few_lights = 4;      // kernels/lib/light_sampling.h chooses among so many
+constexpr std::uint32_t least_many_lights = 4097; // 24 bits choose among fewer with an error of 2e-4 at most
+constexpr std::uint32_t deepest = 1u << 16;       // where a file asks for paths without end
 
 TraitMap traits_for(const Scene &scene, const SessionOptions &options, const TraitMap &of_method) {
     TraitMap traits = scene_traits(scene);
@@ -108,6 +109,7 @@ Session::Session(Device &session_device, const Scene &s, const SessionOptions &s
     traits["SAMPLES_LIGHTS"] = scene.light_count > 0 && options.strategy != SessionOptions::Strategy::bsdf;
     traits["FEW_LIGHTS"] =
         scene.light_count <= most_few_lights && !options.all_traits ? static_cast<int>(scene.light_count) : 0;
+    traits["MANY_LIGHTS"] = scene.light_count >= least_many_lights;
     numbers = {{"unit", 1},
                {"triangle_count", scene.triangle_count},
                {"light_count", scene.light_count},

@@ -1,8 +1,11 @@
 // BSDFs, emitters, sensor, film, filters and integrators in both dialects, value by value.
+#include "runtime/io/image_io.h"
+#include "runtime/scene/environment_map.h"
 #include "tests/io/scene_text.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace gradus {
 namespace {
@@ -243,6 +246,124 @@ TEST(EmitterPlugin, Directional) {
     const Emitter turned = emitter_of("<emitter type=\"directional\"><transform name=\"to_world\"><rotate y=\"1\" "
                                       "angle=\"90\"/><scale value=\"5\"/></transform></emitter>");
     expect_vector(turned.direction, 1, 0, 0);
+}
+
+TEST(EmitterPlugin, Spot) {
+    const Emitter plain = emitter_of("<emitter type=\"spot\"/>");
+    EXPECT_EQ(plain.kind, Emitter::Kind::spot);
+    expect_rgb(plain.value, 1, 1, 1);
+    expect_vector(plain.position, 0, 0, 0);
+    expect_vector(plain.direction, 0, 0, 1);
+    constexpr double radians = 3.14159265358979 / 180;
+    EXPECT_NEAR(plain.cutoff, 20 * radians, 1e-6);
+    EXPECT_NEAR(plain.beam, 15 * radians, 1e-6);
+    const Emitter turned =
+        emitter_of("<emitter type=\"spot\"><rgb name=\"intensity\" value=\"1 2 3\"/><float name=\"cutoffAngle\" "
+                   "value=\"40\"/><float name=\"beamWidth\" value=\"40\"/><transform name=\"toWorld\"><lookAt "
+                   "origin=\"1 2 3\" target=\"1 -2 3\" up=\"1 0 0\"/></transform></emitter>",
+                   "0.6.0");
+    expect_rgb(turned.value, 1, 2, 3);
+    expect_vector(turned.position, 1, 2, 3);
+    expect_vector(turned.direction, 0, -1, 0);
+    EXPECT_NEAR(turned.cutoff, 40 * radians, 1e-6);
+    EXPECT_NEAR(turned.beam, 40 * radians, 1e-6);
+    EXPECT_THAT(
+        error_of_text(scene_around("<emitter type=\"spot\"><float name=\"beam_width\" value=\"30\"/></emitter>")),
+        HasSubstr("wider than its cutoff_angle"));
+    EXPECT_THAT(
+        error_of_text(scene_around("<emitter type=\"spot\"><texture type=\"bitmap\" name=\"texture\"/></emitter>")),
+        HasSubstr("a spot with a texture is not supported"));
+}
+
+/// An image of 3 x 2 texels beside the scene: of the colour (1, 2, 3), but the first texel, which is `first`.
+LoadedScene load_with_map(const std::string &emitter, float first = 1, const std::string &version = "3.0.0") {
+    TemporaryFolder folder;
+    Image image;
+    image.width = 3;
+    image.height = 2;
+    image.channels = {
+        {"R", std::vector<float>(6, 1)}, {"G", std::vector<float>(6, 2)}, {"B", std::vector<float>(6, 3)}};
+    image.channels[0].values[0] = first;
+    write_image(image, (folder.path() / "sky.exr").string());
+    return load_scene(folder.write("scene.xml", scene_around(emitter, version)));
+}
+
+const std::string sky_file = "<string name=\"filename\" value=\"sky.exr\"/>";
+
+TEST(EmitterPlugin, EnvironmentMap) {
+    const LoadedScene loaded = load_with_map("<emitter type=\"envmap\">" + sky_file + "</emitter>");
+    EXPECT_THAT(loaded.warnings, IsEmpty());
+    const Emitter &emitter = loaded.scene.emitters.at(0);
+    EXPECT_EQ(emitter.kind, Emitter::Kind::environment);
+    expect_rgb(emitter.value, 1, 1, 1);
+    expect_vector(emitter.axes[0], 1, 0, 0);
+    expect_vector(emitter.axes[2], 0, 0, 1);
+    ASSERT_TRUE(emitter.map);
+    EXPECT_EQ(emitter.map->columns, 3u);
+    EXPECT_EQ(emitter.map->rows, 1u);
+    const double sphere = 4 * 3.14159265358979;
+    expect_rgb(emitter.map->integral, sphere, 2 * sphere, 3 * sphere, 1e-4);
+    // Turned, mirrored, of any size; in 0.x, too.
+    const LoadedScene turned = load_with_map(
+        "<emitter type=\"envmap\">" + sky_file +
+            "<float name=\"scale\" value=\"2.5\"/><float name=\"samplingWeight\" value=\"1\"/><transform "
+            "name=\"toWorld\"><scale x=\"-3\" y=\"3\" z=\"3\"/><rotate y=\"1\" angle=\"90\"/></transform></emitter>",
+        1, "0.6.0");
+    EXPECT_THAT(turned.warnings, IsEmpty());
+    expect_rgb(turned.scene.emitters.at(0).value, 2.5, 2.5, 2.5);
+    expect_vector(turned.scene.emitters[0].axes[0], 0, 0, 1);
+    expect_vector(turned.scene.emitters[0].axes[1], 0, 1, 0);
+    expect_vector(turned.scene.emitters[0].axes[2], 1, 0, 0);
+}
+
+TEST(EmitterPlugin, EnvironmentMapsThatCannotBe) {
+    const auto error_with_map = [](const std::string &inside) {
+        try {
+            load_with_map("<emitter type=\"envmap\">" + inside + "</emitter>");
+        } catch (const Error &error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_THAT(error_with_map(""), HasSubstr("envmap needs a filename"));
+    EXPECT_THAT(error_with_map("<string name=\"filename\" value=\"none.exr\"/>"),
+                HasSubstr("scene.xml:3: cannot find the file \"none.exr\""));
+    EXPECT_THAT(error_with_map("<string name=\"filename\" value=\"scene.xml\"/>"),
+                HasSubstr("scene.xml:3: cannot read the image"));
+    EXPECT_THAT(error_with_map(sky_file + "<transform name=\"to_world\"><scale x=\"2\"/></transform>"),
+                HasSubstr("turned and mirrored, not stretched"));
+    EXPECT_THAT(error_with_map(sky_file + "</emitter><emitter type=\"constant\">"),
+                HasSubstr("a second environment emitter"));
+    for (const char *type : {"sky", "sun", "sunsky"})
+        EXPECT_THAT(error_of_text(scene_around("<emitter type=\"" + std::string(type) + "\"/>")),
+                    HasSubstr("bake it into an image"));
+    EXPECT_THAT(error_of_text(scene_around("<emitter type=\"projector\"/>")),
+                HasSubstr("a projector is not supported"));
+}
+
+TEST(EmitterPlugin, EnvironmentMapsWithBadTexels) {
+    const std::string emitter = "<emitter type=\"envmap\">" + sky_file + "</emitter>";
+    const float infinity = std::numeric_limits<float>::infinity();
+    EXPECT_THAT(load_with_map(emitter, -2).warnings, ElementsAre(HasSubstr("1 negative values, which count as 0")));
+    EXPECT_THAT(load_with_map(emitter, std::nanf("")).warnings,
+                ElementsAre(HasSubstr("1 values that are not numbers")));
+    const LoadedScene loaded = load_with_map(emitter, infinity);
+    EXPECT_THAT(loaded.warnings, ElementsAre(HasSubstr("1 infinite values, which count as its largest one, 3")));
+    // Five texels of 1, and one of 3: each has a sixth of the sphere.
+    EXPECT_NEAR(loaded.scene.emitters.at(0).map->integral.r, 4 * 3.14159265358979 * 8 / 6, 1e-4);
+    // A black one, by its scale, is no light.
+    EXPECT_THAT(load_with_map("<emitter type=\"envmap\">" + sky_file + "<float name=\"scale\" value=\"0\"/></emitter>")
+                    .scene.emitters,
+                IsEmpty());
+}
+
+TEST(EmitterPlugin, AreaEmittersMayStandApart) {
+    const LoadedScene loaded =
+        load_text(scene_around("<emitter type=\"area\" id=\"glow\"><rgb name=\"radiance\" value=\"2\"/></emitter>"
+                               "<shape type=\"rectangle\"><ref id=\"glow\"/></shape>"));
+    EXPECT_THAT(loaded.warnings, IsEmpty());
+    ASSERT_EQ(loaded.scene.emitters.size(), 1u);
+    EXPECT_EQ(loaded.scene.shapes[0].emitter, 0);
 }
 
 TEST(SensorPlugin, FieldOfView) {

@@ -72,6 +72,31 @@ TEST(Approximation, SineAndCosineOfTurns) {
     }
 }
 
+TEST(Approximation, TurnsOfPoints) {
+    double worst = 0, relative = 0;
+    for (int i = 0; i < 1 << 20; ++i) {
+        const long double angle = 2 * 3.14159265358979323846264338327950288L * std::ldexp(i, -20);
+        const double distance = std::ldexp(1.0, i % 61 - 30);
+        const real x = static_cast<real>(std::cos(angle) * distance), y = static_cast<real>(std::sin(angle) * distance);
+        const long double turn = std::atan2(static_cast<long double>(y), static_cast<long double>(x)) /
+                                 (2 * 3.14159265358979323846264338327950288L);
+        const long double expected = turn < 0 ? turn + 1 : turn;
+        const real found = lib::approx_turn(y, x);
+        ASSERT_TRUE(found >= 0 && found <= 1);
+        worst = std::max(worst, static_cast<double>(std::fabs(found - expected)));
+        if (expected > 0 && expected < 0.125L)
+            relative = std::max(relative, static_cast<double>(std::fabs(found / expected - 1)));
+    }
+    std::printf("  largest absolute error %.3g, relative near the axis %.3g\n", worst, relative);
+    EXPECT_LE(worst, bound(6e-8, 3e-16));
+    EXPECT_LE(relative, bound(2.5e-7, 6e-16));
+    EXPECT_EQ(lib::approx_turn(0, 1), 0);
+    EXPECT_EQ(lib::approx_turn(1, 0), R(0.25));
+    EXPECT_EQ(lib::approx_turn(0, -1), R(0.5));
+    EXPECT_EQ(lib::approx_turn(-1, 0), R(0.75));
+    EXPECT_EQ(lib::approx_turn(0, 0), 0);
+}
+
 TEST(Approximation, ErrorFunctionWithinTwoUlp) {
     const auto exact = [](long double x) { return std::erf(x); };
     EXPECT_LE(worst_ulp(lib::approx_erf, exact, -6, 6), 2);

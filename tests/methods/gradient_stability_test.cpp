@@ -54,6 +54,53 @@ TEST(GradientStability, FromATinyBrightLight) {
                     "light sampling, weighted against BSDF sampling of base and offset path; unbiased", 0.15});
 }
 
+// A sun of one texel, a million times its sky, behind cards: sharp shadows, and BSDF sampling that finds the sun once
+// in ten thousand paths.
+TEST(GradientStability, UnderASunOfOneTexel) {
+    SceneMaker scene = scene_for_bias();
+    const std::uint32_t grey = scene.material(two_sided(diffuse(0.6)));
+    const std::uint32_t metal = scene.material(rough_metal(0.2));
+    add_wall(scene, grey);
+    scene.sphere({0.25f, -0.2f, -0.3f}, 0.22f, metal);
+    scene.parallelogram({-0.5f, -0.3f, -0.4f}, {0.1f, 0.6f, 0.1f}, {0.3f, 0, -0.1f}, grey);
+    scene.environment_map(64, 33, [](std::uint32_t x, std::uint32_t y) { return x == 5 && y == 10 ? 1e5 : 0.1; });
+    scene.look({0.2, 0.1, -3}, {0, 0, 0}, 22);
+    expect_no_bias(gradient_bias(scene.scene, {8, 16, 128}),
+                   {area, "tiny bright pixels of an environment: BSDF sampling finds them seldom, with a firefly",
+                    "a map of 64 x 33 texels of which one is a million times as bright, a card and a rough metal ball",
+                    "directions are sampled by the bilinear map itself, weighted against BSDF sampling; unbiased",
+                    0.1});
+}
+
+// What a mirror shows of a map: base and offset path leave the scene in directions of their own.
+TEST(GradientStability, WhereAMirrorShowsAMap) {
+    SceneMaker scene = scene_for_bias();
+    add_wall(scene, scene.material(two_sided(diffuse(0.3))));
+    scene.sphere({0, 0, -0.5f}, 0.45f, scene.material(mirror()));
+    scene.environment_map(16, 9, [](std::uint32_t x, std::uint32_t y) { return 1 + (x * 5 + y * 3) % 7; });
+    scene.look({0, 0.1, -3}, {0, 0, 0}, 18);
+    expect_no_bias(gradient_bias(scene.scene, {8, 16, 128}),
+                   {area, "an environment map in a mirror: every pixel sees another part of it",
+                    "a mirror ball before a wall under a map of 16 x 9 texels between 1 and 7",
+                    "offset paths that copy find the map's light in their own direction, with its density; unbiased",
+                    0.15});
+}
+
+// The rim of a spot, hard and soft, on a wall: light samples beyond it have no density.
+TEST(GradientStability, AtTheRimOfASpot) {
+    SceneMaker scene = scene_for_bias();
+    const std::uint32_t grey = scene.material(two_sided(diffuse(0.7)));
+    add_wall(scene, grey);
+    scene.parallelogram({-0.6f, -1, -1}, {0, 0, 1}, {0, 2, 0}, grey);
+    scene.spot({5, 4, 3}, {0.1f, 0.2f, -1.5f}, {0, 0, 1}, 12, 12);
+    scene.spot({1, 2, 4}, {-0.1f, -0.4f, -1.2f}, {0, 0.1961161f, 0.9805807f}, 5, 16);
+    scene.look({0, 0, -3}, {0, 0, 0}, 20);
+    expect_no_bias(gradient_bias(scene.scene, {8, 16, 256}),
+                   {area, "a spot's rim: the light sample of one pixel is none of its neighbour's",
+                    "two spots on two walls, one without a soft rim",
+                    "beyond the rim there is no light sample, as behind a lamp; unbiased", 0.15});
+}
+
 // A ball of glass between a lamp and the floor: light sampling cannot find the caustic.
 TEST(GradientStability, InACaustic) {
     SceneMaker scene = scene_for_bias();

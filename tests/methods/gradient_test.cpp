@@ -106,7 +106,7 @@ TEST_P(GradientReference, IsMetByPrimalAndDifferences) {
 INSTANTIATE_TEST_SUITE_P(Image, GradientReference,
                          ::testing::Values(ReferenceCase{"cornell-box"}, ReferenceCase{"torus-rough-glass", 0.02},
                                            ReferenceCase{"plates"}, ReferenceCase{"holes-14"},
-                                           ReferenceCase{"materials"}),
+                                           ReferenceCase{"materials"}, ReferenceCase{"sundial"}),
                          name_of_reference);
 INSTANTIATE_TEST_SUITE_P(Full, GradientReference,
                          ::testing::Values(ReferenceCase{"torus-rough-glass"}, ReferenceCase{"holes-7"},

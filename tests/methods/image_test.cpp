@@ -2,8 +2,10 @@
 #include "runtime/film/metrics.h"
 #include "tests/methods/reference_scene.h"
 #include "tests/support/render.h"
+#include "tests/support/small_scenes.h"
 #include "tests/support/test_name.h"
 
+#include <cmath>
 #include <functional>
 
 namespace gradus::testing {
@@ -16,13 +18,31 @@ constexpr std::size_t image_seeds = 8;
     return agrees(render_seeds(reference.scene, image_seeds), double(samples_per_pixel), reference);
 }
 
+// A map whose texels are all the same is a constant environment, by its own kernels.
+TEST(Image, OfAnEvenMapIsThatOfAConstantEnvironment) {
+    const auto images = [](bool is_map, std::uint64_t first) {
+        SceneMaker scene(32, 64);
+        scene.floor(-1, 1, 1, scene.material(diffuse(0.6)));
+        scene.sphere({-0.3f, 0.4f, 0}, 0.4f, scene.material(rough_metal(0.2)));
+        scene.sphere({0.5f, 0.3f, 0.2f}, 0.3f, scene.material(diffuse(0.9)));
+        scene.scene.settings.max_depth = 6;
+        if (is_map)
+            scene.environment_map(9, 4, [](std::uint32_t, std::uint32_t) { return 1.5; });
+        else
+            scene.environment(1.5);
+        scene.look({0.2, 1, 3}, {0, 0.3, 0}, 40);
+        return render_seeds(scene.scene, image_seeds, {}, first);
+    };
+    EXPECT_TRUE(agree("even-map", images(true, 1), images(false, 100), 64));
+}
+
 class OwnReference : public ::testing::TestWithParam<const char *> {};
 
 TEST_P(OwnReference, IsMet) { EXPECT_TRUE(renders_as_referenced(own_reference(GetParam()), 64)); }
 
 INSTANTIATE_TEST_SUITE_P(Image, OwnReference,
                          ::testing::Values("cornell-box", "torus-rough-glass", "plates", "holes-14", "materials",
-                                           "metal-ring-soft", "torus-smooth-glass-soft"),
+                                           "metal-ring-soft", "torus-smooth-glass-soft", "sundial"),
                          name_of_scene);
 INSTANTIATE_TEST_SUITE_P(Full, OwnReference,
                          ::testing::Values("holes-7", "holes-28", "door-ajar", "cornell-box-glossy",
@@ -109,7 +129,21 @@ INSTANTIATE_TEST_SUITE_P(
                       Defect{"caustic_3_percent_brighter", "slab-and-ball-soft",
                              [](Scene &scene) { scale_emitters(scene, Emitter::Kind::area, 1.03f); }},
                       Defect{"egg_of_denser_glass", "lamp-in-egg-soft",
-                             [](Scene &scene) { material_named(scene, "egg").front.ior.value *= 1.1f; }},
+                             [](Scene &scene) { material_named(scene, "egg").front.ior *= 1.1f; }},
+                      Defect{"map_turned_by_half_a_texel", "sundial",
+                             [](Scene &scene) {
+                                 // A texel is 360 / 128 degrees wide.
+                                 const double angle = 3.14159265358979 / 128;
+                                 for (Emitter &emitter : scene.emitters)
+                                     for (Vector3 &axis : emitter.axes)
+                                         axis = {float(std::cos(angle) * axis.x + std::sin(angle) * axis.z), axis.y,
+                                                 float(std::cos(angle) * axis.z - std::sin(angle) * axis.x)};
+                             }},
+                      Defect{"beam_of_the_spot_2_degrees_wider", "sundial",
+                             [](Scene &scene) {
+                                 for (Emitter &emitter : scene.emitters)
+                                     emitter.beam = std::min(emitter.cutoff, emitter.beam + 0.035f);
+                             }},
                       Defect{"sky_10_percent_darker", "plates",
                              [](Scene &scene) { scale_emitters(scene, Emitter::Kind::constant, 0.9f); }}),
     [](const auto &info) { return info.param.name; });

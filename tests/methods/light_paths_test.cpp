@@ -106,6 +106,37 @@ TEST(LightPathsOf, AnEnvironmentComeFromAllSides) {
         maker.scene, [&](double, double) { return 1.5 * pi; }, 1.5 * 4 * pi * pi * 2 * 1.01 * 1.01, "environment");
 }
 
+// Its radiance is 2 straight above, falls evenly with the angle, and is nothing straight below.
+TEST(LightPathsOf, AnEnvironmentMapComeByItsRadiance) {
+    SceneMaker maker = black_floor();
+    maker.environment_map(6, 5, [](std::uint32_t, std::uint32_t row) { return 2 - 0.5 * row; });
+    LightPathsCase light(maker.scene);
+    // Per area 2 pi times the integral of (2 - 2 t / pi) cos t sin t up to pi / 2, where that of t cos t sin t is pi
+    // / 8.
+    expect_flux(flux(light.trace(0, many), many, [](const Photon &) { return 1.0; }), 4 * 1.5 * pi, "map");
+}
+
+TEST(LightPathsOf, ASpotFillItsCone) {
+    SceneMaker maker = black_floor();
+    maker.spot({1, 3, 2}, {0.1f, 1.2f, 0}, {0, -1, 0}, 60, 60); // wider than the floor, and without a rim
+    expect_irradiance(
+        maker.scene,
+        [&](double x, double z) {
+            const double squared = (x - 0.1) * (x - 0.1) + z * z + 1.2 * 1.2;
+            return 3 * 1.2 / std::pow(squared, 1.5);
+        },
+        2 * pi * (1 - 0.5) * 3, "spot");
+}
+
+TEST(LightPathsOf, ASpotFadeTowardsItsRim) {
+    SceneMaker maker = black_floor();
+    maker.spot({3, 3, 3}, {0, 1, 0}, {0, -1, 0}, 10, 40);
+    const double c = 40 * pi / 180, b = 10 * pi / 180;
+    LightPathsCase light(maker.scene);
+    expect_flux(flux(light.trace(0, many), many, [](const Photon &) { return 1.0; }),
+                2 * pi * 3 * (1 - (std::sin(c) - std::sin(b)) / (c - b)), "spot with a rim");
+}
+
 // Outside, a sphere that emits evenly is a point of the intensity L pi r^2, where it is above the horizon.
 TEST(LightPathsOf, ASphereFollowThoseOfAPoint) {
     SceneMaker maker = black_floor();

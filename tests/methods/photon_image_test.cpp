@@ -206,7 +206,8 @@ TEST_P(PathKinds, AreMadeOnceEach) {
         scene.settings.max_depth = depth;
         // What lights of no extent send through glass and mirrors photons find, and camera paths cannot.
         std::erase_if(scene.emitters, [](const Emitter &emitter) {
-            return emitter.kind == Emitter::Kind::point || emitter.kind == Emitter::Kind::directional;
+            return emitter.kind == Emitter::Kind::point || emitter.kind == Emitter::Kind::directional ||
+                   emitter.kind == Emitter::Kind::spot;
         });
         RenderOptions options = with_radius(1, false);
         // The camera paths are most of the noise, and in the torus photons are.

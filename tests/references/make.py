@@ -42,6 +42,7 @@ REFERENCES = {
     "slab-and-ball-soft": ("slab-and-ball.xml", 96, {"lamp": 0.24, "glow": 56.25}, 16384),
     "lamp-in-egg-soft": ("lamp-in-egg.xml", 96, {"lamp": 0.1, "glow": 15}, 12288),
     "metal-ring": ("metal-ring.xml", 96, {}, 65536),
+    "sundial": ("sundial.xml", 96, {}, 16384),
 }
 
 

@@ -87,6 +87,9 @@ TEST(Traits, AreThoseOfTheLights) {
     EXPECT_THAT(with([&](SceneMaker &m) { m.environment(1); }),
                 UnorderedElementsAre("TRAIT_LIGHT_CONSTANT", "TRAIT_ENVIRONMENT"));
     EXPECT_THAT(with([&](SceneMaker &m) { m.environment(0); }), ElementsAre()) << "black";
+    EXPECT_THAT(with([&](SceneMaker &m) { m.emitter(Emitter::Kind::environment, white); }),
+                UnorderedElementsAre("TRAIT_LIGHT_ENVIRONMENT", "TRAIT_ENVIRONMENT"));
+    EXPECT_THAT(with([&](SceneMaker &m) { m.emitter(Emitter::Kind::spot, white); }), ElementsAre("TRAIT_LIGHT_SPOT"));
     EXPECT_THAT(with([&](SceneMaker &m) { m.cube(0, m.emitter(Emitter::Kind::area, white)); }),
                 ElementsAre("TRAIT_LIGHT_TRIANGLE"));
     EXPECT_THAT(with([&](SceneMaker &m) { m.sphere({}, 1, 0, m.emitter(Emitter::Kind::area, white)); }),

@@ -1,6 +1,7 @@
 // Small scenes built in code, for tests of scenes, stages and methods.
 #pragma once
 
+#include "runtime/scene/environment_map.h"
 #include "runtime/scene/scene.h"
 #include "runtime/scene/transform.h"
 #include "tests/support/materials.h"
@@ -76,6 +77,24 @@ struct SceneMaker {
     }
     void directional_light(Rgb irradiance, Vector3 direction) {
         scene.emitters[std::size_t(emitter(Emitter::Kind::directional, irradiance))].direction = direction;
+    }
+    /// An environment map of grey texels, by `radiance(column, row)`.
+    template <class Radiance>
+    void environment_map(std::uint32_t columns, std::uint32_t rows, const Radiance &radiance) {
+        std::vector<float> texels;
+        for (std::uint32_t row = 0; row < rows; ++row)
+            for (std::uint32_t column = 0; column < columns; ++column)
+                texels.push_back(float(radiance(column, row)));
+        scene.emitters[std::size_t(emitter(Emitter::Kind::environment, {1, 1, 1}))].map =
+            std::make_shared<const EnvironmentMap>(make_environment_map(columns, rows, texels, texels, texels, 1));
+    }
+    /// Angles in degrees.
+    void spot(Rgb intensity, Vector3 position, Vector3 direction, double beam, double cutoff) {
+        Emitter &spot = scene.emitters[std::size_t(emitter(Emitter::Kind::spot, intensity))];
+        spot.position = position;
+        spot.direction = direction;
+        spot.beam = float(beam * std::numbers::pi / 180);
+        spot.cutoff = float(cutoff * std::numbers::pi / 180);
     }
     void shape(Shape::Kind kind, std::size_t geometry, std::uint32_t material, std::int32_t emitter) {
         Shape shape;
