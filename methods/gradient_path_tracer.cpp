@@ -97,7 +97,8 @@ StageDeclaration count_stage() {
 
 GradientPathTracer::GradientPathTracer(Device &device, const Scene &scene, const RenderOptions &options)
     : options_(options), session_(device, scene, options, gradient_traits(scene, options)),
-      phases_(phases_of(session_)), camera_(stages_.add(camera_stage())), primary_(stages_.add({.name = "primary"})),
+      phases_(phases_of(session_)), camera_(stages_.add(camera_stage())),
+      far_clip_(stages_.add(far_clip_stage(session_))), primary_(stages_.add({.name = "primary"})),
       begin_(stages_.add({.name = "gradient_begin", .numbers = {"first_row", "first_slot"}})),
       connect_(stages_.add(connect_stage())),
       gradient_connect_(
@@ -156,7 +157,9 @@ TableList GradientPathTracer::tables() const {
     const auto with = [&](const char *trait, int columns) { return session_.has(trait) ? std::uint32_t(columns) : 0u; };
     const std::uint32_t not_needed = session_.vertex_columns_not_needed();
     const std::uint32_t offset_columns_used = session_.has("TRAIT_APART") ? offset_columns : offset_state;
-    return {{.name = "primary", .rows = RowsOf::slot, .columns = primary_columns},
+    return {{.name = "primary",
+             .rows = RowsOf::slot,
+             .columns = primary_columns - (session_.has("TRAIT_CAMERA_ORIGINS") ? 0u : 3u)},
             {.name = "primary_vertex", .rows = RowsOf::slot, .columns = primary_vertex_columns - not_needed},
             {.name = "vertex", .columns = vertex_columns - not_needed},
             {.name = "event", .columns = event_columns},
@@ -230,6 +233,7 @@ void GradientPathTracer::trace_primaries(const Strip &strip) {
         if (!paths_.is_alive())
             break;
         paths_.trace();
+        far_clip_.run(paths_.rays());
         primary_.run(paths_.rays());
         paths_.drop();
     }

@@ -24,7 +24,8 @@ INSTANTIATE_TEST_SUITE_P(Image, OwnReference,
                          ::testing::Values("cornell-box", "torus-rough-glass", "plates", "holes-7", "holes-14",
                                            "holes-28", "door-ajar", "materials", "cornell-box-glossy",
                                            "metal-ring-soft", "torus-smooth-glass-soft", "slab-and-ball-soft",
-                                           "lamp-in-egg-soft"),
+                                           "lamp-in-egg-soft", "thin-lens", "orthographic", "clipped",
+                                           "clipped-mitchell"),
                          name_of_scene);
 
 struct SharedCase {
@@ -108,6 +109,10 @@ INSTANTIATE_TEST_SUITE_P(
                              [](Scene &scene) { scale_emitters(scene, Emitter::Kind::area, 1.03f); }},
                       Defect{"egg_of_denser_glass", "lamp-in-egg-soft",
                              [](Scene &scene) { material_named(scene, "egg").front.ior *= 1.1f; }},
+                      Defect{"lens_a_quarter_smaller", "thin-lens",
+                             [](Scene &scene) { scene.camera.aperture_radius *= 0.75; }},
+                      Defect{"near_plane_not_there", "clipped", [](Scene &scene) { scene.camera.near_clip = 0.01; }},
+                      Defect{"far_plane_not_there", "orthographic", [](Scene &scene) { scene.camera.far_clip = 1e4; }},
                       Defect{"sky_10_percent_darker", "plates",
                              [](Scene &scene) { scale_emitters(scene, Emitter::Kind::constant, 0.9f); }}),
     [](const auto &info) { return info.param.name; });
