@@ -50,6 +50,12 @@ const char *name_of(FilmSettings::Filter filter) {
         return "tent";
     case FilmSettings::Filter::gaussian:
         return "gaussian";
+    case FilmSettings::Filter::mitchell:
+        return "mitchell";
+    case FilmSettings::Filter::catmullrom:
+        return "catmullrom";
+    case FilmSettings::Filter::lanczos:
+        return "lanczos";
     }
     return "unknown";
 }

@@ -100,7 +100,8 @@ StageDeclaration count_stage() {
 
 GradientPathTracer::GradientPathTracer(Device &device, const Scene &scene, const RenderOptions &options)
     : options_(options), session_(device, scene, options, gradient_traits(scene, options)),
-      phases_(phases_of(session_)), camera_(stages_.add(camera_stage())), primary_(stages_.add({.name = "primary"})),
+      phases_(phases_of(session_)), camera_(stages_.add(camera_stage())),
+      far_clip_(stages_.add(far_clip_stage(session_))), primary_(stages_.add({.name = "primary"})),
       begin_(stages_.add({.name = "gradient_begin", .numbers = {"first_row", "first_slot"}})),
       connect_(stages_.add(connect_stage())),
       gradient_connect_(
@@ -160,7 +161,9 @@ TableList GradientPathTracer::tables() const {
     const auto with = [&](const char *trait, int columns) { return session_.has(trait) ? std::uint32_t(columns) : 0u; };
     const std::uint32_t offset_columns_used = session_.has("TRAIT_APART") ? offset_columns : offset_state;
     return {
-        {.name = "primary", .rows = RowsOf::slot, .columns = primary_columns},
+        {.name = "primary",
+         .rows = RowsOf::slot,
+         .columns = primary_columns - (session_.has("TRAIT_CAMERA_ORIGINS") ? 0u : 3u)},
         {.name = "primary_vertex", .rows = RowsOf::slot, .columns = session_.vertex_columns(primary_vertex_columns)},
         {.name = "vertex", .columns = session_.vertex_columns(vertex_columns)},
         {.name = "event", .columns = event_columns},
@@ -239,6 +242,7 @@ void GradientPathTracer::trace_primaries(const Strip &strip) {
         if (!paths_.is_alive())
             break;
         paths_.trace();
+        far_clip_.run(paths_.rays());
         primary_.run(paths_.rays());
         paths_.drop();
     }

@@ -87,8 +87,8 @@ class GradientPathTracer final : public Method {
     Session session_;
     Phases phases_;
     Stages stages_;
-    Stage &camera_, &primary_, &begin_, &connect_, &gradient_connect_, &shift_, &shift_alike_, &evaluate_, &weigh_,
-        &weigh_apart_;
+    Stage &camera_, &far_clip_, &primary_, &begin_, &connect_, &gradient_connect_, &shift_, &shift_alike_, &evaluate_,
+        &weigh_, &weigh_apart_;
     Wavefront paths_;
     Stage &escape_, &emission_, &gradient_escape_, &gradient_emission_, &shade_with_offsets_, &shade_, &advance_,
         &advance_apart_, &join_, &count_;

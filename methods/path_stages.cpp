@@ -15,6 +15,10 @@ StageDeclaration camera_stage() {
             .numbers = {"first_row", "first_slot", "first_pixel", "first_sample_low", "first_sample_high"}};
 }
 
+StageDeclaration far_clip_stage(const Session &session) {
+    return {.name = "far_clip", .is_wanted = session.has("TRAIT_FAR_CLIP")};
+}
+
 StageDeclaration connect_stage() { return {.name = "connect", .numbers = {"first"}}; }
 
 StageDeclaration escape_stage(const Session &session) {

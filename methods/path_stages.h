@@ -10,6 +10,8 @@
 namespace gradus {
 
 StageDeclaration camera_stage();
+/// Rays of the camera end at its far plane; to run after each trace of rays some of which are the camera's.
+StageDeclaration far_clip_stage(const Session &session);
 StageDeclaration connect_stage();
 StageDeclaration escape_stage(const Session &session);
 StageDeclaration emission_stage(const Session &session);

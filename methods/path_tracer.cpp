@@ -10,7 +10,7 @@ namespace gradus {
 
 PathTracer::PathTracer(Device &device, const Scene &scene, const RenderOptions &options)
     : session_(device, scene, options, {}), camera_(stages_.add(camera_stage())),
-      connect_(stages_.add(connect_stage())),
+      far_clip_(stages_.add(far_clip_stage(session_))), connect_(stages_.add(connect_stage())),
       paths_(session_, stages_, {.kinds = std::uint32_t(session_.scene.kinds.size())}),
       escape_(stages_.add(escape_stage(session_))), emission_(stages_.add(emission_stage(session_))),
       shade_(stages_.add(shade_stage(false))), film_(session_, stages_) {
@@ -47,6 +47,7 @@ bool PathTracer::render_batch() {
         if (!paths_.is_alive())
             break;
         paths_.trace();
+        far_clip_.run(paths_.rays());
         connect_.run(paths_.vertices(), {{"first", 0}});
         const Hits &hits = paths_.partition();
         escape_.run(hits.escaped().count, {{"first", hits.escaped().first}});

@@ -26,7 +26,7 @@ class PathTracer final : public Method {
   private:
     Session session_;
     Stages stages_;
-    Stage &camera_, &connect_;
+    Stage &camera_, &far_clip_, &connect_;
     Wavefront paths_;
     Stage &escape_, &emission_, &shade_;
     Film film_;

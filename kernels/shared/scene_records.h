@@ -16,7 +16,7 @@
     FIELD(triangle, e2_x, "third vertex minus first")                                                                  \
     FIELD(triangle, e2_y, "")                                                                                          \
     FIELD(triangle, e2_z, "")                                                                                          \
-    FIELD(triangle, offset, "what its shape adds to how far rays start off")                                             \
+    FIELD(triangle, offset, "what its shape adds to how far rays start off")                                           \
     FIELD(triangle, padding_0, "to 48 bytes in float")                                                                 \
     FIELD(triangle, padding_1, "")
 
@@ -88,7 +88,25 @@
     FIELD(camera, down_y, "")                                                                                          \
     FIELD(camera, down_z, "")                                                                                          \
     FIELD(camera, filter_radius, "tent, gaussian: half the support, in pixels")                                        \
-    FIELD(camera, filter_stddev, "gaussian, in pixels")
+    FIELD(camera, filter_stddev, "gaussian, in pixels")                                                                \
+    FIELD(camera, forward_x, "unit vector")                                                                            \
+    FIELD(camera, forward_y, "")                                                                                       \
+    FIELD(camera, forward_z, "")                                                                                       \
+    FIELD(camera, near_clip, "along forward: nothing nearer is seen")                                                  \
+    FIELD(camera, far_clip, "nothing farther is seen")                                                                 \
+    FIELD(camera, step_right_x, "orthographic: change of the ray's origin by one pixel to the right")                  \
+    FIELD(camera, step_right_y, "")                                                                                    \
+    FIELD(camera, step_right_z, "")                                                                                    \
+    FIELD(camera, step_down_x, "by one pixel down")                                                                    \
+    FIELD(camera, step_down_y, "")                                                                                     \
+    FIELD(camera, step_down_z, "")                                                                                     \
+    FIELD(camera, lens_left_x, "thin lens: its radius to the left of the image")                                       \
+    FIELD(camera, lens_left_y, "")                                                                                     \
+    FIELD(camera, lens_left_z, "")                                                                                     \
+    FIELD(camera, lens_up_x, "its radius upwards")                                                                     \
+    FIELD(camera, lens_up_y, "")                                                                                       \
+    FIELD(camera, lens_up_z, "")                                                                                       \
+    FIELD(camera, inverse_focus, "one over the distance of the plane of focus along forward")
 
 GRADUS_LIB_BEGIN
 

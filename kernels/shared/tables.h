@@ -75,6 +75,9 @@
     REAL(radiance, value_g, "")                                                                                        \
     REAL(radiance, value_b, "")
 
+/* The pixel filter over the density of a sample's place in it, by slot; only of filters with negative lobes. */
+#define GRADUS_FILTERED_COLUMNS(REAL, UINT) REAL(filtered, weight, "negative in the negative lobes")
+
 /* First-hit features by slot, only with --aov. */
 #define GRADUS_FEATURE_COLUMNS(REAL, UINT)                                                                             \
     REAL(feature, albedo_r, "")                                                                                        \
@@ -238,7 +241,10 @@
     UINT(primary, primitive, "the primitive, or ray_escaped")                                                          \
     REAL(primary, direction_x, "of the camera's ray, unit vector")                                                     \
     REAL(primary, direction_y, "")                                                                                     \
-    REAL(primary, direction_z, "")
+    REAL(primary, direction_z, "")                                                                                     \
+    REAL(primary, origin_x, "of the ray; these three only where the camera's rays have several")                       \
+    REAL(primary, origin_y, "")                                                                                        \
+    REAL(primary, origin_z, "")
 #define GRADUS_PRIMARY_VERTEX_COLUMNS(REAL, UINT) GRADUS_SURFACE_VERTEX_COLUMNS(primary_vertex, REAL, UINT)
 
 /* The newest vertex of a base path while it has offset paths of its own. */
@@ -386,6 +392,7 @@
     TABLE(shadow, GRADUS_SHADOW_COLUMNS)                                                                               \
     TABLE(path, GRADUS_PATH_COLUMNS)                                                                                   \
     TABLE(radiance, GRADUS_RADIANCE_COLUMNS)                                                                           \
+    TABLE(filtered, GRADUS_FILTERED_COLUMNS)                                                                           \
     TABLE(feature, GRADUS_FEATURE_COLUMNS)                                                                             \
     TABLE(film, GRADUS_FILM_COLUMNS)                                                                                   \
     TABLE(feature_film, GRADUS_FEATURE_FILM_COLUMNS)                                                                   \
@@ -513,6 +520,7 @@ GRADUS_LIB_END
 #define ROWS_OF_shadow capacity
 #define ROWS_OF_path capacity
 #define ROWS_OF_radiance slots
+#define ROWS_OF_filtered slots
 #define ROWS_OF_feature slots
 #define ROWS_OF_film pixels
 #define ROWS_OF_feature_film pixels

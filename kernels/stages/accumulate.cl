@@ -1,6 +1,7 @@
 /* accumulate: adds one sample to each of `count` pixels: slots `first_slot` on, whose pixels follow `first_pixel`
- * cyclically. A sample with a NaN or an infinity is left out and counted. */
-//! traits: TRAIT_AOV
+ * cyclically. A sample with a NaN or an infinity is left out and counted. Samples of filters with negative lobes have a
+ * weight. */
+//! traits: TRAIT_AOV TRAIT_FILTER_SIGNED
 #include "kernels/lib/compensated.h"
 #include "kernels/lib/finite.h"
 #include "kernels/shared/stage.h"
@@ -21,6 +22,10 @@ STAGE accumulate(uint count, uint slots, uint pixels, uint first_slot, uint firs
                  ,
                  __global const real *feature, __global real *feature_film
 #endif
+#if TRAIT_FILTER_SIGNED
+                 ,
+                 __global const real *filtered
+#endif
 ) {
     const size_t i = work_item();
     if (i >= count)
@@ -28,7 +33,14 @@ STAGE accumulate(uint count, uint slots, uint pixels, uint first_slot, uint firs
     const uint slot = first_slot + (uint)i;
     const uint unwrapped = first_pixel + (uint)i;
     const uint pixel = unwrapped >= pixels ? unwrapped - pixels : unwrapped;
+#if TRAIT_FILTER_SIGNED
+    const real weight = AT(filtered, weight, slot);
+#define WEIGHTED(x) ((x)*weight)
+#else
+#define WEIGHTED(x) (x)
+#endif
     rgb value = AT_RGB(radiance, value, slot);
+    value = rgb3(WEIGHTED(value.r), WEIGHTED(value.g), WEIGHTED(value.b));
 #if TRAIT_AOV
     const rgb albedo = AT_RGB(feature, albedo, slot);
     const vec3 normal = AT_V3(feature, normal, slot);
@@ -44,12 +56,12 @@ STAGE accumulate(uint count, uint slots, uint pixels, uint first_slot, uint firs
     ADD(feature_film, square_r, square_correction_r, value.r * value.r)
     ADD(feature_film, square_g, square_correction_g, value.g * value.g)
     ADD(feature_film, square_b, square_correction_b, value.b * value.b)
-    AT(feature_film, albedo_r, pixel) += albedo.r;
-    AT(feature_film, albedo_g, pixel) += albedo.g;
-    AT(feature_film, albedo_b, pixel) += albedo.b;
-    AT(feature_film, normal_x, pixel) += normal.x;
-    AT(feature_film, normal_y, pixel) += normal.y;
-    AT(feature_film, normal_z, pixel) += normal.z;
-    AT(feature_film, depth, pixel) += depth;
+    AT(feature_film, albedo_r, pixel) += WEIGHTED(albedo.r);
+    AT(feature_film, albedo_g, pixel) += WEIGHTED(albedo.g);
+    AT(feature_film, albedo_b, pixel) += WEIGHTED(albedo.b);
+    AT(feature_film, normal_x, pixel) += WEIGHTED(normal.x);
+    AT(feature_film, normal_y, pixel) += WEIGHTED(normal.y);
+    AT(feature_film, normal_z, pixel) += WEIGHTED(normal.z);
+    AT(feature_film, depth, pixel) += WEIGHTED(depth);
 #endif
 }

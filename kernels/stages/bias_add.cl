@@ -3,12 +3,18 @@
  * (methods/photons/radius_bias.h). `half_number`: 0 in even passes and 1 in odd ones, which are kept apart. What is not
  * finite is left out. BY_SLOT: gather points are in the rows of their slots, and their radius is 0 where there is none.
  */
+//! traits: TRAIT_FILTER_SIGNED
 #include "kernels/lib/finite.h"
 #include "kernels/shared/stage.h"
 
 STAGE bias_add(uint count, uint first, uint gather_rows, uint pixels, uint first_pixel, uint half_number,
                real flux_scale, __global const real *gather, __global const real *gather_inner,
-               __global real *radius_bias) {
+               __global real *radius_bias
+#if TRAIT_FILTER_SIGNED
+               ,
+               __global const real *filtered, uint slots
+#endif
+) {
     const size_t i = work_item();
     if (i >= count)
         return;
@@ -20,13 +26,16 @@ STAGE bias_add(uint count, uint first, uint gather_rows, uint pixels, uint first
     const int is_known = is_there & (rgb_max(sum) > R(0));
     const real scale = R(2) * flux_scale / (is_there ? distance * distance : R(1));
     const rgb inner = rgb_scale(AT_RGB(gather_inner, value, row), R(2));
-    const rgb more = rgb_scale(rgb_mul(AT_RGB(gather, throughput, row), rgb_sub(sum, inner)), scale);
-    const int counts = is_known & is_finite(more.r) & is_finite(more.g) & is_finite(more.b);
+    rgb more = rgb_scale(rgb_mul(AT_RGB(gather, throughput, row), rgb_sub(sum, inner)), scale);
 #if BY_SLOT
     const uint slot = (uint)row;
 #else
     const uint slot = AT_UINT(gather, slot, row);
 #endif
+#if TRAIT_FILTER_SIGNED
+    more = rgb_scale(more, AT(filtered, weight, slot));
+#endif
+    const int counts = is_known & is_finite(more.r) & is_finite(more.g) & is_finite(more.b);
     const size_t to = (size_t)half_number * pixels + first_pixel + slot;
     const rgb before = AT_RGB(radius_bias, value, to);
     SET_RGB(radius_bias, value, to, rgb_select(counts, rgb_add(before, more), before));

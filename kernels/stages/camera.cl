@@ -7,11 +7,12 @@
  * PLANES: gradient-domain photon mapping. Slots come in five planes of `strip_pixels`: the paths of the pixels, then
  * their offset paths, which are those of the neighbours (gradient_neighbour in kernels/lib/gradient.h) with the pixel's
  * own random numbers. */
-//! traits: TRAIT_FILTER_TENT TRAIT_FILTER_GAUSSIAN TRAIT_AOV TRAIT_SHARED_JITTER
+//! traits: TRAIT_FILTER_TENT TRAIT_FILTER_GAUSSIAN TRAIT_FILTER_SIGNED TRAIT_AOV TRAIT_SHARED_JITTER
 #include "kernels/lib/additive_sequence.h"
 #include "kernels/lib/begin_path.h"
 #include "kernels/lib/camera_ray.h"
 #include "kernels/lib/division.h"
+#include "kernels/lib/filter_table.h"
 #include "kernels/lib/path_draw.h"
 
 /* Filter importance sampling (Ernst et al. 2006): the offset from the pixel's center is drawn from the filter. */
@@ -33,6 +34,10 @@ STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ra
 #if TRAIT_AOV
              ,
              __global real *feature
+#endif
+#if TRAIT_FILTER_SIGNED
+             ,
+             __global real *filtered
 #endif
 #if PLANES
              ,
@@ -73,8 +78,24 @@ STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ra
     random4 u;
     u.a = place.x;
     u.b = place.y;
+#if TRAIT_THIN_LENS
+    /* And their point of the lens: so base and offset paths are each other's first segments. */
+    const random4 lens = stratified_draw(start.z, sample_low, random_dimension_camera);
+    u.c = lens.a;
+    u.d = lens.b;
+#else
+    u.c = R(0);
+    u.d = R(0);
+#endif
 #else
     const random4 u = PATH_DRAW(key.x, key.y, random_dimension_camera);
+#endif
+#if TRAIT_FILTER_SIGNED
+    const filter_sample across = filter_table_sample(camera, unit, u.a), down = filter_table_sample(camera, unit, u.b);
+    const real offset_x = across.offset, offset_y = down.offset;
+    AT(filtered, weight, slot) = across.weight * down.weight;
+#else
+    const real offset_x = filter_offset(camera, unit, u.a), offset_y = filter_offset(camera, unit, u.b);
 #endif
 #if PLANES
     const int is_offset = plane > 0u, is_across = plane - 1u < 2u;
@@ -84,17 +105,16 @@ STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ra
     const int exists = (to_x >= 0) & (to_y >= 0) & (to_x < (int)crop_width) & (to_y < (int)crop_height);
     AT(gather, radius, slot) = exists ? R(0) : gather_absent;
     SET_RGB_IN(direct, radiance, value, slot, rgb_gray(R(0)));
-    const real film_x = (real)(to_x + (int)crop_x) + R(0.5) + filter_offset(camera, unit, u.a);
-    const real film_y = (real)(to_y + (int)crop_y) + R(0.5) + filter_offset(camera, unit, u.b);
+    const real film_x = (real)(to_x + (int)crop_x) + R(0.5) + offset_x;
+    const real film_y = (real)(to_y + (int)crop_y) + R(0.5) + offset_y;
 #else
     const int exists = 1;
-    const real film_x = (real)x + R(0.5) + filter_offset(camera, unit, u.a);
-    const real film_y = (real)y + R(0.5) + filter_offset(camera, unit, u.b);
+    const real film_x = (real)x + R(0.5) + offset_x;
+    const real film_y = (real)y + R(0.5) + offset_y;
 #endif
-    const vec3 direction = camera_direction(camera, unit, film_x, film_y);
-    const vec3 origin = FIELD_V3(camera, camera, 0, origin);
-    SET_V3(ray, origin, row, origin);
-    SET_V3(ray, direction, row, direction);
+    const camera_sight sight = camera_sight_through(camera, unit, film_x, film_y, u.c, u.d);
+    SET_V3(ray, origin, row, sight.origin);
+    SET_V3(ray, direction, row, sight.direction);
     AT_UINT(ray, primitive, row) = exists ? ray_pending : ray_none;
 
     BEGIN_PATH(row, slot, key.x, key.y)

@@ -1,5 +1,6 @@
 /* gradient_begin: begins one base path a row from what the camera saw: its first ray, already traced. Its sums are
  * begun where its first vertex is lit (`weigh`), or here where there is none. */
+//! traits: TRAIT_CAMERA_ORIGINS
 #include "kernels/lib/begin_path.h"
 
 STAGE gradient_begin(uint count, uint unit, uint capacity, uint slots, __global real *ray, __global real *path,
@@ -12,7 +13,11 @@ STAGE gradient_begin(uint count, uint unit, uint capacity, uint slots, __global 
     const size_t row = first_row + i;
     const uint slot = first_slot + (uint)i;
     const size_t seen = (size_t)slot + primary_shift;
+#if TRAIT_CAMERA_ORIGINS
+    const vec3 origin = AT_V3(primary, origin, seen);
+#else
     const vec3 origin = FIELD_V3(camera, camera, 0, origin);
+#endif
     const vec3 direction = AT_V3(primary, direction, seen);
     const uint primitive = AT_UINT(primary, primitive, seen);
     SET_V3(ray, origin, row, origin);

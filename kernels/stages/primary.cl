@@ -1,6 +1,7 @@
 /* primary: keeps what the camera sees through each pixel of a strip and of the rows beside it, by slot, before the
  * paths begin: the first vertices of their own, and those of their neighbours' offset paths. Rows are those of
  * `camera`, after tracing. */
+//! traits: TRAIT_CAMERA_ORIGINS
 #include "kernels/lib/surface_point.h"
 #include "kernels/lib/textured_material.h"
 #include "kernels/lib/vertex_frame.h"
@@ -27,6 +28,9 @@ STAGE primary(uint count, uint unit, uint capacity, uint slots, __global const r
     AT_UINT(primary, key_1, slot) = AT_UINT(path, key_1, row);
     AT_UINT(primary, primitive, slot) = primitive;
     SET_V3(primary, direction, slot, direction);
+#if TRAIT_CAMERA_ORIGINS
+    SET_V3(primary, origin, slot, AT_V3(ray, origin, row));
+#endif
     SET_SURFACE_VERTEX(primary_vertex, slot, is_hit ? material_kind[point.material] : kind_none, point, direction)
     SET_VERTEX_TEXTURED(primary_vertex, slot, capacity, row)
 }

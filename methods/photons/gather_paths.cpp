@@ -41,7 +41,7 @@ GatherPaths::GatherPaths(Session &session, Stages &stages, const Scene &scene, c
       // What the camera features of a gather point need, where `shade` does not see it.
       features_(options.aov && options.direct_photons), planes_(planes),
       has_smooth_(has_smooth_surface(scene, options)),
-      camera_(stages.add(defined_as(camera_stage(), "PLANES", planes))),
+      camera_(stages.add(defined_as(camera_stage(), "PLANES", planes))), far_clip_(stages.add(far_clip_stage(session))),
       connect_(stages.add(wanted_if(connect_stage(), has_smooth_ || samples_lights_))),
       paths_(session, stages,
              {.escaped = escaped_bins, .phases = 2, .kinds = std::uint32_t(session.scene.kinds.size())},
@@ -73,6 +73,7 @@ void GatherPaths::trace(std::uint32_t paths, std::uint32_t first_pixel, std::uin
         if (!paths_.is_alive())
             break;
         paths_.trace();
+        far_clip_.run(paths_.rays());
         connect_.run(paths_.vertices(), {{"first", 0}});
         const Hits &hits = paths_.partition({{"gathered_first", gathered_.first}, {"gathered_end", gathered_.end()}});
         escape_.run(hits.escaped().count, {{"first", hits.escaped().first}});

@@ -35,7 +35,7 @@ class GatherPaths {
     const Session &session_;
     bool samples_lights_, features_, planes_;
     bool has_smooth_; ///< surfaces that are no place to gather
-    Stage &camera_, &connect_;
+    Stage &camera_, &far_clip_, &connect_;
     Wavefront paths_;
     Stage &escape_, &emission_, &travel_, &gather_, &shade_;
     Range gathered_; ///< rows of paths that have left a gather point and look for light

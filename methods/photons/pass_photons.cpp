@@ -92,8 +92,10 @@ void PassPhotons::set_radius(Session &session, RenderOptions::GatherRadius radiu
         farthest = std::max({farthest, std::fabs(box.low[axis]), std::fabs(box.high[axis])});
     const float *camera = session.scene.camera.data();
     const double pixel = std::sqrt(length_of(camera, camera_right_x) * length_of(camera, camera_down_x));
+    // Of an orthographic camera pixels are as wide at any distance.
+    const double width = std::sqrt(length_of(camera, camera_step_right_x) * length_of(camera, camera_step_down_x));
     const double slope = radius.of_scene ? 0 : radius.value * pixel;
-    const double start = radius.of_scene ? radius.value * diameter : 0;
+    const double start = radius.value * (radius.of_scene ? diameter : width);
     largest_radius_ = radius.of_scene ? start : largest_share * diameter;
     typical_radius_ = std::clamp(slope * seen_distance(session), start, largest_radius_);
     session.reals["radius_slope"] = slope;

@@ -1,9 +1,5 @@
 #include "methods/photons/seen_distance.h"
 
-#define TRAIT_TRIANGLES 1
-#define TRAIT_SPHERES 1
-#include "kernels/lib/scene_hit.h"
-#include "kernels/lib/warp.h"
 #include "runtime/trace/camera_rays.h"
 
 #include <algorithm>
@@ -20,8 +16,8 @@ double seen_distance(Session &session) {
     const SceneTables &tables = session.scene;
     CameraRays rays;
     rays.trace(tables, session.tracer, count, [&](std::size_t i) {
-        return point2{(float(i % side) + 0.5f) / side * float(session.film.width),
-                      (float(i / side) + 0.5f) / side * float(session.film.height)};
+        return CameraPlace{(float(i % side) + 0.5f) / side * float(session.film.width),
+                           (float(i / side) + 0.5f) / side * float(session.film.height)};
     });
     std::vector<double> distances;
     for (std::size_t i = 0; i < count; ++i) {

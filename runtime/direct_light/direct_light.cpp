@@ -1,17 +1,19 @@
 #include "runtime/direct_light/direct_light.h"
 
-#define TRAIT_TRIANGLES 1
-#define TRAIT_SPHERES 1
+#include "runtime/trace/camera_rays.h"
+
 #define TRAIT_LIGHT_TRIANGLE 1
 #define TRAIT_LIGHT_SPHERE 1
 #define TRAIT_LIGHT_CONSTANT 1
 #define TRAIT_LIGHT_ENVIRONMENT 1
 #include "kernels/lib/additive_sequence.h"
 #include "kernels/lib/escaped_light.h"
+#include "kernels/lib/filter_table.h"
+#include "kernels/lib/stratified.h"
 #include "kernels/shared/tables.h"
 #include "runtime/direct_light/lit_rectangle.h"
 #include "runtime/scene/environment_map.h"
-#include "runtime/trace/camera_rays.h"
+#include "runtime/scene/filter_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,7 +37,7 @@ class DirectRays {
     DirectRays(const SceneTables &tables, Tracer &tracer, std::uint64_t &rays)
         : tables_(tables), tracer_(tracer), rays_(rays) {}
 
-    /// The light along `count` rays: ray i goes through the point place(i) of the full film, in pixels. `as_one`: an
+    /// The light along `count` rays: ray i goes through place(i). `as_one`: an
     /// environment's map is taken for one colour, since it changes everywhere and it is its border that is sought.
     template <class Place>
     const std::vector<rgb> &trace(std::size_t count, bool as_one, const Place &place) {
@@ -127,8 +129,11 @@ std::vector<std::size_t> edge_pixels(const FilmSettings &film, const PixelRectan
             const std::size_t number = begin + ray / pilots, i = ray % pilots;
             const std::size_t x = film.crop_x + lit.left + number % lit.width();
             const std::size_t y = film.crop_y + lit.top + number / lit.width();
-            return point2{float(x) + (float(i % pilot_side) + 0.5f) / pilot_side,
-                          float(y) + (float(i / pilot_side) + 0.5f) / pilot_side};
+            // Each at a place of the lens of its own.
+            const random_bits lens = random_hash(std::uint32_t(x), std::uint32_t(y), std::uint32_t(i), 0x6C656E73u);
+            return CameraPlace{float(x) + (float(i % pilot_side) + 0.5f) / pilot_side,
+                               float(y) + (float(i / pilot_side) + 0.5f) / pilot_side, random_unit(lens.x),
+                               random_unit(lens.y)};
         });
         for (std::size_t number = begin; number < end; ++number) {
             const rgb *first = &light[(number - begin) * pilots];
@@ -166,9 +171,14 @@ std::vector<DirectPixel> sample_direct_edges(const SceneTables &tables, const Fi
                                              std::uint64_t seed, std::uint32_t samples, std::uint64_t &rays) {
     const float radius = tables.camera[camera_filter_radius], deviation = tables.camera[camera_filter_stddev];
     const auto from_center = [&](float u) {
-        return film.filter == FilmSettings::Filter::tent       ? radius * warp_tent(u)
-               : film.filter == FilmSettings::Filter::gaussian ? warp_gaussian(u, radius, deviation)
-                                                               : u - 0.5f;
+        if (is_signed(film.filter))
+            return filter_table_sample(tables.camera.data(), 1, u);
+        filter_sample drawn;
+        drawn.weight = 1;
+        drawn.offset = film.filter == FilmSettings::Filter::tent       ? radius * warp_tent(u)
+                       : film.filter == FilmSettings::Filter::gaussian ? warp_gaussian(u, radius, deviation)
+                                                                       : u - 0.5f;
+        return drawn;
     };
     DirectRays direct(tables, tracer, rays);
     const int reach = film.filter == FilmSettings::Filter::box ? 1 : std::max(1, int(std::ceil(radius)));
@@ -181,25 +191,36 @@ std::vector<DirectPixel> sample_direct_edges(const SceneTables &tables, const Fi
     if (count < 2 * samples)
         return {};
     std::vector<DirectPixel> found;
+    std::vector<float> weights; ///< of the filter, by ray
     for (std::size_t begin = 0; begin < edges.size();) {
         const std::size_t end = std::min(edges.size(), begin + std::max<std::size_t>(batch / count, 1));
+        weights.resize((end - begin) * count);
         const std::vector<rgb> &light = direct.trace((end - begin) * count, false, [&](std::size_t ray) {
             const std::size_t pixel = edges[begin + ray / count];
             const std::uint32_t x = film.crop_x + static_cast<std::uint32_t>(pixel % film.crop_width);
             const std::uint32_t y = film.crop_y + static_cast<std::uint32_t>(pixel / film.crop_width);
+            const auto number = static_cast<std::uint32_t>(ray % count);
             // No path has so high a sample number.
             const random_bits start =
                 random_key(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32), y * film.width + x,
                            0, 0xFFFFFFFFu);
-            const point2 place = additive_sequence(start.x, start.y, static_cast<std::uint32_t>(ray % count));
-            return point2{float(x) + 0.5f + from_center(place.x), float(y) + 0.5f + from_center(place.y)};
+            const point2 place = additive_sequence(start.x, start.y, number);
+            const filter_sample across = from_center(place.x), down = from_center(place.y);
+            weights[ray] = across.weight * down.weight;
+            CameraPlace at{float(x) + 0.5f + across.offset, float(y) + 0.5f + down.offset};
+            if (tables.camera_kind == Camera::Kind::thin_lens) {
+                const random4 lens = stratified_draw(start.z, number, random_dimension_camera);
+                at.lens_1 = lens.a;
+                at.lens_2 = lens.b;
+            }
+            return at;
         });
         for (std::size_t e = begin; e < end; ++e) {
             double sum[3] = {};
             for (std::size_t i = (e - begin) * count; i < (e - begin + 1) * count; ++i) {
-                sum[0] += light[i].r;
-                sum[1] += light[i].g;
-                sum[2] += light[i].b;
+                sum[0] += double(weights[i]) * light[i].r;
+                sum[1] += double(weights[i]) * light[i].g;
+                sum[2] += double(weights[i]) * light[i].b;
             }
             DirectPixel pixel;
             pixel.pixel = edges[e];

@@ -45,7 +45,7 @@ std::pair<std::uint32_t, std::uint32_t> pixels_between(double low, double high, 
 
 PixelRectangle lit_rectangle(const SceneTables &tables, const FilmSettings &film) {
     const PixelRectangle all = {0, 0, film.crop_width, film.crop_height};
-    if (tables.environment_light < tables.light_count)
+    if (tables.environment_light < tables.light_count || tables.camera_kind != Camera::Kind::perspective)
         return all;
     // The direction through the point (x, y) of the film is corner + x right + y down: where a point appears is solved
     // for by Cramer's rule.

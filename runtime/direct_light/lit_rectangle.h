@@ -17,8 +17,8 @@ struct PixelRectangle {
 };
 
 /// The least rectangle, but for a pixel or two, beyond which no camera ray meets an emitting surface. All of the crop
-/// where there is an environment, which is seen between surfaces anywhere, or where a light reaches behind the camera.
-/// `film` has its crop set.
+/// where there is an environment, which is seen between surfaces anywhere, where a light reaches behind the camera, or
+/// where that is no pinhole. `film` has its crop set.
 PixelRectangle lit_rectangle(const SceneTables &tables, const FilmSettings &film);
 
 } // namespace gradus

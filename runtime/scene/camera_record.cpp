@@ -1,6 +1,7 @@
 #include "runtime/scene/camera_record.h"
 
 #include "kernels/shared/scene_records.h"
+#include "runtime/scene/filter_table.h"
 
 #include <array>
 #include <cmath>
@@ -39,23 +40,48 @@ double tangent_x(const Camera &camera, double width, double height) {
 
 } // namespace
 
-std::vector<float> make_camera_record(const Camera &camera, const FilmSettings &film) {
+std::vector<float> make_camera_record(const Camera &camera, const FilmSettings &film, const CameraClips &clips) {
     using namespace lib_float;
     const double width = film.width, height = film.height;
-    const double half_width = tangent_x(camera, width, height), half_height = half_width * height / width;
+    const bool is_orthographic = camera.kind == Camera::Kind::orthographic;
+    const double half_width = is_orthographic ? 1 : tangent_x(camera, width, height);
+    const double half_height = half_width * height / width;
     // The camera's +x points to the left of the image and its +y up.
-    const Vec left = normalized(column(camera.to_world, 0)), up = normalized(column(camera.to_world, 1));
+    const Vec along_x = column(camera.to_world, 0), along_y = column(camera.to_world, 1);
+    const Vec left = normalized(along_x), up = normalized(along_y);
     const Vec forward = normalized(column(camera.to_world, 2)), origin = column(camera.to_world, 3);
+    // What lies ahead appears where the principal point is: the film is moved the other way.
+    const double right_by = 2 * half_width * camera.principal_x, down_by = 2 * half_height * camera.principal_y;
     std::vector<float> record(camera_stride);
-    for (int axis = 0; axis < 3; ++axis) {
-        record[camera_origin_x + axis] = static_cast<float>(origin[axis]);
-        record[camera_corner_x + axis] =
-            static_cast<float>(forward[axis] + half_width * left[axis] + half_height * up[axis]);
-        record[camera_right_x + axis] = static_cast<float>(-2 * half_width / width * left[axis]);
-        record[camera_down_x + axis] = static_cast<float>(-2 * half_height / height * up[axis]);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto put = [&](int field, double value) {
+            record[std::size_t(field) + axis] = static_cast<float>(value);
+        };
+        if (is_orthographic) {
+            put(camera_origin_x, origin[axis] + along_x[axis] + half_height * along_y[axis]);
+            put(camera_corner_x, forward[axis]);
+            put(camera_step_right_x, -2 / width * along_x[axis]);
+            put(camera_step_down_x, -2 * half_height / height * along_y[axis]);
+        } else {
+            put(camera_origin_x, origin[axis]);
+            put(camera_corner_x,
+                forward[axis] + (half_width - right_by) * left[axis] + (half_height - down_by) * up[axis]);
+            put(camera_right_x, -2 * half_width / width * left[axis]);
+            put(camera_down_x, -2 * half_height / height * up[axis]);
+        }
+        put(camera_forward_x, forward[axis]);
+        if (camera.kind == Camera::Kind::thin_lens) {
+            put(camera_lens_left_x, camera.aperture_radius * left[axis]);
+            put(camera_lens_up_x, camera.aperture_radius * up[axis]);
+        }
     }
     record[camera_filter_radius] = film.filter_radius;
     record[camera_filter_stddev] = film.filter_stddev;
+    record[camera_inverse_focus] = static_cast<float>(1 / camera.focus_distance);
+    record[camera_near_clip] = clips.near_clip ? static_cast<float>(near_plane(camera)) : 0;
+    record[camera_far_clip] = clips.far_clip ? static_cast<float>(far_plane(camera)) : 3e38f;
+    const std::vector<float> filter = make_filter_table(film);
+    record.insert(record.end(), filter.begin(), filter.end());
     return record;
 }
 

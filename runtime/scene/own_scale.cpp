@@ -65,8 +65,14 @@ double bring_to_own_scale(Scene &scene) {
             for (float Rgb::*channel : {&Rgb::r, &Rgb::g, &Rgb::b})
                 emitter.value.*channel = float(emitter.value.*channel * factor * factor);
     }
-    for (int axis = 0; axis < 3; ++axis)
-        scene.camera.to_world.m[std::size_t(axis) * 4 + 3] *= factor;
+    Camera &camera = scene.camera;
+    const bool scales = camera.kind == Camera::Kind::orthographic; // its film and its near plane with it
+    for (std::size_t row = 0; row < 3; ++row)
+        for (std::size_t column = scales ? 0 : 3; column < 4; ++column)
+            camera.to_world.m[row * 4 + column] *= factor;
+    for (double *length : {&camera.far_clip, &camera.aperture_radius, &camera.focus_distance})
+        *length *= factor;
+    camera.near_clip *= scales ? 1 : factor;
     return factor;
 }
 

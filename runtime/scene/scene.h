@@ -145,21 +145,35 @@ struct Emitter {
     std::shared_ptr<const EnvironmentMap> map;                      ///< environment
 };
 
-/// A pinhole camera that looks along its local +z with +y up and +x to the left of the image, as Mitsuba has it.
+/// A camera that looks along its local +z with +y up and +x to the left of the image, as Mitsuba has it.
 struct Camera {
     enum class FovAxis { x, y, smaller, larger, diagonal };
-    Matrix4 to_world; ///< rigid but for a scale, which is ignored
+    enum class Kind {
+        perspective, ///< a pinhole
+        thin_lens,
+        orthographic ///< its film is [-1, 1] wide before to_world
+    };
+    Matrix4 to_world; ///< rigid but for a scale, which counts of an orthographic camera alone
     double fov = 50;  ///< degrees, along fov_axis
     FovAxis fov_axis = FovAxis::x;
+    Kind kind = Kind::perspective;
+    double principal_x = 0,
+           principal_y = 0; ///< where the image is of what lies ahead, right of and below its middle, ...
+                            ///< ... in widths and heights of the film
+    double near_clip = 0, far_clip = 1e30; ///< along the line of sight, what is nearer or farther is not seen
+    double aperture_radius = 0;            ///< of a thin lens
+    double focus_distance = 1;             ///< of a thin lens, along the line of sight
 };
 
 struct FilmSettings {
-    enum class Filter { box, tent, gaussian };
+    enum class Filter { box, tent, gaussian, mitchell, catmullrom, lanczos };
     std::uint32_t width = 768, height = 576;                               ///< the full film; the crop is a part of it
     std::uint32_t crop_x = 0, crop_y = 0, crop_width = 0, crop_height = 0; ///< crop_width 0: no crop
     Filter filter = Filter::gaussian;
-    float filter_radius = 2.0f; ///< tent: half its support in pixels; gaussian: where it is cut off
-    float filter_stddev = 0.5f; ///< gaussian, in pixels
+    float filter_radius =
+        2.0f; ///< half its support in pixels: of a Gaussian where it is cut off, of Lanczos' its lobes
+    float filter_stddev = 0.5f;                         ///< gaussian, in pixels
+    float mitchell_b = 1 / 3.0f, mitchell_c = 1 / 3.0f; ///< of Mitchell and Netravali (1988)
 };
 
 /// Width and height of the image to render: the crop's, or the film's where there is none.

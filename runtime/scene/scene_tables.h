@@ -1,6 +1,7 @@
 // A scene laid out as the kernels read it: the records of kernels/shared/scene_records.h and material.h.
 #pragma once
 
+#include "runtime/scene/camera_clips.h"
 #include "runtime/scene/scene.h"
 #include "runtime/scene/traits.h"
 
@@ -31,6 +32,8 @@ struct SceneTables {
     std::uint32_t triangle_count = 0, light_count = 0, environment_light = 0;
     float scene_diameter = 1;               ///< longer than any segment within the scene; of a sphere that holds it
     std::array<float, 3> scene_center = {}; ///< of that sphere
+    CameraClips camera_clips;
+    Camera::Kind camera_kind = Camera::Kind::perspective;
 };
 
 /// Lays out the scene for these traits. `film_width` and `film_height` are those of the full film.

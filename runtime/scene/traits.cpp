@@ -1,6 +1,8 @@
 #include "runtime/scene/traits.h"
 
 #include "kernels/shared/texture.h"
+#include "runtime/scene/camera_clips.h"
+#include "runtime/scene/filter_table.h"
 
 #include <algorithm>
 #include <iterator>
@@ -38,6 +40,12 @@ constexpr TraitText descriptions[] = {
     {"TRAIT_TEXTURES", "what textures have, a bit each"},
     {"TRAIT_FILTER_TENT", "tent pixel filter"},
     {"TRAIT_FILTER_GAUSSIAN", "Gaussian pixel filter"},
+    {"TRAIT_FILTER_SIGNED", "pixel filter with negative lobes"},
+    {"TRAIT_ORTHOGRAPHIC", "orthographic camera"},
+    {"TRAIT_THIN_LENS", "camera with a lens"},
+    {"TRAIT_NEAR_CLIP", "surfaces before the camera's near plane"},
+    {"TRAIT_FAR_CLIP", "surfaces beyond its far plane"},
+    {"TRAIT_CAMERA_ORIGINS", "camera rays that do not all begin at one point"},
 };
 
 std::vector<std::string> words_of(const std::string &text) {
@@ -215,6 +223,13 @@ TraitMap scene_traits(const Scene &scene) {
     traits["TRAIT_HIDE_EMITTERS"] = scene.settings.hide_emitters;
     traits["TRAIT_FILTER_TENT"] = scene.film.filter == FilmSettings::Filter::tent;
     traits["TRAIT_FILTER_GAUSSIAN"] = scene.film.filter == FilmSettings::Filter::gaussian;
+    traits["TRAIT_FILTER_SIGNED"] = is_signed(scene.film.filter);
+    const CameraClips clips = camera_clips(scene);
+    traits["TRAIT_ORTHOGRAPHIC"] = scene.camera.kind == Camera::Kind::orthographic;
+    traits["TRAIT_THIN_LENS"] = scene.camera.kind == Camera::Kind::thin_lens;
+    traits["TRAIT_NEAR_CLIP"] = clips.near_clip;
+    traits["TRAIT_FAR_CLIP"] = clips.far_clip;
+    traits["TRAIT_CAMERA_ORIGINS"] = scene.camera.kind != Camera::Kind::perspective || clips.near_clip;
     return traits;
 }
 

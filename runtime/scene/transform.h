@@ -32,6 +32,10 @@ Matrix4 rotation(const Double3 &axis, double degrees);
 /// to the line of sight.
 Matrix4 look_at(const Double3 &origin, const Double3 &target, const Double3 &up);
 
+/// Where the map takes the axis of that number; 3: the origin.
+inline Double3 column_of(const Matrix4 &matrix, std::size_t number) {
+    return {matrix.m[number], matrix.m[4 + number], matrix.m[8 + number]};
+}
 Double3 transform_point(const Matrix4 &matrix, const Double3 &point);
 Double3 transform_vector(const Matrix4 &matrix, const Double3 &vector);
 /// Determinant of the upper left 3x3 part; negative where the map mirrors.

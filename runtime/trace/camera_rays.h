@@ -1,7 +1,13 @@
 // Rays of the camera that the host traces by itself.
 #pragma once
 
+#define TRAIT_ORTHOGRAPHIC 1
+#define TRAIT_THIN_LENS 1
+#define TRAIT_NEAR_CLIP 1
+#define TRAIT_TRIANGLES 1
+#define TRAIT_SPHERES 1
 #include "kernels/lib/camera_ray.h"
+#include "kernels/lib/scene_hit.h"
 #include "kernels/shared/tables.h"
 #include "runtime/scene/scene_tables.h"
 #include "runtime/trace/tracer.h"
@@ -12,10 +18,14 @@
 
 namespace gradus {
 
+/// Of the full film, in pixels from its top left; of the lens, by two numbers in [0, 1).
+struct CameraPlace {
+    float x = 0, y = 0, lens_1 = 0, lens_2 = 0;
+};
+
 class CameraRays {
   public:
-    /// Traces `count` rays: ray i goes through the point place(i), x and y, of the full film in pixels. Returns how
-    /// many were traced.
+    /// Traces `count` rays: ray i goes through place(i). Returns how many were traced.
     template <class Place>
     std::uint64_t trace(const SceneTables &tables, Tracer &tracer, std::size_t count, const Place &place) {
         for (std::vector<float> &column : columns_)
@@ -26,13 +36,9 @@ class CameraRays {
             const float *camera = tables.camera.data();
             for (std::size_t i = begin; i < end; ++i) {
                 const auto film = place(i);
-                const vec3 direction = camera_direction(camera, unit, film.x, film.y);
-                const float values[] = {camera[camera_origin_x],
-                                        camera[camera_origin_y],
-                                        camera[camera_origin_z],
-                                        direction.x,
-                                        direction.y,
-                                        direction.z};
+                const camera_sight sight = camera_sight_through(camera, unit, film.x, film.y, film.lens_1, film.lens_2);
+                const float values[] = {sight.origin.x,    sight.origin.y,    sight.origin.z,
+                                        sight.direction.x, sight.direction.y, sight.direction.z};
                 for (int column = 0; column < 6; ++column)
                     columns_[column][i] = values[column];
             }
@@ -43,7 +49,10 @@ class CameraRays {
             columns.direction[axis] = columns_[3 + axis].data();
         }
         columns.primitive = primitive_.data();
-        return tracer.trace(columns, count, ShadowColumns{}, 0).extension;
+        const std::uint64_t traced = tracer.trace(columns, count, ShadowColumns{}, 0).extension;
+        if (tables.camera_clips.far_clip)
+            clip(tables, count);
+        return traced;
     }
 
     std::uint32_t primitive(std::size_t ray) const { return primitive_[ray]; } ///< or ray_escaped
@@ -55,6 +64,21 @@ class CameraRays {
     }
 
   private:
+    /// What was met beyond the far plane is not seen.
+    void clip(const SceneTables &tables, std::size_t count) {
+        using namespace lib_float;
+        const float *camera = tables.camera.data();
+        for (std::size_t i = 0; i < count; ++i) {
+            if (primitive_[i] >= ray_first_special)
+                continue;
+            const primitive_hit hit = primitive_hit_of(tables.triangles.data(), tables.spheres.data(), unit,
+                                                       tables.triangle_count, primitive_[i], origin(i), direction(i));
+            const float depth = v3_dot(v3_sub(hit.position, origin(i)), FIELD_V3(camera, camera, 0, forward));
+            if (depth + camera[camera_near_clip] > camera[camera_far_clip])
+                primitive_[i] = ray_escaped;
+        }
+    }
+
     static constexpr std::uint32_t unit = 1; // of FIELD_OF
 
     std::vector<float> columns_[6];

@@ -19,6 +19,7 @@ TableList Film::tables() const {
     const bool aov = session_.has("TRAIT_AOV");
     const auto with_aov = [&](int columns) { return aov ? std::uint32_t(columns) : 0u; };
     return {{.name = "radiance", .rows = RowsOf::slot, .columns = radiance_columns},
+            {.name = "filtered", .rows = RowsOf::slot, .columns = session_.has("TRAIT_FILTER_SIGNED") ? 1u : 0u},
             {.name = "feature", .rows = RowsOf::slot, .columns = with_aov(feature_columns)},
             {.name = "film", .rows = RowsOf::pixel, .columns = film_columns},
             {.name = "feature_film", .rows = RowsOf::pixel, .columns = with_aov(feature_film_columns)}};

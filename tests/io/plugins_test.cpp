@@ -390,11 +390,55 @@ TEST(SensorPlugin, FocalLengthIsThatOf35mmFilm) {
     EXPECT_NEAR(wide.camera.fov, 90, 1e-9);
 }
 
-TEST(SensorPlugin, PrincipalPointWarns) {
-    const LoadedScene loaded = load_text("<scene version=\"3.0.0\"><sensor type=\"perspective\">\n<float "
-                                         "name=\"principal_point_offset_x\" value=\"0.1\"/></sensor><emitter "
-                                         "type=\"constant\"/></scene>");
-    EXPECT_THAT(loaded.warnings, ElementsAre(HasSubstr("scene.xml:2: \"principal_point_offset_x\" is not supported")));
+TEST(SensorPlugin, PrincipalPointAndPlanes) {
+    const Camera plain = scene_with_sensor("").camera;
+    EXPECT_EQ(plain.kind, Camera::Kind::perspective);
+    EXPECT_EQ(plain.near_clip, 0.01);
+    EXPECT_EQ(plain.far_clip, 10000);
+    const Camera camera = scene_with_sensor("<float name=\"principalPointOffsetX\" value=\"0.1\"/><float "
+                                            "name=\"principal_point_offset_y\" value=\"-0.2\"/><float "
+                                            "name=\"nearClip\" value=\"2\"/><float name=\"farClip\" value=\"5\"/>",
+                                            "0.6.0")
+                              .camera;
+    EXPECT_EQ(camera.principal_x, 0.1);
+    EXPECT_EQ(camera.principal_y, -0.2);
+    EXPECT_EQ(camera.near_clip, 2);
+    EXPECT_EQ(camera.far_clip, 5);
+}
+
+LoadedScene scene_of_sensor(const std::string &sensor, const std::string &version) {
+    return load_text("<scene version=\"" + version + "\">" + sensor +
+                     "<shape type=\"cube\"/><emitter type=\"constant\"/></scene>");
+}
+
+TEST(SensorPlugin, ThinLens) {
+    const LoadedScene old = scene_of_sensor("<sensor type=\"thinlens\"><float name=\"apertureRadius\" value=\"0.2\"/>"
+                                            "<float name=\"focusDistance\" value=\"7\"/><float name=\"fov\" "
+                                            "value=\"30\"/><float name=\"shutterOpen\" value=\"0\"/></sensor>",
+                                            "0.6.0");
+    EXPECT_THAT(old.warnings, IsEmpty());
+    EXPECT_EQ(old.scene.camera.kind, Camera::Kind::thin_lens);
+    EXPECT_EQ(old.scene.camera.aperture_radius, 0.2);
+    EXPECT_EQ(old.scene.camera.focus_distance, 7);
+    EXPECT_EQ(old.scene.camera.fov, 30);
+    const LoadedScene far =
+        scene_of_sensor("<sensor type=\"thinlens\"><float name=\"aperture_radius\" value=\"0.2\"/></sensor>", "3.0.0");
+    EXPECT_EQ(far.scene.camera.focus_distance, 10000); // the far plane
+    const LoadedScene pinhole =
+        scene_of_sensor("<sensor type=\"thinlens\"><float name=\"aperture_radius\" value=\"0\"/></sensor>", "3.0.0");
+    EXPECT_EQ(pinhole.scene.camera.kind, Camera::Kind::perspective);
+    EXPECT_THAT(error_of_text("<scene version=\"3.0.0\"><sensor type=\"thinlens\"/><shape type=\"cube\"/></scene>"),
+                HasSubstr("aperture_radius"));
+}
+
+TEST(SensorPlugin, Orthographic) {
+    const LoadedScene loaded =
+        scene_of_sensor("<sensor type=\"orthographic\"><transform name=\"toWorld\"><scale x=\"3\" "
+                        "y=\"2\"/></transform></sensor>",
+                        "0.5.0");
+    EXPECT_THAT(loaded.warnings, IsEmpty());
+    EXPECT_EQ(loaded.scene.camera.kind, Camera::Kind::orthographic);
+    EXPECT_EQ(loaded.scene.camera.to_world.m[0], 3);
 }
 
 TEST(FilmPlugin, Defaults) {
@@ -436,6 +480,29 @@ TEST(FilterPlugin, BoxTentGaussian) {
     EXPECT_EQ(gaussian.filter, FilmSettings::Filter::gaussian);
     EXPECT_FLOAT_EQ(gaussian.filter_stddev, 0.4f);
     EXPECT_FLOAT_EQ(gaussian.filter_radius, 1.6f);
+}
+
+TEST(FilterPlugin, NegativeLobes) {
+    const auto film_with = [](const std::string &filter, const std::string &version) {
+        return scene_with_sensor("<film type=\"hdrfilm\">" + filter + "</film>", version).film;
+    };
+    const FilmSettings mitchell = film_with("<rfilter type=\"mitchell\"/>", "3.0.0");
+    EXPECT_EQ(mitchell.filter, FilmSettings::Filter::mitchell);
+    EXPECT_FLOAT_EQ(mitchell.filter_radius, 2);
+    EXPECT_FLOAT_EQ(mitchell.mitchell_b, 1 / 3.0f);
+    EXPECT_FLOAT_EQ(mitchell.mitchell_c, 1 / 3.0f);
+    const FilmSettings sharper = film_with(
+        "<rfilter type=\"mitchell\"><float name=\"B\" value=\"0.2\"/><float name=\"C\" value=\"0.4\"/></rfilter>",
+        "0.6.0");
+    EXPECT_FLOAT_EQ(sharper.mitchell_b, 0.2f);
+    EXPECT_FLOAT_EQ(sharper.mitchell_c, 0.4f);
+    EXPECT_EQ(film_with("<rfilter type=\"catmullrom\"/>", "0.5.0").filter, FilmSettings::Filter::catmullrom);
+    const FilmSettings lanczos = film_with("<rfilter type=\"lanczos\"/>", "3.0.0");
+    EXPECT_EQ(lanczos.filter, FilmSettings::Filter::lanczos);
+    EXPECT_FLOAT_EQ(lanczos.filter_radius, 3);
+    EXPECT_FLOAT_EQ(
+        film_with("<rfilter type=\"lanczos\"><integer name=\"lobes\" value=\"2\"/></rfilter>", "0.6.0").filter_radius,
+        2);
 }
 
 TEST(FilterPlugin, UnknownKindsWarnAndAreGaussian) {

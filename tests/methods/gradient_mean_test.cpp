@@ -45,6 +45,22 @@ TEST(GradientMean, OfL2IsUnbiased) {
     }
 }
 
+/// The sign of a sample is the same for all pixels, and so is its place in the lens.
+TEST(GradientMean, OfAFilterWithNegativeLobesAndALens) {
+    Scene scene = own_scene("cornell-box.xml", 32, 32);
+    scene.camera.kind = Camera::Kind::thin_lens;
+    scene.camera.aperture_radius = 0.2;
+    scene.camera.focus_distance = 3.5;
+    scene.film.filter = FilmSettings::Filter::mitchell;
+    scene.film.filter_radius = 2;
+    const GradientBias bias = gradient_bias(scene, {.seeds = 16, .gradient_domain = 48, .path_tracing = 96});
+    std::printf("bias of the primal at most %.2g, of differences %.2g\n", bias.primal.at_most(),
+                bias.differences.at_most());
+    EXPECT_TRUE(bias.primal.is_none()) << bias.primal.squared << ", standard error " << bias.primal.standard_error;
+    EXPECT_TRUE(bias.differences.is_none())
+        << bias.differences.squared << ", standard error " << bias.differences.standard_error;
+}
+
 class GradientMeanOf : public ::testing::TestWithParam<const char *> {};
 
 /// Blocks of 32 x 32 pixels: L1 prefers medians, and noise is skewed. The mean correction makes up for it

@@ -91,6 +91,8 @@ TEST_P(GradientReference, IsMetByPrimalAndDifferences) {
                 GetParam().scene, int(samples_per_pixel), ours, plain, plain / ours, ratio);
     EXPECT_NEAR(ratio, 1, 0.01);
     const std::string scene = GetParam().scene;
+    if (reference_.scene.path.find("tests/scenes") != std::string::npos)
+        return; // of plugins, not of what gradients are hard for
     const bool is_holes = scene.starts_with("holes");
     record_stability({"Gradients",
                       is_holes ? "dense occluders: visibility differs from pixel to pixel and differences are noise"
@@ -106,11 +108,13 @@ TEST_P(GradientReference, IsMetByPrimalAndDifferences) {
 INSTANTIATE_TEST_SUITE_P(Image, GradientReference,
                          ::testing::Values(ReferenceCase{"cornell-box"}, ReferenceCase{"torus-rough-glass", 0.02},
                                            ReferenceCase{"plates"}, ReferenceCase{"holes-14"},
-                                           ReferenceCase{"materials"}, ReferenceCase{"sundial"}),
+                                           ReferenceCase{"materials"}, ReferenceCase{"sundial"},
+                                           ReferenceCase{"thin-lens"}),
                          name_of_reference);
 INSTANTIATE_TEST_SUITE_P(Full, GradientReference,
                          ::testing::Values(ReferenceCase{"torus-rough-glass"}, ReferenceCase{"holes-7"},
-                                           ReferenceCase{"holes-28"}, ReferenceCase{"door-ajar"}),
+                                           ReferenceCase{"holes-28"}, ReferenceCase{"door-ajar"},
+                                           ReferenceCase{"orthographic"}, ReferenceCase{"clipped"}),
                          name_of_reference);
 
 /// The difference between two pixels that look alike is nothing, whatever the noise of the primal.

@@ -42,7 +42,8 @@ TEST_P(OwnReference, IsMet) { EXPECT_TRUE(renders_as_referenced(own_reference(Ge
 
 INSTANTIATE_TEST_SUITE_P(Image, OwnReference,
                          ::testing::Values("cornell-box", "torus-rough-glass", "plates", "holes-14", "materials",
-                                           "metal-ring-soft", "torus-smooth-glass-soft", "sundial"),
+                                           "metal-ring-soft", "torus-smooth-glass-soft", "sundial", "thin-lens",
+                                           "orthographic", "clipped", "clipped-mitchell"),
                          name_of_scene);
 INSTANTIATE_TEST_SUITE_P(Full, OwnReference,
                          ::testing::Values("holes-7", "holes-28", "door-ajar", "cornell-box-glossy",
@@ -144,6 +145,10 @@ INSTANTIATE_TEST_SUITE_P(
                                  for (Emitter &emitter : scene.emitters)
                                      emitter.beam = std::min(emitter.cutoff, emitter.beam + 0.035f);
                              }},
+                      Defect{"lens_a_quarter_smaller", "thin-lens",
+                             [](Scene &scene) { scene.camera.aperture_radius *= 0.75; }},
+                      Defect{"near_plane_not_there", "clipped", [](Scene &scene) { scene.camera.near_clip = 0.01; }},
+                      Defect{"far_plane_not_there", "orthographic", [](Scene &scene) { scene.camera.far_clip = 1e4; }},
                       Defect{"sky_10_percent_darker", "plates",
                              [](Scene &scene) { scale_emitters(scene, Emitter::Kind::constant, 0.9f); }}),
     [](const auto &info) { return info.param.name; });

@@ -18,6 +18,7 @@ struct ReferenceScene {
     Scene scene; ///< at the reference's size and depth, box filter
     Image mean, variance;
     double samples_per_pixel = 0; ///< of the reference
+    int block = 16; ///< pixels along an edge, of the test; small ones show what a lens or a filter blurs otherwise
 };
 
 /// One of the project's own, as tests/references/NAME.json says. Throws where any part of it is missing.

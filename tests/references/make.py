@@ -43,7 +43,13 @@ REFERENCES = {
     "lamp-in-egg-soft": ("lamp-in-egg.xml", 96, {"lamp": 0.1, "glow": 15}, 12288),
     "metal-ring": ("metal-ring.xml", 96, {}, 65536),
     "sundial": ("sundial.xml", 96, {}, 16384),
+    # Small ones, of plugins.
+    "thin-lens": ("../tests/scenes/thin-lens.xml", 48, {}, 16384),
+    "orthographic": ("../tests/scenes/orthographic.xml", 48, {}, 16384),
+    "clipped": ("../tests/scenes/clipped.xml", 48, {}, 16384),
+    "clipped-mitchell": ("../tests/scenes/clipped.xml", 48, {"rfilter": "mitchell"}, 65536),
 }
+SMALL_WIDTH = 64
 
 
 def render_batch(mitsuba, scene, spp, first_seed, pixels):
@@ -92,21 +98,17 @@ def make_reference(mitsuba, name, arguments):
     file, height, parameters, spp = REFERENCES[name]
     spp_of_batch = max(1, round(spp * arguments.scale / BATCHES))
     parameters = dict(parameters)
+    width = SMALL_WIDTH if file.startswith("../") else WIDTH
     scene = mitsuba_setup.load_scene(
         mitsuba,
         ROOT / "scenes" / file,
-        resx=WIDTH,
-        resy=height,
-        max_depth=MAX_DEPTH,
-        rr_depth=RR_DEPTH,
-        rfilter="box",
-        **parameters,
+        **{"resx": width, "resy": height, "max_depth": MAX_DEPTH, "rr_depth": RR_DEPTH, "rfilter": "box", **parameters},
     )
     started, seed = time.time(), arguments.seed
     mean = squares = blocks = block_squares = 0.0
     halves = [0.0, 0.0]
     for batch in range(BATCHES):
-        image, seed = render_batch(mitsuba, scene, spp_of_batch, seed, WIDTH * height)
+        image, seed = render_batch(mitsuba, scene, spp_of_batch, seed, width * height)
         if not numpy.isfinite(image).all():
             raise RuntimeError(f"{name}: batch {batch} holds a value that is not finite")
         halves[batch * 2 // BATCHES] += image / (BATCHES // 2)
@@ -128,11 +130,11 @@ def make_reference(mitsuba, name, arguments):
     if arguments.png:
         mitsuba.util.write_bitmap(str(arguments.output / f"{name}.png"), mean.astype(numpy.float32))
     record = {
-        "scene": f"scenes/{file}",
+        "scene": (pathlib.PurePath("scenes") / file).as_posix().replace("scenes/../", ""),
         "parameters": parameters,
-        "width": WIDTH,
+        "width": width,
         "height": height,
-        "filter": "box",
+        "filter": parameters.get("rfilter", "box"),
         "max_depth": MAX_DEPTH,
         "rr_depth": RR_DEPTH,
         "spp": spp_of_batch * BATCHES,

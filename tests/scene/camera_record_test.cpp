@@ -5,8 +5,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 // After GoogleTest, which has template parameters of the names of its macros.
-#include "kernels/shared/scene_records.h"
+#define TRAIT_ORTHOGRAPHIC 1
+#define TRAIT_THIN_LENS 1
+#define TRAIT_NEAR_CLIP 1
+#include "kernels/lib/camera_ray.h"
 
 namespace gradus {
 namespace {
@@ -83,9 +89,77 @@ TEST(CameraRecord, HoldsTheFilter) {
     film.filter_radius = 1.75f;
     film.filter_stddev = 0.4f;
     const std::vector<float> record = make_camera_record(Camera{}, film);
-    ASSERT_EQ(record.size(), std::size_t(camera_stride));
+    ASSERT_EQ(record.size(), std::size_t(camera_stride)); // without a table
     EXPECT_EQ(record[camera_filter_radius], 1.75f);
     EXPECT_EQ(record[camera_filter_stddev], 0.4f);
+}
+
+/// On a film of 4 x 2 pixels, at (x, y) of it; the middle of the lens is at lens_1 = 0.
+camera_sight sight_of(const Camera &camera, double x, double y, double lens_1 = 0, double lens_2 = 0) {
+    const std::vector<float> record = make_camera_record(camera, film_of(4, 2), {true, true});
+    return camera_sight_through(record.data(), 1, float(x), float(y), float(lens_1), float(lens_2));
+}
+
+void expect_sight(const camera_sight &sight, const Double3 &origin, const Double3 &direction) {
+    expect_direction({sight.direction.x, sight.direction.y, sight.direction.z}, direction);
+    EXPECT_NEAR(sight.origin.x, origin[0], 1e-5);
+    EXPECT_NEAR(sight.origin.y, origin[1], 1e-5);
+    EXPECT_NEAR(sight.origin.z, origin[2], 1e-5);
+}
+
+// What Mitsuba 3.9 says of such rays.
+
+TEST(CameraRecord, PrincipalPointMovesTheImageRightAndDown) {
+    Camera camera;
+    camera.fov = 90;
+    camera.principal_x = 0.1;
+    camera.principal_y = 0.2;
+    camera.near_clip = 0.01;
+    expect_sight(sight_of(camera, 2, 1), {-0.002, -0.002, 0.01}, {-0.19245, -0.19245, 0.96225});
+    expect_sight(sight_of(camera, 0, 0), {0.008, 0.003, 0.01}, {0.608229, 0.228086, 0.760286});
+    expect_sight(sight_of(camera, 4, 0), {-0.012, 0.003, 0.01}, {-0.754434, 0.188608, 0.628695});
+}
+
+TEST(CameraRecord, RaysBeginAtTheNearPlane) {
+    Camera camera;
+    camera.fov = 90;
+    camera.near_clip = 0.5;
+    camera.far_clip = 2;
+    expect_sight(sight_of(camera, 2, 1), {0, 0, 0.5}, {0, 0, 1});
+    expect_sight(sight_of(camera, 0, 0), {0.5, 0.25, 0.5}, {2, 1, 2});
+    EXPECT_DOUBLE_EQ(far_plane(camera), 2);
+}
+
+TEST(CameraRecord, OrthographicFilmIsScaledAndItsNearPlaneToo) {
+    Camera camera;
+    camera.kind = Camera::Kind::orthographic;
+    camera.to_world = multiply(translation({1, 2, 3}), scaling({2, 3, 5}));
+    camera.near_clip = 0.01;
+    camera.far_clip = 1e4;
+    expect_sight(sight_of(camera, 2, 1), {1, 2, 3.05}, {0, 0, 1});
+    expect_sight(sight_of(camera, 0, 0), {3, 3.5, 3.05}, {0, 0, 1});
+    expect_sight(sight_of(camera, 4, 0), {-1, 3.5, 3.05}, {0, 0, 1});
+    EXPECT_NEAR(far_plane(camera), 0.05 + 9999.99, 1e-9);
+}
+
+TEST(CameraRecord, RaysThroughALensMeetInThePlaneOfFocus) {
+    Camera camera;
+    camera.kind = Camera::Kind::thin_lens;
+    camera.fov = 90;
+    camera.aperture_radius = 0.3;
+    camera.focus_distance = 2;
+    const std::vector<double> places = {0, 0.25, 0.5, 0.99};
+    double farthest = 0;
+    for (const double lens_1 : places)
+        for (const double lens_2 : places) {
+            const camera_sight sight = sight_of(camera, 0, 0, lens_1, lens_2);
+            EXPECT_NEAR(sight.origin.z, 0, 1e-6); // near_clip is 0
+            farthest = std::max(farthest, std::hypot(double(sight.origin.x), double(sight.origin.y)));
+            const double steps = 2 / double(sight.direction.z);
+            EXPECT_NEAR(sight.origin.x + steps * sight.direction.x, 2, 1e-5);
+            EXPECT_NEAR(sight.origin.y + steps * sight.direction.y, 1, 1e-5);
+        }
+    EXPECT_NEAR(farthest, 0.3 * std::sqrt(0.99), 1e-6);
 }
 
 } // namespace

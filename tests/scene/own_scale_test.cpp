@@ -1,5 +1,6 @@
 // Lengths of scenes of any unit, in the one that they are rendered in.
 #include "runtime/error.h"
+#include "runtime/scene/camera_clips.h"
 #include "runtime/scene/mesh_builder.h"
 #include "runtime/scene/own_scale.h"
 #include "tests/support/placed_scene.h"
@@ -72,6 +73,28 @@ TEST(OwnScale, VerticesThatNothingUsesDoNotCount) {
     const BuiltMesh built = build_mesh(mesh, Matrix4(), {});
     for (const Vector3 &p : built.mesh.positions)
         EXPECT_LE(std::fabs(p.x), 1);
+}
+
+TEST(OwnScale, LengthsOfTheCameraGoAlong) {
+    Scene scene = room(1e9f).scene;
+    Camera &camera = scene.camera;
+    camera.near_clip = 1e6;
+    camera.far_clip = 3e9;
+    camera.aperture_radius = 2e7;
+    camera.focus_distance = 1e9;
+    Scene parallel = scene;
+    parallel.camera.kind = Camera::Kind::orthographic;
+    const double factor = bring_to_own_scale(scene);
+    EXPECT_LT(factor, 1e-8);
+    EXPECT_DOUBLE_EQ(camera.near_clip, 1e6 * factor);
+    EXPECT_DOUBLE_EQ(camera.far_clip, 3e9 * factor);
+    EXPECT_DOUBLE_EQ(camera.aperture_radius, 2e7 * factor);
+    EXPECT_DOUBLE_EQ(camera.focus_distance, 1e9 * factor);
+    // Here it is the scale of to_world that makes lengths of what it maps.
+    const double near_before = near_plane(parallel.camera), m = parallel.camera.to_world.m[5];
+    EXPECT_EQ(bring_to_own_scale(parallel), factor);
+    EXPECT_DOUBLE_EQ(parallel.camera.to_world.m[5], m * factor);
+    EXPECT_DOUBLE_EQ(near_plane(parallel.camera), near_before * factor);
 }
 
 } // namespace

@@ -37,6 +37,8 @@ FilmSettings film_hdrfilm(Properties &properties, SceneBuilder &builder) {
         film.filter = filter.filter;
         film.filter_radius = filter.radius;
         film.filter_stddev = filter.stddev;
+        film.mitchell_b = filter.b;
+        film.mitchell_c = filter.c;
     }
     properties.ignore({"file_format", "pixel_format", "component_format", "banner", "attach_log", "high_quality_edges",
                        "sample_border", "compensate", "exposure", "gamma", "tonemap_method"});

@@ -20,6 +20,7 @@ namespace gradus {
 struct ReconstructionFilter {
     FilmSettings::Filter filter = FilmSettings::Filter::gaussian;
     float radius = 2.0f, stddev = 0.5f; ///< in pixels
+    float b = 1 / 3.0f, c = 1 / 3.0f;   ///< of Mitchell's
 };
 
 /// A mesh that is still to be read and built, by any thread.
