@@ -93,9 +93,9 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
 #endif
     const vec3 start = ray_origin(point.position, point.geometric, point.offset, light.direction);
     const vec3 light_point = v3_add(point.position, light.connection);
-    const vec3 end = connection_end(light_point, light.normal,
-                                    offset_at(light_point, light.normal, LIGHT_FIELD(chosen.light, offset)),
-                                    light.connection);
+    const vec3 end =
+        connection_end(light_point, light.normal,
+                       offset_at(light_point, light.normal, LIGHT_FIELD(chosen.light, offset)), light.connection);
     SET_V3(shadow, origin, row, start);
     SET_V3(shadow, direction, row, v3_sub(end, start));
     SET_RGB(shadow, value, row, gain);
@@ -122,7 +122,7 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
     const int alive = can_go_on;
     const rgb left = scattered;
     AT(event, pdf, row) = s.pdf;
-#if BSDF_IS_DIRAC
+#if BSDF_IS_DIRAC || BSDF_IS_MIXED
     SET_RGB(event, weight, row, s.weight); /* of others `join` knows it */
 #endif
 #else
