@@ -85,9 +85,10 @@ STAGE weigh(uint count, uint unit, uint first, uint stride, uint capacity, uint 
     const uint next_kind =
         kind_of_primitive(primitive_material, material_back, material_kind, is_hit ? primitive : 0u, base_is_behind);
     int any_apart = 0, all_alike = 1, meets_light = 0;
-    int base_is_dirac = 0; /* the lobe that it has sampled, of a kind that has others as well */
+    int base_is_dirac =
+        0; /* the lobe that it has sampled; told apart where offset paths may stand at kinds with both */
 #if TRAIT_MIXED_LOBES
-    base_is_dirac = ((base_kind & kind_is_mixed) != 0u) & (AT(path, pdf, row) == R(0));
+    base_is_dirac = ((base_kind & (kind_is_dirac | kind_is_mixed)) != 0u) & (AT(path, pdf, row) == R(0));
 #endif
 #endif
 #pragma unroll

@@ -22,7 +22,7 @@ TEST_P(OwnReference, IsMet) { EXPECT_TRUE(renders_as_referenced(own_reference(Ge
 
 INSTANTIATE_TEST_SUITE_P(Image, OwnReference,
                          ::testing::Values("cornell-box", "torus-rough-glass", "plates", "holes-7", "holes-14",
-                                           "holes-28", "door-ajar", "materials", "cornell-box-glossy",
+                                           "holes-28", "door-ajar", "materials", "plastics", "cornell-box-glossy",
                                            "metal-ring-soft", "torus-smooth-glass-soft", "slab-and-ball-soft",
                                            "lamp-in-egg-soft"),
                          name_of_scene);

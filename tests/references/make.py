@@ -20,6 +20,7 @@ sys.path.insert(0, str(ROOT / "bench" / "peers"))
 import mitsuba_setup  # noqa: E402
 
 WIDTH = 128
+WIDTHS = {"plastics": 64}  # of those that are not as wide
 MAX_DEPTH = 12
 RR_DEPTH = 1000  # beyond max_depth: off
 BATCHES = 64
@@ -42,6 +43,7 @@ REFERENCES = {
     "slab-and-ball-soft": ("slab-and-ball.xml", 96, {"lamp": 0.24, "glow": 56.25}, 16384),
     "lamp-in-egg-soft": ("lamp-in-egg.xml", 96, {"lamp": 0.1, "glow": 15}, 12288),
     "metal-ring": ("metal-ring.xml", 96, {}, 65536),
+    "plastics": ("plastics.xml", 48, {}, 32768),
 }
 
 
@@ -89,12 +91,13 @@ def make_reference(mitsuba, name, arguments):
     import numpy
 
     file, height, parameters, spp = REFERENCES[name]
+    width = WIDTHS.get(name, WIDTH)
     spp_of_batch = max(1, round(spp * arguments.scale / BATCHES))
     parameters = dict(parameters)
     scene = mitsuba_setup.load_scene(
         mitsuba,
         ROOT / "scenes" / file,
-        resx=WIDTH,
+        resx=width,
         resy=height,
         max_depth=MAX_DEPTH,
         rr_depth=RR_DEPTH,
@@ -105,7 +108,7 @@ def make_reference(mitsuba, name, arguments):
     mean = squares = blocks = block_squares = 0.0
     halves = [0.0, 0.0]
     for batch in range(BATCHES):
-        image, seed = render_batch(mitsuba, scene, spp_of_batch, seed, WIDTH * height)
+        image, seed = render_batch(mitsuba, scene, spp_of_batch, seed, width * height)
         if not numpy.isfinite(image).all():
             raise RuntimeError(f"{name}: batch {batch} holds a value that is not finite")
         halves[batch * 2 // BATCHES] += image / (BATCHES // 2)
@@ -129,7 +132,7 @@ def make_reference(mitsuba, name, arguments):
     record = {
         "scene": f"scenes/{file}",
         "parameters": parameters,
-        "width": WIDTH,
+        "width": width,
         "height": height,
         "filter": "box",
         "max_depth": MAX_DEPTH,
