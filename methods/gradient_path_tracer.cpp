@@ -21,7 +21,9 @@ namespace {
 TraitMap gradient_traits(const Scene &scene, const RenderOptions &options) {
     const bool distance = options.all_traits || options.shift_distance > 0;
     bool apart = distance;
-    for_each_bsdf(scene, [&](const Bsdf &bsdf) { apart = apart || !is_rough(bsdf, options.shift_threshold); });
+    for_each_bsdf(scene, [&](const Bsdf &bsdf) {
+        apart = apart || !is_rough(bsdf, options.shift_threshold) || bsdf_kind_traits(bsdf.kind).is_mixed;
+    });
     return {
         {"TRAIT_GRADIENT", 1}, {"TRAIT_SHARED_JITTER", 1}, {"TRAIT_APART", apart}, {"TRAIT_SHIFT_DISTANCE", distance}};
 }
@@ -31,7 +33,11 @@ std::map<std::string, std::string> only_kind(const Session &session) {
     if (session.scene.kinds.size() != 1)
         return {};
     const std::string &kind = session.scene.kinds.front();
-    return {{"BSDF", kind}, {"BSDF_IS_DIRAC", bsdf_kind_is_dirac(kind) ? "1" : "0"}};
+    std::map<std::string, std::string> definitions = {{"BSDF", kind},
+                                                      {"BSDF_IS_DIRAC", bsdf_kind_is_dirac(kind) ? "1" : "0"}};
+    if (bsdf_kind_is_mixed(kind))
+        definitions["BSDF_IS_MIXED"] = "1";
+    return definitions;
 }
 
 StageDeclaration shift_stage(const Session &session) {

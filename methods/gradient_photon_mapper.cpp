@@ -6,6 +6,8 @@
 #include "runtime/seconds_since.h"
 #include "runtime/wavefront/segments.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <numeric>
@@ -26,6 +28,19 @@ constexpr std::uint32_t chain_bin = 0, first_kind_bin = 1;
 
 bool has_specular(const Session &session) {
     return std::any_of(session.scene.kinds.begin(), session.scene.kinds.end(), bsdf_kind_is_dirac);
+}
+
+/// A photon that is moved must leave its last vertex by the lobe that its light path sampled there, which no record
+/// tells.
+const Scene &checked_for_lobes(const Scene &scene) {
+    for_each_bsdf(scene, [](const Bsdf &bsdf) {
+        if (bsdf_kind_traits(bsdf.kind).is_mixed)
+            throw Error(ExitCode::usage,
+                        fmt::format("gpm does not know how to move photons that come from {}, a mirror beside a rough "
+                                    "lobe; sppm and gpt do, and rough{} is near it",
+                                    bsdf_kind_name(bsdf), bsdf_kind_name(bsdf)));
+    });
+    return scene;
 }
 
 /// By material record.
@@ -76,8 +91,8 @@ const std::vector<std::string> chain_numbers = {"first", "pairs", "chain_rows", 
 } // namespace
 
 GradientPhotonMapper::GradientPhotonMapper(Device &device, const Scene &scene, const RenderOptions &options)
-    : options_(options), session_(device, checked_for_gathering(checked_for_shifts(scene), options), options,
-                                  light_vertex_traits(scene, options)),
+    : options_(options), session_(device, checked_for_gathering(checked_for_lobes(checked_for_shifts(scene)), options),
+                                  options, light_vertex_traits(scene, options)),
       paths_(session_, stages_, scene, options, true), photons_(session_, stages_, scene, options, 0.5),
       pairs_(stages_, true), bin_(stages_.add({.name = "gather_bin"})),
       order_(stages_, "gather", first_kind_bin + std::uint32_t(session_.scene.kinds.size()), RowsOf::slot),

@@ -68,7 +68,8 @@ std::vector<std::uint32_t> material_kinds(const Scene &scene, double threshold) 
     std::vector<std::uint32_t> kinds;
     for (const Bsdf &bsdf : material_records(scene))
         kinds.push_back(bsdf_kind_number(bsdf) | (is_rough(bsdf, threshold) ? kind_is_rough : 0) |
-                        (bsdf_kind_is_dirac(bsdf_kind_name(bsdf)) ? kind_is_dirac : 0));
+                        (bsdf_kind_traits(bsdf.kind).is_dirac ? kind_is_dirac : 0) |
+                        (bsdf_kind_traits(bsdf.kind).is_mixed ? kind_is_mixed : 0));
     return kinds;
 }
 

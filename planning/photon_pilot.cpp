@@ -51,7 +51,9 @@ struct Mean {
 
 bool may_ask_for_photons(const Scene &scene, const RenderOptions &options) {
     const GatheringSurfaces surfaces = gathering_surfaces(scene, options.gather_roughness);
-    return !needs_material_stage(scene) && !surfaces.passed.empty() && !surfaces.gathered.empty() && !scene.emitters.empty() &&
+    if (needs_material_stage(scene) || scene_traits(scene).at("TRAIT_MIXED_LOBES"))
+        return false; // gpm refuses them
+    return !surfaces.passed.empty() && !surfaces.gathered.empty() && !scene.emitters.empty() &&
            scene.settings.max_depth != 0 && scene.settings.max_depth != 1;
 }
 

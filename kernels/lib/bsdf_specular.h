@@ -11,15 +11,15 @@ GRADUS_LIB_BEGIN
 #define SPECULAR_KINDS 0xFFFFFFFFu
 #endif
 
-#define GRADUS_IS_SPECULAR(name, is_dirac) ((is_dirac) && ((SPECULAR_KINDS >> bsdf_kind_##name) & 1u) != 0u)
+#define GRADUS_IS_SPECULAR(name, lobes) ((lobes) == 1 && ((SPECULAR_KINDS >> bsdf_kind_##name) & 1u) != 0u)
 
 GRADUS_FN bsdf_value specular_evaluate(material m, vec3 wi, vec3 wo, int mode) {
     (void)m, (void)wi, (void)wo, (void)mode;
     return bsdf_value_none();
 }
 
-#define GRADUS_TAKE_SAMPLE(name, is_dirac, ...)                                                                        \
-    if (GRADUS_IS_SPECULAR(name, is_dirac)) {                                                                          \
+#define GRADUS_TAKE_SAMPLE(name, lobes, ...)                                                                           \
+    if (GRADUS_IS_SPECULAR(name, lobes)) {                                                                             \
         const bsdf_sample other = name##_sample(m, wi, u_lobe, u1, u2, mode);                                          \
         const int is_other = m.bsdf == R(bsdf_kind_##name);                                                            \
         sample.wo = v3_select(is_other, other.wo, sample.wo);                                                          \
@@ -41,8 +41,8 @@ GRADUS_FN bsdf_sample specular_sample(material m, vec3 wi, real u_lobe, real u1,
 }
 #undef GRADUS_TAKE_SAMPLE
 
-#define GRADUS_TAKE_ALBEDO(name, is_dirac, ...)                                                                        \
-    if (GRADUS_IS_SPECULAR(name, is_dirac))                                                                            \
+#define GRADUS_TAKE_ALBEDO(name, lobes, ...)                                                                           \
+    if (GRADUS_IS_SPECULAR(name, lobes))                                                                               \
         albedo = rgb_select(m.bsdf == R(bsdf_kind_##name), name##_albedo(m), albedo);
 GRADUS_FN rgb specular_albedo(material m) {
     rgb albedo = rgb_gray(R(0));

@@ -15,7 +15,7 @@
 #define PHOTON_VALUE(row, m, wo, normal, power)                                                                        \
     photon_value(m, VERTEX_FRAME(gather, row, m), AT_V3(gather, wi, row), wo, normal, power)
 GRADUS_FN rgb photon_value(material m, frame axes, vec3 wi, vec3 wo, vec3 normal, rgb power) {
-    const bsdf_value v = bsdf_evaluate(m, frame_to_local(axes, wi), frame_to_local(axes, wo));
+    const bsdf_value v = bsdf_evaluate(m, frame_to_local(axes, wi), frame_to_local(axes, wo), 0);
     const real cosine = r_abs(v3_dot(wo, normal));
     /* A photon that grazes the surface carries no flux to speak of. */
     const real inverse = cosine > R(1e-6) ? R(1) / r_max(cosine, R(1e-6)) : R(0);

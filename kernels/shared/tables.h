@@ -49,7 +49,7 @@
 
 /* A surface as a path meets it, whichever path: what the columns of any table of vertices are. */
 #define GRADUS_SURFACE_VERTEX_COLUMNS(table, REAL, UINT)                                                               \
-    UINT(table, kind, "its BSDF kind with kind_is_rough, kind_is_dirac; kind_none where nothing was hit")              \
+    UINT(table, kind, "its BSDF kind with kind_is_...; kind_none where nothing was hit")                               \
     UINT(table, material, "record of the material on this side")                                                       \
     REAL(table, position_x, "")                                                                                        \
     REAL(table, position_y, "")                                                                                        \
@@ -464,7 +464,8 @@ GRADUS_COLUMN_ENUM(splat, GRADUS_SPLAT_COLUMNS) /* its rows are its writer's */
 #define kind_number(kind) ((kind)&0xFFu)
 #define kind_is_rough 0x100u /* offset paths reconnect here */
 #define kind_is_dirac 0x200u
-#define kind_none 0u /* nothing was hit; diffuse is the kind of number 0, and it is rough */
+#define kind_is_mixed 0x2000u /* a Dirac lobe beside rough ones; the bits between are of chain events */
+#define kind_none 0u          /* nothing was hit; diffuse is the kind of number 0, and it is rough */
 
 /* offset_state: how an offset path stands to its base path at its newest vertex. */
 #define connection_none 0u /* not connected: at a vertex of its own, to which it came by the half vector */

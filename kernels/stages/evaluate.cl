@@ -34,8 +34,13 @@ STAGE evaluate(uint count, uint unit, uint first, uint first_line, uint stride, 
     const frame axes = VERTEX_FRAME(own_vertex, own.row, m);
     const size_t at = (size_t)line * capacity + row;
     const vec3 wo = v3(AT(evaluation, value_r, at), AT(evaluation, value_g, at), AT(evaluation, value_b, at));
+    int asks_dirac = 0;
+#if BSDF_IS_MIXED
+    /* The step takes the lobe that the base path has sampled. */
+    asks_dirac = (line >= 4u) & (AT(path, pdf, row) == R(0));
+#endif
     const bsdf_value v =
-        bsdf_evaluate(m, frame_to_local(axes, AT_V3(own_vertex, wi, own.row)), frame_to_local(axes, wo));
+        bsdf_evaluate(m, frame_to_local(axes, AT_V3(own_vertex, wi, own.row)), frame_to_local(axes, wo), asks_dirac);
     const int is_nothing = line < 4u ? !(rgb_max(v.value) > R(0)) : !(v.pdf > R(0));
     /* What is not asked here is stored as it was: a store behind a condition costs several of these. */
     const rgb value = rgb_select(is_asked, v.value, rgb3(wo.x, wo.y, wo.z));

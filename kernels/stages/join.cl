@@ -6,6 +6,10 @@
  * before is kept by slot, and the base path goes on with a throughput of its own: later stages are the path tracer's
  * and know nothing of offset paths. TRAIT_APART, `keeps`: some are at vertices of their own, so all stay in `offset`.
  *
+ * BSDF_IS_MIXED: where the base path takes a Dirac lobe, those that came by its own last direction do so too; those
+ * that have just reconnected come by another, in which that lobe leads elsewhere, and fail. With `keeps` they do so in
+ * `weigh`, after the light that they see here is weighed.
+ *
  * Russian roulette goes by the brightest of them all. */
 //! traits: TRAIT_REFRACTION TRAIT_APART SAMPLES_LIGHTS
 #include "kernels/lib/bsdf.h"
@@ -40,6 +44,10 @@ STAGE join(uint count, uint unit, uint first, uint capacity, uint slots, uint ro
     const rgb arriving = AT_RGB(event, arriving, row);
     const real inverse_light_pdf = AT(event, inverse_light_pdf, row);
     real gained = R(0); /* by offset paths that see what the base path's vertex sees */
+#endif
+#if BSDF_IS_MIXED
+    const int takes_dirac = AT(path, pdf, row) == R(0);
+    const rgb dirac_weight = AT_RGB(event, weight, row);
 #endif
 #else
     const rgb weight = AT_RGB(event, weight, row);
@@ -78,11 +86,25 @@ STAGE join(uint count, uint unit, uint first, uint capacity, uint slots, uint ro
         const vec3 wo_after = wo;
 #endif
         const bsdf_value f = PASTE(BSDF, _evaluate)(m, wi, wo_after, transport_radiance);
-        const rgb weight = rgb_scale(f.value, inverse_pdf);
-        const real change = f.pdf * inverse_pdf;
+        const rgb rough_weight = rgb_scale(f.value, inverse_pdf);
+        const real rough_change = f.pdf * inverse_pdf;
+#if BSDF_IS_MIXED
+        const int parts = takes_dirac & (AT_UINT(offset, state, at) == connection_recent);
+        const rgb weight = rgb_select(takes_dirac, dirac_weight, rough_weight);
+        const real change = takes_dirac ? R(1) : rough_change;
+#else
+        const rgb weight = rough_weight;
+        const real change = rough_change;
 #endif
-        const rgb merged = rgb_select(is_there, rgb_mul(so_far, weight), rgb_gray(R(0)));
-        const real merged_ratio = is_there ? ratio * change : ratio;
+#endif
+        int goes_along = is_there;
+        real last_ratio = ratio;
+#if BSDF_IS_MIXED
+        goes_along &= !parts;
+        last_ratio = (is_there & parts & !keeps) ? shift_failed(outcome_failed_kinds) : ratio;
+#endif
+        const rgb merged = rgb_select(goes_along, rgb_mul(so_far, weight), rgb_gray(R(0)));
+        const real merged_ratio = goes_along ? ratio * change : last_ratio;
         const rgb value = rgb_select(is_own, so_far, merged);
         brightest = r_max(brightest, rgb_max(value));
 #if TRAIT_APART

@@ -126,7 +126,7 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
     const int alive = can_go_on;
     const rgb left = scattered;
     AT(event, pdf, row) = s.pdf;
-#if BSDF_IS_DIRAC
+#if BSDF_IS_DIRAC || BSDF_IS_MIXED
     SET_RGB(event, weight, row, s.weight); /* of others `join` knows it */
 #endif
 #else

@@ -9,12 +9,16 @@
  * sends out a ray of its own. Which of both is a matter of the two vertices and the base's next one, so that the shift
  * back does the same; `weigh` makes sure of the fourth.
  *
- * The step fails where the next vertex would be seen from its other side, between a specular kind and one that is none,
+ * TRAIT_MIXED_LOBES: of a kind with a Dirac lobe beside rough ones, the lobe that the base path sampled is part of the
+ * path. Where it is the Dirac one, the offset path takes its own Dirac lobe, whatever kind that is of; rough ones
+ * likewise.
+ *
+ * The step fails where the next vertex would be seen from its other side, between a Dirac lobe and a rough one,
  * and where the half-vector copy does.
  *
  * BSDF: where all that is not connected is at vertices of one kind, it is inlined, and what would be asked is answered
  * at once. */
-//! traits: TRAIT_SHIFT_DISTANCE TRAIT_ENVIRONMENT SAMPLES_LIGHTS
+//! traits: TRAIT_SHIFT_DISTANCE TRAIT_ENVIRONMENT TRAIT_MIXED_LOBES SAMPLES_LIGHTS
 #include "kernels/lib/bsdf_evaluate.h"
 #include "kernels/lib/gradient.h"
 #include "kernels/lib/light_sampling.h"
@@ -24,6 +28,13 @@
 #include "kernels/lib/shift_specular.h"
 #include "kernels/lib/surface_side.h"
 #include "kernels/lib/textured_material.h"
+
+/* Which lobe of the offset path's vertex a step takes. */
+#if TRAIT_APART
+#define ASKS_DIRAC base_is_dirac
+#else
+#define ASKS_DIRAC 0
+#endif
 
 /* Whether light may be sampled at the vertices. */
 #if defined(BSDF) && BSDF_IS_DIRAC
@@ -80,7 +91,11 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
     const real pdf = AT(event, pdf, row);
     const int goes_on = (is_hit | is_escaped) & (pdf > R(0));
 #if TRAIT_APART
-    const int base_is_rough = (base_kind & kind_is_rough) != 0u;
+    int base_is_dirac = (base_kind & kind_is_dirac) != 0u; /* the lobe that it has sampled */
+#if TRAIT_MIXED_LOBES
+    base_is_dirac |= ((base_kind & kind_is_mixed) != 0u) & (AT(path, pdf, row) == R(0));
+#endif
+    const int base_is_rough = ((base_kind & kind_is_rough) != 0u) & !base_is_dirac;
     const material base_material = VERTEX_MATERIAL(vertex, row);
     const frame base_axes = VERTEX_FRAME(vertex, row, base_material);
     const vec3 base_wi = frame_to_local(base_axes, AT_V3(vertex, wi, row));
@@ -174,7 +189,7 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         AT(shift, light_jacobian, at) = light_jacobian;
         asks_light = own.is_own & !is_dirac & arrives & (light_jacobian > R(0));
 #ifdef BSDF
-        const bsdf_value of_light = bsdf_evaluate(m, wi, frame_to_local(axes, to_light));
+        const bsdf_value of_light = bsdf_evaluate(m, wi, frame_to_local(axes, to_light), 0);
         asks_light &= rgb_max(of_light.value) > R(0);
         const rgb request = of_light.value;
 #else
@@ -215,7 +230,7 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         const int is_long = 1;
 #endif
         const int reconnects = both_rough & reconnectable & is_long;
-#ifdef BSDF
+#if defined(BSDF) && !BSDF_IS_MIXED
         const int alike = kind != kind_none;
 #if BSDF_IS_DIRAC
         const real ior = kind_number(kind) == bsdf_kind_null ? R(1) : m.ior;
@@ -227,13 +242,17 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         const int copies = alike & copied.is_valid;
         const real copy_jacobian = copied.jacobian;
 #else
-        const int alike = (kind != kind_none) & (is_dirac == ((base_kind & kind_is_dirac) != 0u));
+        int has_lobe = is_dirac == base_is_dirac;
+#if TRAIT_MIXED_LOBES
+        has_lobe |= (kind & kind_is_mixed) != 0u;
+#endif
+        const int alike = (kind != kind_none) & has_lobe;
         const real ior = kind_number(kind) == bsdf_kind_null ? R(1) : m.ior;
         const shifted_direction mirrored = shift_specular(base_wi, base_wo, wi, ior);
         const shifted_direction copied = shift_half_vector(base_wi, base_wo, base_material.ior, wi, ior);
-        const vec3 wo_copied = v3_select(is_dirac, mirrored.wo, copied.wo);
-        const int copies = alike & (is_dirac ? mirrored.is_valid : copied.is_valid);
-        const real copy_jacobian = is_dirac ? mirrored.jacobian : copied.jacobian;
+        const vec3 wo_copied = v3_select(base_is_dirac, mirrored.wo, copied.wo);
+        const int copies = alike & (base_is_dirac ? mirrored.is_valid : copied.is_valid);
+        const real copy_jacobian = base_is_dirac ? mirrored.jacobian : copied.jacobian;
 #endif
         const vec3 own_direction = frame_to_world(axes, wo_copied);
         const vec3 own_unit =
@@ -254,7 +273,7 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
 #endif
         const size_t step = (size_t)(4u + j) * capacity + row;
 #ifdef BSDF
-        const bsdf_value of_step = bsdf_evaluate(m, wi, frame_to_local(axes, direction));
+        const bsdf_value of_step = bsdf_evaluate(m, wi, frame_to_local(axes, direction), ASKS_DIRAC);
         const int has_density = of_step.pdf > R(0);
         works &= reconnects | has_density;
         SET_RGB(evaluation, value, step, of_step.value);

@@ -11,8 +11,11 @@
  * ray met nothing, and, if they came from rough vertices like the base path, where both could reconnect: there the
  * shift back would.
  *
+ * TRAIT_MIXED_LOBES: offset paths that have just reconnected to a vertex at which the base path then takes a Dirac lobe
+ * fail once the light there is weighed: seen from elsewhere, that lobe does not lead there, nor would the way back.
+ *
  * AT_FIRST: whether the rows are those at first vertices. */
-//! traits: TRAIT_SHIFT_DISTANCE
+//! traits: TRAIT_SHIFT_DISTANCE TRAIT_MIXED_LOBES
 #include "kernels/lib/gradient.h"
 #include "kernels/lib/reconnectable.h"
 #include "kernels/lib/surface_side.h"
@@ -90,6 +93,11 @@ STAGE weigh(uint count, uint unit, uint first, uint stride, uint capacity, uint 
     next_kind = material_kind[is_hit ? surface_record_at(surface, capacity, row) : 0u];
 #endif
     int any_apart = 0, all_alike = 1, meets_light = 0;
+    int base_is_dirac =
+        0; /* the lobe that it has sampled; told apart where offset paths may stand at kinds with both */
+#if TRAIT_MIXED_LOBES
+    base_is_dirac = ((base_kind & (kind_is_dirac | kind_is_mixed)) != 0u) & (AT(path, pdf, row) == R(0));
+#endif
 #endif
 #pragma unroll
     for (uint j = 0; j < 4; ++j) {
@@ -176,17 +184,23 @@ STAGE weigh(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         any_apart |= is_apart;
         meets_light |= copies & meets & (primitive_light[met] != no_light);
         all_alike &= !is_apart | (kind_number(met_kind) == kind_number(next_kind));
+        const int parts =
+            base_is_dirac & own.is_there & !own.is_own & (AT_UINT(offset, state, at) == connection_recent);
         AT_UINT(offset, state, at) = own.is_own ? (reconnects  ? connection_recent
                                                    : was_rough ? connection_none_rough
                                                                : connection_none)
                                                 : connection_full;
-        AT(offset, pdf, at) = is_dirac ? R(0) : step_pdf;
+        AT(offset, pdf, at) = is_dirac | base_is_dirac ? R(0) : step_pdf;
         AT(shift, light_density, at) = own.ratio; /* for `gradient_emission` */
 #endif
         const rgb taken = rgb_select(works, stepped, rgb_gray(R(0)));
         const rgb next = rgb_select(own.is_own, taken, own.value);
         SET_RGB(offset, value, at, next);
-        AT(offset, ratio, at) = own.is_own ? ratio : own.ratio;
+        real shared_ratio = own.ratio;
+#if TRAIT_APART
+        shared_ratio = parts ? shift_failed(outcome_failed_kinds) : shared_ratio;
+#endif
+        AT(offset, ratio, at) = own.is_own ? ratio : shared_ratio;
     }
 #if TRAIT_APART
     offsets_state[row] = (any_apart ? (all_alike ? offsets_alike : offsets_mixed) : offsets_connected) |

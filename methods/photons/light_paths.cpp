@@ -38,7 +38,7 @@ bool has_vertices(const Session &session) { return session.has("TRAIT_LIGHT_VERT
 std::vector<std::uint32_t> gathers_by_material(const Scene &scene, double roughness) {
     std::vector<std::uint32_t> gathers;
     for (const Bsdf &bsdf : material_records(scene))
-        gathers.push_back(!is_rough(bsdf, roughness)              ? gathers_nowhere
+        gathers.push_back(!gathers_photons(bsdf, roughness)       ? gathers_nowhere
                           : bsdf_kind_traits(bsdf.kind).transmits ? gathers_around
                                                                   : gathers_in_front);
     return gathers;

@@ -28,7 +28,7 @@ constexpr double most_radii_a_cell = 8;
 
 bool any_bsdf(const Scene &scene, double roughness, bool rough) {
     bool found = false;
-    for_each_bsdf(scene, [&](const Bsdf &bsdf) { found = found || is_rough(bsdf, roughness) == rough; });
+    for_each_bsdf(scene, [&](const Bsdf &bsdf) { found = found || gathers_photons(bsdf, roughness) == rough; });
     return found;
 }
 

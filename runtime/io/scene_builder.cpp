@@ -7,12 +7,34 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <type_traits>
 
 namespace gradus {
 
 namespace {
+
+/// Of BSDFs that other renderers of such files have and this one has not: what looks most like them. Empty for others.
+std::string substitute_for(const std::string &type) {
+    static const std::map<std::string, std::string> substitutes = {
+        {"coating", "plastic, of a diffuse base,"},
+        {"roughcoating", "roughplastic, of a diffuse base,"},
+        {"pplastic", "plastic"},
+        {"polarizer", "null"},
+        {"retarder", "null"},
+        {"circular", "null"},
+        {"difftrans", "principledthin with diff_trans 2"},
+        {"hk", "principledthin with diff_trans 1"},
+        {"irawan", "roughdiffuse"},
+        {"sssbrdf", "principled with flatness 1"},
+        {"measured", "principled"},
+        {"measured_polarized", "principled"},
+        {"hair", "principled"},
+    };
+    const auto found = substitutes.find(type);
+    return found == substitutes.end() ? "" : found->second;
+}
 const char *const other_tags[] = {"ref", "alias", "scene"};
 constexpr std::size_t deepest_references = 100; // objects in objects, by <ref>s
 constexpr std::size_t longest_alias = 16;       // names that stand for names
@@ -130,9 +152,12 @@ Result SceneBuilder::build_object(const Element &element) {
         const std::vector<std::string> known = plugin_names(element.tag);
         std::string message =
             type.empty() ? "<" + element.tag + "> needs a type" : "unknown " + element.tag + " plugin \"" + type + "\"";
+        const std::string substitute = element.tag == "bsdf" ? substitute_for(type) : "";
         if (is_of_mitsuba(element.tag, type))
             message = "the " + element.tag + " \"" + type + "\" is not supported";
-        else if (const auto nearest = nearest_name(type, known))
+        if (!substitute.empty())
+            message += "; " + substitute + " is the nearest there is";
+        else if (const auto nearest = is_of_mitsuba(element.tag, type) ? std::nullopt : nearest_name(type, known))
             message += "; did you mean \"" + *nearest + "\"?";
         throw SceneError(element.location, message + " (known: " + join(known) + ")");
     }

@@ -14,10 +14,14 @@ bool is_rough(const Bsdf &bsdf, double threshold) {
     return !kind.is_dirac && (!kind.has_roughness || std::min(bsdf.alpha_u, bsdf.alpha_v) >= least);
 }
 
+bool gathers_photons(const Bsdf &bsdf, double threshold) {
+    return is_rough(bsdf, threshold) && !bsdf_kind_traits(bsdf.kind).is_mixed;
+}
+
 GatheringSurfaces gathering_surfaces(const Scene &scene, double threshold) {
     GatheringSurfaces surfaces;
     const auto count = [&](const Bsdf &bsdf) {
-        ++(is_rough(bsdf, threshold) ? surfaces.gathered : surfaces.passed)[bsdf_kind_name(bsdf)];
+        ++(gathers_photons(bsdf, threshold) ? surfaces.gathered : surfaces.passed)[bsdf_kind_name(bsdf)];
     };
     std::set<std::uint32_t> used;
     for (const Shape &shape : scene.shapes)

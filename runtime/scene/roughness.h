@@ -9,8 +9,13 @@
 
 namespace gradus {
 
-/// Whether a surface counts as rough: not Dirac, and of this roughness (alpha) or more where it has one.
+/// Whether a surface counts as rough: not Dirac, and of this roughness (alpha) or more where it has one. Of one with
+/// a Dirac lobe beside rough ones, whether these count.
 bool is_rough(const Bsdf &bsdf, double threshold);
+
+/// Whether photons are kept and gathered there: where it counts as rough and has no Dirac lobe. Paths go on from others
+/// as from glossy ones, so that either lobe is sampled.
+bool gathers_photons(const Bsdf &bsdf, double threshold);
 
 /// BSDFs of materials that shapes have, by the name of their kind; a material with two sides counts twice.
 struct GatheringSurfaces {

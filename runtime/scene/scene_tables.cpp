@@ -272,6 +272,11 @@ void add_material_record(const Bsdf &bsdf, SceneTables &tables) {
     GRADUS_MATERIAL_PARAMETERS(GRADUS_PUT_COLOR, GRADUS_PUT_NUMBER, )
 #undef GRADUS_PUT_COLOR
 #undef GRADUS_PUT_NUMBER
+    // Where nothing is refracted, paths go straight on.
+    const std::vector<std::string> &parameters = bsdf_kind_traits(bsdf.kind).parameters;
+    if (bsdf_kind_traits(bsdf.kind).transmits &&
+        std::find(parameters.begin(), parameters.end(), "ior") == parameters.end())
+        record[material_ior] = 1;
     record[material_bsdf] = static_cast<float>(bsdf_kind_number(bsdf));
     tables.material_back.push_back(static_cast<std::uint32_t>(tables.material_back.size()));
 }

@@ -24,6 +24,7 @@ constexpr TraitText descriptions[] = {
     {"TRAIT_ANISOTROPIC", "anisotropic roughness, which needs tangents"},
     {"TRAIT_TWO_SIDED", "materials seen alike from both sides"},
     {"TRAIT_TWO_FACED", "materials whose two sides differ"},
+    {"TRAIT_MIXED_LOBES", "materials with a mirror beside a rough lobe"},
     {"TRAIT_REFRACTION", "dielectrics: paths keep their index ratio for Russian roulette"},
     {"TRAIT_ENVIRONMENT", "light from where rays leave the scene"},
     {"TRAIT_LIGHT_TRIANGLE", "emitting triangles"},
@@ -53,8 +54,8 @@ std::vector<std::string> words_of(const std::string &text) {
     return {std::istream_iterator<std::string>(stream), {}};
 }
 
-BsdfKindTraits kind_from(const char *name, bool is_dirac, bool transmits, const char *parameters) {
-    BsdfKindTraits kind{name, is_dirac, transmits, false, false, words_of(parameters)};
+BsdfKindTraits kind_from(const char *name, int lobes, bool transmits, const char *parameters) {
+    BsdfKindTraits kind{name, lobes == 1, lobes == 2, transmits, false, false, words_of(parameters)};
     const auto has = [&](const char *parameter) { return std::ranges::count(kind.parameters, parameter) > 0; };
     kind.refracts = transmits && has("ior");
     kind.has_roughness = has("alpha_u");
@@ -62,7 +63,7 @@ BsdfKindTraits kind_from(const char *name, bool is_dirac, bool transmits, const 
 }
 
 const std::vector<BsdfKindTraits> &kinds() {
-#define GRADUS_KIND_TRAITS(name, is_dirac, transmits, parameters) kind_from(#name, is_dirac, transmits, parameters),
+#define GRADUS_KIND_TRAITS(name, lobes, transmits, parameters) kind_from(#name, lobes, transmits, parameters),
     static const std::vector<BsdfKindTraits> list = {GRADUS_BSDF_KINDS(GRADUS_KIND_TRAITS)};
 #undef GRADUS_KIND_TRAITS
     return list;
@@ -158,6 +159,11 @@ void for_each_blend(const Scene &scene, const Bsdf &bsdf, const std::function<vo
 
 bool needs_material_stage(const Scene &scene) { return scene_traits(scene).at("TRAIT_MATERIAL") != 0; }
 
+bool bsdf_kind_is_mixed(const std::string &name) {
+    const std::size_t place = place_of(name);
+    return place < kinds().size() && kinds()[place].is_mixed;
+}
+
 TraitMap scene_traits(const Scene &scene) {
     TraitMap traits;
     for (const TraitText &trait : descriptions)
@@ -185,6 +191,8 @@ TraitMap scene_traits(const Scene &scene) {
     }
     for_each_bsdf(scene, [&](const Bsdf &bsdf) {
         const BsdfKindTraits &kind = bsdf_kind_traits(bsdf.kind);
+        if (kind.is_mixed)
+            traits["TRAIT_MIXED_LOBES"] = 1;
         if (kind.refracts)
             traits["TRAIT_REFRACTION"] = 1;
         if (kind.has_roughness && bsdf.alpha_u != bsdf.alpha_v)

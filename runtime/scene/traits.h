@@ -43,6 +43,7 @@ TraitMap with_all_traits(TraitMap traits);
 struct BsdfKindTraits {
     std::string name;
     bool is_dirac;                       ///< has Dirac lobes alone, which light sampling cannot meet
+    bool is_mixed;                       ///< has a Dirac lobe beside rough ones
     bool transmits;                      ///< has both sides by nature
     bool refracts;                       ///< and changes the index
     bool has_roughness;                  ///< alpha_u and alpha_v
@@ -94,5 +95,8 @@ std::vector<std::string> bsdf_kinds(const Scene &scene);
 
 /// True for kinds that light sampling cannot meet.
 bool bsdf_kind_is_dirac(const std::string &name);
+
+/// True for kinds that have a Dirac lobe beside rough ones.
+bool bsdf_kind_is_mixed(const std::string &name);
 
 } // namespace gradus

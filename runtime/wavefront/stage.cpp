@@ -43,6 +43,8 @@ KernelRequest request_of(const StageDeclaration &declaration, std::string kind, 
     if (!are_alike)
         request.definitions["BSDF"] = kind;
     request.definitions["BSDF_IS_DIRAC"] = fmt::format("{:d}", is_dirac);
+    if (bsdf_kind_is_mixed(kind))
+        request.definitions["BSDF_IS_MIXED"] = "1";
     request.name = fmt::format("{} {}", declaration.name, are_alike || chooses ? "dirac" : kind);
     return request;
 }

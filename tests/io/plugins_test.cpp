@@ -10,6 +10,7 @@
 namespace gradus {
 namespace {
 
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -38,6 +39,107 @@ TEST(BsdfPlugin, DefaultIsDiffuseHalf) {
     EXPECT_EQ(material.front.kind, BsdfKind::diffuse);
     EXPECT_FALSE(material.two_sided);
     expect_rgb(material.front.reflectance, 0.5, 0.5, 0.5);
+}
+
+TEST(BsdfPlugin, Plastic) {
+    const Bsdf smooth = material_of("<bsdf type=\"plastic\"/>").front;
+    EXPECT_EQ(smooth.kind, BsdfKind::plastic);
+    EXPECT_NEAR(smooth.ior, 1.49 / 1.000277, 1e-6);
+    expect_rgb(smooth.reflectance, 0.5, 0.5, 0.5);
+    expect_rgb(smooth.specular_reflectance, 1, 1, 1);
+    EXPECT_EQ(smooth.nonlinear, 0);
+    // Egan and Hilgeman's fit (1973): -1.4399 / n^2 + 0.7099 / n + 0.6681 + 0.0636 n, to 0.1 %.
+    const double n = smooth.ior;
+    EXPECT_NEAR(smooth.internal_reflectance, -1.4399 / (n * n) + 0.7099 / n + 0.6681 + 0.0636 * n, 6e-4);
+    const Bsdf rough = material_of("<bsdf type=\"roughplastic\"><float name=\"intIOR\" value=\"1.8\"/>"
+                                   "<string name=\"distribution\" value=\"ggx\"/><float name=\"alpha\" "
+                                   "value=\"0.3\"/><boolean name=\"nonlinear\" value=\"true\"/><rgb "
+                                   "name=\"diffuseReflectance\" value=\"0.1 0.2 0.3\"/></bsdf>",
+                                   "0.6.0")
+                           .front;
+    EXPECT_EQ(rough.kind, BsdfKind::roughplastic_ggx);
+    EXPECT_EQ(rough.nonlinear, 1);
+    EXPECT_NEAR(rough.alpha_u, 0.3, 1e-6);
+    expect_rgb(rough.reflectance, 0.1, 0.2, 0.3);
+    EXPECT_EQ(material_of("<bsdf type=\"roughplastic\"/>").front.kind, BsdfKind::roughplastic_beckmann);
+}
+
+TEST(BsdfPlugin, ThinDielectric) {
+    const Bsdf pane = material_of("<bsdf type=\"thindielectric\"><float name=\"int_ior\" value=\"1.6\"/>"
+                                  "<float name=\"ext_ior\" value=\"1\"/></bsdf>")
+                          .front;
+    EXPECT_EQ(pane.kind, BsdfKind::thindielectric);
+    EXPECT_NEAR(pane.pane_ior, 1.6, 1e-6);
+}
+
+TEST(BsdfPlugin, KindsOfOldFiles) {
+    const Bsdf facets = material_of("<bsdf type=\"roughdiffuse\"><float name=\"alpha\" value=\"0.4\"/><boolean "
+                                    "name=\"useFastApprox\" value=\"true\"/></bsdf>",
+                                    "0.6.0")
+                            .front;
+    EXPECT_EQ(facets.kind, BsdfKind::roughdiffuse);
+    EXPECT_NEAR(facets.facet_alpha, 0.4, 1e-6);
+    EXPECT_EQ(facets.fast_approximation, 1);
+    const Bsdf phong = material_of("<bsdf type=\"phong\"><float name=\"exponent\" value=\"98\"/><rgb "
+                                   "name=\"diffuseReflectance\" value=\"0.9\"/><rgb name=\"specularReflectance\" "
+                                   "value=\"0.3\"/></bsdf>",
+                                   "0.5.0")
+                           .front;
+    EXPECT_EQ(phong.kind, BsdfKind::phong);
+    EXPECT_EQ(phong.exponent, 98);
+    EXPECT_NEAR(phong.alpha_u, std::sqrt(0.02), 1e-6);
+    expect_rgb(phong.reflectance, 0.9 * 0.99 / 1.2, 0.9 * 0.99 / 1.2, 0.9 * 0.99 / 1.2);
+    expect_rgb(phong.specular_reflectance, 0.3 * 0.99 / 1.2, 0.3 * 0.99 / 1.2, 0.3 * 0.99 / 1.2);
+    for (const auto &[variant, number] : {std::pair{"ward", 0.0f}, {"ward-duer", 1.0f}, {"balanced", 2.0f}}) {
+        const Bsdf ward = material_of("<bsdf type=\"ward\"><string name=\"variant\" value=\"" + std::string(variant) +
+                                          "\"/><float name=\"alphaU\" value=\"0.3\"/></bsdf>",
+                                      "0.6.0")
+                              .front;
+        EXPECT_EQ(ward.kind, BsdfKind::ward);
+        EXPECT_EQ(ward.ward_variant, number);
+        EXPECT_NEAR(ward.alpha_u, 0.3, 1e-6);
+        EXPECT_NEAR(ward.alpha_v, 0.1, 1e-6);
+        expect_rgb(ward.specular_reflectance, 0.2, 0.2, 0.2);
+    }
+}
+
+TEST(BsdfPlugin, Principled) {
+    const Bsdf plain = material_of("<bsdf type=\"principled\"/>").front;
+    EXPECT_EQ(plain.kind, BsdfKind::principled);
+    EXPECT_NEAR(plain.ior, 1.5, 1e-6); // specular 0.5
+    EXPECT_NEAR(plain.alpha_u, 0.25, 1e-6);
+    const Bsdf clear = material_of("<bsdf type=\"principled\"><float name=\"spec_trans\" value=\"0.3\"/><float "
+                                   "name=\"eta\" value=\"1\"/><float name=\"anisotropic\" value=\"1\"/></bsdf>")
+                           .front;
+    EXPECT_EQ(clear.kind, BsdfKind::principled_clear);
+    EXPECT_NEAR(clear.ior, 1.001, 1e-6);
+    EXPECT_NEAR(clear.alpha_v, 0.25 * std::sqrt(0.1), 1e-6);
+    const Bsdf thin =
+        material_of("<bsdf type=\"principledthin\"><float name=\"diff_trans\" value=\"2\"/></bsdf>").front;
+    EXPECT_EQ(thin.kind, BsdfKind::principledthin);
+    EXPECT_EQ(thin.diff_trans, 2);
+    EXPECT_NEAR(thin.ior, 1.5, 1e-6);
+}
+
+TEST(BsdfPlugin, TwoSidesOfOtherKinds) {
+    const Material sides =
+        material_of("<bsdf type=\"twosided\"><bsdf type=\"principled\"/><bsdf type=\"plastic\"/></bsdf>");
+    EXPECT_TRUE(sides.two_sided);
+    EXPECT_EQ(sides.front.kind, BsdfKind::principled);
+    EXPECT_EQ(sides.back.kind, BsdfKind::plastic);
+    for (const char *kind : {"roughplastic", "roughdiffuse", "phong", "ward"})
+        EXPECT_TRUE(material_of("<bsdf type=\"twosided\"><bsdf type=\"" + std::string(kind) + "\"/></bsdf>").two_sided)
+            << kind;
+    EXPECT_THROW(material_of("<bsdf type=\"twosided\"><bsdf type=\"thindielectric\"/></bsdf>"), Error);
+    EXPECT_THROW(material_of("<bsdf type=\"twosided\"><bsdf type=\"principledthin\"/></bsdf>"), Error);
+}
+
+TEST(BsdfPlugin, NamesTheNearestOfKindsThatAreNotThere) {
+    for (const auto &[kind, near] :
+         {std::pair{"coating", "plastic"}, {"difftrans", "principledthin"}, {"hk", "principledthin"}}) {
+        const LoadedScene loaded = load_text(scene_around("<bsdf type=\"" + std::string(kind) + "\"/>", "0.6.0"));
+        EXPECT_THAT(loaded.warnings, Contains(HasSubstr(near))) << kind;
+    }
 }
 
 TEST(BsdfPlugin, Diffuse) {

@@ -31,6 +31,14 @@ inline Arguments draw_arguments(std::mt19937_64 &random, double smallest_alpha) 
         a[k] = rounded(0.5 + 4 * uniform(random));
     const double ior = 1.1 + 1.4 * uniform(random);
     a[Field::ior] = rounded(uniform(random) < 0.5 ? ior : 1 / ior);
+    // A coat that lets light pass as a smooth one does, and a little else.
+    const Field coat[] = {Field::coat_0, Field::coat_1, Field::coat_2, Field::coat_3, Field::coat_4,
+                          Field::coat_5, Field::coat_6, Field::coat_7, Field::coat_8, Field::coat_9};
+    for (std::size_t i = 0; i < std::size(coat); ++i)
+        a[coat[i]] = rounded((i < 3 ? std::array{0.6, 0.45, -0.16}[i] : 0.0) + 0.01 * uniform(random));
+    a[Field::exponent] = rounded(1 + 50 * uniform(random));
+    a[Field::roughness] = rounded(std::pow(smallest_alpha, 0.5 * uniform(random)));
+    a[Field::ward_variant] = std::floor(3 * uniform(random));
     a[Field::alpha_u] = rounded(std::pow(smallest_alpha, uniform(random)));
     a[Field::alpha_v] = rounded(std::pow(smallest_alpha, uniform(random)));
     a.wi = draw_direction(random);

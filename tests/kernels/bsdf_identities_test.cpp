@@ -29,6 +29,8 @@ TEST(BsdfIdentities, SampleWeightIsEvalOverPdf) {
                 continue;
             }
             ++found;
+            if (sample.is_specular)
+                continue; // of a Dirac lobe beside rough ones, which evaluation leaves out
             const lib::rgb value = kind.eval(m, wi, sample.wo);
             // Not equal bit by bit: the compiler may contract the two copies differently. D of a smooth surface
             // turns such a last bit into much more, but eval and pdf share it, so compare their ratio too.
@@ -38,7 +40,7 @@ TEST(BsdfIdentities, SampleWeightIsEvalOverPdf) {
             ASSERT_NEAR(value.b / sample.pdf, sample.weight.b, bound(1e-5, 1e-12) * (1 + sample.weight.b));
             ASSERT_NEAR(lib::v3_length_squared(sample.wo), 1, bound(2e-6, 1e-13)) << kind.name;
             const bool is_transmitted = sample.wo.z * wi.z < 0;
-            ASSERT_NEAR(sample.eta, is_transmitted ? index_ratio(m, wi) : 1, 1e-6);
+            ASSERT_NEAR(sample.eta, is_transmitted && is_dielectric(kind) ? index_ratio(m, wi) : 1, 1e-6);
         }
         EXPECT_GT(found, sample_count / 16) << kind.name;
     }
@@ -97,7 +99,7 @@ TEST(BsdfIdentities, TransmissionIsReciprocalUpToTheSquaredIndex) {
 TEST(BsdfIdentities, OneSidedKindsAreBlackFromBehind) {
     const lib::material m = coloured_material(0.3, 0.3);
     for (const Kind &kind : kinds) {
-        if (is_dielectric(kind) || std::string(kind.name) == "null")
+        if (transmits(kind))
             continue;
         EXPECT_EQ(kind.sample(m, direction(120, 0), R(0.5), R(0.5), R(0.5)).pdf, 0) << kind.name;
         EXPECT_EQ(lib::rgb_max(kind.eval(m, direction(120, 0), direction(30, 0))), 0) << kind.name;
@@ -108,7 +110,8 @@ TEST(BsdfIdentities, OneSidedKindsAreBlackFromBehind) {
 
 TEST(BsdfIdentities, EachChannelReadsItsOwnFields) {
     // A permutation of the material's channels permutes the result.
-    const lib::material m = coloured_material(0.3, 0.3);
+    lib::material m = coloured_material(0.3, 0.3);
+    m.spec_tint = m.sheen_tint = 0; // tints go by luminance, which the permutation changes
     lib::material p = m;
     p.reflectance_r = m.reflectance_g, p.reflectance_g = m.reflectance_b, p.reflectance_b = m.reflectance_r;
     p.specular_reflectance_r = m.specular_reflectance_g, p.specular_reflectance_g = m.specular_reflectance_b;

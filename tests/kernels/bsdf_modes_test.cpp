@@ -93,11 +93,13 @@ TEST(BsdfModes, SamplesOfBothAreTheSameButForTheSquaredIndex) {
             ASSERT_EQ(a.pdf_reverse, b.pdf_reverse);
             ASSERT_EQ(a.eta, b.eta);
             ASSERT_EQ(a.is_specular, b.is_specular);
+            found += a.pdf > 0;
+            if (std::string(kind.name) == "principledthin" && a.wo.z * wi.z < 0)
+                continue; // what it lets pass is not the same both ways
             const double squared = double(a.eta) * a.eta;
             ASSERT_NEAR(b.weight.r, a.weight.r * squared, bound(2e-6, 1e-14)) << kind.name;
             ASSERT_NEAR(b.weight.g, a.weight.g * squared, bound(2e-6, 1e-14)) << kind.name;
             ASSERT_NEAR(b.weight.b, a.weight.b * squared, bound(2e-6, 1e-14)) << kind.name;
-            found += a.pdf > 0;
             other += a.pdf > 0 && squared != 1;
         }
         EXPECT_GT(found, sample_count / 16) << kind.name;
@@ -113,11 +115,14 @@ TEST(BsdfModes, NoSampleOfImportanceGainsPower) {
     for (const Kind &kind : kinds)
         for (int i = 0; i < sample_count / 4; ++i) {
             const double alpha = std::pow(10.0, -4 * double(draw(random)));
-            const lib::material m = white_material(alpha, 0.7 * alpha, i % 2 ? 1.5 : 0.7);
+            const lib::material m = white_material_of(kind, alpha, 0.7 * alpha, i % 2 ? 1.5 : 0.7);
             const lib::vec3 wi = draw_direction(random);
             const real u_lobe = draw(random), u1 = draw(random), u2 = draw(random);
             const lib::bsdf_sample sample = kind.sample(m, wi, u_lobe, u1, u2, lib::transport_importance);
-            ASSERT_LE(sample.weight.g, 1 + bound(1e-6, 1e-14)) << kind.name;
+            // Of many lobes each weighs at most 1 over the chance to sample it, which is that of a coat at normal
+            // incidence or more.
+            ASSERT_LE(sample.weight.g, has_many_lobes(kind) ? std::pow(1.7 / 0.3, 2) : 1 + bound(1e-6, 1e-14))
+                << kind.name;
         }
 }
 
@@ -136,8 +141,14 @@ TEST(BsdfModes, SampledDensitiesAndValuesAreThoseOfThePair) {
                     ASSERT_EQ(sample.pdf_reverse, 0) << kind.name;
                     continue;
                 }
+                if (sample.is_specular)
+                    continue;
                 // The two copies may be contracted differently, see BsdfIdentities.
                 const lib::bsdf_value pair = kind.evaluate(m, wi, sample.wo, mode);
+                if (sample.pdf_reverse == 0) {
+                    ASSERT_EQ(pair.pdf_reverse, 0) << kind.name;
+                    continue;
+                }
                 ASSERT_NEAR(pair.pdf_reverse / sample.pdf_reverse, 1, bound(1e-5, 1e-12)) << kind.name;
                 ASSERT_NEAR(pair.value.g / sample.pdf, sample.weight.g, bound(1e-5, 1e-12) * (1 + sample.weight.g));
             }

@@ -29,7 +29,7 @@ std::vector<double> count_samples(const BsdfCase &test, const LobeCharts &charts
     for (int i = 0; i < samples; ++i) {
         const real u_lobe = draw(random), u1 = draw(random), u2 = draw(random);
         const lib::bsdf_sample sample = test.kind.sample(test.material, test.wi, u_lobe, u1, u2);
-        if (sample.pdf == 0) {
+        if (sample.pdf == 0 || sample.is_specular) { // Dirac lobes are what the density leaves of 1, too
             counts.back() += 1;
             continue;
         }
@@ -100,7 +100,10 @@ TEST(BsdfSampling, FollowsItsPdfForEveryKindRoughnessAndIncidence) {
 
 TEST(BsdfSampling, NoticesAPdfThatBelongsToAnotherRoughness) {
     // The power of the test: a few percent of roughness must not pass.
-    BsdfCase test = bsdf_cases().back();
+    const std::vector<BsdfCase> cases = bsdf_cases();
+    BsdfCase test = *std::find_if(cases.rbegin(), cases.rend(), [](const BsdfCase &other) {
+        return std::string(other.kind.name) == "roughdielectric_beckmann";
+    });
     const LobeCharts charts = charts_of(test);
     const auto counts = count_samples(test, charts, sample_count);
     test.material.alpha_u *= R(0.93);

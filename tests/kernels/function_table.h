@@ -32,7 +32,7 @@ struct Results {
 
 struct FunctionEntry {
     const char *name;
-    bool is_delta;
+    bool is_delta, refracts;
     Results (*call)(const Arguments &);
 };
 

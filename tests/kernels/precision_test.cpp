@@ -45,6 +45,10 @@ TEST(Precision, FloatEvaluationMatchesDouble) {
         ErrorStatistics eval, pdf, reverse, weight;
         for (int i = 0; i < 200'000; ++i) {
             Arguments a = draw_arguments(random, 0.01);
+            // Below 1 coats have a critical angle as well, and thin surfaces ever smoother microfacets.
+            const std::string name = in_float[kind].name;
+            if (name.find("plastic") != std::string::npos || name == "principledthin")
+                a[Field::ior] = std::max(a[Field::ior], rounded(1 / a[Field::ior]));
             // Two of three pairs are where the BSDF samples them; the third is anywhere.
             if (i % 3 != 0)
                 for (int axis = 0; axis < 3; ++axis)
@@ -52,7 +56,7 @@ TEST(Precision, FloatEvaluationMatchesDouble) {
             const Results approximate = in_float[kind].call(a), exact = in_double[kind].call(a);
             if (exact.sample_pdf > 0 && approximate.sample_pdf > 0 && distance(exact.wo, approximate.wo) < 0.1)
                 weight.add(std::fabs(approximate.weight[1] - exact.weight[1]));
-            if (is_edge(a, std::string(in_float[kind].name).find("dielectric") != std::string::npos))
+            if (is_edge(a, in_float[kind].refracts))
                 continue;
             if (exact.pdf > 1e-6)
                 pdf.add(std::fabs(approximate.pdf / exact.pdf - 1));

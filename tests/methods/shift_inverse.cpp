@@ -71,6 +71,7 @@ struct ShiftInverter::Base {
     float ratio = 0; ///< of the offset path's density times the Jacobian to the base path's, for this segment
     /// The offset path's density where it copied at a rough vertex; else 0: then it is that of its copy to itself.
     float pdf = 0;
+    bool takes_dirac = false; ///< the base path's lobe
     bool is_escaped() const { return base_primitive == ray_escaped; }
 };
 
@@ -205,6 +206,7 @@ std::vector<ShiftInverter::Base> ShiftInverter::arrivals(const Kept &weigh) cons
                           argument("primary_shift");
             }
             b.ratio = float(ratio / ratio_before);
+            b.takes_dirac = path.real(path_pdf, row) == 0;
             b.base_origin = vector_at(ray, ray_origin_x, row);
             b.base_direction = vector_at(ray, ray_direction_x, row);
             b.base_primitive = ray.uint(ray_primitive, row);
@@ -247,6 +249,7 @@ void ShiftInverter::take_back(const Kept &weigh, const std::vector<Base> &bases)
         const Base &b = bases[n];
         path.set(path_slot, n, may_be_apart ? n : 3 * n + 1);
         path.set(path_depth, n, 1u);
+        path.at(path_pdf, n) = b.takes_dirac ? 0.0f : 1.0f;
         write_vertex(vertex, n, b.offset);
         event.at(event_pdf, n) = 1;
         ray.set(ray_origin_x, n, b.offset_origin);

@@ -20,6 +20,7 @@ sys.path.insert(0, str(ROOT / "bench" / "peers"))
 import mitsuba_setup  # noqa: E402
 
 WIDTH = 128
+SMALL_WIDTH = 64  # of those that are not as high
 MAX_DEPTH = 12
 RR_DEPTH = 1000  # beyond max_depth: off
 BATCHES = 64
@@ -48,8 +49,8 @@ REFERENCES = {
     "orthographic": ("../tests/scenes/orthographic.xml", 48, {}, 16384),
     "clipped": ("../tests/scenes/clipped.xml", 48, {}, 16384),
     "clipped-mitchell": ("../tests/scenes/clipped.xml", 48, {"rfilter": "mitchell"}, 65536),
+    "plastics": ("plastics.xml", 48, {}, 32768),
 }
-SMALL_WIDTH = 64
 
 
 def render_batch(mitsuba, scene, spp, first_seed, pixels):
@@ -98,7 +99,7 @@ def make_reference(mitsuba, name, arguments):
     file, height, parameters, spp = REFERENCES[name]
     spp_of_batch = max(1, round(spp * arguments.scale / BATCHES))
     parameters = dict(parameters)
-    width = SMALL_WIDTH if file.startswith("../") else WIDTH
+    width = SMALL_WIDTH if height <= SMALL_WIDTH else WIDTH
     scene = mitsuba_setup.load_scene(
         mitsuba,
         ROOT / "scenes" / file,

@@ -147,8 +147,14 @@ TEST(BsdfKinds, FollowFromTheirList) {
         const BsdfKindTraits &traits = bsdf_kind_traits(kind);
         EXPECT_EQ(traits.name, name);
         named.insert(traits.parameters.begin(), traits.parameters.end());
-        EXPECT_EQ(traits.refracts, name.find("dielectric") != std::string::npos) << name;
-        EXPECT_EQ(traits.has_roughness, name.starts_with("rough")) << name;
+        EXPECT_EQ(traits.refracts, name == "dielectric" || name.starts_with("roughdielectric") ||
+                                       name == "principled_clear" || name == "principledthin")
+            << name;
+        EXPECT_EQ(traits.has_roughness, (name.starts_with("rough") && name != "roughdiffuse") || name == "phong" ||
+                                            name == "ward" || name.starts_with("principled"))
+            << name;
+        EXPECT_EQ(traits.is_mixed, name == "plastic") << name;
+        EXPECT_FALSE(traits.is_mixed && traits.is_dirac) << name;
     }
     EXPECT_EQ(members, named);
     EXPECT_TRUE(bsdf_kind_traits(BsdfKind::null).transmits);

@@ -2,8 +2,10 @@
 
 #include "runtime/io/refractive_index.h"
 #include "runtime/io/text.h"
+#include "runtime/scene/coating.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace gradus {
 
@@ -26,6 +28,45 @@ void read_dielectric(Properties &properties, Bsdf &bsdf) {
     bsdf.ior = float(properties.refractive_index("int_ior", "bk7") / properties.refractive_index("ext_ior", "air"));
     bsdf.specular_reflectance = properties.color("specular_reflectance", {1, 1, 1}, ColorUse::reflectance);
     bsdf.specular_transmittance = properties.color("specular_transmittance", {1, 1, 1}, ColorUse::reflectance);
+}
+
+void read_plastic(Properties &properties, Bsdf &bsdf) {
+    bsdf.ior =
+        float(properties.refractive_index("int_ior", "polypropylene") / properties.refractive_index("ext_ior", "air"));
+    bsdf.reflectance = properties.color("diffuse_reflectance", {0.5f, 0.5f, 0.5f}, ColorUse::reflectance);
+    bsdf.specular_reflectance = properties.color("specular_reflectance", {1, 1, 1}, ColorUse::reflectance);
+    bsdf.nonlinear = properties.boolean("nonlinear", false) ? 1.0f : 0.0f;
+    set_coating(bsdf);
+}
+
+void read_two_lobes(Properties &properties, Bsdf &bsdf) {
+    bsdf.reflectance = properties.color("diffuse_reflectance", {0.5f, 0.5f, 0.5f}, ColorUse::reflectance);
+    bsdf.specular_reflectance = properties.color("specular_reflectance", {0.2f, 0.2f, 0.2f}, ColorUse::reflectance);
+    const auto scale = [](Rgb &color, float by) { color = {color.r * by, color.g * by, color.b * by}; };
+    const float most =
+        std::max({bsdf.reflectance.r + bsdf.specular_reflectance.r, bsdf.reflectance.g + bsdf.specular_reflectance.g,
+                  bsdf.reflectance.b + bsdf.specular_reflectance.b});
+    if (properties.boolean("ensure_energy_conservation", true) && most > 1) {
+        scale(bsdf.reflectance, 0.99f / most);
+        scale(bsdf.specular_reflectance, 0.99f / most);
+    }
+}
+
+void read_principled(Properties &properties, Bsdf &bsdf) {
+    const auto share = [&](const char *name, double otherwise) {
+        return float(properties.number(name, otherwise, 0, 1));
+    };
+    bsdf.reflectance = properties.color("base_color", {0.5f, 0.5f, 0.5f}, ColorUse::reflectance);
+    bsdf.roughness = share("roughness", 0.5);
+    bsdf.anisotropic = share("anisotropic", 0);
+    bsdf.spec_trans = share("spec_trans", 0);
+    bsdf.spec_tint = share("spec_tint", 0);
+    bsdf.sheen = share("sheen", 0);
+    bsdf.sheen_tint = share("sheen_tint", 0);
+    bsdf.flatness = share("flatness", 0);
+    const float squared = bsdf.roughness * bsdf.roughness, aspect = std::sqrt(1 - 0.9f * bsdf.anisotropic);
+    bsdf.alpha_u = std::max(squared / aspect, 0.001f);
+    bsdf.alpha_v = std::max(squared * aspect, 0.001f);
 }
 
 void read_conductor(Properties &properties, Bsdf &bsdf) {
