@@ -21,7 +21,7 @@ GRADUS_LIB_BEGIN
         textured_last_##name = textured_##name##_r + (IS_TEXTURED(name) ? 2 : -1),
 #define GRADUS_NUMBER_COLUMN(with, name, value, text)                                                                  \
     textured_##name, textured_last_##name = textured_##name + (IS_TEXTURED(name) ? 0 : -1),
-enum textured_column { GRADUS_MATERIAL_PARAMETERS(GRADUS_COLOR_COLUMNS, GRADUS_NUMBER_COLUMN, ) textured_columns };
+enum textured_column { GRADUS_TEXTURED_PARAMETERS(GRADUS_COLOR_COLUMNS, GRADUS_NUMBER_COLUMN, ) textured_columns };
 #undef GRADUS_COLOR_COLUMNS
 #undef GRADUS_NUMBER_COLUMN
 
@@ -42,7 +42,7 @@ enum surface_column {
         m.name = columns[(size_t)textured_##name * rows + row];
 /* The material with what its textures are worth in a row of columns. */
 GRADUS_FN material material_with_textures(material m, GRADUS_GLOBAL const real *columns, size_t rows, size_t row) {
-    GRADUS_MATERIAL_PARAMETERS(GRADUS_TAKE_COLOR, GRADUS_TAKE_NUMBER, )
+    GRADUS_TEXTURED_PARAMETERS(GRADUS_TAKE_COLOR, GRADUS_TAKE_NUMBER, )
     return m;
 }
 #undef GRADUS_TAKE_COLOR

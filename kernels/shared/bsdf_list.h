@@ -4,17 +4,33 @@
 #ifndef GRADUS_SHARED_BSDF_LIST_H
 #define GRADUS_SHARED_BSDF_LIST_H
 
-/* COLOR(WITH, name, default, what it is) and NUMBER(WITH, ...): the parameters of all kinds. A kind ignores those that
- * it does not name. Colours are unitless linear RGB. WITH is handed on as it is. */
-#define GRADUS_MATERIAL_PARAMETERS(COLOR, NUMBER, WITH)                                                                \
+/* COLOR(WITH, name, default, what it is) and NUMBER(WITH, ...): the parameters of all kinds, first those for which a
+ * texture may stand. A kind ignores those that it does not name. Colours are unitless linear RGB. WITH is handed on as
+ * it is. */
+#define GRADUS_TEXTURED_PARAMETERS(COLOR, NUMBER, WITH)                                                                \
     COLOR(WITH, reflectance, 0.5f, "albedo")                                                                           \
     COLOR(WITH, specular_reflectance, 1, "factor on reflected light")                                                  \
     COLOR(WITH, specular_transmittance, 1, "factor on transmitted light")                                              \
+    NUMBER(WITH, alpha_u, 0.1f, "roughness along the frame's s axis")                                                  \
+    NUMBER(WITH, alpha_v, 0.1f, "roughness along the frame's t axis")                                                  \
+    NUMBER(WITH, facet_alpha, 0.2f, "roughness of a surface of diffuse facets")                                        \
+    NUMBER(WITH, exponent, 30, "of Phong's lobe")                                                                      \
+    NUMBER(WITH, roughness, 0.5f, "its square is the roughness of the microfacets")                                    \
+    NUMBER(WITH, anisotropic, 0, "0 to 1: how much rougher they are along one axis")                                   \
+    NUMBER(WITH, metallic, 0, "share of metal against dielectric")                                                     \
+    NUMBER(WITH, spec_trans, 0, "share of light that a dielectric lets pass against what it scatters")                 \
+    NUMBER(WITH, spec_tint, 0, "how much reflections have the base colour")                                            \
+    NUMBER(WITH, sheen, 0, "reflection at grazing angles, as of cloth")                                                \
+    NUMBER(WITH, sheen_tint, 0, "how much the sheen has the base colour")                                              \
+    NUMBER(WITH, flatness, 0, "share of light that is scattered as if below the surface")                              \
+    NUMBER(WITH, clearcoat, 0, "how much a second, clear coat reflects")                                               \
+    NUMBER(WITH, clearcoat_gloss, 0, "how smooth that coat is")                                                        \
+    NUMBER(WITH, diff_trans, 0, "share of diffuse light that passes a thin surface, 0 to 2")
+/* Those that no texture can stand for. */
+#define GRADUS_PLAIN_PARAMETERS(COLOR, NUMBER, WITH)                                                                   \
     COLOR(WITH, eta, 0, "real part of the index, relative to the outside; eta = 0, k = 1 is a perfect mirror")         \
     COLOR(WITH, k, 1, "imaginary part of the index, relative to the outside")                                          \
     NUMBER(WITH, ior, 1.5046f, "index inside over index outside (the normal points outside)")                          \
-    NUMBER(WITH, alpha_u, 0.1f, "roughness along the frame's s axis")                                                  \
-    NUMBER(WITH, alpha_v, 0.1f, "roughness along the frame's t axis")                                                  \
     NUMBER(WITH, nonlinear, 0, "1: colours shift by what is scattered under a coat more than once")                    \
     NUMBER(WITH, internal_reflectance, 0, "of a coat from within, for diffuse light; follows from ior and roughness")  \
     NUMBER(WITH, coat_0, 1, "and on to coat_9: the coat's transmittance, a polynomial; follows likewise")              \
@@ -28,21 +44,10 @@
     NUMBER(WITH, coat_8, 0, "")                                                                                        \
     NUMBER(WITH, coat_9, 0, "")                                                                                        \
     NUMBER(WITH, pane_ior, 1.5046f, "index of a thin pane over that around it")                                        \
-    NUMBER(WITH, facet_alpha, 0.2f, "roughness of a surface of diffuse facets")                                        \
     NUMBER(WITH, fast_approximation, 0, "1: the simpler model of diffuse facets")                                      \
-    NUMBER(WITH, exponent, 30, "of Phong's lobe")                                                                      \
-    NUMBER(WITH, ward_variant, 2, "of Ward's lobe: 0 as published, 1 after Duer, 2 balanced")                          \
-    NUMBER(WITH, roughness, 0.5f, "its square is the roughness of the microfacets")                                    \
-    NUMBER(WITH, anisotropic, 0, "0 to 1: how much rougher they are along one axis")                                   \
-    NUMBER(WITH, metallic, 0, "share of metal against dielectric")                                                     \
-    NUMBER(WITH, spec_trans, 0, "share of light that a dielectric lets pass against what it scatters")                 \
-    NUMBER(WITH, spec_tint, 0, "how much reflections have the base colour")                                            \
-    NUMBER(WITH, sheen, 0, "reflection at grazing angles, as of cloth")                                                \
-    NUMBER(WITH, sheen_tint, 0, "how much the sheen has the base colour")                                              \
-    NUMBER(WITH, flatness, 0, "share of light that is scattered as if below the surface")                              \
-    NUMBER(WITH, clearcoat, 0, "how much a second, clear coat reflects")                                               \
-    NUMBER(WITH, clearcoat_gloss, 0, "how smooth that coat is")                                                        \
-    NUMBER(WITH, diff_trans, 0, "share of diffuse light that passes a thin surface, 0 to 2")
+    NUMBER(WITH, ward_variant, 2, "of Ward's lobe: 0 as published, 1 after Duer, 2 balanced")
+#define GRADUS_MATERIAL_PARAMETERS(COLOR, NUMBER, WITH)                                                                \
+    GRADUS_TEXTURED_PARAMETERS(COLOR, NUMBER, WITH) GRADUS_PLAIN_PARAMETERS(COLOR, NUMBER, WITH)
 
 /* KIND(name, lobes, transmits, parameters): a BSDF kind is one program of the stages that evaluate BSDFs, and one bin
  * of the wavefront. lobes: 0, rough ones; 1, Dirac lobes alone, which light sampling cannot meet; the Dirac kinds of a

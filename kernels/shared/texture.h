@@ -1,11 +1,11 @@
 /* How textures lie in device memory, for host and device.
  *
  * `texels` holds the words of all pictures as files store them (Bitmap in runtime/scene/texture.h), `textures` a record
- * of whole numbers for each texture, `texture_reals` one of reals. `material_textures` has material_parameters numbers
+ * of whole numbers for each texture, `texture_reals` one of reals. `material_textures` has textured_parameters numbers
  * for each material record: the texture that stands for the parameter, or texture_none. `texture_decode` has what a
  * byte is worth: 256 as they are, then 256 of sRGB.
  *
- * TRAIT_TEXTURED has a bit for each parameter of GRADUS_MATERIAL_PARAMETERS that some material has as a texture,
+ * TRAIT_TEXTURED has a bit for each parameter of GRADUS_TEXTURED_PARAMETERS that some material has as a texture,
  * TRAIT_TEXTURES one for each of the features below that some texture has. */
 #ifndef GRADUS_SHARED_TEXTURE_H
 #define GRADUS_SHARED_TEXTURE_H
@@ -109,7 +109,7 @@ enum sphere_axes_field { GRADUS_SPHERE_AXES_FIELDS(GRADUS_TEXTURE_INDEX) sphere_
 /* The parameters of materials, numbered. */
 #define GRADUS_PARAMETER_INDEX(with, name, value, text) parameter_##name,
 enum material_parameter {
-    GRADUS_MATERIAL_PARAMETERS(GRADUS_PARAMETER_INDEX, GRADUS_PARAMETER_INDEX, ) material_parameters
+    GRADUS_TEXTURED_PARAMETERS(GRADUS_PARAMETER_INDEX, GRADUS_PARAMETER_INDEX, ) textured_parameters
 };
 #undef GRADUS_PARAMETER_INDEX
 

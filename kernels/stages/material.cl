@@ -1,5 +1,5 @@
 /* material: reads the textures of what each ray met, before `classify`: leaves in its row of `surface` the textured
- * parameters of the material there, those of GRADUS_MATERIAL_PARAMETERS in TRAIT_TEXTURED. A parameter that this
+ * parameters of the material there, those of GRADUS_TEXTURED_PARAMETERS in TRAIT_TEXTURED. A parameter that this
  * material has as a constant is left as that. `traced` is a table of rays, of traced_rows rows like `surface`. Rays
  * that met nothing leave what nobody reads.
  *
@@ -17,7 +17,7 @@
 #include "kernels/shared/stage.h"
 
 #define LOOK_UP(name)                                                                                                  \
-    const uint number = material_textures[(size_t)record * material_parameters + parameter_##name * (size_t)unit];     \
+    const uint number = material_textures[(size_t)record * textured_parameters + parameter_##name * (size_t)unit];     \
     const int is_constant = number == texture_none;                                                                    \
     const rgb looked_up =                                                                                              \
         texture_lookup(textures, texture_reals, texels, texture_decode, unit, is_constant ? 0u : number, u, v);        \
@@ -145,5 +145,5 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
     }
     *(GRADUS_GLOBAL uint *)(surface + (size_t)surface_record * traced_rows + row) = record;
 #endif
-    GRADUS_MATERIAL_PARAMETERS(LEAVE_COLOR, LEAVE_NUMBER, )
+    GRADUS_TEXTURED_PARAMETERS(LEAVE_COLOR, LEAVE_NUMBER, )
 }

@@ -130,8 +130,8 @@ void set_coating(Bsdf &bsdf) {
         const double root = 0.5 * (x + 1);
         return through_rough(distribution, alpha, ior, std::max(1e-6, root * root), along, around).refracted;
     });
-    float *const fields[coefficients] = {&bsdf.coat_0, &bsdf.coat_1, &bsdf.coat_2, &bsdf.coat_3, &bsdf.coat_4,
-                                         &bsdf.coat_5, &bsdf.coat_6, &bsdf.coat_7, &bsdf.coat_8, &bsdf.coat_9};
+    Number *const fields[coefficients] = {&bsdf.coat_0, &bsdf.coat_1, &bsdf.coat_2, &bsdf.coat_3, &bsdf.coat_4,
+                                          &bsdf.coat_5, &bsdf.coat_6, &bsdf.coat_7, &bsdf.coat_8, &bsdf.coat_9};
     for (int k = 0; k < coefficients; ++k)
         *fields[k] = float(coat[k]);
 }

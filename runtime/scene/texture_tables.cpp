@@ -76,7 +76,7 @@ void add_textures(const Scene &scene, SceneTables &tables) {
     }
     for (const Bsdf &bsdf : material_records(scene)) {
         const std::size_t first = tables.material_textures.size();
-        tables.material_textures.resize(first + material_parameters, texture_none);
+        tables.material_textures.resize(first + textured_parameters, texture_none);
         for_each_textured_parameter(bsdf, [&](int number, std::int32_t texture) {
             tables.material_textures[first + std::size_t(number)] = std::uint32_t(texture);
         });

@@ -124,19 +124,19 @@ std::uint32_t textured_column_count(int textured) {
 #define GRADUS_COLOR_COLUMNS(with, name, value, text) columns += textured >> lib_float::parameter_##name & 1 ? 3u : 0u;
 #define GRADUS_NUMBER_COLUMN(with, name, value, text)                                                                  \
     columns += std::uint32_t(textured >> lib_float::parameter_##name & 1);
-    GRADUS_MATERIAL_PARAMETERS(GRADUS_COLOR_COLUMNS, GRADUS_NUMBER_COLUMN, )
+    GRADUS_TEXTURED_PARAMETERS(GRADUS_COLOR_COLUMNS, GRADUS_NUMBER_COLUMN, )
 #undef GRADUS_COLOR_COLUMNS
 #undef GRADUS_NUMBER_COLUMN
     return columns;
 }
 
 void for_each_textured_parameter(const Bsdf &bsdf, const std::function<void(int number, std::int32_t texture)> &visit) {
-    static_assert(lib_float::material_parameters <= 31, "TRAIT_TEXTURED has a bit for each");
+    static_assert(lib_float::textured_parameters <= 31, "TRAIT_TEXTURED has a bit for each");
     const std::vector<std::string> &read = bsdf_kind_traits(bsdf.kind).parameters;
 #define GRADUS_VISIT(with, name, value, text)                                                                          \
     if (bsdf.name.texture != no_texture && std::ranges::count(read, #name) > 0)                                        \
         visit(lib_float::parameter_##name, bsdf.name.texture);
-    GRADUS_MATERIAL_PARAMETERS(GRADUS_VISIT, GRADUS_VISIT, )
+    GRADUS_TEXTURED_PARAMETERS(GRADUS_VISIT, GRADUS_VISIT, )
 #undef GRADUS_VISIT
 }
 

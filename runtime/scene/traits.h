@@ -27,7 +27,7 @@ int texture_features(const Texture &texture);
 std::uint32_t textured_column_count(int textured);
 
 /// Calls visit(number, parameter) for each parameter of the Bsdf that its kind reads and that is a texture: its number
-/// in GRADUS_MATERIAL_PARAMETERS, its index in Scene::textures.
+/// in GRADUS_TEXTURED_PARAMETERS, its index in Scene::textures.
 void for_each_textured_parameter(const Bsdf &bsdf, const std::function<void(int number, std::int32_t texture)> &visit);
 
 /// Whether a shape has a material with textures or a blend, which the stage `material` reads.

@@ -47,7 +47,7 @@ TEST(BsdfPlugin, Plastic) {
     EXPECT_NEAR(smooth.ior, 1.49 / 1.000277, 1e-6);
     expect_rgb(smooth.reflectance, 0.5, 0.5, 0.5);
     expect_rgb(smooth.specular_reflectance, 1, 1, 1);
-    EXPECT_EQ(smooth.nonlinear, 0);
+    EXPECT_EQ(smooth.nonlinear, 0.0f);
     // Egan and Hilgeman's fit (1973): -1.4399 / n^2 + 0.7099 / n + 0.6681 + 0.0636 n, to 0.1 %.
     const double n = smooth.ior;
     EXPECT_NEAR(smooth.internal_reflectance, -1.4399 / (n * n) + 0.7099 / n + 0.6681 + 0.0636 * n, 6e-4);
@@ -58,7 +58,7 @@ TEST(BsdfPlugin, Plastic) {
                                    "0.6.0")
                            .front;
     EXPECT_EQ(rough.kind, BsdfKind::roughplastic_ggx);
-    EXPECT_EQ(rough.nonlinear, 1);
+    EXPECT_EQ(rough.nonlinear, 1.0f);
     EXPECT_NEAR(rough.alpha_u, 0.3, 1e-6);
     expect_rgb(rough.reflectance, 0.1, 0.2, 0.3);
     EXPECT_EQ(material_of("<bsdf type=\"roughplastic\"/>").front.kind, BsdfKind::roughplastic_beckmann);
@@ -79,14 +79,14 @@ TEST(BsdfPlugin, KindsOfOldFiles) {
                             .front;
     EXPECT_EQ(facets.kind, BsdfKind::roughdiffuse);
     EXPECT_NEAR(facets.facet_alpha, 0.4, 1e-6);
-    EXPECT_EQ(facets.fast_approximation, 1);
+    EXPECT_EQ(facets.fast_approximation, 1.0f);
     const Bsdf phong = material_of("<bsdf type=\"phong\"><float name=\"exponent\" value=\"98\"/><rgb "
                                    "name=\"diffuseReflectance\" value=\"0.9\"/><rgb name=\"specularReflectance\" "
                                    "value=\"0.3\"/></bsdf>",
                                    "0.5.0")
                            .front;
     EXPECT_EQ(phong.kind, BsdfKind::phong);
-    EXPECT_EQ(phong.exponent, 98);
+    EXPECT_EQ(phong.exponent, 98.0f);
     EXPECT_NEAR(phong.alpha_u, std::sqrt(0.02), 1e-6);
     expect_rgb(phong.reflectance, 0.9 * 0.99 / 1.2, 0.9 * 0.99 / 1.2, 0.9 * 0.99 / 1.2);
     expect_rgb(phong.specular_reflectance, 0.3 * 0.99 / 1.2, 0.3 * 0.99 / 1.2, 0.3 * 0.99 / 1.2);
@@ -117,7 +117,7 @@ TEST(BsdfPlugin, Principled) {
     const Bsdf thin =
         material_of("<bsdf type=\"principledthin\"><float name=\"diff_trans\" value=\"2\"/></bsdf>").front;
     EXPECT_EQ(thin.kind, BsdfKind::principledthin);
-    EXPECT_EQ(thin.diff_trans, 2);
+    EXPECT_EQ(thin.diff_trans, 2.0f);
     EXPECT_NEAR(thin.ior, 1.5, 1e-6);
 }
 

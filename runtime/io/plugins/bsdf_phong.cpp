@@ -12,7 +12,7 @@ Material bsdf_phong(Properties &properties, SceneBuilder &) {
     Bsdf &bsdf = material.front;
     bsdf.kind = BsdfKind::phong;
     read_two_lobes(properties, bsdf);
-    bsdf.exponent = float(properties.number("exponent", 30, 0));
+    bsdf.exponent = properties.textured_number("exponent", 30.0f, 0, 1e30, 0);
     // Of Beckmann's microfacets whose lobe is as wide.
     bsdf.alpha_u = bsdf.alpha_v = std::sqrt(2 / (bsdf.exponent + 2));
     return material;

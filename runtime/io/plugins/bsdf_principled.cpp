@@ -12,15 +12,15 @@ Material bsdf_principled(Properties &properties, SceneBuilder &) {
     Material material;
     Bsdf &bsdf = material.front;
     read_principled(properties, bsdf);
-    const auto share = [&](const char *name) { return float(properties.number(name, 0, 0, 1)); };
+    const auto share = [&](const char *name) { return properties.textured_number(name, 0.0f, 0, 1, 0); };
     bsdf.metallic = share("metallic");
     bsdf.clearcoat = share("clearcoat");
     bsdf.clearcoat_gloss = share("clearcoat_gloss");
-    bsdf.kind = bsdf.spec_trans > 0 ? BsdfKind::principled_clear : BsdfKind::principled;
+    const bool is_clear = bsdf.spec_trans.texture != no_texture || bsdf.spec_trans > 0;
+    bsdf.kind = is_clear ? BsdfKind::principled_clear : BsdfKind::principled;
     if (properties.has("eta") && properties.has("specular"))
         throw properties.error("specular", "give eta or specular, not both");
     // Index 1, which specular 0 stands for, has no half vectors of refraction.
-    const bool is_clear = bsdf.spec_trans > 0;
     const double specular = properties.number("specular", 0.5, 0, 1);
     const double reflectance = 0.08 * (is_clear ? std::max(specular, 1e-3) : specular);
     const double eta = properties.refractive_index("eta", std::to_string(2 / (1 - std::sqrt(reflectance)) - 1));

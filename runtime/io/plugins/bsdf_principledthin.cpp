@@ -11,7 +11,7 @@ Material bsdf_principledthin(Properties &properties, SceneBuilder &) {
     Bsdf &bsdf = material.front;
     bsdf.kind = BsdfKind::principledthin;
     read_principled(properties, bsdf);
-    bsdf.diff_trans = float(properties.number("diff_trans", 0, 0, 2));
+    bsdf.diff_trans = properties.textured_number("diff_trans", 0.0f, 0, 2, 0);
     bsdf.ior = float(properties.refractive_index("eta", "1.5"));
     properties.ignore({"diffuse_reflectance_sampling_rate", "specular_reflectance_sampling_rate",
                        "specular_transmittance_sampling_rate", "diffuse_transmittance_sampling_rate"});

@@ -8,6 +8,8 @@ namespace gradus {
 Material bsdf_roughplastic(Properties &properties, SceneBuilder &) {
     Material material;
     const bool is_ggx = read_roughness(properties, material.front) == Microfacet::ggx;
+    if (material.front.alpha_u.texture != no_texture)
+        throw properties.error("alpha", "the roughness of roughplastic cannot be a texture");
     if (material.front.alpha_u != material.front.alpha_v)
         throw properties.error("alpha_u", "roughplastic is as rough along both axes: give alpha");
     material.front.kind = is_ggx ? BsdfKind::roughplastic_ggx : BsdfKind::roughplastic_beckmann;

@@ -19,9 +19,9 @@ Material bsdf_ward(Properties &properties, SceneBuilder &) {
         throw properties.error("variant", "unknown variant \"" + variant + "\" (known: ward, ward-duer, balanced)");
     bsdf.ward_variant = float(found - std::begin(known));
     read_two_lobes(properties, bsdf);
-    const double alpha = properties.number("alpha", 0.1, 0);
-    bsdf.alpha_u = float(std::max(1e-4, properties.number("alpha_u", alpha, 0)));
-    bsdf.alpha_v = float(std::max(1e-4, properties.number("alpha_v", alpha, 0)));
+    const Number alpha = properties.textured_number("alpha", 0.1f, 0, 1e30, 1e-4);
+    bsdf.alpha_u = properties.textured_number("alpha_u", alpha, 0, 1e30, 1e-4);
+    bsdf.alpha_v = properties.textured_number("alpha_v", alpha, 0, 1e30, 1e-4);
     return material;
 }
 

@@ -53,11 +53,11 @@ void read_two_lobes(Properties &properties, Bsdf &bsdf) {
 }
 
 void read_principled(Properties &properties, Bsdf &bsdf) {
-    const auto share = [&](const char *name, double otherwise) {
-        return float(properties.number(name, otherwise, 0, 1));
+    const auto share = [&](const char *name, float otherwise) {
+        return properties.textured_number(name, otherwise, 0, 1, 0);
     };
     bsdf.reflectance = properties.color("base_color", {0.5f, 0.5f, 0.5f}, ColorUse::reflectance);
-    bsdf.roughness = share("roughness", 0.5);
+    bsdf.roughness = share("roughness", 0.5f);
     bsdf.anisotropic = share("anisotropic", 0);
     bsdf.spec_trans = share("spec_trans", 0);
     bsdf.spec_tint = share("spec_tint", 0);
