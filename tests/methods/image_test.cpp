@@ -69,7 +69,8 @@ INSTANTIATE_TEST_SUITE_P(Image, SharedReferenceTest,
                          ::testing::Values(SharedCase{{"cornell-box", "cornell-box/scene.xml", 256, 256, 30, 32768},
                                                       16},
                                            SharedCase{{"torus-soft", "torus/scene-soft.xml", 256, 192, 30, 32768}, 32},
-                                           SharedCase{{"veach-mis", "veach-mis/scene.xml", 320, 180, 3, 32768}, 64}),
+                                           SharedCase{{"veach-mis", "veach-mis/scene.xml", 320, 180, 3, 32768}, 64},
+                                           SharedCase{{"bathroom", "bathroom/scene-3.xml", 256, 256, 16, 10240}, 16}),
                          [](const auto &info) { return test_name(info.param.reference.name); });
 
 // Defects that the tests above must see at the same sample counts. Two that they do not see: paths of 11 edges instead
