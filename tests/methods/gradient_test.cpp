@@ -108,7 +108,7 @@ INSTANTIATE_TEST_SUITE_P(Image, GradientReference,
                                            ReferenceCase{"torus-rough-glass", 0.02}, ReferenceCase{"plates"},
                                            ReferenceCase{"holes-7"}, ReferenceCase{"holes-14"},
                                            ReferenceCase{"holes-28"}, ReferenceCase{"door-ajar"},
-                                           ReferenceCase{"materials"}),
+                                           ReferenceCase{"materials"}, ReferenceCase{"textures"}),
                          name_of_reference);
 
 /// The difference between two pixels that look alike is nothing, whatever the noise of the primal.

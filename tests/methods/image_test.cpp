@@ -24,7 +24,7 @@ INSTANTIATE_TEST_SUITE_P(Image, OwnReference,
                          ::testing::Values("cornell-box", "torus-rough-glass", "plates", "holes-7", "holes-14",
                                            "holes-28", "door-ajar", "materials", "cornell-box-glossy",
                                            "metal-ring-soft", "torus-smooth-glass-soft", "slab-and-ball-soft",
-                                           "lamp-in-egg-soft"),
+                                           "lamp-in-egg-soft", "textures"),
                          name_of_scene);
 
 struct SharedCase {
@@ -106,6 +106,19 @@ INSTANTIATE_TEST_SUITE_P(
                              }},
                       Defect{"caustic_3_percent_brighter", "slab-and-ball-soft",
                              [](Scene &scene) { scale_emitters(scene, Emitter::Kind::area, 1.03f); }},
+                      Defect{"texture_upside_down", "textures",
+                             [](Scene &scene) {
+                                 for (Texture &texture : scene.textures)
+                                     if (texture.bitmap && texture.is_nearest)
+                                         texture.to_uv[4] *= -1;
+                             }},
+                      Defect{"texture_not_decoded", "textures",
+                             [](Scene &scene) {
+                                 for (Texture &texture : scene.textures)
+                                     texture.is_srgb = false;
+                             }},
+                      Defect{"blend_turned_over", "textures",
+                             [](Scene &scene) { std::swap(scene.blends.at(0).first, scene.blends.at(0).second); }},
                       Defect{"egg_of_denser_glass", "lamp-in-egg-soft",
                              [](Scene &scene) { material_named(scene, "egg").front.ior.value *= 1.1f; }},
                       Defect{"sky_10_percent_darker", "plates",
