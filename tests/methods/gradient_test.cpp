@@ -112,7 +112,7 @@ INSTANTIATE_TEST_SUITE_P(Image, GradientReference,
                          ::testing::Values(ReferenceCase{"cornell-box"}, ReferenceCase{"torus-rough-glass", 0.02},
                                            ReferenceCase{"plates"}, ReferenceCase{"holes-14"},
                                            ReferenceCase{"materials"}, ReferenceCase{"sundial"},
-                                           ReferenceCase{"thin-lens"}),
+                                           ReferenceCase{"thin-lens"}, ReferenceCase{"textures"}),
                          name_of_reference);
 INSTANTIATE_TEST_SUITE_P(Full, GradientReference,
                          ::testing::Values(ReferenceCase{"torus-rough-glass"}, ReferenceCase{"holes-7"},

@@ -43,7 +43,7 @@ TEST_P(OwnReference, IsMet) { EXPECT_TRUE(renders_as_referenced(own_reference(Ge
 INSTANTIATE_TEST_SUITE_P(Image, OwnReference,
                          ::testing::Values("cornell-box", "torus-rough-glass", "plates", "holes-14", "materials",
                                            "plastics", "metal-ring-soft", "torus-smooth-glass-soft", "sundial",
-                                           "thin-lens", "orthographic", "clipped", "clipped-mitchell"),
+                                           "thin-lens", "orthographic", "clipped", "clipped-mitchell", "textures"),
                          name_of_scene);
 INSTANTIATE_TEST_SUITE_P(Full, OwnReference,
                          ::testing::Values("holes-7", "holes-28", "door-ajar", "cornell-box-glossy",
@@ -130,6 +130,19 @@ INSTANTIATE_TEST_SUITE_P(
                              }},
                       Defect{"caustic_3_percent_brighter", "slab-and-ball-soft",
                              [](Scene &scene) { scale_emitters(scene, Emitter::Kind::area, 1.03f); }},
+                      Defect{"texture_upside_down", "textures",
+                             [](Scene &scene) {
+                                 for (Texture &texture : scene.textures)
+                                     if (texture.bitmap && texture.is_nearest)
+                                         texture.to_uv[4] *= -1;
+                             }},
+                      Defect{"texture_not_decoded", "textures",
+                             [](Scene &scene) {
+                                 for (Texture &texture : scene.textures)
+                                     texture.is_srgb = false;
+                             }},
+                      Defect{"blend_turned_over", "textures",
+                             [](Scene &scene) { std::swap(scene.blends.at(0).first, scene.blends.at(0).second); }},
                       Defect{"egg_of_denser_glass", "lamp-in-egg-soft",
                              [](Scene &scene) { material_named(scene, "egg").front.ior *= 1.1f; }},
                       Defect{"map_turned_by_half_a_texel", "sundial",

@@ -36,6 +36,7 @@ REFERENCES = {
     "holes-28": ("holes.xml", 96, {"density": 28}, 16384),
     "door-ajar": ("door-ajar.xml", 96, {}, 24576),
     "materials": ("materials.xml", 96, {}, 32768),
+    "textures": ("textures.xml", 96, {}, 16384),
     "cornell-box-glossy": ("cornell-box-glossy.xml", 128, {}, 8192),
     # Light that path tracing finds by chance alone: with lamps of the same power, but larger.
     "metal-ring-soft": ("metal-ring.xml", 96, {"lamp": 0.24, "glow": 75}, 16384),
