@@ -53,5 +53,24 @@ TEST(MixedLobes, AreUnbiasedWhereTheyThrowACaustic) {
                     "the lobe is part of the path; where a way back is missing both fail; unbiased", 0.15});
 }
 
+// A floor of plastic mirrors a lamp, and a wall of rough metal mirrors the floor. Paths from the wall reconnect to the
+// floor and then take its mirror: from where the offset path comes that shows something else than the lamp. Strips of
+// smoother metal, where paths copy, so that some offset paths are connected there and some are not.
+TEST(MixedLobes, AreUnbiasedWhereMetalShowsWhatPlasticMirrors) {
+    SceneMaker scene = scene_for_bias(4);
+    const std::uint32_t black = scene.material(two_sided(diffuse(0)));
+    scene.floor(-2, 2, 2, scene.material(two_sided(plastic(0.1, 4))), -1);
+    const std::uint32_t metal[] = {scene.material(two_sided(rough_metal(0.06))),
+                                   scene.material(two_sided(rough_metal(0.009)))};
+    for (int i = 0; i < 16; ++i)
+        scene.parallelogram({-0.8f + 0.1f * float(i), -1, 1}, {0, 2, 0}, {0.1f, 0, 0}, metal[i % 2]);
+    scene.lamp({0, -0.4f, -1.1f}, 0.9f, 0.5f, 5, black);
+    scene.look({0, 1.5, -1.5}, {0, -0.2, 1}, 22);
+    expect_no_bias(gradient_bias(scene.scene, {8, 256, 512}),
+                   {"Half-vector copy", "a surface that mirrors and scatters: base and offset path take other lobes",
+                    "a lamp in plastic in rough metal",
+                    "the lobe is part of the path; where a way back is missing both fail; unbiased", 0.15});
+}
+
 } // namespace
 } // namespace gradus::testing
