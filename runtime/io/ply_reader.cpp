@@ -3,7 +3,11 @@
 #include "runtime/io/mesh_files.h"
 #include "runtime/io/text.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -95,6 +99,10 @@ double load_scalar(const char *at, Scalar type, bool swap) {
 }
 
 constexpr std::size_t most_elements = 1000; // kinds of them; files have two or three
+using Tasks = tbb::blocked_range<std::size_t>;
+constexpr std::size_t vertices_a_task = 1 << 14;
+
+bool is_index(const std::string &property) { return property == "vertex_indices" || property == "vertex_index"; }
 
 class PlyReader {
   public:
@@ -137,6 +145,7 @@ class PlyReader {
     void skip(const Property &property);
     void read_vertices(const ElementDeclaration &element);
     void read_faces(const ElementDeclaration &element);
+    bool read_triangles(const ElementDeclaration &element);
 
     const char *at_, *const end_;
     const std::string &file_name_;
@@ -272,6 +281,37 @@ void PlyReader::read_vertices(const ElementDeclaration &element) {
     if (!present[0] || !present[1] || !present[2])
         fail("the vertices have no x, y and z");
     const bool has_normals = present[3] && present[4] && present[5], has_texcoords = present[6] && present[7];
+    const bool is_fixed = !ascii_ && std::ranges::none_of(element.properties, [](const Property &property) {
+        return property.count_type.has_value();
+    });
+    if (is_fixed) {
+        std::size_t stride = 0;
+        for (const Property &property : element.properties)
+            stride += size_of(property.type);
+        if (element.count > std::uint64_t(end_ - at_) / stride)
+            fail("truncated: the file ends before its last element");
+        mesh_.positions.resize(element.count);
+        mesh_.normals.resize(has_normals ? element.count : 0);
+        mesh_.texcoords.resize(has_texcoords ? element.count : 0);
+        tbb::parallel_for(Tasks(0, element.count, vertices_a_task), [&](const Tasks &range) {
+            const char *from = at_ + range.begin() * stride;
+            for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                float values[nowhere + 1] = {};
+                for (std::size_t p = 0; p < targets.size(); ++p) {
+                    const Scalar type = element.properties[p].type;
+                    values[targets[p]] = float(load_scalar(from, type, swap_));
+                    from += size_of(type);
+                }
+                mesh_.positions[i] = {values[0], values[1], values[2]};
+                if (has_normals)
+                    mesh_.normals[i] = {values[3], values[4], values[5]};
+                if (has_texcoords)
+                    mesh_.texcoords[i] = {values[6], values[7]};
+            }
+        });
+        at_ += element.count * stride;
+        return;
+    }
     mesh_.positions.reserve(element.count);
     for (std::uint64_t i = 0; i < element.count; ++i) {
         float values[nowhere + 1] = {};
@@ -290,12 +330,43 @@ void PlyReader::read_vertices(const ElementDeclaration &element) {
     }
 }
 
+/// Faces as nearly all files have them: binary, nothing but indices of 32 bits, all of them triangles. False, with
+/// nothing read, for others, and for those with an index that is out of range.
+bool PlyReader::read_triangles(const ElementDeclaration &element) {
+    const Property &property = element.properties.front();
+    const bool is_plain = !ascii_ && !swap_ && element.properties.size() == 1 && property.count_type &&
+                          size_of(*property.count_type) == 1 && is_index(property.name) &&
+                          (property.type == Scalar::int32 || property.type == Scalar::uint32);
+    constexpr std::size_t stride = 1 + 3 * sizeof(std::uint32_t);
+    if (!is_plain || element.count > std::uint64_t(end_ - at_) / stride)
+        return false;
+    mesh_.triangles.resize(element.count);
+    std::atomic<bool> are_plain = true;
+    tbb::parallel_for(Tasks(0, element.count, vertices_a_task), [&](const Tasks &range) {
+        bool plain = true;
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+            const char *from = at_ + i * stride;
+            auto &triangle = mesh_.triangles[i];
+            std::memcpy(triangle.data(), from + 1, sizeof triangle);
+            plain = plain && *from == 3 && ((triangle[0] | triangle[1] | triangle[2]) >> 31) == 0;
+        }
+        if (!plain)
+            are_plain = false;
+    });
+    if (are_plain)
+        at_ += element.count * stride;
+    else
+        mesh_.triangles.clear();
+    return are_plain;
+}
+
 void PlyReader::read_faces(const ElementDeclaration &element) {
+    if (!element.properties.empty() && read_triangles(element))
+        return;
     std::vector<std::uint32_t> polygon;
     for (std::uint64_t i = 0; i < element.count; ++i)
         for (const Property &property : element.properties) {
-            const bool is_indices =
-                property.count_type && (property.name == "vertex_indices" || property.name == "vertex_index");
+            const bool is_indices = property.count_type && is_index(property.name);
             if (!is_indices) {
                 skip(property);
                 continue;

@@ -2,11 +2,24 @@
 
 #include "runtime/scene/transform.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 
 namespace gradus {
 namespace {
+
+/// Runs `work(i)` for each of [0, count), on all cores where that is many.
+template <class Work>
+void for_each_in_parallel(std::size_t count, const Work &work) {
+    constexpr std::size_t grain = 1 << 14;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const auto &range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i)
+            work(i);
+    });
+}
 
 bool is_finite(const Vector3 &v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -18,18 +31,19 @@ Double3 area_vector(const Mesh &mesh, const std::array<std::uint32_t, 3> &triang
 }
 
 void transform_positions(Mesh &mesh, const Matrix4 &to_world) {
-    for (Vector3 &p : mesh.positions)
-        p = to_float(transform_point(to_world, to_double(p)));
+    for_each_in_parallel(mesh.positions.size(), [&](std::size_t i) {
+        mesh.positions[i] = to_float(transform_point(to_world, to_double(mesh.positions[i])));
+    });
 }
 
 /// Normals that are zero or not finite become (0, 0, 0), which settle_normals() replaces.
 void transform_normals(Mesh &mesh, const Matrix4 &to_world) {
     const NormalMap map(to_world);
-    for (Vector3 &n : mesh.normals) {
-        const Double3 mapped = map(to_double(n));
+    for_each_in_parallel(mesh.normals.size(), [&](std::size_t i) {
+        const Double3 mapped = map(to_double(mesh.normals[i]));
         const double size = length(mapped);
-        n = std::isfinite(size) && size > 0 ? to_float(scale(mapped, 1 / size)) : Vector3{};
-    }
+        mesh.normals[i] = std::isfinite(size) && size > 0 ? to_float(scale(mapped, 1 / size)) : Vector3{};
+    });
 }
 
 /// Drops triangles that have no area in single precision, where they are intersected. The threshold is relative to
@@ -48,10 +62,16 @@ std::size_t drop_degenerate(Mesh &mesh) {
         const double twice_area = length(area_vector(mesh, t));
         return !(twice_area > 1e-10 * longest * longest) || !std::isnormal(float(twice_area));
     };
-    const auto end = std::remove_if(mesh.triangles.begin(), mesh.triangles.end(), is_degenerate);
-    const std::size_t dropped = std::size_t(mesh.triangles.end() - end);
-    mesh.triangles.erase(end, mesh.triangles.end());
-    return dropped;
+    std::vector<char> drops(mesh.triangles.size());
+    for_each_in_parallel(drops.size(), [&](std::size_t i) { drops[i] = is_degenerate(mesh.triangles[i]); });
+    std::size_t kept = 0;
+    if (std::find(drops.begin(), drops.end(), 1) == drops.end())
+        return 0;
+    for (std::size_t i = 0; i < drops.size(); ++i)
+        if (!drops[i])
+            mesh.triangles[kept++] = mesh.triangles[i];
+    mesh.triangles.resize(kept);
+    return drops.size() - kept;
 }
 
 /// What no triangle uses goes to where one is: bounds that someone takes over all positions are of what can be hit.
@@ -68,12 +88,13 @@ void hide_unused(Mesh &mesh) {
 
 /// The file's normals tell the front: a triangle that is wound against the sum of its three is turned round.
 void wind_along_normals(Mesh &mesh) {
-    for (auto &t : mesh.triangles) {
+    for_each_in_parallel(mesh.triangles.size(), [&](std::size_t i) {
+        auto &t = mesh.triangles[i];
         const Double3 sum =
             add(add(to_double(mesh.normals[t[0]]), to_double(mesh.normals[t[1]])), to_double(mesh.normals[t[2]]));
         if (dot(area_vector(mesh, t), sum) < 0)
             std::swap(t[1], t[2]);
-    }
+    });
 }
 
 /// Replaces missing normals (0, 0, 0) by computed ones.
@@ -96,24 +117,35 @@ void reverse_winding(Mesh &mesh) {
 
 std::vector<Vector3> smooth_vertex_normals(const Mesh &mesh) {
     std::vector<Double3> sums(mesh.positions.size(), Double3{0, 0, 0});
-    for (const auto &t : mesh.triangles) {
-        const Double3 area = area_vector(mesh, t);
-        const double size = length(area);
-        if (!(size > 0))
-            continue;
-        const Double3 normal = scale(area, 1 / size);
-        for (int i = 0; i < 3; ++i) {
-            const Double3 corner = to_double(mesh.positions[t[i]]);
-            const Double3 a = subtract(to_double(mesh.positions[t[(i + 1) % 3]]), corner);
-            const Double3 b = subtract(to_double(mesh.positions[t[(i + 2) % 3]]), corner);
-            const double angle = std::atan2(length(cross(a, b)), dot(a, b));
-            sums[t[i]] = add(sums[t[i]], scale(normal, angle));
-        }
+    // What triangles add on all cores, a block at a time, and the sums in their order, so that they are always the
+    // same.
+    constexpr std::size_t block = 1 << 18;
+    std::vector<std::array<Double3, 3>> parts(std::min(block, mesh.triangles.size()));
+    for (std::size_t begin = 0; begin < mesh.triangles.size(); begin += block) {
+        const std::size_t count = std::min(block, mesh.triangles.size() - begin);
+        for_each_in_parallel(count, [&](std::size_t number) {
+            const auto &t = mesh.triangles[begin + number];
+            const Double3 area = area_vector(mesh, t);
+            const double size = length(area);
+            for (int i = 0; i < 3; ++i) {
+                const Double3 corner = to_double(mesh.positions[t[i]]);
+                const Double3 a = subtract(to_double(mesh.positions[t[(i + 1) % 3]]), corner);
+                const Double3 b = subtract(to_double(mesh.positions[t[(i + 2) % 3]]), corner);
+                const double angle = std::atan2(length(cross(a, b)), dot(a, b));
+                parts[number][i] = size > 0 ? scale(scale(area, 1 / size), angle) : Double3{0, 0, 0};
+            }
+        });
+        for (std::size_t number = 0; number < count; ++number)
+            for (int i = 0; i < 3; ++i) {
+                Double3 &sum = sums[mesh.triangles[begin + number][i]];
+                sum = add(sum, parts[number][i]);
+            }
     }
     std::vector<Vector3> normals(sums.size(), Vector3{0, 0, 1});
-    for (std::size_t i = 0; i < sums.size(); ++i)
+    for_each_in_parallel(sums.size(), [&](std::size_t i) {
         if (const double size = length(sums[i]); size > 1e-12)
             normals[i] = to_float(scale(sums[i], 1 / size));
+    });
     return normals;
 }
 

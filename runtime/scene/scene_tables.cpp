@@ -111,23 +111,38 @@ struct LightBuilder {
     }
 };
 
-/// The bin of a side of a surface.
-std::uint32_t bin_of(const Bsdf &bsdf, std::uint32_t light, const SceneTables &tables) {
+/// The bin of a side of a surface that does not emit; that of one that does follows.
+std::uint32_t bin_of(const Bsdf &bsdf, const SceneTables &tables) {
     const auto kind = std::find(tables.kinds.begin(), tables.kinds.end(), bsdf_kind_name(bsdf));
-    return static_cast<std::uint32_t>(1 + 2 * (kind - tables.kinds.begin()) + (light == no_light ? 0 : 1));
+    return static_cast<std::uint32_t>(1 + 2 * (kind - tables.kinds.begin()));
 }
 
-void add_primitive(const Scene &scene, const Shape &shape, std::uint32_t light, SceneTables &tables) {
-    const Material &material = scene.materials[shape.material];
+/// What all primitives of a shape share.
+struct SurfaceOfShape {
+    std::uint32_t material, bin, back_bin;
+
+    SurfaceOfShape(const Scene &scene, const Shape &shape, const SceneTables &tables) {
+        const Material &of_shape = scene.materials[shape.material];
+        material = shape.material | (of_shape.two_sided ? material_two_sided : 0);
+        bin = bin_of(of_shape.front, tables);
+        back_bin = bin_of(of_shape.two_sided ? of_shape.back : of_shape.front, tables);
+    }
+};
+
+void add_primitive(const SurfaceOfShape &surface, std::uint32_t light, SceneTables &tables) {
+    const std::uint32_t emits = light == no_light ? 0 : 1;
     tables.primitive_light.push_back(light);
-    tables.primitive_material.push_back(shape.material | (material.two_sided ? material_two_sided : 0));
-    tables.primitive_bin.push_back(bin_of(material.front, light, tables));
-    tables.primitive_back_bin.push_back(bin_of(material.two_sided ? material.back : material.front, light, tables));
+    tables.primitive_material.push_back(surface.material);
+    tables.primitive_bin.push_back(surface.bin + emits);
+    tables.primitive_back_bin.push_back(surface.back_bin + emits);
 }
 
 void add_mesh(const Scene &scene, const Shape &shape, const TraitMap &traits, SceneTables &tables,
               LightBuilder &lights) {
     const Mesh &mesh = scene.meshes[shape.geometry];
+    const SurfaceOfShape surface(scene, shape, tables);
+    const bool has_normals = traits.at("TRAIT_SHADING_NORMALS"), has_tangents = traits.at("TRAIT_ANISOTROPIC"),
+               has_material_stage = traits.at("TRAIT_MATERIAL");
     for (const auto &t : mesh.triangles) {
         const Vector3 p0 = mesh.positions[t[0]];
         const Vector3 e1 = mesh.positions[t[1]] - p0, e2 = mesh.positions[t[2]] - p0;
@@ -142,16 +157,16 @@ void add_mesh(const Scene &scene, const Shape &shape, const TraitMap &traits, Sc
         put(record, triangle_e2_x, e2);
         record[triangle_offset] = offset;
 
-        if (traits.at("TRAIT_SHADING_NORMALS")) {
+        if (has_normals) {
             const Vector3 flat = static_cast<float>(1 / (2 * area)) * area_normal;
             for (int corner = 0; corner < 3; ++corner) {
                 const Vector3 n = mesh.normals.empty() ? flat : mesh.normals[t[corner]];
                 tables.triangle_normals.insert(tables.triangle_normals.end(), {n.x, n.y, n.z});
             }
         }
-        if (traits.at("TRAIT_MATERIAL"))
+        if (has_material_stage)
             add_triangle_texcoords(mesh, t, tables);
-        if (traits.at("TRAIT_ANISOTROPIC")) {
+        if (has_tangents) {
             Vector3 along{};
             if (!mesh.texcoords.empty()) {
                 const auto &a = mesh.texcoords[t[0]], &b = mesh.texcoords[t[1]], &c = mesh.texcoords[t[2]];
@@ -178,7 +193,7 @@ void add_mesh(const Scene &scene, const Shape &shape, const TraitMap &traits, Sc
                 light_record[light_offset] = offset;
             }
         }
-        add_primitive(scene, shape, light, tables);
+        add_primitive(surface, light, tables);
     }
 }
 
@@ -208,7 +223,7 @@ void add_sphere(const Scene &scene, const Shape &shape, SceneTables &tables, Lig
             light_record[light_offset] = offset;
         }
     }
-    add_primitive(scene, shape, light, tables);
+    add_primitive(SurfaceOfShape(scene, shape, tables), light, tables);
 }
 
 /// Lights without a surface. Those at infinity count with what crosses a disk as wide as the scene.
@@ -281,6 +296,22 @@ void add_material_record(const Bsdf &bsdf, SceneTables &tables) {
     tables.material_back.push_back(static_cast<std::uint32_t>(tables.material_back.size()));
 }
 
+/// Room for all that primitives have: tables that grow are copied again and again, and take twice their size.
+void reserve_tables(const Scene &scene, const TraitMap &traits, SceneTables &tables) {
+    std::size_t triangles = 0;
+    for (const Shape &shape : scene.shapes)
+        if (shape.kind == Shape::Kind::mesh)
+            triangles += scene.meshes[shape.geometry].triangles.size();
+    tables.triangles.reserve(triangles * triangle_stride);
+    if (traits.at("TRAIT_SHADING_NORMALS"))
+        tables.triangle_normals.reserve(triangles * normals_stride);
+    if (traits.at("TRAIT_ANISOTROPIC"))
+        tables.triangle_tangents.reserve(triangles * triangle_tangent_stride);
+    for (std::vector<std::uint32_t> *column :
+         {&tables.primitive_light, &tables.primitive_material, &tables.primitive_bin, &tables.primitive_back_bin})
+        column->reserve(triangles + scene.spheres.size());
+}
+
 bool has_own_back(const Material &material) { return material.two_sided && !(material.back == material.front); }
 
 void add_materials(const Scene &scene, SceneTables &tables) {
@@ -307,6 +338,7 @@ std::vector<Bsdf> material_records(const Scene &scene) {
 
 SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits) {
     SceneTables tables;
+    reserve_tables(scene, traits, tables);
     tables.kinds = bsdf_kinds(scene);
     LightBuilder lights{tables, {}, {}, false};
     for (const Shape &shape : scene.shapes)
