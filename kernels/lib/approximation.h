@@ -89,23 +89,6 @@ GRADUS_FN real approx_log_absolute(real x) {
 }
 #endif
 
-/* The arc cosine of x in [0, 1]. Absolute error at most 2e-7. */
-GRADUS_FN real approx_acos_unit(real x) {
-#ifdef GRADUS_DOUBLE
-    return GRADUS_ACCURATE(acos)(r_min(x, R(1)));
-#else
-    real p = R(-0.001237004853);
-    p = p * x + R(0.006580885238);
-    p = p * x + R(-0.01696547196);
-    p = p * x + R(0.03080825341);
-    p = p * x + R(-0.05014502502);
-    p = p * x + R(0.0889740993);
-    p = p * x + R(-0.2145984942);
-    p = p * x + R(1.570796302);
-    return r_sqrt(r_max(R(1) - x, R(0))) * p;
-#endif
-}
-
 /* sin(2 pi u) and cos(2 pi u), u in [0, 1]. Absolute error at most 1e-7; exact at multiples of 1/4. */
 GRADUS_FN sine_cosine approx_sine_cosine_2pi(real u) {
     sine_cosine result;
@@ -168,6 +151,26 @@ GRADUS_FN real approx_turn(real y, real x) {
     const real quarter = height > width ? R(0.25) - eighth : eighth;
     const real half_turn = x < R(0) ? R(0.5) - quarter : quarter;
     return y < R(0) ? R(1) - half_turn : half_turn;
+}
+
+/* The arc cosine of x in [0, 1]. Absolute error at most 2e-7 in float. */
+GRADUS_FN real approx_acos_unit(real x) {
+    real p = R(-0.001237004853);
+    p = p * x + R(0.006580885238);
+    p = p * x + R(-0.01696547196);
+    p = p * x + R(0.03080825341);
+    p = p * x + R(-0.05014502502);
+    p = p * x + R(0.0889740993);
+    p = p * x + R(-0.2145984942);
+    p = p * x + R(1.570796302);
+    const real angle = r_sqrt(r_max(R(1) - x, R(0))) * p;
+#ifdef GRADUS_DOUBLE
+    /* One step of Newton's brings the float fit to double accuracy. */
+    const sine_cosine at = approx_sine_cosine_2pi(angle * (R(0.5) * GRADUS_INV_PI));
+    return angle + (at.cosine - x) / r_max(at.sine, R(1e-30));
+#else
+    return angle;
+#endif
 }
 
 /* exp(x^2) erfc(x) for x in [0, 4.1], the value at 4.1 beyond. Relative error at most 4 ULP. Float build only:

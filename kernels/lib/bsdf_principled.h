@@ -101,7 +101,8 @@ GRADUS_FN bsdf_terms principled_terms(material m, vec3 wi, vec3 wo, int mode, in
     const rgb outside = rgb_add(rgb_add(rgb_gray(plain), rgb_scale(metal, m.metallic)),
                                 rgb_scale(tinted, (R(1) - m.metallic) * m.spec_tint));
     const rgb mirrored = rgb_select(is_front, outside, rgb_gray(through * fresnel.reflectance));
-    const rgb root = rgb3(r_sqrt(base.r), r_sqrt(base.g), r_sqrt(base.b));
+    const real root_r = r_sqrt(base.r), root_g = r_sqrt(r_after(base.g, root_r));
+    const rgb root = rgb3(root_r, root_g, r_sqrt(r_after(base.b, root_g)));
     const real scale = mode == transport_radiance ? R(1) / (eta * eta) : R(1);
     const rgb refracted = rgb_scale(root, transmitted * scale);
     const rgb of_facets = rgb_scale(rgb_select(is_reflected, mirrored, refracted), masked);
@@ -112,7 +113,8 @@ GRADUS_FN bsdf_terms principled_terms(material m, vec3 wi, vec3 wo, int mode, in
     const real coat_density = principled_coat_density(coat_alpha * coat_alpha, sine_squared) * GRADUS_INV_PI;
     const int is_coat = is_front & is_reflected & is_sided;
     const real coat_pdf = is_coat ? R(0.25) * coat_density * h.z * inverse_length / r_max(middle, R(1e-12)) : R(0);
-    const real coat_visible = principled_coat_visible(r_after(from.z, coat_pdf)) * principled_coat_visible(to_z);
+    const real coat_from = principled_coat_visible(r_after(from.z, coat_pdf));
+    const real coat_visible = coat_from * principled_coat_visible(r_after(to_z, coat_from));
     const real coat_curve = principled_mix(R(0.04), R(1), curve);
     const real of_coat = is_coat ? R(0.25) * m.clearcoat * coat_curve * coat_density * coat_visible * to_z : R(0);
     const real above_both = (is_front & is_reflected) ? R(1) : R(0);

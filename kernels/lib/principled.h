@@ -5,6 +5,7 @@
 #include "kernels/lib/bsdf_sample.h"
 #include "kernels/lib/fresnel.h"
 #include "kernels/lib/microfacet.h"
+#include "kernels/lib/ordered.h"
 #include "kernels/lib/warp.h"
 
 GRADUS_LIB_BEGIN
@@ -48,7 +49,7 @@ GRADUS_FN principled_alpha principled_alpha_of(real roughness, real anisotropic)
 /* The diffuse lobe's f |cos to| for the base colour 1, with retroreflection, or as if light were scattered below the
  * surface, by `flatness`. `middle`: the cosine between half vector and either direction. */
 GRADUS_FN real principled_diffuse(material m, real from, real to, real middle) {
-    const real weight_from = schlick_weight(from), weight_to = schlick_weight(to);
+    const real weight_from = schlick_weight(from), weight_to = schlick_weight(r_after(to, weight_from));
     const real plain = (R(1) - R(0.5) * weight_from) * (R(1) - R(0.5) * weight_to);
     const real back = R(2) * m.roughness * middle * middle;
     const real retro = back * (weight_to + weight_from + weight_to * weight_from * (back - R(1)));
