@@ -43,7 +43,7 @@ std::string code_of(const std::string &text) {
 
 std::set<std::string> traits_used_in(const std::string &text) {
     static const std::regex name(
-        R"(\b(TRAIT_\w+|STRATEGY|SAMPLES_LIGHTS|FEW_LIGHTS|SOLVER_(?:CHANNELS|WEIGHTED|JOINT))\b)");
+        R"(\b(TRAIT_\w+|STRATEGY|SAMPLES_LIGHTS|FEW_LIGHTS|MANY_LIGHTS|SOLVER_(?:CHANNELS|WEIGHTED|JOINT))\b)");
     const std::string code = code_of(text);
     std::set<std::string> names;
     for (std::sregex_iterator i(code.begin(), code.end(), name), end; i != end; ++i)
@@ -90,8 +90,8 @@ TEST(KernelTraits, AreThoseThatAMethodKnows) {
     std::set<std::string> known = {
         "TRAIT_AOV",         "TRAIT_SHARED_JITTER",  "TRAIT_APART",        "TRAIT_SHIFT_DISTANCE",
         "TRAIT_GRADIENT",    "TRAIT_LIGHT_VERTICES", "TRAIT_LIGHT_STARTS", "TRAIT_STRATIFIED",
-        "TRAIT_ONLY_CHAINS", "SAMPLES_LIGHTS",       "FEW_LIGHTS",         "STRATEGY",
-        "SOLVER_CHANNELS",   "SOLVER_WEIGHTED",      "SOLVER_JOINT"};
+        "TRAIT_ONLY_CHAINS", "SAMPLES_LIGHTS",       "FEW_LIGHTS",         "MANY_LIGHTS",
+        "STRATEGY",          "SOLVER_CHANNELS",      "SOLVER_WEIGHTED",    "SOLVER_JOINT"};
     for (const auto &[name, value] : scene_traits(Scene{}))
         known.insert(name);
     std::set<std::string> declared;

@@ -164,6 +164,10 @@ TEST_F(Oclgrind, AnisotropicRoughness) { render("plates.xml", {"--size", "8x8"})
 
 TEST_F(Oclgrind, OneMaterialOneLight) { render("cornell-box.xml", {"--size", "8x8", "-D", "rfilter=gaussian"}); }
 
+TEST_F(Oclgrind, AnEnvironmentMapAndASpot) {
+    render("sundial.xml", {"--method", "gpt", "--norm", "L2", "--size", "6x5"});
+}
+
 TEST_F(Oclgrind, ABatchThatIsNoWholeSampleOfTheImage) {
     render("torus-rough-glass.xml", {"--size", "12x9", "--batch-size", "64"});
 }
