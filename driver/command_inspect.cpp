@@ -31,6 +31,31 @@ std::string gathering_text(const GatheringSurfaces &surfaces, double roughness) 
                        counts(surfaces.gathered), counts(surfaces.passed), roughness);
 }
 
+std::string camera_text(const Camera &camera) {
+    std::string text = name_of(camera.kind);
+    if (camera.kind != Camera::Kind::orthographic)
+        text += fmt::format(", {:.6g} degrees along {}", camera.fov, name_of(camera.fov_axis));
+    if (camera.kind == Camera::Kind::thin_lens)
+        text += fmt::format(", aperture radius {:.6g}, focus at {:.6g}", camera.aperture_radius, camera.focus_distance);
+    if (camera.principal_x != 0 || camera.principal_y != 0)
+        text += fmt::format(", principal point off by ({:.6g}, {:.6g})", camera.principal_x, camera.principal_y);
+    return text;
+}
+
+nlohmann::json camera_json(const Camera &camera) {
+    nlohmann::json json{{"kind", name_of(camera.kind)}};
+    if (camera.kind != Camera::Kind::orthographic) {
+        json["fov"] = camera.fov;
+        json["fov_axis"] = name_of(camera.fov_axis);
+        json["principal_point_offset"] = {camera.principal_x, camera.principal_y};
+    }
+    if (camera.kind == Camera::Kind::thin_lens) {
+        json["aperture_radius"] = camera.aperture_radius;
+        json["focus_distance"] = camera.focus_distance;
+    }
+    return json;
+}
+
 std::string summary_text(const Scene &scene, const SceneSummary &summary, const Traits &traits, double roughness) {
     std::string text;
     const FilmSettings &film = scene.film;
@@ -39,13 +64,14 @@ std::string summary_text(const Scene &scene, const SceneSummary &summary, const 
     text += fmt::format("scene       {}\n", scene.path);
     text += fmt::format("shapes      {} meshes, {} spheres; {} triangles, {} vertices\n", summary.meshes,
                         summary.spheres, summary.triangles, summary.vertices);
+    if (scene.instances > 0)
+        text += fmt::format("instances   {}, whose copies the shapes hold\n", scene.instances);
     text += fmt::format("bounds      ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n", low[0], low[1], low[2],
                         high[0], high[1], high[2]);
     text += fmt::format("materials   {}\n", counts(summary.materials));
     text += gathering_text(gathering_surfaces(scene, roughness), roughness);
     text += fmt::format("emitters    {}\n", counts(summary.emitters));
-    text += fmt::format("camera      perspective, {:.6g} degrees along {}\n", scene.camera.fov,
-                        name_of(scene.camera.fov_axis));
+    text += fmt::format("camera      {}\n", camera_text(scene.camera));
     text += fmt::format("film        {}x{}, {} filter", film.width, film.height, name_of(film.filter));
     if (film.crop_width > 0)
         text += fmt::format(", crop {}x{} at {},{}", width, height, film.crop_x, film.crop_y);
@@ -75,13 +101,14 @@ std::string summary_json(const Scene &scene, const SceneSummary &summary, const 
         {"scene", scene.path},
         {"meshes", summary.meshes},
         {"spheres", summary.spheres},
+        {"instances", scene.instances},
         {"triangles", summary.triangles},
         {"vertices", summary.vertices},
         {"bounds", {{"lower", summary.lower}, {"upper", summary.upper}}},
         {"materials", summary.materials},
         {"gathering", {{"roughness", roughness}, {"gathered_at", surfaces.gathered}, {"passed_at", surfaces.passed}}},
         {"emitters", summary.emitters},
-        {"camera", {{"kind", "perspective"}, {"fov", scene.camera.fov}, {"fov_axis", name_of(scene.camera.fov_axis)}}},
+        {"camera", camera_json(scene.camera)},
         {"film",
          {{"width", film.width},
           {"height", film.height},

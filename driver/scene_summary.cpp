@@ -60,6 +60,18 @@ const char *name_of(FilmSettings::Filter filter) {
     return "unknown";
 }
 
+const char *name_of(Camera::Kind kind) {
+    switch (kind) {
+    case Camera::Kind::perspective:
+        return "perspective";
+    case Camera::Kind::thin_lens:
+        return "thinlens";
+    case Camera::Kind::orthographic:
+        return "orthographic";
+    }
+    return "unknown";
+}
+
 const char *name_of(Camera::FovAxis axis) {
     switch (axis) {
     case Camera::FovAxis::x:
