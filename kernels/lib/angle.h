@@ -1,7 +1,7 @@
 /* Angles of directions. */
 #ifndef GRADUS_LIB_ANGLE_H
 #define GRADUS_LIB_ANGLE_H
-#include "kernels/shared/compat.h"
+#include "kernels/lib/ordered.h"
 
 GRADUS_LIB_BEGIN
 
@@ -9,10 +9,11 @@ GRADUS_LIB_BEGIN
  * origin. Within an eighth of a turn of the diagonal the arc is that of (t - 1) / (t + 1) less an eighth, so that the
  * polynomial (fitted, least largest error) covers |t| <= tan(pi / 8). */
 GRADUS_FN real angle_in_turns(real x, real y) {
-    const real wide = r_abs(x), high = r_abs(y);
-    const real most = r_max(wide, high), least = r_min(wide, high);
-    const int is_diagonal = least > R(0.41421356237309503) * most;
-    const real above = is_diagonal ? least - most : least, below = is_diagonal ? least + most : most;
+    /* No two expressions alike: kernels/lib/ordered.h. */
+    const real wide = r_abs(x), high = r_sqrt(y * y);
+    const real most = r_max(wide, high), least = (wide + high) - most;
+    const real is_diagonal = least > R(0.41421356237309503) * most ? R(1) : R(0);
+    const real above = least - is_diagonal * most, below = most + r_after(is_diagonal, above) * least;
     const real t = above / (below > R(0) ? below : R(1));
     const real z = t * t;
     real p = R(0.0123099361487);
@@ -20,7 +21,7 @@ GRADUS_FN real angle_in_turns(real x, real y) {
     p = p * z + R(0.0317704557358);
     p = p * z - R(0.0530498504986);
     p = p * z + R(0.159154928066);
-    const real eighth = (is_diagonal ? R(0.125) : R(0)) + p * t;
+    const real eighth = R(0.125) * is_diagonal + p * t;
     const real quarter = high > wide ? R(0.25) - eighth : eighth;
     const real half_turn = x < R(0) ? R(0.5) - quarter : quarter;
     const real turn = y < R(0) ? R(1) - half_turn : half_turn;

@@ -130,7 +130,7 @@ GRADUS_FN rgb texture_lookup(GRADUS_GLOBAL const uint *textures, GRADUS_GLOBAL c
         FIELD_OF(texture_real, texture_reals, texture, u_of_1);
     t = FIELD_OF(texture_real, texture_reals, texture, v_of_u) * u +
         FIELD_OF(texture_real, texture_reals, texture, v_of_v) * v +
-        FIELD_OF(texture_real, texture_reals, texture, v_of_1);
+        r_after(FIELD_OF(texture_real, texture_reals, texture, v_of_1), s);
 #endif
     rgb value = rgb_gray(R(0));
 #if TRAIT_TEXTURES & (textures_bilinear | textures_nearest)
@@ -149,15 +149,16 @@ GRADUS_FN rgb texture_lookup(GRADUS_GLOBAL const uint *textures, GRADUS_GLOBAL c
     const uint y_1 = is_nearest ? y_0 : texture_next_texel((int)top, y_0, height, place.flags);
     const rgb right = texture_fetch(texels, texture_decode, place, texture_after(y_0 * width + x_1, value.b));
     const rgb below = texture_fetch(texels, texture_decode, place, texture_after(y_1 * width + x_0, right.b));
-    const rgb across = texture_fetch(texels, texture_decode, place, texture_after(y_1 * width + x_1, below.b));
+    const rgb opposite = texture_fetch(texels, texture_decode, place, texture_after(y_1 * width + x_1, below.b));
     const real x_share = is_nearest ? R(0) : to_left - left, y_share = is_nearest ? R(0) : to_top - top;
     const rgb upper = texture_between(value, right, x_share);
-    const rgb lower = texture_between(below, across, r_after(x_share, upper.b));
+    const rgb lower = texture_between(below, opposite, r_after(x_share, upper.b));
     value = texture_between(upper, lower, r_after(y_share, lower.b));
 #endif
 #endif
 #if TRAIT_TEXTURES & textures_checkerboards
-    const int is_across = s - r_floor(s) > R(0.5), is_down = t - r_floor(t) > R(0.5);
+    const real across = r_clamp(s - r_floor(s), R(0), R(1)), down = r_after(t, across);
+    const int is_across = across > R(0.5), is_down = down - r_floor(down) > R(0.5);
     const rgb field = rgb_select(is_across == is_down, FIELD_RGB(texture_real, texture_reals, texture, color_0),
                                  FIELD_RGB(texture_real, texture_reals, texture, color_1));
     value = rgb_select((place.flags & texture_flag_checkerboard) != 0u, field, value);

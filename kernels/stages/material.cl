@@ -98,10 +98,12 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
 #endif
 #if TRAIT_SPHERES
     const uint sphere = SPHERE_OF(primitive);
-    const vec3 outwards = v3_scale(hit.normal, FIELD_OF(sphere, spheres, sphere, facing));
-    const real x = v3_dot(outwards, FIELD_V3(sphere_axes, sphere_axes, sphere, first));
-    const real y = v3_dot(outwards, FIELD_V3(sphere_axes, sphere_axes, sphere, second));
-    const real z = v3_dot(outwards, FIELD_V3(sphere_axes, sphere_axes, sphere, third));
+    /* Component after component, axis after axis (kernels/lib/ordered.h). */
+    const vec3 normal = v3_ordered(hit.normal);
+    const real facing = FIELD_OF(sphere, spheres, sphere, facing);
+    const real x = facing * v3_dot(normal, FIELD_V3(sphere_axes, sphere_axes, sphere, first));
+    const real y = facing * v3_dot(v3_after(normal, x), FIELD_V3(sphere_axes, sphere_axes, sphere, second));
+    const real z = facing * v3_dot(v3_after(normal, y), FIELD_V3(sphere_axes, sphere_axes, sphere, third));
     const real around = angle_in_turns(x, y);
     const real down = R(2) * angle_in_turns(r_after(z, around), r_sqrt(x * x + y * y));
     const int is_sphere = !TRAIT_TRIANGLES || primitive >= triangle_count;

@@ -105,9 +105,10 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
 #if TRAIT_TWO_FACED
     is_behind = is_met_from_behind(triangle_normals, unit, triangle_count, present, hit, base_direction);
 #endif
-    uint next_kind = kind_of_primitive(primitive_material, material_back, material_kind, present, is_behind);
 #if TRAIT_BLENDS
-    next_kind = material_kind[is_hit ? surface_record_at(surface, capacity, row) : 0u];
+    const uint next_kind = material_kind[is_hit ? surface_record_at(surface, capacity, row) : 0u];
+#else
+    const uint next_kind = kind_of_primitive(primitive_material, material_back, material_kind, present, is_behind);
 #endif
     const int reconnectable = is_escaped | is_reconnectable(next_kind, next_light);
 #endif

@@ -87,10 +87,11 @@ STAGE weigh(uint count, uint unit, uint first, uint stride, uint capacity, uint 
     base_is_behind = primitive_is_behind(triangles, triangle_normals, spheres, unit, triangle_count,
                                          is_hit ? primitive : 0u, AT_V3(ray, origin, row), AT_V3(ray, direction, row));
 #endif
-    uint next_kind =
-        kind_of_primitive(primitive_material, material_back, material_kind, is_hit ? primitive : 0u, base_is_behind);
 #if TRAIT_BLENDS
-    next_kind = material_kind[is_hit ? surface_record_at(surface, capacity, row) : 0u];
+    const uint next_kind = material_kind[is_hit ? surface_record_at(surface, capacity, row) : 0u];
+#else
+    const uint next_kind =
+        kind_of_primitive(primitive_material, material_back, material_kind, is_hit ? primitive : 0u, base_is_behind);
 #endif
     int any_apart = 0, all_alike = 1, meets_light = 0;
     int base_is_dirac =
@@ -162,9 +163,11 @@ STAGE weigh(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         is_behind = primitive_is_behind(triangles, triangle_normals, spheres, unit, triangle_count, met,
                                         AT_V3(offset_ray, origin, sent), AT_V3(offset_ray, direction, sent));
 #endif
-        uint met_kind = kind_of_primitive(primitive_material, material_back, material_kind, met, is_behind);
 #if TRAIT_BLENDS
-        met_kind = material_kind[meets ? surface_record_at(offset_surface, 4u * (size_t)capacity, sent) : 0u];
+        const uint met_kind =
+            material_kind[meets ? surface_record_at(offset_surface, 4u * (size_t)capacity, sent) : 0u];
+#else
+        const uint met_kind = kind_of_primitive(primitive_material, material_back, material_kind, met, is_behind);
 #endif
         int would_reconnect = is_reconnectable(met_kind, primitive_light[met]);
 #if TRAIT_SHIFT_DISTANCE

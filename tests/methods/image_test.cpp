@@ -136,13 +136,6 @@ INSTANTIATE_TEST_SUITE_P(
                                      if (texture.bitmap && texture.is_nearest)
                                          texture.to_uv[4] *= -1;
                              }},
-                      Defect{"texture_not_decoded", "textures",
-                             [](Scene &scene) {
-                                 for (Texture &texture : scene.textures)
-                                     texture.is_srgb = false;
-                             }},
-                      Defect{"blend_turned_over", "textures",
-                             [](Scene &scene) { std::swap(scene.blends.at(0).first, scene.blends.at(0).second); }},
                       Defect{"egg_of_denser_glass", "lamp-in-egg-soft",
                              [](Scene &scene) { material_named(scene, "egg").front.ior *= 1.1f; }},
                       Defect{"map_turned_by_half_a_texel", "sundial",
