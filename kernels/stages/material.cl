@@ -8,7 +8,7 @@
  * those of the neighbours, all pixels of a sample share it (TRAIT_SHARED_JITTER). Plane j has the rays of offset path
  * j, plane_rows rows further on each. OF_LIGHT_PATHS: rays of light paths. */
 //! traits: TRAIT_TEXTURED TRAIT_TWO_FACED TRAIT_SPHERES TRAIT_TRIANGLES TRAIT_BLENDS TRAIT_SHARED_JITTER
-#include "kernels/lib/angle.h"
+#include "kernels/lib/approximation.h"
 #include "kernels/lib/division.h"
 #include "kernels/lib/random.h"
 #include "kernels/lib/surface_side.h"
@@ -104,8 +104,8 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
     const real x = facing * v3_dot(normal, FIELD_V3(sphere_axes, sphere_axes, sphere, first));
     const real y = facing * v3_dot(v3_after(normal, x), FIELD_V3(sphere_axes, sphere_axes, sphere, second));
     const real z = facing * v3_dot(v3_after(normal, y), FIELD_V3(sphere_axes, sphere_axes, sphere, third));
-    const real around = angle_in_turns(x, y);
-    const real down = R(2) * angle_in_turns(r_after(z, around), r_sqrt(x * x + y * y));
+    const real around = approx_turn(y, x);
+    const real down = R(2) * approx_turn(r_sqrt(x * x + y * y), r_after(z, around));
     const int is_sphere = !TRAIT_TRIANGLES || primitive >= triangle_count;
     u = is_sphere ? around : u;
     v = is_sphere ? down : v;

@@ -1,7 +1,6 @@
 // Textures on the host, and the kernels' lookups against them.
 #define TRAIT_TEXTURED 1
 #define TRAIT_TEXTURES 4095
-#include "kernels/lib/angle.h"
 #include "kernels/lib/texture_lookup.h"
 #include "runtime/scene/scene_tables.h"
 #include "runtime/scene/texture.h"
@@ -89,24 +88,6 @@ TEST(Texture, HalvesAreNumbers) {
     EXPECT_EQ(half_value(1), 0x1p-24);
     EXPECT_EQ(half_value(0x3ff), 1023 * 0x1p-24);
     EXPECT_EQ(half_value(0x7bff), 65504);
-}
-
-TEST(Angle, IsTheArcTangents) {
-    double largest = 0;
-    for (int i = 0; i < 100000; ++i) {
-        const double turns = (i + 0.5) / 100000, length = std::exp2(i % 40 - 20);
-        const auto x = float(length * std::cos(2 * std::numbers::pi * turns));
-        const auto y = float(length * std::sin(2 * std::numbers::pi * turns));
-        const double exact = std::atan2(double(y), double(x)) / (2 * std::numbers::pi);
-        const double error = lib_float::angle_in_turns(x, y) - (exact < 0 ? exact + 1 : exact);
-        largest = std::max(largest, std::fabs(error));
-    }
-    EXPECT_LT(largest, 1e-7);
-    EXPECT_EQ(lib_float::angle_in_turns(0, 0), 0);
-    EXPECT_EQ(lib_float::angle_in_turns(1, 0), 0);
-    EXPECT_EQ(lib_float::angle_in_turns(0, 1), 0.25f);
-    EXPECT_EQ(lib_float::angle_in_turns(-1, 0), 0.5f);
-    EXPECT_EQ(lib_float::angle_in_turns(0, -1), 0.75f);
 }
 
 /// All formats, wraps, filters and maps; the last is a checkerboard.
