@@ -69,6 +69,8 @@ std::string summary_text(const Scene &scene, const SceneSummary &summary, const 
     text += fmt::format("bounds      ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n", low[0], low[1], low[2],
                         high[0], high[1], high[2]);
     text += fmt::format("materials   {}\n", counts(summary.materials));
+    if (!summary.textures.empty())
+        text += fmt::format("textures    {}\n", counts(summary.textures));
     text += gathering_text(gathering_surfaces(scene, roughness), roughness);
     text += fmt::format("emitters    {}\n", counts(summary.emitters));
     text += fmt::format("camera      {}\n", camera_text(scene.camera));
@@ -81,9 +83,11 @@ std::string summary_text(const Scene &scene, const SceneSummary &summary, const 
                         scene.settings.max_depth < 0 ? "unlimited" : std::to_string(scene.settings.max_depth),
                         scene.settings.rr_depth, scene.settings.hide_emitters ? ", emitters hidden" : "",
                         scene.settings.integrator.empty() ? "" : ", integrator " + scene.settings.integrator);
-    text +=
-        fmt::format("memory      geometry {}, ray tracing about {}, film {}; a render adds its batch\n",
-                    mebibytes(summary.geometry_bytes), mebibytes(summary.tree_bytes), mebibytes(summary.film_bytes));
+    text += fmt::format("memory      geometry {}, ", mebibytes(summary.geometry_bytes));
+    if (summary.texture_bytes > 0)
+        text += fmt::format("textures and maps {}, ", mebibytes(summary.texture_bytes));
+    text += fmt::format("ray tracing about {}, film {}; a render adds its batch\n", mebibytes(summary.tree_bytes),
+                        mebibytes(summary.film_bytes));
     text += fmt::format("traits      (each kernel is compiled for those of them that it declares)\n");
     for (const auto &[name, value] : traits)
         text += fmt::format("  {} = {}\n", name, value);
@@ -106,6 +110,7 @@ std::string summary_json(const Scene &scene, const SceneSummary &summary, const 
         {"vertices", summary.vertices},
         {"bounds", {{"lower", summary.lower}, {"upper", summary.upper}}},
         {"materials", summary.materials},
+        {"textures", summary.textures},
         {"gathering", {{"roughness", roughness}, {"gathered_at", surfaces.gathered}, {"passed_at", surfaces.passed}}},
         {"emitters", summary.emitters},
         {"camera", camera_json(scene.camera)},
@@ -122,6 +127,7 @@ std::string summary_json(const Scene &scene, const SceneSummary &summary, const 
           {"integrator", scene.settings.integrator}}},
         {"memory",
          {{"geometry_bytes", summary.geometry_bytes},
+          {"texture_bytes", summary.texture_bytes},
           {"tree_bytes_estimated", summary.tree_bytes},
           {"film_bytes", summary.film_bytes}}},
         {"traits", trait_object}};

@@ -67,8 +67,8 @@ std::uint64_t least_render_bytes(const Scene &scene, const RenderOptions &option
         channels += 4 * 3; // primal, dx, dy, direct
     const auto [width, height] = image_size(scene.film);
     const SceneSummary summary = summarize(scene);
-    // An image is planes, and once more the bytes of its file.
-    return summary.geometry_bytes + summary.tree_bytes + summary.film_bytes +
+    // An image is planes, and once more the bytes of its file. Pictures lie in the scene and in the kernels' tables.
+    return summary.geometry_bytes + 2 * summary.texture_bytes + summary.tree_bytes + summary.film_bytes +
            std::uint64_t(width) * height * channels * 2 * sizeof(float);
 }
 

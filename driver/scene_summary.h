@@ -12,10 +12,12 @@ namespace gradus {
 
 struct SceneSummary {
     std::uint64_t meshes = 0, spheres = 0, triangles = 0, vertices = 0; ///< meshes and spheres as shapes
-    std::map<std::string, std::uint64_t> materials; ///< by kind; "twosided KIND" for both sides alike
+    std::map<std::string, std::uint64_t> materials; ///< by kind; "twosided KIND" for both sides alike, "mask KIND"
+    std::map<std::string, std::uint64_t> textures;  ///< by kind
     std::map<std::string, std::uint64_t> emitters;  ///< by kind
     std::array<double, 3> lower{}, upper{};         ///< of all shapes, world space; 0 without any
     std::uint64_t geometry_bytes = 0;               ///< vertices and indices
+    std::uint64_t texture_bytes = 0;                ///< pictures, each once, and the environment's map
     std::uint64_t tree_bytes = 0;                   ///< the ray tracer's tree and vertices, estimated
     std::uint64_t film_bytes = 0;                   ///< one sum and one count of each pixel
 };

@@ -8,10 +8,10 @@ namespace gradus {
 
 namespace {
 
-using Color = std::array<double, 3>;
+using Value = std::array<double, 3>;
 
-Color times(double a, const Color &c) { return {a * c[0], a * c[1], a * c[2]}; }
-Color plus(const Color &a, const Color &b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+Value times(double a, const Value &c) { return {a * c[0], a * c[1], a * c[2]}; }
+Value plus(const Value &a, const Value &b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 
 /// Where a coordinate lies in [0, 1].
 double wrapped(double s, Texture::Wrap wrap) {
@@ -31,8 +31,8 @@ std::uint32_t texel_at(std::int64_t i, std::uint32_t size, Texture::Wrap wrap) {
     return std::uint32_t(std::clamp<std::int64_t>(i, 0, size - 1));
 }
 
-Color texel(const Texture &texture, std::uint32_t x, std::uint32_t y) {
-    Color color;
+Value texel(const Texture &texture, std::uint32_t x, std::uint32_t y) {
+    Value color;
     for (int c = 0; c < 3; ++c) {
         const double stored = texture.bitmap->channel(x, y, texture.bitmap->is_color ? c : 0);
         color[c] = texture.is_srgb ? srgb_to_linear_value(stored) : stored;
@@ -40,7 +40,7 @@ Color texel(const Texture &texture, std::uint32_t x, std::uint32_t y) {
     return color;
 }
 
-Color finished(const Texture &texture, Color color) {
+Value finished(const Texture &texture, Value color) {
     for (int c = 0; c < 3; ++c) {
         const double value = color[c] * texture.scale[c];
         color[c] = value > texture.lowest ? std::min(value, double(texture.highest)) : double(texture.lowest);
@@ -48,7 +48,7 @@ Color finished(const Texture &texture, Color color) {
     return color;
 }
 
-Color checkerboard(const Texture &texture, double s, double t) {
+Value checkerboard(const Texture &texture, double s, double t) {
     const bool across = s - std::floor(s) > 0.5, down = t - std::floor(t) > 0.5;
     const std::array<float, 3> &color = across == down ? texture.color_0 : texture.color_1;
     return {color[0], color[1], color[2]};
@@ -149,12 +149,12 @@ TextureRange texture_range(const Texture &texture) {
     double count = 0;
     range.least.fill(INFINITY);
     range.most.fill(-INFINITY);
-    const auto add = [&](const Color &color, int channel, double times_found) {
+    const auto add = [&](const Value &color, int channel, double times_found) {
         range.mean[channel] += color[channel] * times_found;
         range.least[channel] = std::min(range.least[channel], color[channel]);
         range.most[channel] = std::max(range.most[channel], color[channel]);
     };
-    const auto add_all = [&](const Color &color) {
+    const auto add_all = [&](const Value &color) {
         for (int c = 0; c < 3; ++c)
             add(color, c, 1);
         ++count;
@@ -174,7 +174,7 @@ TextureRange texture_range(const Texture &texture) {
             }
         for (int value = 0; value < 256; ++value) {
             const double stored = value / 255.0, linear = texture.is_srgb ? srgb_to_linear_value(stored) : stored;
-            const Color color = finished(texture, {linear, linear, linear});
+            const Value color = finished(texture, {linear, linear, linear});
             for (int c = 0; c < 3; ++c)
                 if (found[c][value] > 0)
                     add(color, c, double(found[c][value]));

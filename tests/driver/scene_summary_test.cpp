@@ -1,4 +1,5 @@
 #include "driver/scene_summary.h"
+#include "runtime/scene/texture.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -39,6 +40,23 @@ TEST(SceneSummary, CountsWhatTheSceneHolds) {
     EXPECT_THAT(summary.materials, ::testing::ElementsAre(Pair("dielectric", 1), Pair("twosided diffuse", 2),
                                                           Pair("twosided diffuse/roughconductor_ggx", 1)));
     EXPECT_THAT(summary.emitters, ::testing::ElementsAre(Pair("area", 2), Pair("point", 1)));
+}
+
+TEST(SceneSummary, CountsPicturesOnce) {
+    Scene scene;
+    const auto picture = std::make_shared<Bitmap>();
+    picture->words.resize(100);
+    for (int i = 0; i < 2; ++i)
+        scene.textures.emplace_back().bitmap = picture;
+    scene.textures.emplace_back().kind = Texture::Kind::checkerboard;
+    scene.materials.resize(2);
+    scene.materials[0].opacity.texture = 0;
+    scene.materials[1].front.blend = 0;
+    const SceneSummary summary = summarize(scene);
+    using ::testing::Pair;
+    EXPECT_THAT(summary.textures, ::testing::ElementsAre(Pair("bitmap", 2), Pair("checkerboard", 1)));
+    EXPECT_THAT(summary.materials, ::testing::ElementsAre(Pair("blendbsdf", 1), Pair("mask diffuse", 1)));
+    EXPECT_EQ(summary.texture_bytes, 400u);
 }
 
 TEST(SceneSummary, AnEmptySceneHasNoBounds) { EXPECT_THAT(summarize(Scene()).lower, ::testing::ElementsAre(0, 0, 0)); }
