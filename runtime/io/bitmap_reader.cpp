@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::uint64_t always_bytes = 256u << 20, unfolding = 64; // as in read_image()
 
-[[noreturn]] void fail(const std::string &path, const std::string &reason) {
+[[noreturn]] void refuse(const std::string &path, const std::string &reason) {
     throw Error(ExitCode::image, fmt::format("cannot read the texture '{}': {}", path, reason));
 }
 
@@ -54,15 +54,16 @@ OIIO::TypeDesc type_of(Bitmap::Format format) {
 /// Before anything is allocated.
 void check_size(const std::string &path, const OIIO::ImageSpec &spec, std::uint64_t limits) {
     if (spec.deep || spec.depth > 1 || spec.width <= 0 || spec.height <= 0)
-        fail(path, "it is not a plane of pixels");
+        refuse(path, "it is not a plane of pixels");
     std::error_code not_there;
     const std::uintmax_t size = std::filesystem::file_size(path, not_there);
     const double most = (double(always_bytes) + double(unfolding) * (not_there ? 0 : double(size))) * double(limits);
     const double bytes = double(spec.width) * spec.height * spec.nchannels * double(spec.format.size());
     if (bytes > most)
-        fail(path, fmt::format("its pixels would take {:.0f} MiB, far more than a file of its size holds; --limits 10 "
-                               "allows ten times the {:.0f} MiB that are read",
-                               bytes / 0x1p20, most / 0x1p20));
+        refuse(path,
+               fmt::format("its pixels would take {:.0f} MiB, far more than a file of its size holds; --limits 10 "
+                           "allows ten times the {:.0f} MiB that are read",
+                           bytes / 0x1p20, most / 0x1p20));
 }
 
 void check_exr(const std::string &path, std::uint64_t limits) {
@@ -72,9 +73,9 @@ void check_exr(const std::string &path, std::uint64_t limits) {
     if (!declared || not_there)
         return;
     if (!declared->is_whole || declared->blocks > size / 8)
-        fail(path, "it is truncated or damaged: its header and its size do not agree");
+        refuse(path, "it is truncated or damaged: its header and its size do not agree");
     if (double(declared->bytes) > (double(always_bytes) + double(unfolding) * double(size)) * double(limits))
-        fail(path, "it declares far more pixels than a file of its size holds");
+        refuse(path, "it declares far more pixels than a file of its size holds");
 }
 
 int channel_named(const OIIO::ImageSpec &spec, const std::string &name) {
@@ -91,7 +92,7 @@ std::vector<int> channels_of(const std::string &path, const OIIO::ImageSpec &spe
         if (channel < 0 && (asked == "r" || asked == "g" || asked == "b")) // all that gray has is its one channel
             channel = spec.nchannels < 3 ? 0 : asked == "r" ? 0 : asked == "g" ? 1 : 2;
         if (channel < 0)
-            fail(path, fmt::format("it has no channel \"{}\"", asked));
+            refuse(path, fmt::format("it has no channel \"{}\"", asked));
         return {channel};
     }
     const int r = channel_named(spec, "R"), g = channel_named(spec, "G"), b = channel_named(spec, "B");
@@ -103,7 +104,7 @@ std::vector<int> channels_of(const std::string &path, const OIIO::ImageSpec &spe
         return {0};
     if (spec.nchannels <= 4)
         return {0, 1, 2};
-    fail(path, fmt::format("of its {} channels none are R, G, B or Y", spec.nchannels));
+    refuse(path, fmt::format("of its {} channels none are R, G, B or Y", spec.nchannels));
 }
 
 /// Calls use(y, row) for each row of the file.
@@ -119,7 +120,7 @@ void for_each_row(OIIO::ImageInput &input, const std::string &path, OIIO::TypeDe
                                               : input.read_scanlines(0, 0, spec.y + begin, spec.y + end, spec.z, 0,
                                                                      spec.nchannels, type, rows.data());
         if (!done)
-            fail(path, input.geterror());
+            refuse(path, input.geterror());
         for (int y = begin; y < end; ++y)
             use(std::uint32_t(y), rows.data() + line * std::size_t(y - begin));
     }
@@ -133,7 +134,7 @@ ReadBitmap read_bitmap(const std::string &path, const BitmapRequest &request) {
     wishes.attribute("oiio:UnassociatedAlpha", 1); // colours as they are stored, not times alpha
     const auto input = OIIO::ImageInput::open(path, &wishes);
     if (!input)
-        fail(path, OIIO::geterror());
+        refuse(path, OIIO::geterror());
     const OIIO::ImageSpec spec = input->spec();
     check_size(path, spec, request.limits);
     const std::vector<int> channels = channels_of(path, spec, request.channel);

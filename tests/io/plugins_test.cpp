@@ -142,7 +142,7 @@ TEST(BsdfPlugin, NamesTheNearestOfKindsThatAreNotThere) {
     }
 }
 
-Scene scene_of(const std::string &bsdf) {
+Scene cube_scene(const std::string &bsdf) {
     return load_text(scene_around("<shape type=\"cube\">" + bsdf + "</shape><emitter type=\"constant\"/>", "3.0.0", ""))
         .scene;
 }
@@ -151,27 +151,27 @@ TEST(BsdfPlugin, Blend) {
     const std::string red = "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"1 0 0\"/></bsdf>";
     const std::string mirror = "<bsdf type=\"conductor\"/>", glass = "<bsdf type=\"dielectric\"/>";
     const auto blend = [](const std::string &inside) { return "<bsdf type=\"blendbsdf\">" + inside + "</bsdf>"; };
-    const Scene plain = scene_of(blend(red + mirror));
+    const Scene plain = cube_scene(blend(red + mirror));
     ASSERT_EQ(plain.blends.size(), 1u);
     EXPECT_EQ(plain.materials.at(0).front.blend, 0);
     EXPECT_FALSE(plain.materials.at(0).two_sided);
     EXPECT_EQ(plain.blends[0].weight, 0.5f);
     EXPECT_EQ(plain.blended.at(plain.blends[0].first).reflectance.r, 1);
     EXPECT_EQ(plain.blended.at(plain.blends[0].second).kind, BsdfKind::conductor);
-    const Scene weighted = scene_of(blend("<float name=\"weight\" value=\"0.25\"/>" + mirror + glass));
+    const Scene weighted = cube_scene(blend("<float name=\"weight\" value=\"0.25\"/>" + mirror + glass));
     EXPECT_EQ(weighted.blends.at(0).weight, 0.25f);
-    const Scene textured = scene_of(blend("<texture name=\"weight\" type=\"checkerboard\"/>" + red + mirror));
+    const Scene textured = cube_scene(blend("<texture name=\"weight\" type=\"checkerboard\"/>" + red + mirror));
     EXPECT_EQ(textured.blends.at(0).weight.texture, 0);
     // Both sides: of the blend, of a part, of both parts.
-    const Scene around = scene_of("<bsdf type=\"twosided\">" + blend(red + mirror) + "</bsdf>");
+    const Scene around = cube_scene("<bsdf type=\"twosided\">" + blend(red + mirror) + "</bsdf>");
     EXPECT_TRUE(around.materials.at(0).two_sided);
     EXPECT_EQ(around.materials.at(0).back.blend, around.materials.at(0).front.blend);
-    const Scene of_one = scene_of(blend("<bsdf type=\"twosided\">" + red + "</bsdf>" + mirror));
+    const Scene of_one = cube_scene(blend("<bsdf type=\"twosided\">" + red + "</bsdf>" + mirror));
     EXPECT_TRUE(of_one.materials.at(0).two_sided);
     const Blend &back = of_one.blends.at(std::size_t(of_one.materials.at(0).back.blend));
     EXPECT_EQ(of_one.blended.at(back.first).reflectance.r, 1);
     EXPECT_EQ(of_one.blended.at(back.second).reflectance, Color(0, 0, 0));
-    const Scene nested = scene_of(blend(blend(red + mirror) + glass));
+    const Scene nested = cube_scene(blend(blend(red + mirror) + glass));
     EXPECT_EQ(nested.blended.at(nested.blends.at(1).first).blend, 0);
     EXPECT_THAT(error_of_text(scene_around("<shape type=\"cube\">" + blend(red) + "</shape>")),
                 HasSubstr("blendbsdf needs two nested BSDFs, not 1"));
