@@ -62,6 +62,21 @@ const std::vector<Case> cases{
      "scene.xml:3",
      {"torus", "known: cube, cylinder, disk, instance, merge, obj, ply"}},
     {"unknown_emitter", scene_around("<emitter type=\"ambient\"/>"), "scene.xml:3", {"ambient", "directional"}},
+    {"mask_in_blend",
+     in_bsdf("<bsdf type=\"blendbsdf\"><bsdf type=\"mask\"><bsdf type=\"diffuse\"/></bsdf><bsdf "
+             "type=\"diffuse\"/></bsdf>"),
+     "scene.xml:4",
+     {"put the blend into the mask"}},
+    {"two_opacities",
+     in_bsdf("<bsdf type=\"twosided\"><bsdf type=\"mask\"><bsdf type=\"diffuse\"/></bsdf><bsdf "
+             "type=\"diffuse\"/></bsdf>"),
+     "scene.xml:4",
+     {"one opacity"}},
+    {"sphere_of_textured_opacity",
+     "<scene version=\"3.0.0\">\n<sensor type=\"perspective\"/>\n<shape type=\"sphere\"><bsdf type=\"mask\"><texture "
+     "name=\"opacity\" type=\"checkerboard\"/><bsdf type=\"diffuse\"/></bsdf></shape></scene>",
+     "scene.xml:3",
+     {"opacity of a sphere"}},
     {"sky", scene_around("<emitter type=\"sunsky\"/>"), "scene.xml:3", {"sunsky", "envmap"}},
     {"unknown_sensor",
      "<scene version=\"3.0.0\">\n<sensor type=\"fisheye\"/><shape type=\"cube\"/></scene>",

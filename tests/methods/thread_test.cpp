@@ -2,6 +2,7 @@
 // settled once a process.
 #include "runtime/io/image_io.h"
 #include "tests/driver/child_process.h"
+#include "tests/support/test_name.h"
 
 #include <fmt/format.h>
 
@@ -54,15 +55,17 @@ TEST_F(Threads, DoNotChangeWhichMethodIsChosen) {
     expect_one_image("cornell-box", {"--size", "48x36", "--spp", "80", "--method", "auto"});
 }
 
+std::string name_of_threads(const ::testing::TestParamInfo<std::pair<const char *, const char *>> &info) {
+    return testing::test_name(std::string(info.param.first) + "_" + info.param.second);
+}
+
 INSTANTIATE_TEST_SUITE_P(Program, Threads,
+                         ::testing::Values(std::pair{"materials", "single"}, std::pair{"cornell-box", "double"}),
+                         name_of_threads);
+INSTANTIATE_TEST_SUITE_P(Full, Threads,
                          ::testing::Values(std::pair{"cornell-box", "single"}, std::pair{"plates", "single"},
-                                           std::pair{"materials", "single"}, std::pair{"cornell-box", "double"}),
-                         [](const auto &info) {
-                             std::string name = std::string(info.param.first) + "_" + info.param.second;
-                             for (char &c : name)
-                                 c = c == '-' ? '_' : c;
-                             return name;
-                         });
+                                           std::pair{"textures", "single"}, std::pair{"sundial", "single"}),
+                         name_of_threads);
 
 } // namespace
 } // namespace gradus

@@ -16,8 +16,11 @@ inline void place(Scene &scene, double factor, const Double3 &offset) {
         sphere.center = placed(sphere.center);
         sphere.radius = float(sphere.radius * factor);
     }
+    Camera &camera = scene.camera;
+    for (double *length : {&camera.near_clip, &camera.far_clip, &camera.aperture_radius, &camera.focus_distance})
+        *length *= factor;
     for (int axis = 0; axis < 3; ++axis) {
-        double &origin = scene.camera.to_world.m[std::size_t(axis) * 4 + 3];
+        double &origin = camera.to_world.m[std::size_t(axis) * 4 + 3];
         origin = factor * origin + offset[axis];
     }
 }

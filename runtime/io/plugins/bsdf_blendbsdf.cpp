@@ -23,8 +23,11 @@ Material bsdf_blendbsdf(Properties &properties, SceneBuilder &builder) {
         throw SceneError(properties.location(),
                          "blendbsdf needs two nested BSDFs, not " + std::to_string(nested.size()));
     Material parts[2];
-    for (std::size_t i = 0; i < 2; ++i)
+    for (std::size_t i = 0; i < 2; ++i) {
         parts[i] = builder.build_object<Material>(*nested[i].element);
+        if (parts[i].opacity != 1.0f)
+            throw SceneError(nested[i].location, "mask inside blendbsdf is not supported: put the blend into the mask");
+    }
     const Number weight = properties.textured_number("weight", 0.5f, 0, 1, 0);
     Material material;
     material.two_sided = parts[0].two_sided || parts[1].two_sided;

@@ -17,6 +17,8 @@ Material bsdf_twosided(Properties &properties, SceneBuilder &builder) {
         if (sides[i].two_sided)
             throw SceneError(nested[i].location, "twosided inside twosided");
     }
+    if (nested.size() == 2 && sides[0].opacity != sides[1].opacity)
+        throw SceneError(nested[1].location, "both sides of a surface have one opacity");
     Material material = sides[0];
     material.back = sides[nested.size() - 1].front;
     material.two_sided = true;
