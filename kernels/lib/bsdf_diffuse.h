@@ -27,15 +27,8 @@ GRADUS_FN bsdf_value diffuse_evaluate(material m, vec3 wi, vec3 wo, int mode) {
 
 GRADUS_FN bsdf_sample diffuse_sample(material m, vec3 wi, real u_lobe, real u1, real u2, int mode) {
     (void)u_lobe, (void)mode;
-    bsdf_sample sample;
-    sample.wo = warp_cosine_hemisphere(u1, u2);
-    const bsdf_terms terms = diffuse_terms(m, wi, sample.wo);
-    sample.weight = terms.weight;
-    sample.pdf = terms.pdf;
-    sample.pdf_reverse = terms.pdf_reverse;
-    sample.eta = R(1);
-    sample.is_specular = 0;
-    return sample;
+    const vec3 wo = warp_cosine_hemisphere(u1, u2);
+    return bsdf_sample_of(wo, diffuse_terms(m, wi, wo));
 }
 
 GRADUS_FN rgb diffuse_albedo(material m) { return material_reflectance(m); }

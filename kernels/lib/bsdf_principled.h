@@ -38,7 +38,7 @@ GRADUS_FN principled_chances principled_chances_of(material m, real cosine, int 
     const rgb base = material_reflectance(m);
     const real mean = (base.r + base.g + base.b) * R(0.33333333333333333);
     const real curve = schlick_weight(cosine);
-    const real interface = r_max(principled_mix(principled_at_normal(m.ior), R(1), curve), R(0.1));
+    const real interface = r_max(principled_mix(fresnel_at_normal(m.ior), R(1), curve), R(0.1));
     const real through = (R(1) - m.metallic) * spec_trans;
     const real opaque = (R(1) - m.metallic) * (R(1) - spec_trans);
     const real facets = m.metallic * r_max(mean, R(0.1)) + (R(1) - m.metallic) * interface + through;
@@ -64,28 +64,21 @@ GRADUS_FN bsdf_terms principled_terms(material m, vec3 wi, vec3 wo, int mode, in
     const real ior = principled_ior(m);
     const real eta_below = is_front ? ior : R(1) / ior;
     const vec3 from = v3_scale(wi, side), to = v3_scale(wo, side);
-    const int is_reflected = to.z > R(0);
-    const real eta = is_reflected ? R(1) : eta_below;
-    const vec3 sum = v3_mad(from, eta, to);
-    const vec3 h = v3_scale(sum, r_copysign1(sum.z)); /* on the upper side */
-    const real length_squared = v3_dot(h, h);
-    const real inverse_length = R(1) / r_sqrt(r_max(length_squared, R(1e-30)));
-    const real from_cosine = is_reflected ? R(0.5) * length_squared * inverse_length : v3_dot(from, h) * inverse_length;
-    const real to_cosine = v3_dot(to, h) * inverse_length;
-    const real middle = r_clamp(from_cosine, R(0), R(1));
+    const microfacet_crossing crossing = microfacet_crossing_of(from, to, eta_below);
+    const int is_reflected = crossing.is_reflected;
+    const real eta = crossing.eta;
+    const real middle = r_clamp(crossing.from_cosine, R(0), R(1));
     const fresnel_dielectric_result fresnel = fresnel_dielectric(middle, eta_below);
     const real to_z = r_abs(to.z);
-    const int is_sided = (from_cosine > R(0)) & ((to_cosine > R(0)) == is_reflected) & (to_cosine != R(0)) &
-                         (to.z != R(0)) & (wi.z != R(0));
+    const int is_sided = crossing.is_sided & (wi.z != R(0));
 
     /* The microfacets. */
     const real through = (R(1) - m.metallic) * spec_trans;
     const real transmitted = through * (R(1) - fresnel.reflectance);
     const real chance_inside = is_reflected ? fresnel.reflectance : R(1) - fresnel.reflectance;
     const real chance_outside = is_reflected ? R(1) - transmitted : transmitted;
-    const real refracted_jacobian = eta * eta * from_cosine * -to_cosine * inverse_length * inverse_length;
-    const real jacobian = is_reflected ? R(0.25) : refracted_jacobian;
-    const real density = microfacet_density(microfacet_ggx, h, length_squared, alpha.u, alpha.v) * jacobian;
+    const real density =
+        microfacet_density(microfacet_ggx, crossing.h, crossing.length_squared, alpha.u, alpha.v) * crossing.jacobian;
     const real facets = is_sided ? density / microfacet_projected_area(microfacet_ggx, from, alpha.u, alpha.v) : R(0);
     const vec3 above = v3(r_after(to.x, facets), r_after(to.y, facets), to_z);
     const real area_to = microfacet_projected_area(microfacet_ggx, above, alpha.u, alpha.v);
@@ -96,7 +89,7 @@ GRADUS_FN bsdf_terms principled_terms(material m, vec3 wi, vec3 wo, int mode, in
     const rgb tint = principled_tint(base);
     const real curve = principled_curve(middle, fresnel.cosine_transmitted, eta_below);
     const real plain = (R(1) - m.metallic) * (R(1) - m.spec_tint) * fresnel.reflectance;
-    const rgb tinted = principled_schlick(rgb_scale(tint, principled_at_normal(eta_below)), curve);
+    const rgb tinted = principled_schlick(rgb_scale(tint, fresnel_at_normal(eta_below)), curve);
     const rgb metal = principled_schlick(base, curve);
     const rgb outside = rgb_add(rgb_add(rgb_gray(plain), rgb_scale(metal, m.metallic)),
                                 rgb_scale(tinted, (R(1) - m.metallic) * m.spec_tint));
@@ -108,11 +101,13 @@ GRADUS_FN bsdf_terms principled_terms(material m, vec3 wi, vec3 wo, int mode, in
     const rgb of_facets = rgb_scale(rgb_select(is_reflected, mirrored, refracted), masked);
 
     /* The clear coat and the diffuse lobe, in front alone. */
-    const real sine_squared = (h.x * h.x + h.y * h.y) * inverse_length * inverse_length;
+    const vec3 h = crossing.h;
+    const real sine_squared = (h.x * h.x + h.y * h.y) * crossing.inverse_length * crossing.inverse_length;
     const real coat_alpha = principled_coat_alpha(m);
     const real coat_density = principled_coat_density(coat_alpha * coat_alpha, sine_squared) * GRADUS_INV_PI;
     const int is_coat = is_front & is_reflected & is_sided;
-    const real coat_pdf = is_coat ? R(0.25) * coat_density * h.z * inverse_length / r_max(middle, R(1e-12)) : R(0);
+    const real coat_pdf =
+        is_coat ? R(0.25) * coat_density * h.z * crossing.inverse_length / r_max(middle, R(1e-12)) : R(0);
     const real coat_from = principled_coat_visible(r_after(from.z, coat_pdf));
     const real coat_visible = coat_from * principled_coat_visible(r_after(to_z, coat_from));
     const real coat_curve = principled_mix(R(0.04), R(1), curve);
@@ -144,7 +139,6 @@ GRADUS_FN bsdf_terms principled_terms(material m, vec3 wi, vec3 wo, int mode, in
 }
 
 GRADUS_FN bsdf_sample principled_sampled(material m, vec3 wi, real u_lobe, real u1, real u2, int mode, int is_clear) {
-    bsdf_sample sample;
     const real spec_trans = is_clear ? m.spec_trans : R(0);
     const principled_alpha alpha = principled_alpha_of(m.roughness, m.anisotropic);
     const int is_front = wi.z > R(0);
@@ -179,21 +173,16 @@ GRADUS_FN bsdf_sample principled_sampled(material m, vec3 wi, real u_lobe, real 
     const real from_scale = is_refracted ? inverse_eta : R(1);
     const vec3 turned = v3_sub(v3_scale(normal, along), v3_scale(from, from_scale));
     const vec3 to = v3_select(is_diffuse, scattered, turned);
-    sample.wo = v3_scale(to, side);
-    const bsdf_terms terms = principled_terms(m, wi, sample.wo, mode, is_clear);
+    const vec3 wo = v3_scale(to, side);
+    const bsdf_terms terms = principled_terms(m, wi, wo, mode, is_clear);
     /* The lobe that was chosen may leave on the wrong side: then there is no sample. */
     const int is_valid = ((to.z < R(0)) == is_refracted) & (cosine > R(0));
-    sample.weight = rgb_scale(terms.weight, is_valid ? R(1) : R(0));
-    sample.pdf = is_valid ? terms.pdf : R(0);
-    sample.pdf_reverse = is_valid ? terms.pdf_reverse : R(0);
-    sample.eta = is_refracted ? eta : R(1);
-    sample.is_specular = 0;
-    return sample;
+    return bsdf_sample_if(is_valid, wo, terms, is_refracted ? eta : R(1));
 }
 
 GRADUS_FN rgb principled_albedo_of(material m) {
     const rgb base = material_reflectance(m);
-    const real interface = fresnel_mean(principled_at_normal(m.ior));
+    const real interface = fresnel_mean(fresnel_at_normal(m.ior));
     const rgb dielectric = rgb_add(rgb_scale(base, R(1) - interface), rgb_gray(interface));
     return rgb_mix(dielectric, base, m.metallic);
 }

@@ -22,7 +22,7 @@ typedef struct {
 
 GRADUS_FN principledthin_chances principledthin_chances_of(material m, real cosine) {
     principledthin_chances chances;
-    const real guess = principled_mix(principled_at_normal(m.ior), R(1), schlick_weight(cosine));
+    const real guess = principled_mix(fresnel_at_normal(m.ior), R(1), schlick_weight(cosine));
     const real share = r_clamp(guess, R(0.2), R(0.8));
     chances.mirrored = m.spec_trans * share;
     chances.passed = m.spec_trans * (R(1) - share);
@@ -55,7 +55,7 @@ GRADUS_FN bsdf_terms principledthin_terms(material m, vec3 wi, vec3 wo, int mode
     const rgb base = material_reflectance(m);
     const rgb tint = principled_tint(base);
     const real curve = principled_curve(middle, fresnel.cosine_transmitted, m.ior);
-    const rgb tinted = principled_schlick(rgb_scale(tint, principled_at_normal(m.ior)), curve);
+    const rgb tinted = principled_schlick(rgb_scale(tint, fresnel_at_normal(m.ior)), curve);
     const rgb mirrored = rgb_mix(rgb_gray(fresnel.reflectance), tinted, m.spec_tint);
     const rgb passed = rgb_scale(base, R(1) - fresnel.reflectance);
     const rgb specular = rgb_scale(rgb_select(is_reflected, mirrored, passed), masked);
@@ -86,7 +86,6 @@ GRADUS_FN bsdf_value principledthin_evaluate(material m, vec3 wi, vec3 wo, int m
 }
 
 GRADUS_FN bsdf_sample principledthin_sample(material m, vec3 wi, real u_lobe, real u1, real u2, int mode) {
-    bsdf_sample sample;
     const real side = r_copysign1(wi.z);
     const vec3 from = v3_scale(wi, side);
     const principledthin_chances chances = principledthin_chances_of(m, from.z);
@@ -98,21 +97,16 @@ GRADUS_FN bsdf_sample principledthin_sample(material m, vec3 wi, real u_lobe, re
     const vec3 mirrored = v3_mad(v3_neg(from), R(2) * v3_dot(from, normal), normal);
     const vec3 scattered = warp_cosine_hemisphere(u1, r_after(u2, mirrored.z));
     const vec3 to = v3_select(is_specular, mirrored, scattered);
-    sample.wo = v3(to.x * side, to.y * side, is_above ? to.z * side : -to.z * side);
-    const bsdf_terms terms = principledthin_terms(m, wi, sample.wo, mode);
+    const vec3 wo = v3(to.x * side, to.y * side, is_above ? to.z * side : -to.z * side);
+    const bsdf_terms terms = principledthin_terms(m, wi, wo, mode);
     /* A microfacet may mirror below the horizon: then there is no sample. */
     const int is_valid = to.z > R(0);
-    sample.weight = rgb_scale(terms.weight, is_valid ? R(1) : R(0));
-    sample.pdf = is_valid ? terms.pdf : R(0);
-    sample.pdf_reverse = is_valid ? terms.pdf_reverse : R(0);
-    sample.eta = R(1);
-    sample.is_specular = 0;
-    return sample;
+    return bsdf_sample_if(is_valid, wo, terms, R(1));
 }
 
 GRADUS_FN rgb principledthin_albedo(material m) {
     const rgb base = material_reflectance(m);
-    const real interface = fresnel_mean(principled_at_normal(m.ior));
+    const real interface = fresnel_mean(fresnel_at_normal(m.ior));
     return rgb_add(rgb_scale(base, R(1) - m.spec_trans * interface), rgb_gray(m.spec_trans * interface));
 }
 

@@ -10,7 +10,7 @@
 #ifndef GRADUS_LIB_BSDF_ROUGHDIELECTRIC_H
 #define GRADUS_LIB_BSDF_ROUGHDIELECTRIC_H
 #include "kernels/lib/bsdf_dielectric.h"
-#include "kernels/lib/microfacet.h"
+#include "kernels/lib/microfacet_event.h"
 
 GRADUS_LIB_BEGIN
 
@@ -26,26 +26,15 @@ GRADUS_FN bsdf_terms roughdielectric_terms(material m, vec3 wi, vec3 wo, int mod
     const real side = r_copysign1(wi.z);
     const real eta_below = roughdielectric_eta(m, side);
     const vec3 from = v3_scale(wi, side), to = v3_scale(wo, side);
-    const int is_reflected = to.z > R(0);
-    const real eta = is_reflected ? R(1) : eta_below;
-    const vec3 sum = v3_mad(from, eta, to);
-    const vec3 h = v3_scale(sum, r_copysign1(sum.z)); /* on the upper side */
-    const real length_squared = v3_dot(h, h);
-    const real inverse_length = R(1) / r_sqrt(r_max(length_squared, R(1e-30)));
-    /* wi . m; |h| / 2 for reflection, which the reversed path finds too, to the last bit. */
-    const real from_cosine = is_reflected ? R(0.5) * length_squared * inverse_length : v3_dot(from, h) * inverse_length;
-    const real to_cosine = v3_dot(to, h) * inverse_length;
-    const real reflectance = fresnel_dielectric(r_clamp(from_cosine, R(0), R(1)), eta_below).reflectance;
+    const microfacet_crossing crossing = microfacet_crossing_of(from, to, eta_below);
+    const int is_reflected = crossing.is_reflected;
+    const real eta = crossing.eta;
+    const real reflectance = fresnel_dielectric(r_clamp(crossing.from_cosine, R(0), R(1)), eta_below).reflectance;
     const real probability = is_reflected ? reflectance : R(1) - reflectance;
-    /* |wi.m| |wo.m| eta^2 / |h|^2, which is 1/4 exactly for reflection. */
-    const real refracted_jacobian = eta * eta * from_cosine * -to_cosine * inverse_length * inverse_length;
-    const real jacobian = is_reflected ? R(0.25) : refracted_jacobian;
-    const real density = microfacet_density(distribution, h, length_squared, alpha_u, alpha_v);
+    const real density = microfacet_density(distribution, crossing.h, crossing.length_squared, alpha_u, alpha_v);
     const real area = microfacet_projected_area(distribution, from, alpha_u, alpha_v);
-    const real pdf = probability * density * jacobian / area;
-    /* wi and the microfacet's front are on one side; wo is on the side that its lobe says. */
-    const int is_valid = (from_cosine > R(0)) & ((to_cosine > R(0)) == is_reflected) & (to_cosine != R(0)) &
-                         (to.z != R(0)) & (pdf > R(0));
+    const real pdf = probability * density * crossing.jacobian / area;
+    const int is_valid = crossing.is_sided & (pdf > R(0));
     const vec3 above = v3(r_after(to.x, area), r_after(to.y, area), r_abs(to.z));
     const real area_to = microfacet_projected_area(distribution, above, alpha_u, alpha_v);
     const real masking = above.z / area_to;
@@ -55,14 +44,13 @@ GRADUS_FN bsdf_terms roughdielectric_terms(material m, vec3 wi, vec3 wo, int mod
                   is_valid ? scale : R(0));
     terms.pdf = is_valid ? pdf : R(0);
     /* The way back has the same half vector and the same P; its index ratio is 1 / eta, so its Jacobian lacks eta^2. */
-    const real back = probability * density * jacobian / (eta * eta * area_to);
+    const real back = probability * density * crossing.jacobian / (eta * eta * area_to);
     terms.pdf_reverse = (is_valid & (from.z > R(0))) ? back : R(0);
     return terms;
 }
 
 GRADUS_FN bsdf_sample roughdielectric_sample(material m, vec3 wi, real u_lobe, real u1, real u2, int mode,
                                              int distribution) {
-    bsdf_sample sample;
     const real side = r_copysign1(wi.z);
     const real eta = roughdielectric_eta(m, side);
     const real inverse_eta = R(1) / eta;
@@ -76,16 +64,11 @@ GRADUS_FN bsdf_sample roughdielectric_sample(material m, vec3 wi, real u_lobe, r
     const real along = is_reflected ? R(2) * cosine : cosine * inverse_eta - fresnel.cosine_transmitted;
     const real from_scale = is_reflected ? R(1) : inverse_eta;
     const vec3 to = v3_sub(v3_scale(normal, along), v3_scale(from, from_scale));
-    sample.wo = v3_scale(to, side);
-    const bsdf_terms terms = roughdielectric_terms(m, wi, sample.wo, mode, distribution);
+    const vec3 wo = v3_scale(to, side);
+    const bsdf_terms terms = roughdielectric_terms(m, wi, wo, mode, distribution);
     /* The lobe that was chosen may leave on the wrong side: then there is no sample. */
     const int is_valid = (to.z > R(0)) == is_reflected;
-    sample.weight = rgb_scale(terms.weight, is_valid ? R(1) : R(0));
-    sample.pdf = is_valid ? terms.pdf : R(0);
-    sample.pdf_reverse = is_valid ? terms.pdf_reverse : R(0);
-    sample.eta = is_reflected ? R(1) : eta;
-    sample.is_specular = 0;
-    return sample;
+    return bsdf_sample_if(is_valid, wo, terms, is_reflected ? R(1) : eta);
 }
 
 #define GRADUS_ROUGHDIELECTRIC(name, distribution)                                                                     \

@@ -51,6 +51,30 @@ GRADUS_FN bsdf_value bsdf_value_of(bsdf_terms terms) {
     return v;
 }
 
+/* Of a rough lobe: wo and its terms; no sample unless is_valid. eta: index on wo's side over the index on wi's. */
+GRADUS_FN bsdf_sample bsdf_sample_if(int is_valid, vec3 wo, bsdf_terms terms, real eta) {
+    bsdf_sample sample;
+    sample.wo = wo;
+    sample.weight = rgb_scale(terms.weight, is_valid ? R(1) : R(0));
+    sample.pdf = is_valid ? terms.pdf : R(0);
+    sample.pdf_reverse = is_valid ? terms.pdf_reverse : R(0);
+    sample.eta = eta;
+    sample.is_specular = 0;
+    return sample;
+}
+
+/* The same of what stays on its side and is a sample wherever its terms say so. */
+GRADUS_FN bsdf_sample bsdf_sample_of(vec3 wo, bsdf_terms terms) {
+    bsdf_sample sample;
+    sample.wo = wo;
+    sample.weight = terms.weight;
+    sample.pdf = terms.pdf;
+    sample.pdf_reverse = terms.pdf_reverse;
+    sample.eta = R(1);
+    sample.is_specular = 0;
+    return sample;
+}
+
 /* Of kinds that are Dirac all through. */
 GRADUS_FN bsdf_value bsdf_value_none(void) {
     bsdf_value v;

@@ -15,13 +15,10 @@
 GRADUS_LIB_BEGIN
 
 GRADUS_FN bsdf_terms ward_terms(material m, vec3 wi, vec3 wo) {
-    bsdf_terms terms;
     const int is_valid = r_min(wi.z, wo.z) > R(0);
     const real tiny = R(1e-12);
     const real alpha_u = microfacet_alpha(m.alpha_u);
     const real alpha_v = microfacet_alpha(r_after(m.alpha_v, alpha_u));
-    const rgb specular = material_specular_reflectance(m), albedo = material_reflectance(m);
-    const real share = lobe_share(specular, albedo);
     const vec3 h = v3_ordered(v3_add(wi, wo));
     const real length_squared = r_max(v3_dot(h, h), tiny);
     const real z_squared = r_max(h.z * h.z, tiny);
@@ -34,13 +31,7 @@ GRADUS_FN bsdf_terms ward_terms(material m, vec3 wi, vec3 wo) {
     const real balanced = length_squared / (z_squared * z_squared);
     const real early = m.ward_variant > R(0.5) ? normalised : published;
     const real lobe = exponential * (m.ward_variant > R(1.5) ? balanced : early) * wo.z;
-    const real diffuse_pdf = warp_cosine_hemisphere_pdf(wo.z);
-    const real pdf = share * lobe_pdf + (R(1) - share) * diffuse_pdf;
-    terms.pdf = is_valid ? pdf : R(0);
-    terms.pdf_reverse = is_valid ? share * lobe_pdf + (R(1) - share) * warp_cosine_hemisphere_pdf(wi.z) : R(0);
-    const real inverse = terms.pdf > R(0) ? R(1) / r_max(pdf, R(1e-30)) : R(0);
-    terms.weight = rgb_add(rgb_scale(albedo, diffuse_pdf * inverse), rgb_scale(specular, lobe * inverse));
-    return terms;
+    return lobe_beside_diffuse(m, wi, wo, is_valid, lobe_pdf, lobe);
 }
 
 GRADUS_FN bsdf_value ward_evaluate(material m, vec3 wi, vec3 wo, int mode) {
@@ -50,7 +41,6 @@ GRADUS_FN bsdf_value ward_evaluate(material m, vec3 wi, vec3 wo, int mode) {
 
 GRADUS_FN bsdf_sample ward_sample(material m, vec3 wi, real u_lobe, real u1, real u2, int mode) {
     (void)mode;
-    bsdf_sample sample;
     const real alpha_u = microfacet_alpha(m.alpha_u);
     const real alpha_v = microfacet_alpha(r_after(m.alpha_v, alpha_u));
     /* Slopes by Box and Muller: their squared length, over alpha, is exponential. */
@@ -58,16 +48,8 @@ GRADUS_FN bsdf_sample ward_sample(material m, vec3 wi, real u_lobe, real u1, rea
     const sine_cosine turn = approx_sine_cosine_2pi(u2);
     const vec3 normal = v3_normalize(v3(alpha_u * radius * turn.cosine, alpha_v * radius * turn.sine, R(1)));
     const vec3 mirrored = v3_mad(v3_neg(wi), R(2) * v3_dot(wi, normal), normal);
-    const vec3 scattered = warp_cosine_hemisphere(u1, r_after(u2, mirrored.z));
-    const real share = lobe_share(material_specular_reflectance(m), material_reflectance(m));
-    sample.wo = v3_select(u_lobe < share, mirrored, scattered);
-    const bsdf_terms terms = ward_terms(m, wi, sample.wo);
-    sample.weight = terms.weight;
-    sample.pdf = terms.pdf;
-    sample.pdf_reverse = terms.pdf_reverse;
-    sample.eta = R(1);
-    sample.is_specular = 0;
-    return sample;
+    const vec3 wo = lobe_or_diffuse(m, mirrored, u_lobe, u1, u2);
+    return bsdf_sample_of(wo, ward_terms(m, wi, wo));
 }
 
 GRADUS_FN rgb ward_albedo(material m) { return rgb_add(material_reflectance(m), material_specular_reflectance(m)); }

@@ -40,15 +40,12 @@
 GRADUS_LIB_BEGIN
 
 /* A number from 0 to 2^33 in 16 bits: 6 of exponent and 10 of mantissa. 2^-31 is taken off, so that 0 is 0 without a
- * choice; of what is larger than 2^-7 nothing is. */
-GRADUS_FN real environment_number(uint code) {
-    return (real)as_float((code << 13) + 0x30000000u) - R(4.656612873077393e-10);
-}
-
-/* The same after `before`, or several would be packed into a vector (kernels/lib/ordered.h). */
+ * choice; of what is larger than 2^-7 nothing is. After `before`, or several would be packed into a vector
+ * (kernels/lib/ordered.h). */
 GRADUS_FN real environment_number_after(uint code, real before) {
     return (real)as_float((code << 13) + 0x30000000u) - r_after(R(4.656612873077393e-10), before);
 }
+GRADUS_FN real environment_number(uint code) { return environment_number_after(code, R(0)); }
 
 typedef struct {
     rgb radiance;    /* over the light's value */
@@ -97,12 +94,12 @@ GRADUS_FN real environment_mix(real n00, real n10, real n01, real n11, real s, r
 GRADUS_FN environment_texel environment_between(environment_corners c, real s, real t) {
     environment_texel e;
     e.importance = environment_mix(c.t00.importance, c.t10.importance, c.t01.importance, c.t11.importance, s, t, s);
-    e.radiance.r = environment_mix(c.t00.radiance.r, c.t10.radiance.r, c.t01.radiance.r, c.t11.radiance.r, s, t,
-                                   e.importance);
-    e.radiance.g = environment_mix(c.t00.radiance.g, c.t10.radiance.g, c.t01.radiance.g, c.t11.radiance.g, s, t,
-                                   e.radiance.r);
-    e.radiance.b = environment_mix(c.t00.radiance.b, c.t10.radiance.b, c.t01.radiance.b, c.t11.radiance.b, s, t,
-                                   e.radiance.g);
+    e.radiance.r =
+        environment_mix(c.t00.radiance.r, c.t10.radiance.r, c.t01.radiance.r, c.t11.radiance.r, s, t, e.importance);
+    e.radiance.g =
+        environment_mix(c.t00.radiance.g, c.t10.radiance.g, c.t01.radiance.g, c.t11.radiance.g, s, t, e.radiance.r);
+    e.radiance.b =
+        environment_mix(c.t00.radiance.b, c.t10.radiance.b, c.t01.radiance.b, c.t11.radiance.b, s, t, e.radiance.g);
     return e;
 }
 
@@ -157,8 +154,8 @@ typedef struct {
  * place in it by u.c and u.d. */
 GRADUS_FN environment_choice environment_sample(random4 u, real scale, uint unit ENVIRONMENT_PARAMETERS) {
     /* Each number in a way of its own, or they would be packed (kernels/lib/ordered.h). */
-    const random_bits bits = random_hash(as_uint((float)u.a), (uint)(u.b * R(16777216)), as_uint((float)(u.c + R(1))),
-                                         0x656E7669u);
+    const random_bits bits =
+        random_hash(as_uint((float)u.a), (uint)(u.b * R(16777216)), as_uint((float)(u.c + R(1))), 0x656E7669u);
     const uint drawn = mul_hi(bits.x, environment_strip_count);
     const uint limit = environment_strips[(size_t)drawn * 2u], other = environment_strips[(size_t)drawn * 2u + unit];
     const uint strip = bits.y < limit ? drawn : other;
@@ -180,7 +177,8 @@ GRADUS_FN environment_choice environment_sample(random4 u, real scale, uint unit
     const environment_texel e = environment_between(c, s, t);
     const real along = ((real)column + s + R(0.5)) / (real)environment_columns;
     const sine_cosine turn = approx_sine_cosine_2pi(along < R(1) ? along : along - R(1));
-    const sine_cosine from_pole = approx_sine_cosine_2pi(R(0.5) * ((real)row + r_after(t, turn.sine + turn.cosine)) / (real)max(environment_rows, 1u));
+    const sine_cosine from_pole = approx_sine_cosine_2pi(R(0.5) * ((real)row + r_after(t, turn.sine + turn.cosine)) /
+                                                         (real)max(environment_rows, 1u));
     environment_choice chosen;
     chosen.direction = v3(from_pole.sine * turn.sine, from_pole.cosine, -from_pole.sine * turn.cosine);
     chosen.radiance = e.radiance;

@@ -34,6 +34,12 @@ GRADUS_FN fresnel_dielectric_result fresnel_dielectric(real cosine, real eta) {
     return result;
 }
 
+/* Reflectance at normal incidence on a dielectric interface. */
+GRADUS_FN real fresnel_at_normal(real eta) {
+    const real root = (eta - R(1)) / (eta + R(1));
+    return root * root;
+}
+
 /* One channel of a conductor, index eta + i k relative to the outside; cosine in [0, 1]. Exact (Born and Wolf,
  * Principles of Optics, 14.2), with a^2 + b^2 and the smaller of a^2, b^2 formed without cancellation.
  * eta = 0, k = 1 reflects everything. */

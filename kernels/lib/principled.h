@@ -4,7 +4,7 @@
 #define GRADUS_LIB_PRINCIPLED_H
 #include "kernels/lib/bsdf_sample.h"
 #include "kernels/lib/fresnel.h"
-#include "kernels/lib/microfacet.h"
+#include "kernels/lib/microfacet_event.h"
 #include "kernels/lib/ordered.h"
 #include "kernels/lib/warp.h"
 
@@ -23,11 +23,9 @@ GRADUS_FN rgb rgb_mix(rgb a, rgb b, real share) {
     return rgb3(principled_mix(a.r, b.r, share), principled_mix(a.g, b.g, share), principled_mix(a.b, b.b, share));
 }
 
-GRADUS_FN real principled_luminance(rgb c) { return R(0.212671) * c.r + R(0.715160) * c.g + R(0.072169) * c.b; }
-
 /* The base colour at luminance 1; white where it is black. */
 GRADUS_FN rgb principled_tint(rgb base) {
-    const real luminance = principled_luminance(base);
+    const real luminance = rgb_luminance(base);
     return rgb_select(luminance > R(0), rgb_scale(base, R(1) / r_max(luminance, R(1e-20))), rgb_gray(R(1)));
 }
 
@@ -70,10 +68,6 @@ GRADUS_FN real principled_curve(real cosine, real cosine_transmitted, real eta) 
     return schlick_weight(eta > R(1) ? cosine : cosine_transmitted);
 }
 GRADUS_FN rgb principled_schlick(rgb at_normal, real curve) { return rgb_mix(at_normal, rgb_gray(R(1)), curve); }
-GRADUS_FN real principled_at_normal(real eta) {
-    const real root = (eta - R(1)) / (eta + R(1));
-    return root * root;
-}
 
 GRADUS_LIB_END
 #endif

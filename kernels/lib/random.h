@@ -68,8 +68,8 @@ GRADUS_FN random4 random_draw(uint key_0, uint key_1, uint dimension) {
 #define random_dimension_leaving 1u
 #define random_dimension_light(depth) (1u + 2u * (depth))
 #define random_dimension_scatter(depth) (2u + 2u * (depth))
-/* Which part of a blend a path meets at a vertex: far from the others, and not by the highest bits alone, which the hash
- * does not spread. */
+/* Which part of a blend a path meets at a vertex: far from the others, and not by the highest bits alone, which the
+ * hash does not spread. */
 #define random_dimension_blend(depth) (0x2545F491u + (depth))
 
 GRADUS_LIB_END

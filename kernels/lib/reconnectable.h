@@ -2,6 +2,7 @@
 #ifndef GRADUS_LIB_RECONNECTABLE_H
 #define GRADUS_LIB_RECONNECTABLE_H
 //! traits: TRAIT_TWO_FACED
+#include "kernels/lib/material_side.h"
 #include "kernels/lib/vector.h"
 #include "kernels/shared/scene_records.h"
 #include "kernels/shared/tables.h"
@@ -11,14 +12,12 @@ GRADUS_LIB_BEGIN
 /* What a ray finds there: the kind of the material on the side that it comes from. */
 GRADUS_FN uint kind_of_primitive(GRADUS_GLOBAL const uint *primitive_material, GRADUS_GLOBAL const uint *material_back,
                                  GRADUS_GLOBAL const uint *material_kind, uint primitive, int is_behind) {
-    const uint sided_material = primitive_material[primitive];
-    uint material_index = material_record(sided_material);
     (void)material_back, (void)is_behind;
 #if TRAIT_TWO_FACED
-    const uint back = material_back[material_index];
-    material_index = (sided_material & material_two_sided) != 0u && is_behind ? back : material_index;
+    return material_kind[material_on_side(material_back, primitive_material[primitive], is_behind)];
+#else
+    return material_kind[material_record(primitive_material[primitive])];
 #endif
-    return material_kind[material_index];
 }
 
 /* 1 for rough surfaces, and for those that emit: there paths end, whatever the surface does with light. */

@@ -2,6 +2,7 @@
 #ifndef GRADUS_LIB_SURFACE_POINT_H
 #define GRADUS_LIB_SURFACE_POINT_H
 //! traits: TRAIT_SHADING_NORMALS TRAIT_ANISOTROPIC TRAIT_TWO_SIDED TRAIT_TWO_FACED
+#include "kernels/lib/material_side.h"
 #include "kernels/lib/surface_side.h"
 
 GRADUS_LIB_BEGIN
@@ -29,10 +30,10 @@ GRADUS_FN surface_point surface_point_at(GRADUS_GLOBAL const real *triangles,
     uint material_index = material_record(sided_material);
     vec3 geometric = hit.normal;
 #if TRAIT_TWO_SIDED
-    const int turned = (sided_material & material_two_sided) != 0u && v3_dot(shading, direction) > R(0);
+    const int is_behind = v3_dot(shading, direction) > R(0);
+    const int turned = (sided_material & material_two_sided) != 0u && is_behind;
 #if TRAIT_TWO_FACED
-    const uint back = material_back[material_index];
-    material_index = turned ? back : material_index;
+    material_index = material_on_side(material_back, sided_material, is_behind);
 #endif
     const real turn = turned ? R(-1) : R(1);
     geometric = v3_scale(geometric, turn);

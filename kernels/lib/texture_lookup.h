@@ -112,9 +112,6 @@ GRADUS_FN rgb texture_between(rgb a, rgb b, real share) {
     return rgb3(r, g, blue);
 }
 
-/* What a number is of a coloured texture. */
-GRADUS_FN real texture_luminance(rgb c) { return R(0.212671) * c.r + R(0.715160) * c.g + R(0.072169) * c.b; }
-
 GRADUS_FN rgb texture_lookup(GRADUS_GLOBAL const uint *textures, GRADUS_GLOBAL const real *texture_reals,
                              GRADUS_GLOBAL const uint *texels, GRADUS_GLOBAL const real *texture_decode, uint unit,
                              uint texture, real u, real v) {

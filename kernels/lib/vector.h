@@ -58,5 +58,8 @@ GRADUS_FN rgb rgb_select(int first, rgb a, rgb b) {
 }
 GRADUS_FN real rgb_max(rgb a) { return r_max(a.r, r_max(a.g, a.b)); }
 
+/* Of linear sRGB. */
+GRADUS_FN real rgb_luminance(rgb c) { return R(0.212671) * c.r + R(0.715160) * c.g + R(0.072169) * c.b; }
+
 GRADUS_LIB_END
 #endif

@@ -84,7 +84,8 @@ GRADUS_LIB_END
 #endif
 
 /* The only built-ins that kernels/lib may call: each vectorises on every CPU implementation and is one
- * instruction on GPUs. They are declared in kernels/shared/builtins.h too. Transcendental functions are in kernels/lib/approximation.h. */
+ * instruction on GPUs. They are declared in kernels/shared/builtins.h too. Transcendental functions are in
+ * kernels/lib/approximation.h. */
 #ifdef __OPENCL_VERSION__
 #define r_sqrt(x) sqrt((real)(x))
 #define r_abs(x) fabs((real)(x))

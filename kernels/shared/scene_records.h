@@ -54,7 +54,7 @@
 #define GRADUS_LIGHT_FIELDS(FIELD)                                                                                     \
     FIELD(light, alias_threshold, "a draw below it keeps this light, above it takes its alias")                        \
     FIELD(light, probability, "with which the light is chosen, by power")                                              \
-    FIELD(light, value_r, "radiance, intensity or irradiance; of a map, what its numbers are times")                                                         \
+    FIELD(light, value_r, "radiance, intensity or irradiance; of a map, what its numbers are times")                   \
     FIELD(light, value_g, "")                                                                                          \
     FIELD(light, value_b, "")                                                                                          \
     FIELD(light, p_x, "")                                                                                              \
@@ -66,7 +66,7 @@
     FIELD(light, e2_x, "")                                                                                             \
     FIELD(light, e2_y, "")                                                                                             \
     FIELD(light, e2_z, "")                                                                                             \
-    FIELD(light, inverse_area, "triangles and spheres; for the density of hits; of a map, its scale (environment.h)")                                       \
+    FIELD(light, inverse_area, "triangles and spheres; for the density of hits; of a map, its scale (environment.h)")  \
     FIELD(light, offset, "of the triangle or sphere")
 
 /* How light paths choose among the lights. */

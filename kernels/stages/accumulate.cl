@@ -3,6 +3,7 @@
  * weight. */
 //! traits: TRAIT_AOV TRAIT_FILTER_SIGNED
 #include "kernels/lib/compensated.h"
+#include "kernels/lib/filter_weight.h"
 #include "kernels/lib/finite.h"
 #include "kernels/shared/stage.h"
 
@@ -33,12 +34,7 @@ STAGE accumulate(uint count, uint slots, uint pixels, uint first_slot, uint firs
     const uint slot = first_slot + (uint)i;
     const uint unwrapped = first_pixel + (uint)i;
     const uint pixel = unwrapped >= pixels ? unwrapped - pixels : unwrapped;
-#if TRAIT_FILTER_SIGNED
-    const real weight = AT(filtered, weight, slot);
-#define WEIGHTED(x) ((x)*weight)
-#else
-#define WEIGHTED(x) (x)
-#endif
+    FILTER_WEIGHT(slot)
     rgb value = AT_RGB(radiance, value, slot);
     value = rgb3(WEIGHTED(value.r), WEIGHTED(value.g), WEIGHTED(value.b));
 #if TRAIT_AOV

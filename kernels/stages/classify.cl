@@ -10,6 +10,7 @@
  * offset paths are at the next vertex decides the phase (gradient_path_tracer.h). */
 //! traits: TRAIT_ENVIRONMENT TRAIT_TWO_FACED TRAIT_GRADIENT TRAIT_APART
 #include "kernels/lib/gradient.h"
+#include "kernels/lib/material_side.h"
 #include "kernels/lib/surface_side.h"
 #include "kernels/lib/textured_material.h"
 #include "kernels/shared/stage.h"
@@ -69,11 +70,9 @@ STAGE classify(uint count, uint unit, uint capacity, __global const real *ray, _
 #endif
     uint escaped_bin = 0u;
 #if GATHER
-    const uint sided_material = primitive_material[present];
-    uint record = material_record(sided_material);
+    uint record = material_record(primitive_material[present]);
 #if TRAIT_TWO_FACED
-    const uint back = material_back[record];
-    record = (sided_material & material_two_sided) != 0u && behind ? back : record;
+    record = material_on_side(material_back, primitive_material[present], behind);
 #endif
 #if TRAIT_BLENDS
     record = hit ? chosen : 0u;

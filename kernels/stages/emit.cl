@@ -27,9 +27,9 @@ STAGE emit(uint count, uint unit, uint capacity, uint first_row, uint first_slot
     const random_bits key = random_key(seed_low, seed_high, random_pixel_of_lights, low, high);
     const random4 choice = random_draw(key.x, key.y, random_dimension_emission);
     const random4 leaving = random_draw(key.x, key.y, random_dimension_leaving);
-    const light_emission emitted = emission_sampling(lights, light_kinds, emissions, emission_alias, light_count,
-                                                     v3(scene_center_x, scene_center_y, scene_center_z),
-                                                     R(0.5) * scene_diameter, unit, choice, leaving ENVIRONMENT_ARGUMENTS);
+    const light_emission emitted = emission_sampling(
+        lights, light_kinds, emissions, emission_alias, light_count, v3(scene_center_x, scene_center_y, scene_center_z),
+        R(0.5) * scene_diameter, unit, choice, leaving ENVIRONMENT_ARGUMENTS);
     SET_V3(ray, origin, row, emitted.origin);
     SET_V3(ray, direction, row, emitted.direction);
     AT_UINT(ray, primitive, row) = ray_pending;

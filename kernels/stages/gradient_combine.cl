@@ -2,6 +2,7 @@
  * sample, the four differences, and in `radiance` the whole sample, with what the camera sees of lights. Of filters
  * with negative lobes primal and differences get the sample's weight here, the whole sample in `accumulate`. */
 //! traits: TRAIT_FILTER_SIGNED
+#include "kernels/lib/filter_weight.h"
 #include "kernels/lib/finite.h"
 #include "kernels/lib/weighted_difference.h"
 #include "kernels/shared/stage.h"
@@ -18,12 +19,7 @@ STAGE gradient_combine(uint count, uint slots, __global real *radiance, __global
     const size_t slot = work_item();
     if (slot >= count)
         return;
-#if TRAIT_FILTER_SIGNED
-    const real weight = AT(filtered, weight, slot);
-#define WEIGHTED(x) ((x)*weight)
-#else
-#define WEIGHTED(x) (x)
-#endif
+    FILTER_WEIGHT(slot)
     const rgb after = AT_RGB(radiance, value, slot);
     const rgb base = rgb_mul(AT_RGB(prefix, throughput, slot), after);
     const rgb primal = rgb_add(AT_RGB(prefix, value, slot), base);

@@ -109,9 +109,9 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint stride, uint cap
 #if ESCAPED
 #if TRAIT_LIGHT_ENVIRONMENT
         /* A path that copied has a direction of its own; of one that sent no ray what is there is not used. */
-        const light_found own = light_escaped(
-            lights, environment_light, unit,
-            v3_select(is_apart, AT_V3(offset_ray, direction, sent), direction) ENVIRONMENT_ARGUMENTS);
+        const light_found own =
+            light_escaped(lights, environment_light, unit,
+                          v3_select(is_apart, AT_V3(offset_ray, direction, sent), direction) ENVIRONMENT_ARGUMENTS);
 #else
         const light_found own = found;
 #endif

@@ -10,6 +10,7 @@
 //! traits: TRAIT_TEXTURED TRAIT_TWO_FACED TRAIT_SPHERES TRAIT_TRIANGLES TRAIT_BLENDS TRAIT_SHARED_JITTER
 #include "kernels/lib/approximation.h"
 #include "kernels/lib/division.h"
+#include "kernels/lib/material_side.h"
 #include "kernels/lib/random.h"
 #include "kernels/lib/surface_side.h"
 #include "kernels/lib/texture_lookup.h"
@@ -22,21 +23,21 @@
     const rgb looked_up =                                                                                              \
         texture_lookup(textures, texture_reals, texels, texture_decode, unit, is_constant ? 0u : number, u, v);        \
     GRADUS_GLOBAL const real *constants = materials + (size_t)record * material_stride;
-#define LEAVE(column, constant, value)                                                                                 \
-    surface[(size_t)textured_##column * traced_rows + row] =                                                           \
-        is_constant ? constants[material_##constant * (size_t)unit] : (value);
+#define LEAVE(field, value)                                                                                            \
+    surface[(size_t)textured_##field * traced_rows + row] =                                                            \
+        is_constant ? constants[material_##field * (size_t)unit] : (value);
 #define LEAVE_COLOR(with, name, value, text)                                                                           \
     if (IS_TEXTURED(name)) {                                                                                           \
         LOOK_UP(name)                                                                                                  \
-        LEAVE(name##_r, name##_r, looked_up.r)                                                                         \
-        LEAVE(name##_g, name##_g, looked_up.g)                                                                         \
-        LEAVE(name##_b, name##_b, looked_up.b)                                                                         \
+        LEAVE(name##_r, looked_up.r)                                                                                   \
+        LEAVE(name##_g, looked_up.g)                                                                                   \
+        LEAVE(name##_b, looked_up.b)                                                                                   \
     }
 /* Of a coloured texture its luminance. */
 #define LEAVE_NUMBER(with, name, value, text)                                                                          \
     if (IS_TEXTURED(name)) {                                                                                           \
         LOOK_UP(name)                                                                                                  \
-        LEAVE(name, name, texture_luminance(looked_up))                                                                \
+        LEAVE(name, rgb_luminance(looked_up))                                                                          \
     }
 
 STAGE read_material(uint count, uint unit, uint traced_rows, __global const real *traced, __global real *surface,
@@ -78,12 +79,10 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
     const vec3 direction = AT_V3(traced, direction, row);
     const primitive_hit hit =
         primitive_hit_of(triangles, spheres, unit, triangle_count, primitive, AT_V3(traced, origin, row), direction);
-    const uint sided_material = primitive_material[primitive];
-    uint record = material_record(sided_material);
+    uint record = material_record(primitive_material[primitive]);
 #if TRAIT_TWO_FACED
     const int behind = is_met_from_behind(triangle_normals, unit, triangle_count, primitive, hit, direction);
-    const uint back = material_back[record];
-    record = (sided_material & material_two_sided) != 0u && behind ? back : record;
+    record = material_on_side(material_back, primitive_material[primitive], behind);
 #endif
     real u = R(0), v = R(0);
 #if TRAIT_TRIANGLES
@@ -135,7 +134,7 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
 #if TRAIT_TEXTURES
         const uint number = FIELD_OF(blend, blends, record, weight_texture);
         const int is_constant = number == texture_none;
-        const real looked_up = texture_luminance(
+        const real looked_up = rgb_luminance(
             texture_lookup(textures, texture_reals, texels, texture_decode, unit, is_constant ? 0u : number, u, v));
         weight = is_constant ? weight : looked_up;
 #endif

@@ -125,7 +125,8 @@ LightPaths::LightPaths(Session &session, Stages &consumers, const Scene &scene, 
                        Direct direct)
     : session_(session), consumers_(consumers), wanted_(options.photons),
       layout_(bin_layout(session, direct == Direct::left_out)), emit_(stages_.add(emit_stage(session))),
-      paths_(session, stages_, layout_, {{"FRESH_APART", layout_.phases > 1 ? "1" : "0"}}, {"bins_of_phase", "fresh"}, true),
+      paths_(session, stages_, layout_, {{"FRESH_APART", layout_.phases > 1 ? "1" : "0"}}, {"bins_of_phase", "fresh"},
+             true),
       scatter_(stages_.add(scatter_stage())), scatter_first_(stages_.add(scatter_first_stage(layout_.phases > 1))),
       count_(stages_.add(photons_stage("count", {"rows"}))), scan_(stages_.add(photons_stage("scan", {"chunks"}))),
       place_(stages_.add(photons_stage("place", {"rows"}))), order_(stages_.add(order_stage())) {

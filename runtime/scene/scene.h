@@ -117,8 +117,8 @@ struct Material {
     Bsdf front;
     Bsdf back;              ///< used only where two_sided
     bool two_sided = false; ///< never true for kinds that transmit, which have both sides by nature
-    Number opacity = 1;     ///< share of the rays that meet the surface, of a coloured texture its luminance; the others
-                            ///< pass, as if nothing were there
+    Number opacity = 1; ///< share of the rays that meet the surface, of a coloured texture its luminance; the others
+                        ///< pass, as if nothing were there
     std::string name;
 };
 
