@@ -24,6 +24,7 @@ TraitMap traits_for(const Scene &scene, const SessionOptions &options, const Tra
     // Settings of a method, which no scene has.
     traits["TRAIT_SHARED_JITTER"] = 0;
     traits["TRAIT_STRATIFIED"] = 0;
+    traits["TRAIT_HALVES"] = 0;
     traits["TRAIT_GRADIENT"] = 0;
     traits["TRAIT_LIGHT_VERTICES"] = 0;
     traits["TRAIT_LIGHT_STARTS"] = 0;

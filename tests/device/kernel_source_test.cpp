@@ -90,7 +90,7 @@ TEST(KernelTraits, AreThoseThatAMethodKnows) {
     std::set<std::string> known = {
         "TRAIT_AOV",         "TRAIT_SHARED_JITTER",  "TRAIT_APART",        "TRAIT_SHIFT_DISTANCE",
         "TRAIT_GRADIENT",    "TRAIT_LIGHT_VERTICES", "TRAIT_LIGHT_STARTS", "TRAIT_STRATIFIED",
-        "TRAIT_ONLY_CHAINS", "SAMPLES_LIGHTS",       "FEW_LIGHTS",         "MANY_LIGHTS",
+        "TRAIT_ONLY_CHAINS", "TRAIT_HALVES", "SAMPLES_LIGHTS",       "FEW_LIGHTS",         "MANY_LIGHTS",
         "STRATEGY",          "SOLVER_CHANNELS",      "SOLVER_WEIGHTED",    "SOLVER_JOINT"};
     for (const auto &[name, value] : scene_traits(Scene{}))
         known.insert(name);

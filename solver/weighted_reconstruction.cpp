@@ -1,0 +1,144 @@
+#include "solver/weighted_reconstruction.h"
+
+#include <map>
+
+namespace gradus {
+
+namespace {
+
+/// The solver's own bound of weights, far from what variances give: these have a bound of their own, by place.
+constexpr double no_largest_weight = 1e9;
+
+std::vector<Kernel> build_smoothing(Device &device, std::uint32_t channels) {
+    const char *file = "kernels/solver/smooth_variance.cl";
+    KernelLibrary library(
+        device, {{"SOLVER_CHANNELS", static_cast<int>(channels)}, {"SOLVER_WEIGHTED", 0}, {"SOLVER_JOINT", 1}});
+    return library.build({{"smooth_rows", file, "smooth_rows", {}},
+                          {"smooth_columns", file, "smooth_columns", {}},
+                          {"mix_images", file, "mix_images", {}}});
+}
+
+} // namespace
+
+VarianceSmoother::VarianceSmoother(Device &device, std::uint32_t width, std::uint32_t height, std::uint32_t channels)
+    : device_(device), width_(width), height_(height), channels_(channels) {
+    std::vector<Kernel> kernels = build_smoothing(device, channels);
+    rows_ = std::move(kernels[0]);
+    columns_ = std::move(kernels[1]);
+}
+
+const Buffer &VarianceSmoother::smoothed(const Buffer &variance, const Buffer &brightness, Differences differences) {
+    const std::size_t pixels = std::size_t(width_) * height_;
+    if (!across_.valid()) {
+        across_ = Buffer(device_, "across", 3 * pixels * sizeof(float));
+        smoothed_ = Buffer(device_, "smoothed", channels_ * pixels * sizeof(float));
+    }
+    for (Kernel *kernel : {&rows_, &columns_}) {
+        kernel->set("width", width_);
+        kernel->set("height", height_);
+        kernel->bind(across_);
+    }
+    rows_.set("edge_columns", width_ - (differences == Differences::right ? 1 : 0));
+    rows_.set("edge_rows", height_ - (differences == Differences::down ? 1 : 0));
+    rows_.bind("variance", variance);
+    rows_.bind("primal", brightness);
+    rows_.launch(width_, height_);
+    columns_.bind(smoothed_);
+    columns_.launch(width_, height_);
+    return smoothed_;
+}
+
+ImageMixer::ImageMixer(Device &device) : mix_(std::move(build_smoothing(device, 3)[2])) {}
+
+void ImageMixer::mix(const Buffer &first, double a, const Buffer &second, double b, Buffer &result) {
+    const auto count = static_cast<std::uint32_t>(result.bytes() / sizeof(float));
+    mix_.set("count", count);
+    mix_.set_real("a", a);
+    mix_.set_real("b", b);
+    mix_.bind("first", first);
+    mix_.bind("second", second);
+    mix_.bind("mixed", result);
+    mix_.launch(count);
+}
+
+WeightedReconstruction::WeightedReconstruction(Device &device, PoissonSolver &solver)
+    : device_(device), solver_(solver), smoother_(device, solver.width(), solver.height(), solver.channels()),
+      mixer_(device) {}
+
+PoissonOptions WeightedReconstruction::options() {
+    PoissonOptions options;
+    options.norm = PoissonNorm::l2;
+    options.alpha_from_variances = true;
+    options.weigh_by_variance = true;
+    options.largest_weight = no_largest_weight;
+    return options;
+}
+
+void WeightedReconstruction::compile(Device &device, std::uint32_t channels) {
+    build_smoothing(device, channels);
+    PoissonSolver::compile(device, options(), channels);
+}
+
+PoissonReport WeightedReconstruction::solve_half(const HalfImages &half, const HalfImages &judge, Buffer &result) {
+    const auto image = [](const Buffer &buffer) { return [&buffer]() -> const Buffer & { return buffer; }; };
+    const auto variance = [&](const Buffer &buffer, VarianceSmoother::Differences differences) {
+        return [&, differences]() -> const Buffer & { return smoother_.smoothed(buffer, judge.primal, differences); };
+    };
+    BufferSources images;
+    images.primal = image(half.primal);
+    images.dx = image(half.dx);
+    images.dy = image(half.dy);
+    images.primal_variance = variance(judge.primal_variance, VarianceSmoother::Differences::none);
+    images.dx_variance = variance(judge.dx_variance, VarianceSmoother::Differences::right);
+    images.dy_variance = variance(judge.dy_variance, VarianceSmoother::Differences::down);
+    return solver_.solve(images, options(), result);
+}
+
+PoissonReport WeightedReconstruction::solve(const HalvedImages &halves, Buffer &result) {
+    const double first = double(halves[0].samples), second = double(halves[1].samples);
+    Buffer other(device_, "half_solution", result.bytes());
+    const PoissonReport of_first = solve_half(halves[0], halves[1], other);
+    PoissonReport report = solve_half(halves[1], halves[0], result);
+    mixer_.mix(other, first / (first + second), result, second / (first + second), result);
+    report.iterations += of_first.iterations;
+    report.converged = report.converged && of_first.converged;
+    report.objective += of_first.objective;
+    report.missing_primal += of_first.missing_primal;
+    report.missing_dx += of_first.missing_dx;
+    report.missing_dy += of_first.missing_dy;
+    report.filled += of_first.filled;
+    report.seconds += of_first.seconds;
+    std::map<std::string, KernelTime> times;
+    for (const PoissonReport *part : {&of_first, static_cast<const PoissonReport *>(&report)})
+        for (const KernelTime &time : part->kernels) {
+            KernelTime &sum = times[time.name];
+            sum.name = time.name;
+            sum.seconds += time.seconds;
+            sum.launches += time.launches;
+        }
+    report.kernels.clear();
+    for (const auto &[name, time] : times)
+        report.kernels.push_back(time);
+    return report;
+}
+
+PoissonReport solve_halves(Device &device, PoissonSolver &solver, const std::array<HostImages, 2> &images,
+                           const std::array<std::uint64_t, 2> &samples, float *result) {
+    const std::size_t bytes = std::size_t(solver.width()) * solver.height() * solver.channels() * sizeof(float);
+    HalvedImages halves;
+    for (int i = 0; i < 2; ++i) {
+        halves[i].primal = Buffer(device, "primal", images[i].primal, bytes);
+        halves[i].dx = Buffer(device, "dx", images[i].dx, bytes);
+        halves[i].dy = Buffer(device, "dy", images[i].dy, bytes);
+        halves[i].primal_variance = Buffer(device, "primal_variance", images[i].primal_variance, bytes);
+        halves[i].dx_variance = Buffer(device, "dx_variance", images[i].dx_variance, bytes);
+        halves[i].dy_variance = Buffer(device, "dy_variance", images[i].dy_variance, bytes);
+        halves[i].samples = samples[i];
+    }
+    Buffer solution(device, "solution", bytes);
+    const PoissonReport report = WeightedReconstruction(device, solver).solve(halves, solution);
+    solution.read(result, bytes);
+    return report;
+}
+
+} // namespace gradus
