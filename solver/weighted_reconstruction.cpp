@@ -1,6 +1,9 @@
 #include "solver/weighted_reconstruction.h"
 
+#include <algorithm>
+#include <iterator>
 #include <map>
+#include <utility>
 
 namespace gradus {
 
@@ -9,13 +12,27 @@ namespace {
 /// The solver's own bound of weights, far from what variances give: these have a bound of their own, by place.
 constexpr double no_largest_weight = 1e9;
 
+/// A variance is at least this share of the squared brightness, over the number of samples: none at all is luck.
+constexpr double least_of_a_sample = 1e-3;
+
+/// How far a pixel's neighbours are, and how much they count, from each smoothing to the next.
+struct Smoothing {
+    std::uint32_t step;
+    double side;
+};
+// Standard deviations of 0.4, 0.8, 1.6, 3.3 and 6.6 pixels in all.
+constexpr Smoothing smoothings[] = {{1, 0.07}, {1, 0.5}, {2, 0.5}, {4, 0.5}, {8, 0.5}};
+
+constexpr const char *kernel_names[] = {"mean_of_channels", "smooth_image", "add_logarithm", "geometric_mean",
+                                        "mix_images"};
+
 std::vector<Kernel> build_smoothing(Device &device, std::uint32_t channels) {
-    const char *file = "kernels/solver/smooth_variance.cl";
     KernelLibrary library(
         device, {{"SOLVER_CHANNELS", static_cast<int>(channels)}, {"SOLVER_WEIGHTED", 0}, {"SOLVER_JOINT", 1}});
-    return library.build({{"smooth_rows", file, "smooth_rows", {}},
-                          {"smooth_columns", file, "smooth_columns", {}},
-                          {"mix_images", file, "mix_images", {}}});
+    std::vector<KernelRequest> requests;
+    for (const char *name : kernel_names)
+        requests.push_back({name, "kernels/solver/smooth_variance.cl", name, {}});
+    return library.build(requests);
 }
 
 } // namespace
@@ -23,32 +40,74 @@ std::vector<Kernel> build_smoothing(Device &device, std::uint32_t channels) {
 VarianceSmoother::VarianceSmoother(Device &device, std::uint32_t width, std::uint32_t height, std::uint32_t channels)
     : device_(device), width_(width), height_(height), channels_(channels) {
     std::vector<Kernel> kernels = build_smoothing(device, channels);
-    rows_ = std::move(kernels[0]);
-    columns_ = std::move(kernels[1]);
+    mean_ = std::move(kernels[0]);
+    smooth_ = std::move(kernels[1]);
+    add_ = std::move(kernels[2]);
+    finish_ = std::move(kernels[3]);
 }
 
-const Buffer &VarianceSmoother::smoothed(const Buffer &variance, const Buffer &brightness, Differences differences) {
-    const std::size_t pixels = std::size_t(width_) * height_;
-    if (!across_.valid()) {
-        across_ = Buffer(device_, "across", 3 * pixels * sizeof(float));
-        smoothed_ = Buffer(device_, "smoothed", channels_ * pixels * sizeof(float));
+void VarianceSmoother::launch(Kernel &kernel) {
+    kernel.set("width", width_);
+    kernel.set("height", height_);
+    kernel.launch(width_, height_);
+}
+
+void VarianceSmoother::take_mean(const Buffer &image, bool is_variance) {
+    mean_.set("is_variance", is_variance);
+    mean_.bind("packed", image);
+    mean_.bind("mean", image_);
+    launch(mean_);
+}
+
+void VarianceSmoother::smooth(std::uint32_t columns, std::uint32_t rows, std::uint32_t step, double side) {
+    smooth_.set("columns", columns);
+    smooth_.set("rows", rows);
+    smooth_.set("step", step);
+    smooth_.set_real("side", side);
+    smooth_.bind("image", image_);
+    smooth_.bind("smoothed", other_);
+    launch(smooth_);
+    std::swap(image_, other_);
+}
+
+void VarianceSmoother::begin(const HalfImages &judge) {
+    const std::size_t pixels = std::size_t(width_) * height_, bytes = pixels * sizeof(float);
+    if (!image_.valid()) {
+        image_ = Buffer(device_, "image", bytes);
+        other_ = Buffer(device_, "image", bytes);
+        brightness_ = Buffer(device_, "brightness", bytes);
+        logarithms_ = Buffer(device_, "logarithms", 2 * bytes);
+        smoothed_ = Buffer(device_, "smoothed", channels_ * bytes);
     }
-    for (Kernel *kernel : {&rows_, &columns_}) {
-        kernel->set("width", width_);
-        kernel->set("height", height_);
-        kernel->bind(across_);
+    samples_ = std::max(double(judge.samples) / double(pixels), double(least_half_samples));
+    take_mean(judge.primal, false);
+    for (int i = 0; i < 2; ++i)
+        smooth(width_, height_, 1, 0.5);
+    std::swap(image_, brightness_);
+}
+
+const Buffer &VarianceSmoother::smoothed(const Buffer &variance, Differences differences) {
+    take_mean(variance, true);
+    const std::uint32_t columns = width_ - (differences == Differences::right ? 1 : 0),
+                        rows = height_ - (differences == Differences::down ? 1 : 0);
+    for (std::size_t i = 0; i < std::size(smoothings); ++i) {
+        smooth(columns, rows, smoothings[i].step, smoothings[i].side);
+        // The fewer samples, the less the pixel itself knows.
+        add_.set_real("share", i == 0 ? 2 * (1 - 1 / samples_) : 1);
+        add_.set_real("least", least_of_a_sample / samples_);
+        add_.set("begins", i == 0);
+        add_.bind("variance", image_);
+        add_.bind("brightness", brightness_);
+        add_.bind(logarithms_);
+        launch(add_);
     }
-    rows_.set("edge_columns", width_ - (differences == Differences::right ? 1 : 0));
-    rows_.set("edge_rows", height_ - (differences == Differences::down ? 1 : 0));
-    rows_.bind("variance", variance);
-    rows_.bind("primal", brightness);
-    rows_.launch(width_, height_);
-    columns_.bind(smoothed_);
-    columns_.launch(width_, height_);
+    finish_.bind(logarithms_);
+    finish_.bind(smoothed_);
+    launch(finish_);
     return smoothed_;
 }
 
-ImageMixer::ImageMixer(Device &device) : mix_(std::move(build_smoothing(device, 3)[2])) {}
+ImageMixer::ImageMixer(Device &device) : mix_(std::move(build_smoothing(device, 3)[4])) {}
 
 void ImageMixer::mix(const Buffer &first, double a, const Buffer &second, double b, Buffer &result) {
     const auto count = static_cast<std::uint32_t>(result.bytes() / sizeof(float));
@@ -82,8 +141,9 @@ void WeightedReconstruction::compile(Device &device, std::uint32_t channels) {
 PoissonReport WeightedReconstruction::solve_half(const HalfImages &half, const HalfImages &judge, Buffer &result) {
     const auto image = [](const Buffer &buffer) { return [&buffer]() -> const Buffer & { return buffer; }; };
     const auto variance = [&](const Buffer &buffer, VarianceSmoother::Differences differences) {
-        return [&, differences]() -> const Buffer & { return smoother_.smoothed(buffer, judge.primal, differences); };
+        return [&, differences]() -> const Buffer & { return smoother_.smoothed(buffer, differences); };
     };
+    smoother_.begin(judge);
     BufferSources images;
     images.primal = image(half.primal);
     images.dx = image(half.dx);

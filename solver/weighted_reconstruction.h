@@ -20,16 +20,23 @@ class VarianceSmoother {
 
     /// Of pixels, or of differences, which the last column or row has not.
     enum class Differences { none, right, down };
-    /// The variances of an image, smoothed over the neighbourhood (kernels/solver/smooth_variance.cl), at least a share
-    /// of the squared brightness there, and the same for all channels. `brightness`: the primal. The buffer is used
-    /// again by the next call.
-    const Buffer &smoothed(const Buffer &variance, const Buffer &brightness, Differences differences);
+    /// What follows is of this half.
+    void begin(const HalfImages &judge);
+    /// The variances of one of its images, smoothed over the neighbourhood (kernels/solver/smooth_variance.cl), at
+    /// least a share of the squared brightness there, and the same for all channels. -1 where there are none. The
+    /// buffer is used again by the next call.
+    const Buffer &smoothed(const Buffer &variance, Differences differences);
 
   private:
+    void launch(Kernel &kernel);
+    void take_mean(const Buffer &image, bool is_variance);
+    void smooth(std::uint32_t columns, std::uint32_t rows, std::uint32_t step, double side);
+
     Device &device_;
     std::uint32_t width_, height_, channels_;
-    Kernel rows_, columns_;
-    Buffer across_, smoothed_;
+    double samples_ = 0; ///< of a pixel
+    Kernel mean_, smooth_, add_, finish_;
+    Buffer image_, other_, brightness_, logarithms_, smoothed_;
 };
 
 /// Sums of images, value by value.
