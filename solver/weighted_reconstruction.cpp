@@ -17,7 +17,7 @@ constexpr double least_of_a_sample = 1e-3;
 
 /// How far a pixel's neighbours are, and how much they count, from each smoothing to the next.
 struct Smoothing {
-    std::uint32_t step;
+    std::uint32_t apart;
     double side;
 };
 // Standard deviations of 0.4, 0.8, 1.6, 3.3 and 6.6 pixels in all.
@@ -59,10 +59,10 @@ void VarianceSmoother::take_mean(const Buffer &image, bool is_variance) {
     launch(mean_);
 }
 
-void VarianceSmoother::smooth(std::uint32_t columns, std::uint32_t rows, std::uint32_t step, double side) {
+void VarianceSmoother::smooth(std::uint32_t columns, std::uint32_t rows, std::uint32_t apart, double side) {
     smooth_.set("columns", columns);
     smooth_.set("rows", rows);
-    smooth_.set("step", step);
+    smooth_.set("apart", apart);
     smooth_.set_real("side", side);
     smooth_.bind("image", image_);
     smooth_.bind("smoothed", other_);
@@ -91,7 +91,7 @@ const Buffer &VarianceSmoother::smoothed(const Buffer &variance, Differences dif
     const std::uint32_t columns = width_ - (differences == Differences::right ? 1 : 0),
                         rows = height_ - (differences == Differences::down ? 1 : 0);
     for (std::size_t i = 0; i < std::size(smoothings); ++i) {
-        smooth(columns, rows, smoothings[i].step, smoothings[i].side);
+        smooth(columns, rows, smoothings[i].apart, smoothings[i].side);
         // The fewer samples, the less the pixel itself knows.
         add_.set_real("share", i == 0 ? 2 * (1 - 1 / samples_) : 1);
         add_.set_real("least", least_of_a_sample / samples_);

@@ -30,7 +30,7 @@ class VarianceSmoother {
   private:
     void launch(Kernel &kernel);
     void take_mean(const Buffer &image, bool is_variance);
-    void smooth(std::uint32_t columns, std::uint32_t rows, std::uint32_t step, double side);
+    void smooth(std::uint32_t columns, std::uint32_t rows, std::uint32_t apart, double side);
 
     Device &device_;
     std::uint32_t width_, height_, channels_;

@@ -29,15 +29,15 @@ SOLVE mean_of_channels(IMAGE, uint is_variance, __global const float *packed, __
     mean[PLANE_AT(0)] = is_there ? r_abs(sum) * R(1.0 / SOLVER_CHANNELS) : R(-1);
 }
 
-/* smoothed = the mean of `image` and of its neighbours `step` pixels away, which count `side` beside it, at the corners
- * side^2; -1 where none of them is there. Only `columns` and `rows` of the image are. */
-SOLVE smooth_image(IMAGE, uint columns, uint rows, uint step, real side, __global const real *image,
+/* smoothed = the mean of `image` and of its neighbours `apart` pixels away, which count `side` beside it, at the
+ * corners side^2; -1 where none of them is there. Only `columns` and `rows` of the image are. */
+SOLVE smooth_image(IMAGE, uint columns, uint rows, uint apart, real side, __global const real *image,
                    __global real *smoothed) {
     IMAGE_PLACE
     real sum = R(0), weight = R(0);
     for (int dy = -1; dy <= 1; ++dy)
         for (int dx = -1; dx <= 1; ++dx) {
-            const int at_x = (int)x + dx * (int)step, at_y = (int)y + dy * (int)step;
+            const int at_x = (int)x + dx * (int)apart, at_y = (int)y + dy * (int)apart;
             const int inside = at_x >= 0 && at_y >= 0 && at_x < (int)columns && at_y < (int)rows;
             const real value = image[inside ? (size_t)at_y * width + (size_t)at_x : PLANE_AT(0)];
             const real tap = (dx == 0 ? R(1) : side) * (dy == 0 ? R(1) : side);
