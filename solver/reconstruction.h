@@ -18,7 +18,10 @@ constexpr bool needs_halves(Reconstruction reconstruction) {
 }
 
 /// As --reconstruction names it.
-const char *reconstruction_name(Reconstruction reconstruction);
+constexpr const char *reconstruction_name(Reconstruction reconstruction) {
+    constexpr const char *names[] = {"l1", "l2", "weighted", "guided"};
+    return names[static_cast<int>(reconstruction)];
+}
 
 /// What the mean of many renders tends to.
 enum class Accuracy {
@@ -26,6 +29,9 @@ enum class Accuracy {
     consistent, ///< to what is right as samples grow
     neither
 };
-const char *accuracy_name(Accuracy accuracy);
+constexpr const char *accuracy_name(Accuracy accuracy) {
+    constexpr const char *names[] = {"unbiased", "consistent", "neither"};
+    return names[static_cast<int>(accuracy)];
+}
 
 } // namespace gradus
