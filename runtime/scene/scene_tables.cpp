@@ -361,7 +361,8 @@ SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits) {
         add_textures(scene, tables);
         add_blends(scene, tables);
     }
-    tables.camera_clips = camera_clips(scene);
+    if (traits.at("TRAIT_NEAR_CLIP") || traits.at("TRAIT_FAR_CLIP"))
+        tables.camera_clips = camera_clips(scene);
     tables.camera_kind = scene.camera.kind;
     tables.camera = make_camera_record(scene.camera, scene.film, tables.camera_clips);
     // Kernels compiled for both kinds of primitives read a record of each, whichever they then take.

@@ -157,11 +157,40 @@ void for_each_blend(const Scene &scene, const Bsdf &bsdf, const std::function<vo
     for_each_blend(scene, scene.blended[blend.second], visit);
 }
 
-bool needs_material_stage(const Scene &scene) { return scene_traits(scene).at("TRAIT_MATERIAL") != 0; }
-
 bool bsdf_kind_is_mixed(const std::string &name) {
     const std::size_t place = place_of(name);
     return place < kinds().size() && kinds()[place].is_mixed;
+}
+
+namespace {
+
+/// Of textures and blends.
+void add_material_traits(const Scene &scene, TraitMap &traits) {
+    for (const Shape &shape : scene.shapes) {
+        const Material &material = scene.materials[shape.material];
+        for (const Bsdf *side : {&material.front, &material.back}) {
+            traits["TRAIT_BLENDS"] = std::max(traits["TRAIT_BLENDS"], blend_depth(scene, *side));
+            for_each_blend(scene, *side, [&](const Blend &blend) {
+                if (blend.weight.texture != no_texture)
+                    traits["TRAIT_TEXTURES"] |= texture_features(scene.textures[std::size_t(blend.weight.texture)]);
+            });
+        }
+    }
+    for_each_bsdf(scene, [&](const Bsdf &bsdf) {
+        for_each_textured_parameter(bsdf, [&](int number, std::int32_t texture) {
+            traits["TRAIT_TEXTURED"] |= 1 << number;
+            traits["TRAIT_TEXTURES"] |= texture_features(scene.textures[std::size_t(texture)]);
+        });
+    });
+    traits["TRAIT_MATERIAL"] = traits["TRAIT_TEXTURED"] != 0 || traits["TRAIT_BLENDS"] > 0;
+}
+
+} // namespace
+
+bool needs_material_stage(const Scene &scene) {
+    TraitMap traits;
+    add_material_traits(scene, traits);
+    return traits.at("TRAIT_MATERIAL") != 0;
 }
 
 TraitMap scene_traits(const Scene &scene) {
@@ -176,13 +205,6 @@ TraitMap scene_traits(const Scene &scene) {
         if (shape.emitter >= 0)
             traits[mesh ? "TRAIT_LIGHT_TRIANGLE" : "TRAIT_LIGHT_SPHERE"] = 1;
         const Material &material = scene.materials[shape.material];
-        for (const Bsdf *side : {&material.front, &material.back}) {
-            traits["TRAIT_BLENDS"] = std::max(traits["TRAIT_BLENDS"], blend_depth(scene, *side));
-            for_each_blend(scene, *side, [&](const Blend &blend) {
-                if (blend.weight.texture != no_texture)
-                    traits["TRAIT_TEXTURES"] |= texture_features(scene.textures[std::size_t(blend.weight.texture)]);
-            });
-        }
         if (material.two_sided) {
             traits["TRAIT_TWO_SIDED"] = 1;
             if (!(material.front == material.back))
@@ -197,12 +219,8 @@ TraitMap scene_traits(const Scene &scene) {
             traits["TRAIT_REFRACTION"] = 1;
         if (kind.has_roughness && bsdf.alpha_u != bsdf.alpha_v)
             traits["TRAIT_ANISOTROPIC"] = 1;
-        for_each_textured_parameter(bsdf, [&](int number, std::int32_t texture) {
-            traits["TRAIT_TEXTURED"] |= 1 << number;
-            traits["TRAIT_TEXTURES"] |= texture_features(scene.textures[std::size_t(texture)]);
-        });
     });
-    traits["TRAIT_MATERIAL"] = traits["TRAIT_TEXTURED"] != 0 || traits["TRAIT_BLENDS"] > 0;
+    add_material_traits(scene, traits);
     for (const Emitter &emitter : scene.emitters) {
         if (emitter.value == Rgb{})
             continue; // black: no light
