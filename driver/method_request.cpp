@@ -46,6 +46,16 @@ void add_method_options(CLI::App &command, const Services &services, MethodReque
         ->check(CLI::IsMember({"single", "double", "relaxed"}))
         ->default_str("single")
         ->group(group);
+    const std::map<std::string, RenderOptions::Sampler> samplers{{"sobol", RenderOptions::Sampler::sobol},
+                                                                 {"independent", RenderOptions::Sampler::independent}};
+    command
+        .add_option_function<std::string>(
+            "--sampler", [&request, samplers](const std::string &name) { request.options.sampler = samplers.at(name); },
+            "How the samples of a pixel are drawn: sobol, evenly, from a sequence scrambled by pixel and dimension, "
+            "with less noise; independent, each by itself, whose variances are exact")
+        ->check(CLI::IsMember({"sobol", "independent"}))
+        ->default_str("sobol")
+        ->group(group);
     command.add_flag("--aov", request.options.aov, "Also write albedo, normal, depth and variance layers")
         ->group(group);
     const char *reconstruction = "Reconstruction (gpt, auto)";

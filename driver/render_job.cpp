@@ -75,6 +75,7 @@ class RenderJob {
         record_.scene = request_.scene.path;
         record_.method = request_.method.method;
         record_.precision = precision_name(request_.method.options.precision);
+        record_.sampler = request_.method.options.sampler == RenderOptions::Sampler::sobol ? "sobol" : "independent";
         record_.seed = request_.method.options.seed;
 
         RenderOptions options = request_.method.options;
@@ -213,6 +214,7 @@ class RenderJob {
         image.metadata["scene"] = record_.scene;
         image.metadata["method"] = record_.method;
         image.metadata["precision"] = record_.precision;
+        image.metadata["sampler"] = record_.sampler;
         image.metadata["seed"] = std::to_string(record_.seed);
         image.metadata["samples"] = std::to_string(done);
         image.metadata["spp"] = fmt::format("{}", record_.samples_per_pixel);

@@ -82,6 +82,7 @@ nlohmann::json statistics_to_json(const RenderRecord &record, const Statistics &
                    {"scene", record.scene},
                    {"method", record.method},
                    {"precision", record.precision},
+                   {"sampler", record.sampler},
                    {"device", device_json(record.device)},
                    {"seed", record.seed},
                    {"width", record.width},

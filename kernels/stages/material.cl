@@ -11,7 +11,7 @@
 #include "kernels/lib/approximation.h"
 #include "kernels/lib/division.h"
 #include "kernels/lib/material_side.h"
-#include "kernels/lib/random.h"
+#include "kernels/lib/path_draw.h"
 #include "kernels/lib/surface_side.h"
 #include "kernels/lib/texture_lookup.h"
 #include "kernels/lib/textured_material.h"
@@ -113,11 +113,12 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
 #if OF_LIGHT_PATHS
     const uint key_0 = AT_UINT(light_path, key_0, i), key_1 = AT_UINT(light_path, key_1, i);
     const uint depth = AT_UINT(light_path, depth, i);
+    real choice = random_draw(key_0, key_1, random_dimension_blend(depth)).a;
 #else
     const uint key_0 = AT_UINT(path, key_0, i), key_1 = AT_UINT(path, key_1, i);
     const uint depth = AT_UINT(path, depth, i);
+    real choice = PATH_DRAW(key_0, key_1, random_dimension_blend(depth)).a;
 #endif
-    real choice = random_draw(key_0, key_1, random_dimension_blend(depth)).a;
 #if TRAIT_SHARED_JITTER
     /* An additive sequence, as the places within the pixel are: what all pixels share does not average out. */
     const uint sample = first_sample_low + divide(AT_UINT(path, slot, i), pixels_multiplier, pixels_shift);

@@ -23,7 +23,8 @@ TraitMap traits_for(const Scene &scene, const SessionOptions &options, const Tra
         traits = with_all_traits(traits);
     // Settings of a method, which no scene has.
     traits["TRAIT_SHARED_JITTER"] = 0;
-    traits["TRAIT_STRATIFIED"] = 0;
+    traits["TRAIT_STRATIFIED"] = options.sampler == SessionOptions::Sampler::sobol;
+    traits["TRAIT_LOBE_LEVELS"] = 0;
     traits["TRAIT_GRADIENT"] = 0;
     traits["TRAIT_LIGHT_VERTICES"] = 0;
     traits["TRAIT_LIGHT_STARTS"] = 0;
