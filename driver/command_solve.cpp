@@ -17,14 +17,19 @@ namespace {
 constexpr const char *notes_of_solve = R"(Examples:
   gradus solve layers.exr -o out.exr                      layers primal, dx, dy, and direct if there is one
   gradus solve --primal p.exr --dx dx.exr --dy dy.exr --direct d.exr -o out.exr
-  gradus solve layers.exr -o out.exr --norm L2 --alpha auto --stats out.json
+  gradus solve layers.exr -o out.exr --reconstruction l2 --alpha auto --stats out.json
   gradus solve layers.exr -o out.exr --layer primal=noisy --layer dx=d_right --layer dy=d_down
 
 Sought is the image I with the differences Gx to the right and Gy downwards, and near to the primal I0:
-  L1   least sum |Dx I - Gx| + |Dy I - Gy| + alpha |I - I0|, |.| over the channels of a pixel. Outliers stay
+  l1   least sum |Dx I - Gx| + |Dy I - Gy| + alpha |I - I0|, |.| over the channels of a pixel. Outliers stay
        where they are, and it looks best. It loses energy; a smooth correction brings local means back to I0's.
-  L2   least sum (Dx I - Gx)^2 + (Dy I - Gy)^2 + alpha^2 (I - I0)^2. Linear: without bias where the inputs have none,
+  l2   least sum (Dx I - Gx)^2 + (Dy I - Gy)^2 + alpha^2 (I - I0)^2. Linear: without bias where the inputs have none,
        and with the mean of I0. Each outlier leaves a bright and a dark spot.
+  weighted
+       least sum (Dx I - Gx)^2 / var Gx + (Dy I - Gy)^2 / var Gy + (I - I0)^2 / var I0 of each half of the samples, with
+       the variances of the other half, and the mean of both. Without bias where the halves are independent. It needs
+       what `gradus render --layers --reconstruction weighted` writes: primal_even, dx_even, dy_even, primal_odd and so
+       on, and the variance of each.
 A small alpha trusts the differences, a large one the primal; auto takes the ratio of their variances.
 
 Methods: multigrid cycles; cg, conjugate gradients; pcg, the same preconditioned by a multigrid cycle; jacobi, which is
@@ -139,10 +144,14 @@ void add_output_options(CLI::App &command, SolveRequest &request) {
 void add_problem_options(CLI::App &command, SolveRequest &request) {
     const char *group = "What is solved";
     PoissonOptions &options = request.options;
-    add_norm_option(command, group, [&options](PoissonNorm norm) { options.norm = norm; });
+    add_reconstruction_option(command, group, [&request, &options](Reconstruction reconstruction) {
+        request.reconstruction = reconstruction;
+        options.norm = reconstruction == Reconstruction::l1 ? PoissonNorm::l1 : PoissonNorm::l2;
+    });
     add_alpha_option(command, group, "0.2",
                      "Weight of the primal, from 0 (its mean alone) on; auto: from the variances",
-                     [&options](std::optional<double> alpha) {
+                     [&request, &options](std::optional<double> alpha) {
+                         request.alpha_is_given = true;
                          options.alpha_from_variances = !alpha;
                          options.alpha = alpha.value_or(options.alpha);
                      });

@@ -9,12 +9,13 @@
 #include <algorithm>
 #include <cctype>
 #include <optional>
+#include <string_view>
 
 namespace gradus {
 namespace {
 
 struct Names {
-    const char *name, *option; ///< as Gradus writes the layer; the option that names a file of its own
+    const char *name, *option; ///< as Gradus writes the layer; the option that names a file of its own, if there is one
     /// What other renderers call it, too; small letters and no separators (simplified()).
     std::vector<std::string> usual;
 };
@@ -27,7 +28,19 @@ const std::map<GradientLayer, Names> all_names = {
     {GradientLayer::primal_variance,
      {"primal_variance", "--variance-primal", {"primalvariance", "varianceprimal", "throughputvariance"}}},
     {GradientLayer::dx_variance, {"dx_variance", "--variance-dx", {"dxvariance", "variancedx", "gradientxvariance"}}},
-    {GradientLayer::dy_variance, {"dy_variance", "--variance-dy", {"dyvariance", "variancedy", "gradientyvariance"}}}};
+    {GradientLayer::dy_variance, {"dy_variance", "--variance-dy", {"dyvariance", "variancedy", "gradientyvariance"}}},
+    {GradientLayer::primal_even, {"primal_even", nullptr, {"primaleven"}}},
+    {GradientLayer::dx_even, {"dx_even", nullptr, {"dxeven"}}},
+    {GradientLayer::dy_even, {"dy_even", nullptr, {"dyeven"}}},
+    {GradientLayer::primal_even_variance, {"primal_even_variance", nullptr, {"primalevenvariance"}}},
+    {GradientLayer::dx_even_variance, {"dx_even_variance", nullptr, {"dxevenvariance"}}},
+    {GradientLayer::dy_even_variance, {"dy_even_variance", nullptr, {"dyevenvariance"}}},
+    {GradientLayer::primal_odd, {"primal_odd", nullptr, {"primalodd"}}},
+    {GradientLayer::dx_odd, {"dx_odd", nullptr, {"dxodd"}}},
+    {GradientLayer::dy_odd, {"dy_odd", nullptr, {"dyodd"}}},
+    {GradientLayer::primal_odd_variance, {"primal_odd_variance", nullptr, {"primaloddvariance"}}},
+    {GradientLayer::dx_odd_variance, {"dx_odd_variance", nullptr, {"dxoddvariance"}}},
+    {GradientLayer::dy_odd_variance, {"dy_odd_variance", nullptr, {"dyoddvariance"}}}};
 
 /// Small letters and digits alone, so that Gradient_X and gradientX are one.
 std::string simplified(const std::string &name) {
@@ -123,18 +136,29 @@ Found take_colours(const Image &image, const std::vector<const Channel *> &layer
 std::map<std::string, std::vector<GradientLayer>> files_to_read(const GradientSources &sources) {
     std::map<std::string, std::vector<GradientLayer>> files;
     for (const GradientLayer layer : gradient_layers) {
-        if (is_variance(layer) && !sources.variances)
+        if (layer != GradientLayer::direct && is_of_half(layer) != sources.halves)
+            continue;
+        if (is_variance(layer) && !sources.halves && !sources.variances)
             continue;
         const auto own = sources.files.find(layer);
         if (own != sources.files.end())
             files[own->second].push_back(layer);
         else if (!sources.layered.empty())
             files[sources.layered].push_back(layer);
+        else if (is_of_half(layer))
+            throw Error(ExitCode::usage, fmt::format("there is no {}: give a file with layers, of `gradus render "
+                                                     "--layers --reconstruction weighted`",
+                                                     layer_name(layer)));
         else if (layer != GradientLayer::direct)
             throw Error(ExitCode::usage, fmt::format("there is no {}: give {} FILE, or one file with layers",
                                                      layer_name(layer), all_names.at(layer).option));
     }
     return files;
+}
+
+/// That which sizes, channels and metadata go by.
+GradientLayer main_layer(const GradientSources &sources) {
+    return sources.halves ? GradientLayer::primal_even : GradientLayer::primal;
 }
 
 /// Adds what one file holds to `found`, and the metadata of the primal's file to `images`.
@@ -152,7 +176,7 @@ void read_file(const std::string &path, const std::vector<GradientLayer> &wanted
                                      layer_name(layer), list_of(layers), layer_name(layer)));
         const std::string where = name->empty() ? fmt::format("'{}'", path) : fmt::format("{} of '{}'", *name, path);
         found[layer] = take_colours(image, layers.at(*name), where);
-        if (layer == GradientLayer::primal)
+        if (layer == main_layer(sources))
             images.metadata = image.metadata;
     }
 }
@@ -169,9 +193,11 @@ void check_equal(const Found &primal, const Found &other) {
 
 } // namespace
 
-bool is_variance(GradientLayer layer) {
-    return layer == GradientLayer::primal_variance || layer == GradientLayer::dx_variance ||
-           layer == GradientLayer::dy_variance;
+bool is_variance(GradientLayer layer) { return std::string_view(layer_name(layer)).ends_with("_variance"); }
+
+bool is_of_half(GradientLayer layer) {
+    return std::any_of(half_layers.begin(), half_layers.end(),
+                       [&](const auto &half) { return std::find(half.begin(), half.end(), layer) != half.end(); });
 }
 
 const char *layer_name(GradientLayer layer) { return all_names.at(layer).name; }
@@ -186,7 +212,7 @@ GradientImages read_gradient_images(const GradientSources &sources) {
     std::map<GradientLayer, Found> found;
     for (const auto &[path, wanted] : files_to_read(sources))
         read_file(path, wanted, sources, found, images);
-    const Found &primal = found.at(GradientLayer::primal);
+    const Found &primal = found.at(main_layer(sources));
     for (const auto &[layer, other] : found)
         check_equal(primal, other);
     images.width = primal.width;

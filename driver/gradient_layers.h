@@ -9,16 +9,62 @@
 
 namespace gradus {
 
-enum class GradientLayer { primal, dx, dy, direct, primal_variance, dx_variance, dy_variance };
+enum class GradientLayer {
+    primal,
+    dx,
+    dy,
+    direct,
+    primal_variance,
+    dx_variance,
+    dy_variance,
+    // of the even samples, and of the odd ones
+    primal_even,
+    dx_even,
+    dy_even,
+    primal_even_variance,
+    dx_even_variance,
+    dy_even_variance,
+    primal_odd,
+    dx_odd,
+    dy_odd,
+    primal_odd_variance,
+    dx_odd_variance,
+    dy_odd_variance
+};
 
-inline constexpr std::array gradient_layers = {
-    GradientLayer::primal,          GradientLayer::dx,          GradientLayer::dy,         GradientLayer::direct,
-    GradientLayer::primal_variance, GradientLayer::dx_variance, GradientLayer::dy_variance};
+inline constexpr std::array gradient_layers = {GradientLayer::primal,
+                                               GradientLayer::dx,
+                                               GradientLayer::dy,
+                                               GradientLayer::direct,
+                                               GradientLayer::primal_variance,
+                                               GradientLayer::dx_variance,
+                                               GradientLayer::dy_variance,
+                                               GradientLayer::primal_even,
+                                               GradientLayer::dx_even,
+                                               GradientLayer::dy_even,
+                                               GradientLayer::primal_even_variance,
+                                               GradientLayer::dx_even_variance,
+                                               GradientLayer::dy_even_variance,
+                                               GradientLayer::primal_odd,
+                                               GradientLayer::dx_odd,
+                                               GradientLayer::dy_odd,
+                                               GradientLayer::primal_odd_variance,
+                                               GradientLayer::dx_odd_variance,
+                                               GradientLayer::dy_odd_variance};
+
+/// The layers of a half, 0 or 1: primal, dx, dy and their variances.
+inline constexpr std::array<std::array<GradientLayer, 6>, 2> half_layers = {
+    {{GradientLayer::primal_even, GradientLayer::dx_even, GradientLayer::dy_even, GradientLayer::primal_even_variance,
+      GradientLayer::dx_even_variance, GradientLayer::dy_even_variance},
+     {GradientLayer::primal_odd, GradientLayer::dx_odd, GradientLayer::dy_odd, GradientLayer::primal_odd_variance,
+      GradientLayer::dx_odd_variance, GradientLayer::dy_odd_variance}}};
 
 /// The name of a layer as Gradus writes it: "primal", "dx_variance".
 const char *layer_name(GradientLayer layer);
 
 bool is_variance(GradientLayer layer);
+/// Whether the layer is one of a half.
+bool is_of_half(GradientLayer layer);
 
 /// Where the images are.
 struct GradientSources {
@@ -28,6 +74,7 @@ struct GradientSources {
     /// outside of any layer.
     std::map<GradientLayer, std::string> names;
     bool variances = false;   ///< whether they are asked for; if not they are not read
+    bool halves = false;      ///< both halves are, instead of primal, dx, dy and their variances
     std::uint64_t limits = 1; ///< of read_image()
 };
 
@@ -42,7 +89,8 @@ struct GradientImages {
     const float *find(GradientLayer layer) const;
 };
 
-/// Reads primal, dx and dy, direct where there is one, and the variances where they are asked for.
+/// Reads primal, dx and dy, direct where there is one, and the variances where they are asked for; or both halves, and
+/// direct where there is one.
 ///
 /// In a file an image is the layer that the sources name, or else the first layer of one of its usual names in any
 /// case, or else, in a file of its own, the channels outside of any layer. Colours are the channels R, G and B, or Y

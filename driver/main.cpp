@@ -4,6 +4,7 @@
 #include "driver/tuning_store.h"
 #include "planning/make_method.h"
 #include "runtime/scene/traits.h"
+#include "solver/weighted_reconstruction.h"
 
 int main(int argc, char **argv) {
     gradus::Services services;
@@ -32,9 +33,17 @@ int main(int argc, char **argv) {
         const auto device = std::make_shared<gradus::Device>(selector, threads);
         gradus::check_images_fit(device->description(), width, height, channels);
         const auto solver = std::make_shared<gradus::PoissonSolver>(*device, width, height, channels);
-        return gradus::PreparedSolver{device, device->description(),
-                                      [solver](const gradus::HostImages &images, const gradus::PoissonOptions &options,
-                                               float *result) { return solver->solve(images, options, result); }};
+        gradus::PreparedSolver prepared;
+        prepared.device = device;
+        prepared.description = device->description();
+        prepared.solve = [solver](const gradus::HostImages &images, const gradus::PoissonOptions &options,
+                                  float *result) { return solver->solve(images, options, result); };
+        prepared.solve_halves = [device, solver](const std::array<gradus::HostImages, 2> &images,
+                                                 const std::array<std::uint64_t, 2> &samples, gradus::Reconstruction,
+                                                 float *result) {
+            return gradus::solve_halves(*device, *solver, images, samples, result);
+        };
+        return prepared;
     };
     return gradus::run_program(argc, argv, services);
 }

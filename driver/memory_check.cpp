@@ -65,6 +65,8 @@ std::uint64_t least_render_bytes(const Scene &scene, const RenderOptions &option
         channels += 3 + 3 + 1 + 3; // albedo, normal, depth, variance
     if (options.layers)
         channels += 4 * 3; // primal, dx, dy, direct
+    if (options.layers && needs_halves(options.reconstruction))
+        channels += 12 * 3; // primal, dx, dy of both halves, and their variances
     const auto [width, height] = image_size(scene.film);
     const SceneSummary summary = summarize(scene);
     // An image is planes, and once more the bytes of its file. Pictures lie in the scene and in the kernels' tables.

@@ -1,10 +1,13 @@
 #include "driver/reconstruction_options.h"
 
+#include "runtime/error.h"
+
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <charconv>
 #include <cmath>
+#include <map>
 
 namespace gradus {
 
@@ -16,17 +19,33 @@ std::optional<double> finite_number(const std::string &text) {
     return number;
 }
 
-void add_norm_option(CLI::App &command, const char *group, std::function<void(PoissonNorm)> set) {
+void add_reconstruction_option(CLI::App &command, const char *group, std::function<void(Reconstruction)> set) {
+    static const std::map<std::string, Reconstruction> reconstructions{
+        {"l1", Reconstruction::l1}, {"l2", Reconstruction::l2}, {"weighted", Reconstruction::weighted}};
+    CLI::Option *reconstruction =
+        command
+            .add_option_function<std::string>(
+                "--reconstruction", [set](const std::string &name) { set(reconstructions.at(name)); },
+                "l1: robust; l2: linear, one weight for all pixels; weighted: linear, each pixel and each difference "
+                "weighted by its variance, and without bias: two halves of the samples judge each other")
+            ->check(CLI::IsMember({"l1", "l2", "weighted"}))
+            ->default_str("l1")
+            ->group(group);
     command
         .add_option_function<std::string>(
             "--norm",
-            [set = std::move(set)](const std::string &name) {
-                set(name.back() == '1' ? PoissonNorm::l1 : PoissonNorm::l2);
-            },
-            "L1: robust; L2: linear")
+            [set](const std::string &name) { set(name.back() == '1' ? Reconstruction::l1 : Reconstruction::l2); },
+            "The old name of --reconstruction l1 and l2")
         ->check(CLI::IsMember({"L1", "L2"}, CLI::ignore_case))
-        ->default_str("L1")
+        ->excludes(reconstruction)
         ->group(group);
+}
+
+void check_alpha(Reconstruction reconstruction, bool given) {
+    if (given && needs_halves(reconstruction))
+        throw Error(ExitCode::usage,
+                    fmt::format("--alpha is one weight of the primal; --reconstruction {} gives each pixel its own",
+                                reconstruction_name(reconstruction)));
 }
 
 void add_alpha_option(CLI::App &command, const char *group, const char *standard, const char *text,

@@ -1,7 +1,7 @@
 // Options that `gradus solve` and the gradient-domain methods of `gradus render` share.
 #pragma once
 
-#include "solver/poisson_solver.h"
+#include "solver/reconstruction.h"
 
 #include <functional>
 #include <optional>
@@ -16,8 +16,11 @@ namespace gradus {
 /// The number that the whole text is, or nothing; NaN and infinity are none.
 std::optional<double> finite_number(const std::string &text);
 
-/// --norm L1|L2.
-void add_norm_option(CLI::App &command, const char *group, std::function<void(PoissonNorm)> set);
+/// --reconstruction l1|l2|weighted, and --norm, the old name of the first two.
+void add_reconstruction_option(CLI::App &command, const char *group, std::function<void(Reconstruction)> set);
+
+/// Throws Error(ExitCode::usage) where a weight of the primal is `given` to a reconstruction that has many.
+void check_alpha(Reconstruction reconstruction, bool given);
 
 /// --alpha NUMBER|auto, a number from 0 on; `set` gets nothing for auto. `standard` is the default to print.
 void add_alpha_option(CLI::App &command, const char *group, const char *standard, const char *text,

@@ -4,6 +4,7 @@
 #include "driver/memory_check.h"
 #include "driver/program.h"
 #include "driver/progress.h"
+#include "driver/reconstruction_options.h"
 #include "driver/standard_streams.h"
 #include "driver/statistics_json.h"
 #include "runtime/error.h"
@@ -62,6 +63,7 @@ class RenderJob {
             [this](const std::string &warning) { progress_.message("gradus: warning: " + warning); }, &files_read_);
         check_distinct(output_list(request_.outputs), files_read_);
         check_counts(scene);
+        check_alpha(request_.method.options.reconstruction, request_.method.options.alpha.has_value());
         check_memory(scene, request_.method.options);
         if (request_.time_limit > 0 && !request_.scene.samples_per_pixel)
             scene.settings.samples_per_pixel = endless_samples_per_pixel;
@@ -216,6 +218,9 @@ class RenderJob {
         image.metadata["precision"] = record_.precision;
         image.metadata["sampler"] = record_.sampler;
         image.metadata["seed"] = std::to_string(record_.seed);
+        const ReconstructionUsed used = prepared_.method->statistics().reconstruction;
+        image.metadata["reconstruction"] = used.name;
+        image.metadata["accuracy"] = used.accuracy;
         image.metadata["samples"] = std::to_string(done);
         image.metadata["spp"] = fmt::format("{}", record_.samples_per_pixel);
         image.metadata["device"] = record_.device.name;
@@ -238,6 +243,8 @@ class RenderJob {
         if (statistics.non_finite > 0)
             progress_.message(fmt::format("gradus: warning: {} samples were NaN or infinite and were left out",
                                           statistics.non_finite));
+        if (!statistics.reconstruction.note.empty())
+            progress_.message("gradus: warning: " + statistics.reconstruction.note);
         if (prepared_.method->done_samples() == 0 && prepared_.method->total_samples() > 0)
             progress_.message("gradus: warning: no batch of samples came to its end, so the image is black");
         if (black_pixels_ > 0)

@@ -7,6 +7,7 @@
 #include "runtime/io/load_scene.h"
 #include "solver/poisson_solver.h"
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -28,6 +29,10 @@ struct PreparedSolver {
     std::shared_ptr<void> device; ///< outlives the solver
     DeviceDescription description;
     std::function<PoissonReport(const HostImages &, const PoissonOptions &, float *result)> solve;
+    /// From both halves, of so many samples each, where `reconstruction` needs them.
+    std::function<PoissonReport(const std::array<HostImages, 2> &, const std::array<std::uint64_t, 2> &samples,
+                                Reconstruction reconstruction, float *result)>
+        solve_halves;
 };
 
 /// What a tuner found, and for which device.

@@ -1,17 +1,21 @@
 #include "driver/solve_job.h"
 
 #include "driver/program.h"
+#include "driver/reconstruction_options.h"
 #include "driver/solve_report.h"
 #include "driver/standard_streams.h"
 #include "runtime/error.h"
 #include "runtime/film/metrics.h"
 #include "runtime/io/image_io.h"
 #include "runtime/seconds_since.h"
+#include "solver/halves.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <chrono>
+#include <cstdlib>
 #include <new>
 
 namespace gradus {
@@ -32,6 +36,11 @@ void check_inputs_are_kept(const SolveRequest &request) {
 void check_options(const SolveRequest &request) {
     if (request.options.weigh_by_variance && request.options.norm == PoissonNorm::l1)
         refuse("--weights variance is for the norm L2: add --norm L2");
+    check_alpha(request.reconstruction, request.alpha_is_given);
+    if (needs_halves(request.reconstruction) && !(request.options == PoissonOptions{.norm = PoissonNorm::l2}))
+        refuse(fmt::format("--reconstruction {} chooses weights and method by itself: leave --weights, --method, "
+                           "--tolerance and --iterations out",
+                           reconstruction_name(request.reconstruction)));
     if (request.damping && request.options.method != LinearMethod::jacobi)
         refuse("--damping is for one method: add --method jacobi");
 }
@@ -42,6 +51,7 @@ class SolveJob {
         PoissonOptions &options = request_.options;
         options.damping = request_.damping.value_or(options.damping);
         request_.sources.variances = options.alpha_from_variances || options.weigh_by_variance;
+        request_.sources.halves = needs_halves(request_.reconstruction);
     }
 
     void run() {
@@ -67,7 +77,8 @@ class SolveJob {
             services_.prepare_solver(request_.device, request_.threads, images_.width, images_.height, channels);
         record_.prepare_seconds = seconds_since(start);
         record_.norm = request_.options.norm == PoissonNorm::l1 ? "L1" : "L2";
-        record_.weights = request_.options.weigh_by_variance ? "variance" : "uniform";
+        record_.reconstruction = reconstruction_name(request_.reconstruction);
+        record_.weights = request_.options.weigh_by_variance || request_.sources.halves ? "variance" : "uniform";
         record_.width = images_.width;
         record_.height = images_.height;
         record_.channels = channels;
@@ -83,8 +94,38 @@ class SolveJob {
         planes.dy_variance = images_.find(GradientLayer::dy_variance);
         result_.resize(std::size_t(images_.width) * images_.height * channels);
         for (int i = 0; i < request_.repeats; ++i)
-            report_ = solver.solve(planes, request_.options, result_.data());
+            report_ = request_.sources.halves
+                          ? solver.solve_halves(halves(), samples_of_halves(), request_.reconstruction, result_.data())
+                          : solver.solve(planes, request_.options, result_.data());
+        if (const float *direct = planes.direct; direct && request_.sources.halves)
+            for (std::size_t i = 0; i < result_.size(); ++i)
+                result_[i] += direct[i];
         images_.planes.clear();
+    }
+
+    std::array<HostImages, 2> halves() const {
+        std::array<HostImages, 2> halves;
+        for (int i = 0; i < 2; ++i) {
+            const auto [primal, dx, dy, primal_variance, dx_variance, dy_variance] = half_layers[i];
+            halves[i].primal = images_.find(primal);
+            halves[i].dx = images_.find(dx);
+            halves[i].dy = images_.find(dy);
+            halves[i].primal_variance = images_.find(primal_variance);
+            halves[i].dx_variance = images_.find(dx_variance);
+            halves[i].dy_variance = images_.find(dy_variance);
+        }
+        return halves;
+    }
+
+    /// As the render's file says; as many in both halves where it does not.
+    std::array<std::uint64_t, 2> samples_of_halves() const {
+        const auto text = images_.metadata.find("samples");
+        const std::uint64_t samples =
+            text == images_.metadata.end() ? 0 : std::strtoull(text->second.c_str(), nullptr, 10);
+        const std::uint64_t pixels = std::uint64_t(images_.width) * images_.height;
+        if (samples < 2 * pixels)
+            return {1, 1};
+        return {samples_of_half(samples, pixels, 0), samples_of_half(samples, pixels, 1)};
     }
 
     Image result_image() const {
@@ -102,6 +143,7 @@ class SolveJob {
                 image.metadata[key] = at->second;
         image.metadata["version"] = version();
         image.metadata["method"] = report_.method;
+        image.metadata["reconstruction"] = record_.reconstruction;
         image.metadata["norm"] = record_.norm;
         image.metadata["weights"] = record_.weights;
         image.metadata["alpha"] = fmt::format("{}", report_.alpha);

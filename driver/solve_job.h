@@ -15,6 +15,8 @@ struct SolveRequest {
     GradientSources sources;
     OutputFiles outputs;
     PoissonOptions options;
+    Reconstruction reconstruction = Reconstruction::l1;
+    bool alpha_is_given = false;
     std::optional<double> damping;
     std::string device; ///< Device's selector
     int threads = 0;    ///< 0: all

@@ -35,6 +35,7 @@ nlohmann::json solve_report_json(const SolveRecord &record, const PoissonReport 
         kernels.push_back({{"name", kernel.name}, {"seconds", kernel.seconds}, {"launches", kernel.launches}});
     return {{"version", version()},
             {"method", report.method},
+            {"reconstruction", record.reconstruction},
             {"norm", record.norm},
             {"weights", record.weights},
             {"alpha", report.alpha},

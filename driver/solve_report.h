@@ -13,7 +13,8 @@ namespace gradus {
 
 /// What PoissonReport does not know of a solve.
 struct SolveRecord {
-    std::string norm, weights; ///< "L1" or "L2"; "uniform" or "variance"
+    std::string reconstruction; ///< "l1", "l2", "weighted"
+    std::string norm, weights;  ///< "L1" or "L2"; "uniform" or "variance"
     std::uint32_t width = 0, height = 0, channels = 0;
     DeviceDescription device;
     double prepare_seconds = 0; ///< device, buffers and kernels

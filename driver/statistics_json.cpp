@@ -35,6 +35,10 @@ nlohmann::json choice_json(const MethodChoice &choice) {
             {"gain", choice.gain > 0 ? json(choice.gain) : json()}};
 }
 
+nlohmann::json reconstruction_json(const ReconstructionUsed &used) {
+    return {{"name", used.name}, {"accuracy", used.accuracy}, {"note", used.note}};
+}
+
 nlohmann::json gathering_json(const Statistics &statistics) {
     const double points = double(statistics.gather_points);
     const auto mean_radius = [](const GatherRadii &radii) {
@@ -88,6 +92,7 @@ nlohmann::json statistics_to_json(const RenderRecord &record, const Statistics &
                    {"width", record.width},
                    {"height", record.height},
                    {"spp", record.samples_per_pixel},
+                   {"reconstruction", reconstruction_json(statistics.reconstruction)},
                    {"interrupted", record.interrupted},
                    {"samples", statistics.samples},
                    {"samples_per_second", rate(double(statistics.samples))},

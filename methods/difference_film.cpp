@@ -22,14 +22,20 @@ DifferenceFilm::DifferenceFilm(Session &session, Stages &stages, const RenderOpt
         compilers_ = keep_compilers(session.device);
 }
 
+std::vector<std::string> DifferenceFilm::film_names() const {
+    return session_.has("TRAIT_HALVES") ? std::vector<std::string>{"gradient_film", "odd_gradient_film"}
+                                        : std::vector<std::string>{"gradient_film"};
+}
+
 TableList DifferenceFilm::tables() const {
-    return joined(
-        film_.tables(),
-        {{.name = "direct", .rows = RowsOf::slot, .columns = radiance_columns},
-         {.name = "prefix", .rows = RowsOf::slot, .columns = prefix_columns},
-         {.name = "difference", .rows = RowsOf::slot, .multiple = 4, .columns = difference_columns},
-         {.name = "carry", .rows = RowsOf::image_row, .columns = carry_columns},
-         {.name = "gradient_film", .rows = RowsOf::pixel, .columns = gradient_film_columns, .is_cleared = true}});
+    TableList list = joined(film_.tables(),
+                            {{.name = "direct", .rows = RowsOf::slot, .columns = radiance_columns},
+                             {.name = "prefix", .rows = RowsOf::slot, .columns = prefix_columns},
+                             {.name = "difference", .rows = RowsOf::slot, .multiple = 4, .columns = difference_columns},
+                             {.name = "carry", .rows = RowsOf::image_row, .columns = carry_columns}});
+    for (const std::string &name : film_names())
+        list.push_back({.name = name, .rows = RowsOf::pixel, .columns = gradient_film_columns, .is_cleared = true});
+    return list;
 }
 
 void DifferenceFilm::attach(Tables &tables) {
@@ -39,12 +45,12 @@ void DifferenceFilm::attach(Tables &tables) {
 
 void DifferenceFilm::begin() {
     if (!solver_ && !solver_compiled_.valid()) // with one thread, once it is needed
-        solver_compiled_ = std::async(
-            options_.threads == 1 ? std::launch::deferred : std::launch::async,
-            [this, compilers = std::exchange(compilers_, nullptr)]() mutable {
-                PoissonSolver::compile(session_.device, poisson_options(options_, session_.settings.samples_per_pixel));
-                compilers.reset();
-            });
+        solver_compiled_ =
+            std::async(options_.threads == 1 ? std::launch::deferred : std::launch::async,
+                       [this, compilers = std::exchange(compilers_, nullptr)]() mutable {
+                           compile_reconstruction(session_.device, options_, session_.settings.samples_per_pixel);
+                           compilers.reset();
+                       });
 }
 
 const std::vector<DirectPixel> &DifferenceFilm::edges(std::uint64_t samples, bool last) {
@@ -67,32 +73,50 @@ void DifferenceFilm::clear_slots() {
             (*tables_)[table].clear();
 }
 
-void DifferenceFilm::add(std::uint32_t first, std::uint32_t rows, std::uint32_t frames) {
+void DifferenceFilm::add(std::uint32_t first, std::uint32_t rows, std::uint32_t frames, std::uint64_t number) {
     const std::uint32_t width = session_.film.crop_width, pixels = rows * width;
     combine_.run(frames * pixels);
     film_.add(frames * pixels, first * width);
-    for (std::uint32_t frame = 0; frame < frames; frame += accumulated_frames)
-        accumulate_.run(pixels,
-                        {{"first_slot", frame * pixels}, {"frames", std::min(accumulated_frames, frames - frame)}});
+    const std::vector<std::string> films = film_names();
+    const auto apart = std::uint32_t(films.size()); // frames of a film
+    for (std::uint32_t film = 0; film < apart; ++film) {
+        // Of a half the first frame of its own, and every other one from there.
+        const auto first_frame = std::uint32_t((film + apart - number % apart) % apart);
+        if (apart > 1)
+            accumulate_.bind("gradient_film", (*tables_)[films[film]]);
+        for (std::uint32_t frame = first_frame; frame < frames; frame += apart * accumulated_frames)
+            accumulate_.run(pixels, {{"first_slot", frame * pixels},
+                                     {"frames", std::min(accumulated_frames, (frames - frame + apart - 1) / apart)}});
+    }
     if (first + rows < session_.film.crop_height)
         carry_.run(width, {{"first_slot", pixels - width}});
 }
 
 Image DifferenceFilm::image(std::uint64_t samples, bool layers, bool last, std::uint64_t &non_finite) {
-    if (last) // what a pass needs and the films do not
-        tables_->release_all_but({"film", "feature_film", "gradient_film", counts_});
+    std::vector<std::string> kept = film_names();
+    kept.push_back(counts_);
+    if (last) { // what a pass needs and the films do not
+        std::vector<std::string> also = kept;
+        also.insert(also.end(), {"film", "feature_film"});
+        tables_->release_all_but(also);
+    }
     Image whole = film_.image(samples, non_finite);
     if (last)
-        tables_->release_all_but({"gradient_film", counts_});
+        tables_->release_all_but(kept);
     if (solver_compiled_.valid())
         solver_compiled_.get();
     if (!solver_)
         solver_ =
             std::make_unique<PoissonSolver>(session_.device, session_.film.crop_width, session_.film.crop_height, 3);
-    Image image = reconstruct(*solver_, std::move(whole),
-                              std::make_unique<GradientFilm>((*tables_)["gradient_film"], session_.film.crop_width,
-                                                             session_.film.crop_height, options_.precision, samples),
-                              edges(samples, last), options_, layers, [&] {
+    const std::uint64_t pixels = session_.pixels();
+    GradientFilms films;
+    for (std::size_t i = 0; i < kept.size() - 1; ++i)
+        films.add(std::make_unique<GradientFilm>((*tables_)[kept[i]], session_.film.crop_width,
+                                                 session_.film.crop_height, options_.precision,
+                                                 kept.size() > 2 ? samples_of_half(samples, pixels, int(i)) : samples));
+    used_ = reconstruction_used(options_, samples, pixels);
+    Image image = reconstruct(session_.device, *solver_, std::move(whole), std::move(films), edges(samples, last),
+                              options_, layers, [&] {
                                   if (last)
                                       tables_->release_all_but({counts_});
                               });
@@ -102,6 +126,7 @@ Image DifferenceFilm::image(std::uint64_t samples, bool layers, bool last, std::
 }
 
 void DifferenceFilm::add_to(Statistics &statistics) const {
+    statistics.reconstruction = used_;
     statistics.rays["edge"] = edge_rays_;
     statistics.render_seconds += edge_seconds_;
     statistics.stages.push_back({"edges of lights", edge_seconds_, 0, 0});
@@ -111,7 +136,8 @@ void DifferenceFilm::clear() {
     edge_rays_ = 0;
     edge_seconds_ = 0;
     film_.clear();
-    (*tables_)["gradient_film"].clear();
+    for (const std::string &name : film_names())
+        (*tables_)[name].clear();
 }
 
 } // namespace gradus

@@ -31,21 +31,25 @@ class DifferenceFilm {
     void begin();
     /// Zero in all slots, for images without paths.
     void clear_slots();
-    /// Adds the samples of `frames` frames of the image's rows [first, first + rows), slot by slot.
-    void add(std::uint32_t first, std::uint32_t rows, std::uint32_t frames);
+    /// Adds the samples of `frames` frames of the image's rows [first, first + rows), slot by slot. `number`: of the
+    /// first of these frames; where options need halves, even ones and odd ones have films of their own.
+    void add(std::uint32_t first, std::uint32_t rows, std::uint32_t frames, std::uint64_t number);
     /// After `samples` samples; those left out are added to `non_finite`. `last`: lets go of batches and films as soon
     /// as they have been read.
     Image image(std::uint64_t samples, bool layers, bool last, std::uint64_t &non_finite);
 
     /// All sums and counts zero again. Edges of lights that have been sampled stay.
     void clear();
-    /// Adds what sampling the edges of lights took.
+    /// Adds what sampling the edges of lights took, and how the last image was reconstructed.
     void add_to(Statistics &statistics) const;
 
   private:
     /// What the camera sees of lights at their edges, for an image of so many samples. Images between the first and the
     /// last take what an earlier one of half as many had.
     const std::vector<DirectPixel> &edges(std::uint64_t samples, bool last);
+
+    /// The tables of the sums: one, or those of both halves.
+    std::vector<std::string> film_names() const;
 
     Session &session_;
     const RenderOptions &options_;
@@ -58,6 +62,7 @@ class DifferenceFilm {
     std::uint32_t edge_samples_ = 0; ///< a pixel of the image that `edges_` were sampled for; 0: not yet
     std::uint64_t edge_rays_ = 0;
     double edge_seconds_ = 0;
+    ReconstructionUsed used_;
     std::unique_ptr<PoissonSolver> solver_;
     std::shared_ptr<void> compilers_;   ///< from before the stages' kernels are compiled until the solver's are
     std::future<void> solver_compiled_; ///< while the first samples render

@@ -1,6 +1,8 @@
 #include "methods/gradient_image.h"
 
-#include "kernels/shared/tables.h"
+#include "solver/weighted_reconstruction.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,18 +11,18 @@
 
 namespace gradus {
 
-using namespace lib_float;
-
 namespace {
 
+constexpr auto film_layers = {GradientFilm::primal, GradientFilm::dx, GradientFilm::dy};
 const char *const layer_names[] = {"primal", "dx", "dy"}, *const colors[] = {"R", "G", "B"};
+const char *const half_names[] = {"even", "odd"};
 
 /// Makes of the channels of `whole` what they have and the primal has not.
-void take_primal_off(Image &whole, const GradientFilm &film, const std::vector<DirectPixel> &edges) {
-    std::vector<float> primal(film.pixels());
+void take_primal_off(Image &whole, const GradientFilms &films, const std::vector<DirectPixel> &edges) {
+    std::vector<float> primal(films.pixels());
     for (std::uint32_t c = 0; c < 3; ++c) {
         std::vector<float> &direct = whole.channels[c].values;
-        film.mean(GradientFilm::primal, c, primal.data());
+        films.mean(GradientFilm::primal, c, primal.data());
         for (std::size_t i = 0; i < direct.size(); ++i) {
             const float seen = direct[i] - primal[i];
             // Where no light is seen, the difference is rounding.
@@ -31,71 +33,51 @@ void take_primal_off(Image &whole, const GradientFilm &film, const std::vector<D
     }
 }
 
-/// What `gradus solve` needs to make the image again: from the channels `direct` of an image, and from the film.
-std::vector<Channel> layers_of(const Image &direct, const GradientFilm &film, bool variances) {
+/// What `gradus solve` needs to make the image again: from the channels `direct` of an image, and from the films.
+/// Halves are there with their variances, which their reconstruction needs.
+std::vector<Channel> layers_of(const Image &direct, const GradientFilms &films, bool variances) {
     std::vector<Channel> layers;
     for (std::uint32_t c = 0; c < 3; ++c)
         layers.push_back({std::string("direct.") + colors[c], direct.channels[c].values});
-    for (const bool variance : {false, true})
-        for (const auto layer : {GradientFilm::primal, GradientFilm::dx, GradientFilm::dy})
-            for (std::uint32_t c = 0; c < 3 && (variances || !variance); ++c) {
-                Channel channel{std::string(layer_names[layer]) + (variance ? "_variance." : ".") + colors[c],
-                                std::vector<float>(film.pixels())};
-                if (variance)
-                    film.variance(layer, c, channel.values.data());
-                else
-                    film.mean(layer, c, channel.values.data());
-                layers.push_back(std::move(channel));
-            }
+    const auto add = [&](const std::string &name, const auto &write) {
+        for (std::uint32_t c = 0; c < 3; ++c) {
+            layers.push_back({fmt::format("{}.{}", name, colors[c]), std::vector<float>(films.pixels())});
+            write(c, layers.back().values.data());
+        }
+    };
+    for (const auto layer : film_layers)
+        add(layer_names[layer], [&](std::uint32_t c, float *plane) { films.mean(layer, c, plane); });
+    for (const auto layer : film_layers)
+        if (variances)
+            add(fmt::format("{}_variance", layer_names[layer]),
+                [&](std::uint32_t c, float *plane) { films.variance(layer, c, plane); });
+    for (int half = 0; films.are_halves() && half < 2; ++half)
+        for (const auto layer : film_layers) {
+            const std::string name = fmt::format("{}_{}", layer_names[layer], half_names[half]);
+            add(name, [&](std::uint32_t c, float *plane) { mean_of(films.half(half), layer, c, plane); });
+            add(fmt::format("{}_variance", name),
+                [&](std::uint32_t c, float *plane) { variance_of(films.half(half), layer, c, plane); });
+        }
     return layers;
 }
 
-} // namespace
-
-double GradientFilm::mean_at(int number, std::size_t pixel, double frames) const {
-    return (table_.real(gradient_film_primal_r + number, pixel) +
-            table_.real(gradient_film_correction_first + number, pixel)) /
-           frames;
+/// The images of a film in device memory.
+Buffer uploaded(Device &device, const char *name, std::size_t pixels, const PlaneSource &source) {
+    Buffer buffer(device, name, 3 * pixels * sizeof(float));
+    const auto mapping = buffer.map(Access::write);
+    for (std::uint32_t c = 0; c < 3; ++c)
+        source(c, mapping.as<float>() + c * pixels);
+    return buffer;
 }
 
-void GradientFilm::mean(Layer layer, std::uint32_t color, float *plane) const {
-    for (std::size_t pixel = 0; pixel < pixels_; ++pixel)
-        plane[pixel] =
-            static_cast<float>(mean_at(3 * layer + int(color), pixel, std::max(count_at(layer, pixel), 1.0)));
-}
-
-void GradientFilm::variance(Layer layer, std::uint32_t color, float *plane) const {
-    const int number = 3 * layer + int(color);
-    for (std::size_t pixel = 0; pixel < pixels_; ++pixel) {
-        const double n = std::max(count_at(layer, pixel), 1.0);
-        const double value = mean_at(number, pixel, n);
-        const double square = table_.real(gradient_film_square_first + number, pixel) / n;
-        plane[pixel] = n > 1 ? static_cast<float>(std::max(0.0, square - value * value) / (n - 1)) : 0.0f;
-    }
-}
-
-PoissonOptions poisson_options(const RenderOptions &options, std::uint64_t frames) {
-    PoissonOptions poisson;
-    poisson.norm = options.norm;
-    poisson.alpha_from_variances = !options.alpha && frames > 1;
-    poisson.alpha = options.alpha.value_or(poisson.alpha);
-    return poisson;
-}
-
-Image reconstruct(PoissonSolver &solver, Image whole, std::unique_ptr<const GradientFilm> film,
-                  const std::vector<DirectPixel> &edges, const RenderOptions &options, bool layers,
-                  const std::function<void()> &film_is_read) {
-    const PoissonOptions poisson = poisson_options(options, film->frames());
-    take_primal_off(whole, *film, edges);
-    std::vector<Channel> more;
-    if (layers)
-        more = layers_of(whole, *film, options.aov);
-
-    const auto mean = [&film](GradientFilm::Layer layer) {
-        return [&film, layer](std::uint32_t c, float *plane) { film->mean(layer, c, plane); };
+/// The result takes the place of the direct image, which is added to it.
+void reconstruct_from_film(PoissonSolver &solver, Image &whole, GradientFilms &films, const PoissonOptions &poisson,
+                           const std::function<void()> &films_are_read) {
+    const auto mean = [&films](GradientFilm::Layer layer) {
+        return [&films, layer](std::uint32_t c, float *plane) { films.mean(layer, c, plane); };
     };
-    const auto variance = [&film](GradientFilm::Layer layer) {
-        return [&film, layer](std::uint32_t c, float *plane) { film->variance(layer, c, plane); };
+    const auto variance = [&films](GradientFilm::Layer layer) {
+        return [&films, layer](std::uint32_t c, float *plane) { films.variance(layer, c, plane); };
     };
     ImageSources images;
     images.primal = mean(GradientFilm::primal);
@@ -104,17 +86,101 @@ Image reconstruct(PoissonSolver &solver, Image whole, std::unique_ptr<const Grad
     images.primal_variance = variance(GradientFilm::primal);
     images.dx_variance = variance(GradientFilm::dx);
     images.dy_variance = variance(GradientFilm::dy);
-    // The result takes the place of the direct image.
     const auto plane_of = [&whole](std::uint32_t c) { return whole.channels[c].values.data(); };
-    const std::size_t pixels = film->pixels();
+    const std::size_t pixels = films.pixels();
     images.direct = [&](std::uint32_t c, float *plane) { std::copy_n(plane_of(c), pixels, plane); };
     solver.solve(
         images, poisson, [&](std::uint32_t c, const float *plane) { std::copy_n(plane, pixels, plane_of(c)); },
         [&] {
-            film.reset();
-            if (film_is_read)
-                film_is_read();
+            films = GradientFilms();
+            if (films_are_read)
+                films_are_read();
         });
+}
+
+void reconstruct_from_halves(Device &device, PoissonSolver &solver, Image &whole, GradientFilms &films,
+                             const std::function<void()> &films_are_read) {
+    const std::size_t pixels = films.pixels();
+    HalvedImages halves = half_images(device, films);
+    films = GradientFilms();
+    if (films_are_read)
+        films_are_read();
+    Buffer result(device, "result", 3 * pixels * sizeof(float));
+    WeightedReconstruction(device, solver).solve(halves, result);
+    const auto mapping = result.map(Access::read);
+    for (std::uint32_t c = 0; c < 3; ++c) {
+        const float *plane = mapping.as<float>() + c * pixels;
+        std::vector<float> &image = whole.channels[c].values;
+        for (std::size_t i = 0; i < pixels; ++i)
+            image[i] += plane[i];
+    }
+}
+
+} // namespace
+
+HalvedImages half_images(Device &device, const GradientFilms &films) {
+    const auto image = [&](const char *name, const GradientFilm &film, GradientFilm::Layer layer, auto write) {
+        return uploaded(device, name, film.pixels(),
+                        [&](std::uint32_t c, float *plane) { write(film, layer, c, plane); });
+    };
+    HalvedImages halves;
+    for (int i = 0; i < 2; ++i) {
+        const GradientFilm &film = films.half(i);
+        HalfImages &half = halves[i];
+        half.primal = image("primal", film, GradientFilm::primal, mean_of);
+        half.dx = image("dx", film, GradientFilm::dx, mean_of);
+        half.dy = image("dy", film, GradientFilm::dy, mean_of);
+        half.primal_variance = image("primal_variance", film, GradientFilm::primal, variance_of);
+        half.dx_variance = image("dx_variance", film, GradientFilm::dx, variance_of);
+        half.dy_variance = image("dy_variance", film, GradientFilm::dy, variance_of);
+        half.samples = film.samples();
+    }
+    return halves;
+}
+
+PoissonOptions poisson_options(const RenderOptions &options, std::uint64_t frames) {
+    PoissonOptions poisson;
+    poisson.norm = options.reconstruction == Reconstruction::l1 ? PoissonNorm::l1 : PoissonNorm::l2;
+    poisson.alpha_from_variances = !options.alpha && frames > 1;
+    poisson.alpha = options.alpha.value_or(poisson.alpha);
+    return poisson;
+}
+
+void compile_reconstruction(Device &device, const RenderOptions &options, std::uint64_t frames) {
+    if (needs_halves(options.reconstruction) && halves_have_variances(frames, 1))
+        WeightedReconstruction::compile(device);
+    else
+        PoissonSolver::compile(device, poisson_options(options, frames));
+}
+
+ReconstructionUsed reconstruction_used(const RenderOptions &options, std::uint64_t samples, std::uint64_t pixels) {
+    Reconstruction reconstruction = options.reconstruction;
+    ReconstructionUsed used;
+    if (needs_halves(reconstruction) && !halves_have_variances(samples, pixels)) {
+        used.note = fmt::format("{} needs {} samples of each pixel, two in each half; with less it is l2",
+                                reconstruction_name(reconstruction), 2 * least_half_samples);
+        reconstruction = Reconstruction::l2;
+    }
+    used.name = reconstruction_name(reconstruction);
+    // One weight by the variances of all pixels is next to independent of each, and not quite.
+    const bool l2_is_linear = options.alpha || samples / pixels <= 1;
+    const bool unbiased =
+        reconstruction == Reconstruction::weighted || (reconstruction == Reconstruction::l2 && l2_is_linear);
+    used.accuracy = accuracy_name(unbiased ? Accuracy::unbiased : Accuracy::consistent);
+    return used;
+}
+
+Image reconstruct(Device &device, PoissonSolver &solver, Image whole, GradientFilms films,
+                  const std::vector<DirectPixel> &edges, const RenderOptions &options, bool layers,
+                  const std::function<void()> &films_are_read) {
+    take_primal_off(whole, films, edges);
+    std::vector<Channel> more;
+    if (layers)
+        more = layers_of(whole, films, options.aov);
+    if (films.are_halves() && halves_have_variances(films.samples(), films.pixels()))
+        reconstruct_from_halves(device, solver, whole, films, films_are_read);
+    else
+        reconstruct_from_film(solver, whole, films, poisson_options(options, films.frames()), films_are_read);
     whole.channels.insert(whole.channels.begin() + 3, std::make_move_iterator(more.begin()),
                           std::make_move_iterator(more.end()));
     return whole;

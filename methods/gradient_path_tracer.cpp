@@ -24,8 +24,11 @@ TraitMap gradient_traits(const Scene &scene, const RenderOptions &options) {
     for_each_bsdf(scene, [&](const Bsdf &bsdf) {
         apart = apart || !is_rough(bsdf, options.shift_threshold) || bsdf_kind_traits(bsdf.kind).is_mixed;
     });
-    return {
-        {"TRAIT_GRADIENT", 1}, {"TRAIT_SHARED_JITTER", 1}, {"TRAIT_APART", apart}, {"TRAIT_SHIFT_DISTANCE", distance}};
+    return {{"TRAIT_GRADIENT", 1},
+            {"TRAIT_SHARED_JITTER", 1},
+            {"TRAIT_APART", apart},
+            {"TRAIT_SHIFT_DISTANCE", distance},
+            {"TRAIT_HALVES", needs_halves(options.reconstruction)}};
 }
 
 /// Where the scene has one BSDF kind, `shift` evaluates it itself.
@@ -402,7 +405,7 @@ bool GradientPathTracer::render_batch() {
         follow(next, stride);
         newest_ = next;
     }
-    film_.add(strip.first, strip.rows, strip.frames);
+    film_.add(strip.first, strip.rows, strip.frames, first_sample_ + done_ / session_.pixels());
     finish(session_.device);
     done_ += paths;
     statistics_.samples += paths;

@@ -50,7 +50,8 @@ TraitMap light_vertex_traits(const Scene &scene, const RenderOptions &options) {
     return {{"TRAIT_LIGHT_VERTICES", 1},
             {"TRAIT_LIGHT_STARTS", starts},
             {"TRAIT_ONLY_CHAINS", options.only_chains},
-            {"TRAIT_LOBE_LEVELS", options.sampler == RenderOptions::Sampler::sobol}};
+            {"TRAIT_LOBE_LEVELS", options.sampler == RenderOptions::Sampler::sobol},
+            {"TRAIT_HALVES", needs_halves(options.reconstruction)}};
 }
 
 const Scene &checked(const Scene &scene) {
@@ -213,7 +214,7 @@ bool GradientPhotonMapper::render_batch() {
         paths_.trace(planes * strip.pixels, strip.first * session_.film.crop_width, pass, [](const Hits &) {});
         gather_photons(strip);
     }
-    film_.add(strip.first, strip.rows, 1);
+    film_.add(strip.first, strip.rows, 1, pass);
     finish(session_.device);
     count_radii(statistics_, pass, strip.first == 0,
                 {statistics_.gather_points - points_before, pairs_.radius_sum() - radii_before});
@@ -329,6 +330,7 @@ Statistics GradientPhotonMapper::statistics() const {
     s.radius_sum = pairs_.radius_sum();
     s = collected(s, session_, stages_, photons_.light_paths().times());
     film_.add_to(s);
+    s.reconstruction.accuracy = accuracy_of_photons(options_);
     std::vector<std::uint32_t> found(2 * std::size_t(tables_->rows().paths));
     (*tables_)["photon_found"].read(found.data(), found.size() * sizeof(found[0]));
     const auto half = found.begin() + std::ptrdiff_t(found.size() / 2);

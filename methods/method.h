@@ -6,7 +6,7 @@
 #include "runtime/scene/scene.h"
 #include "runtime/wavefront/session_options.h"
 #include "runtime/wavefront/statistics.h"
-#include "solver/poisson_solver.h"
+#include "solver/reconstruction.h"
 
 #include <cstdint>
 #include <functional>
@@ -22,14 +22,15 @@ class Tracer; // runtime/trace/tracer.h
 
 /// What methods that reconstruct ask beside that.
 struct RenderOptions : SessionOptions {
-    bool layers = false;                ///< also what the image was reconstructed from, gradient-domain methods
-    PoissonNorm norm = PoissonNorm::l1; ///< of the reconstruction, gradient-domain methods
-    std::optional<double> alpha;        ///< their weight of the primal; none: from the variances
-    double shift_threshold = 0.01;      ///< offset paths reconnect at surfaces of this roughness (alpha) or more
+    bool layers = false; ///< also what the image was reconstructed from, gradient-domain methods
+    Reconstruction reconstruction = Reconstruction::l1; ///< gradient-domain methods
+    /// Of l1 and l2, the weight of the primal; none: from the variances.
+    std::optional<double> alpha;
+    double shift_threshold = 0.01; ///< offset paths reconnect at surfaces of this roughness (alpha) or more
     /// They do not over ways shorter than eight times the distance of base and offset vertex, or than this share of the
     /// scene's diameter if that is less (kernels/lib/reconnectable.h); 0: over any.
     double shift_distance = 0;
-    std::uint64_t photons = 0;      ///< light paths a pass, photon methods; 0: as many as leave about five photons a pixel
+    std::uint64_t photons = 0; ///< light paths a pass, photon methods; 0: as many as leave about five photons a pixel
     double gather_roughness = 0.05; ///< photons are kept, and gathered, at surfaces of this roughness (alpha) or more
     bool direct_photons = false;    ///< lights' direct light at gather points by photons too, not by sampling lights
     /// Photons are gathered in the first pass from so far: in widths of a pixel at the gather point or, if it is

@@ -70,7 +70,11 @@ Image PathTracer::image() {
     return film_.image(done_, statistics_.non_finite);
 }
 
-Statistics PathTracer::statistics() const { return collected(statistics_, session_, stages_); }
+Statistics PathTracer::statistics() const {
+    Statistics s = collected(statistics_, session_, stages_);
+    s.reconstruction = {"none", accuracy_name(Accuracy::unbiased), ""};
+    return s;
+}
 
 std::unique_ptr<Method> make_path_tracer(Device &device, const Scene &scene, const RenderOptions &options) {
     return std::make_unique<PathTracer>(device, scene, options);

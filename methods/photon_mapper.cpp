@@ -107,6 +107,7 @@ Statistics PhotonMapper::statistics() const {
     s.photons = photons_.light_paths().photons();
     s.radius_sum = pairs_.radius_sum();
     s = collected(s, session_, stages_, photons_.light_paths().times());
+    s.reconstruction = {"none", accuracy_of_photons(options_), ""};
     return s;
 }
 

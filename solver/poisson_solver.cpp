@@ -57,6 +57,8 @@ void check(const PoissonImages<Planes> &images, const PoissonOptions &options) {
     const bool variances = images.primal_variance && images.dx_variance && images.dy_variance;
     if ((options.alpha_from_variances || options.weigh_by_variance) && !variances)
         usage("alpha or weights from variances need the variances of primal, dx and dy");
+    if (!(options.largest_weight >= 1))
+        usage(fmt::format("the largest weight is {}; it must be 1 or larger", options.largest_weight));
     if (options.weigh_by_variance && options.norm == PoissonNorm::l1)
         usage("weights by variance are for the L2 norm; the L1 norm has weights of its own");
 }
@@ -114,7 +116,7 @@ void PoissonSolver::Implementation::least_squares(const Inputs &images, const Po
     Kernels &kernels = kernels_for(options);
     const bool uniform = kernels.weights == Weights::uniform;
     if (!uniform)
-        problem.make_base_weights(kernels, options.weigh_by_variance);
+        problem.make_base_weights(kernels, options.weigh_by_variance, options.largest_weight);
     problem.use_least_squares_weights(kernels, alpha);
 
     LinearSolver::Request request;
@@ -246,6 +248,11 @@ PoissonReport PoissonSolver::solve(const DeviceImages &images, const PoissonOpti
         return buffer ? Input([buffer]() -> const Buffer & { return *buffer; }) : Input();
     });
     return implementation_->solve(inputs, options, [&]() -> Buffer & { return result; }, {});
+}
+
+PoissonReport PoissonSolver::solve(const BufferSources &images, const PoissonOptions &options, Buffer &result) {
+    check(images, options);
+    return implementation_->solve(images, options, [&]() -> Buffer & { return result; }, {});
 }
 
 PoissonReport PoissonSolver::solve(const ImageSources &images, const PoissonOptions &options, const PlaneSink &result,

@@ -45,6 +45,8 @@ using DeviceImages = PoissonImages<const Buffer *>;
 using PlaneSource = std::function<void(std::uint32_t channel, float *plane)>;
 /// Images that are made when they are asked for, and are never in memory as a whole.
 using ImageSources = PoissonImages<PlaneSource>;
+/// Images in device memory that are made when they are asked for; each until the next is.
+using BufferSources = PoissonImages<std::function<const Buffer &()>>;
 /// Takes a channel of the result.
 using PlaneSink = std::function<void(std::uint32_t channel, const float *plane)>;
 
@@ -58,6 +60,8 @@ struct PoissonOptions {
     /// L2: each equation is weighted by its inverse variance, relative to the mean variance of its image, instead of
     /// equally (after Rousselle et al. 2016). Needs the variances. The mean of I0 is then not kept.
     bool weigh_by_variance = false;
+    /// Then an equation with a variance far below the mean still counts no more than so many times the average.
+    double largest_weight = 100;
     LinearMethod method = LinearMethod::automatic;
     /// L2: the relative residual ||b - A u|| / ||b|| of the system for u = I - I0 at which to stop. L1: the relative
     /// decrease of the objective from one reweighting to the next. 0: 1e-5 and 1e-4. At least the rounding error.
@@ -73,6 +77,8 @@ struct PoissonOptions {
     bool joint_channels = true;
     /// L1: adds a smooth image that brings local means back to those of I0 (mean_correction.h).
     bool keep_mean = true;
+
+    bool operator==(const PoissonOptions &) const = default;
 };
 
 struct KernelTime {
@@ -125,6 +131,8 @@ class PoissonSolver {
     /// The same in device memory; `result` may be one of the inputs. Throws Error(ExitCode::device) where the device
     /// has no room.
     PoissonReport solve(const DeviceImages &images, const PoissonOptions &options, Buffer &result);
+    /// The same from images that are made under way; each is asked for once.
+    PoissonReport solve(const BufferSources &images, const PoissonOptions &options, Buffer &result);
 
     std::uint32_t width() const;
     std::uint32_t height() const;

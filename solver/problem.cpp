@@ -93,7 +93,7 @@ double Problem::alpha_from_variances() const {
     return mean_primal_variance_ > 0 ? std::sqrt(std::max(gradient_variance_, 0.0) / mean_primal_variance_) : 1;
 }
 
-void Problem::make_base_weights(Kernels &kernels, bool by_variance) {
+void Problem::make_base_weights(Kernels &kernels, bool by_variance, double largest_weight) {
     const Grid &grid = workspace_.grid();
     const std::uint32_t planes = kernels.weight_planes;
     workspace_.multigrid.allocate_weights(planes);
@@ -114,6 +114,7 @@ void Problem::make_base_weights(Kernels &kernels, bool by_variance) {
     Kernel &kernel = kernels.base_weights;
     kernel.set("weight_plane", workspace_.system().weight_plane);
     kernel.set("by_variances", by_variance);
+    kernel.set_real("largest_weight", largest_weight);
     kernel.set_real("mean_gradient_variance", gradient_variance_);
     kernel.set_real("mean_primal_variance", mean_primal_variance_);
     kernel.bind(valid_primal_);

@@ -10,7 +10,7 @@
 namespace gradus::solver {
 
 /// The caller's images, each in device memory from the call on until another is called. `Problem` calls each once.
-using Inputs = PoissonImages<std::function<const Buffer &()>>;
+using Inputs = BufferSources;
 
 class Problem {
   public:
@@ -25,8 +25,9 @@ class Problem {
     double alpha_from_variances() const;
 
     bool anything_missing() const { return anything_missing_; }
-    /// Weights of the equations before any norm: 0 for what is missing, else 1 or by inverse variance.
-    void make_base_weights(Kernels &kernels, bool by_variance);
+    /// Weights of the equations before any norm: 0 for what is missing, else 1 or by inverse variance, at most
+    /// `largest_weight` times that of the mean variance.
+    void make_base_weights(Kernels &kernels, bool by_variance, double largest_weight = 1);
     /// Sets the finest system to the base weights, those of the data term times alpha^2.
     void use_least_squares_weights(Kernels &kernels, double alpha);
     /// The right side of a group of channels for the weights of the finest system.

@@ -31,7 +31,7 @@ RenderOptions options_for(const Settings &settings, std::uint64_t seed) {
     options.seed = seed;
     options.layers = options.only_chains = true;
     // Linear, and so unbiased: a norm and a weight that do not look at what they weigh. One radius, one expectation.
-    options.norm = PoissonNorm::l2;
+    options.reconstruction = Reconstruction::l2;
     options.alpha = 0.2;
     options.radius = RenderOptions::GatherRadius{1, false};
     options.radius_alpha = 1;

@@ -2,18 +2,16 @@
 #include "kernels/lib/ordered.h"
 #include "kernels/solver/grid.h"
 
-/* An edge or pixel with a variance far below the mean still counts no more than this many times the average. */
-#define LARGEST_WEIGHT_BY_VARIANCE R(100)
-
 /* A variance below zero, or one that is missing, tells nothing: its equation is left out. */
-GRADUS_FN real by_variance(real variance, real mean) {
-    return variance < R(0) ? R(0) : mean > R(0) ? mean / (variance + mean / LARGEST_WEIGHT_BY_VARIANCE) : R(1);
+GRADUS_FN real by_variance(real variance, real mean, real largest) {
+    return variance < R(0) ? R(0) : mean > R(0) ? mean / (variance + mean / largest) : R(1);
 }
 
 GRADUS_FN real together(real sum, real variance) { return sum < R(0) || variance < R(0) ? R(-1) : sum + variance; }
 
 /* The base weights: 0 for what is missing, else 1 or by inverse variance. */
 SOLVE base_weights(GRID, uint weight_plane, uint by_variances, real mean_gradient_variance, real mean_primal_variance,
+                   real largest_weight,
                    __global const real *valid_primal, __global const real *valid_dx, __global const real *valid_dy,
                    __global const real *primal_variance, __global const real *dx_variance,
                    __global const real *dy_variance, __global real *base_x, __global real *base_y,
@@ -30,9 +28,9 @@ SOLVE base_weights(GRID, uint weight_plane, uint by_variances, real mean_gradien
             vy = together(vy, dy_variance[c * plane + at] / count);
             vd = together(vd, primal_variance[c * plane + at] / count);
         }
-        wx = by_variance(vx, mean_gradient_variance);
-        wy = by_variance(vy, mean_gradient_variance);
-        wd = by_variance(vd, mean_primal_variance);
+        wx = by_variance(vx, mean_gradient_variance, largest_weight);
+        wy = by_variance(vy, mean_gradient_variance, largest_weight);
+        wd = by_variance(vd, mean_primal_variance, largest_weight);
     }
     base_x[to] = valid_dx[at] * wx;
     base_y[to] = valid_dy[at] * wy;

@@ -14,6 +14,7 @@
 #include "kernels/lib/division.h"
 #include "kernels/lib/filter_table.h"
 #include "kernels/lib/path_draw.h"
+#include "kernels/lib/sample_number.h"
 
 /* Filter importance sampling (Ernst et al. 2006): the offset from the pixel's center is drawn from the filter. */
 GRADUS_FN real filter_offset(__global const real *camera, uint unit, real u) {
@@ -58,8 +59,9 @@ STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ra
 #endif
     const uint more_samples = divide(number, pixels_multiplier, pixels_shift);
     const uint pixel = number - more_samples * pixels;
-    const uint sample_low = first_sample_low + more_samples;
-    const uint sample_high = first_sample_high + (sample_low < first_sample_low ? 1u : 0u);
+    const uint place_low = first_sample_low + more_samples;
+    const uint place_high = first_sample_high + (place_low < first_sample_low ? 1u : 0u);
+    const uint sample_low = SAMPLE_LOW(place_low, place_high), sample_high = SAMPLE_HIGH(place_low, place_high);
     const uint line = divide(pixel, width_multiplier, width_shift);
     const uint y = line + crop_y;
     const uint x = pixel - line * crop_width + crop_x;

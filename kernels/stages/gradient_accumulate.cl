@@ -3,10 +3,18 @@
  * one's offset path to the other gives, less what the other's to the one gives (Kettunen et al. 2015).
  *
  * The gradient to the pixel below belongs to the row above: so the first row of a strip finishes that of the strip
- * before, whose part is in `carry`. */
+ * before, whose part is in `carry`.
+ *
+ * TRAIT_HALVES: frames are those of one half of the samples, every other one from `first_slot` on. */
+//! traits: TRAIT_HALVES
 #include "kernels/lib/compensated.h"
 #include "kernels/lib/gradient.h"
 
+#if TRAIT_HALVES
+#define NEXT_FRAME (2u * strip_pixels)
+#else
+#define NEXT_FRAME strip_pixels
+#endif
 /* `sample` is that of slot `at`, for pixel `to` of the film. */
 #define ADD(number, to, sample)                                                                                        \
     {                                                                                                                  \
@@ -16,7 +24,7 @@
         real square = FILM(gradient_film_square_first + number, to);                                                   \
         _Pragma("unroll") for (uint frame = 0; frame < accumulated_frames; ++frame) {                                  \
             const int is_there = frame < frames;                                                                       \
-            const uint at = slot + (is_there ? frame * strip_pixels : 0u);                                             \
+            const uint at = slot + (is_there ? frame * NEXT_FRAME : 0u);                                               \
             const real value = sample;                                                                                 \
             const compensated added = compensated_add(s, value);                                                       \
             s.sum = is_there ? added.sum : s.sum;                                                                      \

@@ -12,6 +12,7 @@
 #include "kernels/lib/division.h"
 #include "kernels/lib/material_side.h"
 #include "kernels/lib/path_draw.h"
+#include "kernels/lib/sample_number.h"
 #include "kernels/lib/surface_side.h"
 #include "kernels/lib/texture_lookup.h"
 #include "kernels/lib/textured_material.h"
@@ -121,8 +122,9 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
 #endif
 #if TRAIT_SHARED_JITTER
     /* An additive sequence, as the places within the pixel are: what all pixels share does not average out. */
-    const uint sample = first_sample_low + divide(AT_UINT(path, slot, i), pixels_multiplier, pixels_shift);
-    const uint high = first_sample_high + (sample < first_sample_low ? 1u : 0u);
+    const uint place = first_sample_low + divide(AT_UINT(path, slot, i), pixels_multiplier, pixels_shift);
+    const uint place_high = first_sample_high + (place < first_sample_low ? 1u : 0u);
+    const uint sample = SAMPLE_LOW(place, place_high), high = SAMPLE_HIGH(place, place_high);
     const random_bits start = random_key(seed_low, seed_high, 0xFFFFFFFDu, 0u, high);
     const real shared = random_unit(start.x + sample * 2654435769u);
     choice = depth == 0u ? shared : choice;

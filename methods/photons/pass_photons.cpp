@@ -50,6 +50,10 @@ double radius_shrinkage(std::uint64_t pass, double alpha) {
     return std::exp(std::lgamma(n + 1 + alpha) - std::lgamma(1 + alpha) - std::lgamma(n + 2));
 }
 
+const char *accuracy_of_photons(const RenderOptions &options) {
+    return accuracy_name(options.radius_alpha < 1 ? Accuracy::consistent : Accuracy::neither);
+}
+
 void count_radii(Statistics &statistics, std::uint64_t pass, bool begins, const GatherRadii &radii) {
     if (begins)
         statistics.last_radii = {};
@@ -77,7 +81,8 @@ const Scene &checked_for_gathering(const Scene &scene, const RenderOptions &opti
 
 PassPhotons::PassPhotons(Session &session, Stages &stages, const Scene &scene, const RenderOptions &options,
                          double pixel_widths)
-    : options_(options), stages_(stages), light_paths_(session, stages, scene, options, direct_of(options)),
+    : options_(options), has_halves_(session.has("TRAIT_HALVES")), stages_(stages),
+      light_paths_(session, stages, scene, options, direct_of(options)),
       map_(session, stages, photon_rows(light_paths_)) {
     if (session.scene.light_count == 0)
         throw Error(ExitCode::usage, "there is no light in the scene, and so no photon to gather");
@@ -120,7 +125,9 @@ void PassPhotons::begin(std::uint64_t pass) {
         paths_a_pass_ = light_paths_.paths_a_pass();
         stages_.set_real("flux_scale", std::numbers::inv_pi / double(paths_a_pass_));
     }
-    const double scale = std::sqrt(radius_shrinkage(pass, options_.radius_alpha));
+    // Each half of the passes has radii of its own: as if it were all there is.
+    const std::uint64_t of_half = has_halves_ ? pass / 2 : pass;
+    const double scale = std::sqrt(radius_shrinkage(of_half, options_.radius_alpha));
     stages_.set_real("radius_scale", scale);
     const std::uint32_t photons = light_paths_.trace(pass * paths_a_pass_, paths_a_pass_);
     map_.build(light_paths_.rows(), photons,

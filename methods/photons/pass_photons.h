@@ -12,6 +12,9 @@ namespace gradus {
 /// The square of the radius of pass `pass`, from 0 on, over that of the first: Knaus and Zwicker 2011, eq. 20.
 double radius_shrinkage(std::uint64_t pass, double alpha);
 
+/// Of an image of photons (solver/reconstruction.h): right in the limit where radii shrink.
+const char *accuracy_of_photons(const RenderOptions &options);
+
 /// Counts gather points of pass `pass` and the sum of their radii. `begins`: they are the first of their pass.
 void count_radii(Statistics &statistics, std::uint64_t pass, bool begins, const GatherRadii &radii);
 
@@ -41,6 +44,7 @@ class PassPhotons {
     void set_radius(Session &session, RenderOptions::GatherRadius radius);
 
     const RenderOptions options_;
+    const bool has_halves_;
     Stages &stages_;
     LightPaths light_paths_;
     PhotonMap map_;

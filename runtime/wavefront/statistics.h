@@ -25,6 +25,13 @@ struct MethodChoice {
     double gain = 0;                           ///< relMSE of pt over gpt's at equal cost; 0 where it is not known
 };
 
+/// How an image was made of its samples.
+struct ReconstructionUsed {
+    std::string name;     ///< "l1", "weighted"; "none": the mean of the samples
+    std::string accuracy; ///< "unbiased", "consistent" or "neither"
+    std::string note;     ///< a sentence where it is not the one that was asked for, else empty
+};
+
 /// What a stage took.
 struct StageTime {
     std::string name;
@@ -61,6 +68,7 @@ struct Statistics {
     std::uint64_t device_bytes = 0;                ///< allocated on the device
     std::uint64_t peak_host_bytes = 0;             ///< the process at its peak
     std::optional<MethodChoice> choice;            ///< of the method `auto`
+    ReconstructionUsed reconstruction;             ///< of the last image
 };
 
 } // namespace gradus

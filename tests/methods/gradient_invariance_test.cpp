@@ -97,7 +97,7 @@ TEST(GradientOptions, L2AndAlphaAreTaken) {
     const Image by_default = render(scene, options, "gpt").image;
     options.alpha = 0.01;
     const Image small = render(scene, options, "gpt").image;
-    options.norm = PoissonNorm::l2;
+    options.reconstruction = Reconstruction::l2;
     const Image l2 = render(scene, options, "gpt").image;
     EXPECT_FALSE(equal_bits(by_default, small));
     EXPECT_FALSE(equal_bits(l2, small));

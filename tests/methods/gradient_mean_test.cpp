@@ -26,7 +26,7 @@ TEST(GradientMean, OfL2IsUnbiased) {
     scene.settings.samples_per_pixel = 4;
     for (const bool fixed : {true, false}) {
         RenderOptions options;
-        options.norm = PoissonNorm::l2;
+        options.reconstruction = Reconstruction::l2;
         if (fixed)
             options.alpha = 0.2;
         std::vector<std::vector<double>> estimates;

@@ -31,7 +31,7 @@ RenderOptions photon_options(double radius, std::uint64_t photons) {
     RenderOptions options = with_radius(radius, false);
     options.photons = photons;
     options.direct_photons = true;
-    options.norm = PoissonNorm::l2;
+    options.reconstruction = Reconstruction::l2;
     options.alpha = 0.2;
     return options;
 }

@@ -26,7 +26,7 @@ class GradientPhotonStrips : public ::testing::TestWithParam<const char *> {
         options.photons = 2000;
         options.radius = RenderOptions::GatherRadius{1.5, false};
         options.batch_size = batch_size;
-        options.norm = PoissonNorm::l2;
+        options.reconstruction = Reconstruction::l2;
         options.layers = options.aov = true;
         return make_method("gpm", shared_device(), scene, options);
     }

@@ -33,7 +33,7 @@ class GradientStrips : public ::testing::TestWithParam<const char *> {
     static RenderOptions options(std::uint32_t batch_size) {
         RenderOptions options;
         options.batch_size = batch_size;
-        options.norm = PoissonNorm::l2;
+        options.reconstruction = Reconstruction::l2;
         options.layers = options.aov = true;
         return options;
     }

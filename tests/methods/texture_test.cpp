@@ -70,7 +70,7 @@ std::array<double, 2> seen_place(const Scene &scene, std::uint32_t x, std::uint3
 RenderOptions exact_options() {
     RenderOptions options;
     options.strategy = SessionOptions::Strategy::bsdf;
-    options.norm = PoissonNorm::l2;
+    options.reconstruction = Reconstruction::l2;
     options.seed = 7;
     return options;
 }
@@ -181,7 +181,7 @@ TEST(Blends, HaveTheMeanOfTheirParts) {
         turned.sphere({0, 0, 0}, 1, turned.material(two_sided(both, both)), -1, from_behind);
         for (const char *method : {"pt", "gpt", "sppm"}) {
             RenderOptions options;
-            options.norm = PoissonNorm::l2;
+            options.reconstruction = Reconstruction::l2;
             const Image image = render(turned.scene, options, method).image;
             double mean = 0;
             for (std::uint32_t y = 4; y < 12; ++y)

@@ -1,0 +1,37 @@
+// The images of two independent halves of a render's samples, which judge each other.
+#pragma once
+
+#include "runtime/device/buffer.h"
+
+#include <array>
+#include <cstdint>
+
+namespace gradus {
+
+/// Planes as PoissonImages has them (poisson_solver.h): dx and dy are missing where a method has no differences. Each
+/// has its variances, of the means: those of single samples over their number.
+struct HalfImages {
+    Buffer primal, dx, dy;
+    Buffer primal_variance, dx_variance, dy_variance;
+    /// Of all pixels: how much the half counts.
+    std::uint64_t samples = 0;
+};
+
+/// That of the even samples of each pixel, and that of the odd ones. They have no random number in common.
+using HalvedImages = std::array<HalfImages, 2>;
+
+/// Of `samples` samples of `pixels` pixels, taken frame by frame, those of a half.
+constexpr std::uint64_t samples_of_half(std::uint64_t samples, std::uint64_t pixels, int half) {
+    const std::uint64_t frames = samples / pixels, more = samples % pixels;
+    return (frames + (half == 0 ? 1 : 0)) / 2 * pixels + (frames % 2 == std::uint64_t(half) ? more : 0);
+}
+
+/// A half needs so many samples of each pixel to have a variance.
+constexpr std::uint64_t least_half_samples = 2;
+
+/// Whether both halves have those.
+constexpr bool halves_have_variances(std::uint64_t samples, std::uint64_t pixels) {
+    return samples / pixels >= 2 * least_half_samples;
+}
+
+} // namespace gradus

@@ -1,0 +1,31 @@
+// How an image is made of samples and differences.
+#pragma once
+
+#include "solver/poisson_solver.h"
+
+namespace gradus {
+
+enum class Reconstruction {
+    l1,       ///< PoissonNorm::l1: robust, and consistent
+    l2,       ///< PoissonNorm::l2, one weight for all pixels
+    weighted, ///< least squares, each equation by its variance; two halves judge each other (weighted_reconstruction.h)
+    guided    ///< the same with a guide image
+};
+
+/// Whether samples must be kept as two halves.
+constexpr bool needs_halves(Reconstruction reconstruction) {
+    return reconstruction == Reconstruction::weighted || reconstruction == Reconstruction::guided;
+}
+
+/// As --reconstruction names it.
+const char *reconstruction_name(Reconstruction reconstruction);
+
+/// What the mean of many renders tends to.
+enum class Accuracy {
+    unbiased,   ///< to what is right
+    consistent, ///< to what is right as samples grow
+    neither
+};
+const char *accuracy_name(Accuracy accuracy);
+
+} // namespace gradus

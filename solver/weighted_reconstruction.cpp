@@ -1,0 +1,205 @@
+#include "solver/weighted_reconstruction.h"
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <utility>
+
+namespace gradus {
+
+namespace {
+
+/// Variances have a bound by place; this one is for where nothing is seen at all. Multigrid cycles diverge where weights
+/// jump by a factor of 10^9 from pixel to pixel.
+constexpr double largest_weight = 1000;
+
+/// A variance is at least this share of the squared brightness, over the number of samples: none at all is luck.
+constexpr double least_of_a_sample = 1e-3;
+
+/// How far a pixel's neighbours are, and how much they count, from each smoothing to the next.
+struct Smoothing {
+    std::uint32_t apart;
+    double side;
+};
+// Standard deviations of 0.4, 0.8, 1.6, 3.3 and 6.6 pixels in all.
+constexpr Smoothing smoothings[] = {{1, 0.07}, {1, 0.5}, {2, 0.5}, {4, 0.5}, {8, 0.5}};
+
+constexpr const char *kernel_names[] = {"mean_of_channels", "smooth_image", "add_logarithm", "geometric_mean",
+                                        "mix_images"};
+
+std::vector<Kernel> build_smoothing(Device &device, std::uint32_t channels) {
+    KernelLibrary library(
+        device, {{"SOLVER_CHANNELS", static_cast<int>(channels)}, {"SOLVER_WEIGHTED", 0}, {"SOLVER_JOINT", 1}});
+    std::vector<KernelRequest> requests;
+    for (const char *name : kernel_names)
+        requests.push_back({name, "kernels/solver/smooth_variance.cl", name, {}});
+    return library.build(requests);
+}
+
+} // namespace
+
+VarianceSmoother::VarianceSmoother(Device &device, std::uint32_t width, std::uint32_t height, std::uint32_t channels)
+    : device_(device), width_(width), height_(height), channels_(channels) {
+    std::vector<Kernel> kernels = build_smoothing(device, channels);
+    mean_ = std::move(kernels[0]);
+    smooth_ = std::move(kernels[1]);
+    add_ = std::move(kernels[2]);
+    finish_ = std::move(kernels[3]);
+}
+
+void VarianceSmoother::launch(Kernel &kernel) {
+    kernel.set("width", width_);
+    kernel.set("height", height_);
+    kernel.launch(width_, height_);
+}
+
+void VarianceSmoother::take_mean(const Buffer &image, bool is_variance) {
+    mean_.set("is_variance", is_variance);
+    mean_.bind("packed", image);
+    mean_.bind("mean", image_);
+    launch(mean_);
+}
+
+void VarianceSmoother::smooth(std::uint32_t columns, std::uint32_t rows, std::uint32_t apart, double side) {
+    smooth_.set("columns", columns);
+    smooth_.set("rows", rows);
+    smooth_.set("apart", apart);
+    smooth_.set_real("side", side);
+    smooth_.bind("image", image_);
+    smooth_.bind("smoothed", other_);
+    launch(smooth_);
+    std::swap(image_, other_);
+}
+
+void VarianceSmoother::begin(const HalfImages &judge) {
+    const std::size_t pixels = std::size_t(width_) * height_, bytes = pixels * sizeof(float);
+    if (!image_.valid()) {
+        image_ = Buffer(device_, "image", bytes);
+        other_ = Buffer(device_, "image", bytes);
+        brightness_ = Buffer(device_, "brightness", bytes);
+        logarithms_ = Buffer(device_, "logarithms", 2 * bytes);
+        smoothed_ = Buffer(device_, "smoothed", channels_ * bytes);
+    }
+    samples_ = std::max(double(judge.samples) / double(pixels), double(least_half_samples));
+    take_mean(judge.primal, false);
+    for (int i = 0; i < 2; ++i)
+        smooth(width_, height_, 1, 0.5);
+    std::swap(image_, brightness_);
+}
+
+const Buffer &VarianceSmoother::smoothed(const Buffer &variance, Differences differences) {
+    take_mean(variance, true);
+    const std::uint32_t columns = width_ - (differences == Differences::right ? 1 : 0),
+                        rows = height_ - (differences == Differences::down ? 1 : 0);
+    for (std::size_t i = 0; i < std::size(smoothings); ++i) {
+        smooth(columns, rows, smoothings[i].apart, smoothings[i].side);
+        // The fewer samples, the less the pixel itself knows.
+        add_.set_real("share", i == 0 ? 2 * (1 - 1 / samples_) : 1);
+        add_.set_real("least", least_of_a_sample / samples_);
+        add_.set("begins", i == 0);
+        add_.bind("variance", image_);
+        add_.bind("brightness", brightness_);
+        add_.bind(logarithms_);
+        launch(add_);
+    }
+    finish_.bind(logarithms_);
+    finish_.bind(smoothed_);
+    launch(finish_);
+    return smoothed_;
+}
+
+ImageMixer::ImageMixer(Device &device) : mix_(std::move(build_smoothing(device, 3)[4])) {}
+
+void ImageMixer::mix(const Buffer &first, double a, const Buffer &second, double b, Buffer &result) {
+    const auto count = static_cast<std::uint32_t>(result.bytes() / sizeof(float));
+    mix_.set("count", count);
+    mix_.set_real("a", a);
+    mix_.set_real("b", b);
+    mix_.bind("first", first);
+    mix_.bind("second", second);
+    mix_.bind("mixed", result);
+    mix_.launch(count);
+}
+
+WeightedReconstruction::WeightedReconstruction(Device &device, PoissonSolver &solver)
+    : device_(device), solver_(solver), smoother_(device, solver.width(), solver.height(), solver.channels()),
+      mixer_(device) {}
+
+PoissonOptions WeightedReconstruction::options() {
+    PoissonOptions options;
+    options.norm = PoissonNorm::l2;
+    options.alpha_from_variances = true;
+    options.weigh_by_variance = true;
+    options.largest_weight = largest_weight;
+    return options;
+}
+
+void WeightedReconstruction::compile(Device &device, std::uint32_t channels) {
+    build_smoothing(device, channels);
+    PoissonSolver::compile(device, options(), channels);
+}
+
+PoissonReport WeightedReconstruction::solve_half(const HalfImages &half, const HalfImages &judge, Buffer &result) {
+    const auto image = [](const Buffer &buffer) { return [&buffer]() -> const Buffer & { return buffer; }; };
+    const auto variance = [&](const Buffer &buffer, VarianceSmoother::Differences differences) {
+        return [&, differences]() -> const Buffer & { return smoother_.smoothed(buffer, differences); };
+    };
+    smoother_.begin(judge);
+    BufferSources images;
+    images.primal = image(half.primal);
+    images.dx = image(half.dx);
+    images.dy = image(half.dy);
+    images.primal_variance = variance(judge.primal_variance, VarianceSmoother::Differences::none);
+    images.dx_variance = variance(judge.dx_variance, VarianceSmoother::Differences::right);
+    images.dy_variance = variance(judge.dy_variance, VarianceSmoother::Differences::down);
+    return solver_.solve(images, options(), result);
+}
+
+PoissonReport WeightedReconstruction::solve(const HalvedImages &halves, Buffer &result) {
+    const double first = double(halves[0].samples), second = double(halves[1].samples);
+    Buffer other(device_, "half_solution", result.bytes());
+    const PoissonReport of_first = solve_half(halves[0], halves[1], other);
+    PoissonReport report = solve_half(halves[1], halves[0], result);
+    mixer_.mix(other, first / (first + second), result, second / (first + second), result);
+    report.iterations += of_first.iterations;
+    report.converged = report.converged && of_first.converged;
+    report.objective += of_first.objective;
+    report.missing_primal += of_first.missing_primal;
+    report.missing_dx += of_first.missing_dx;
+    report.missing_dy += of_first.missing_dy;
+    report.filled += of_first.filled;
+    report.seconds += of_first.seconds;
+    std::map<std::string, KernelTime> times;
+    for (const PoissonReport *part : {&of_first, static_cast<const PoissonReport *>(&report)})
+        for (const KernelTime &time : part->kernels) {
+            KernelTime &sum = times[time.name];
+            sum.name = time.name;
+            sum.seconds += time.seconds;
+            sum.launches += time.launches;
+        }
+    report.kernels.clear();
+    for (const auto &[name, time] : times)
+        report.kernels.push_back(time);
+    return report;
+}
+
+PoissonReport solve_halves(Device &device, PoissonSolver &solver, const std::array<HostImages, 2> &images,
+                           const std::array<std::uint64_t, 2> &samples, float *result) {
+    const std::size_t bytes = std::size_t(solver.width()) * solver.height() * solver.channels() * sizeof(float);
+    HalvedImages halves;
+    for (int i = 0; i < 2; ++i) {
+        halves[i].primal = Buffer(device, "primal", images[i].primal, bytes);
+        halves[i].dx = Buffer(device, "dx", images[i].dx, bytes);
+        halves[i].dy = Buffer(device, "dy", images[i].dy, bytes);
+        halves[i].primal_variance = Buffer(device, "primal_variance", images[i].primal_variance, bytes);
+        halves[i].dx_variance = Buffer(device, "dx_variance", images[i].dx_variance, bytes);
+        halves[i].dy_variance = Buffer(device, "dy_variance", images[i].dy_variance, bytes);
+        halves[i].samples = samples[i];
+    }
+    Buffer solution(device, "solution", bytes);
+    const PoissonReport report = WeightedReconstruction(device, solver).solve(halves, solution);
+    solution.read(result, bytes);
+    return report;
+}
+
+} // namespace gradus

@@ -1,0 +1,81 @@
+// An unbiased reconstruction with weights of their own for each pixel and each difference.
+//
+// Least squares with weights by inverse variance have the least error, but variances of the same samples bias them: of
+// skewed noise what is too dark also looks too sure. So each half of the samples is solved for with the other's
+// variances, which know nothing of its noise. Whatever the weights, the solution is linear in the half's images, so its
+// mean is right, and so is that of both halves. (Rousselle et al. 2016 weigh by the variances of the samples
+// themselves.)
+#pragma once
+
+#include "runtime/device/program.h"
+#include "solver/halves.h"
+#include "solver/poisson_solver.h"
+
+namespace gradus {
+
+/// Makes variances fit to be weights.
+class VarianceSmoother {
+  public:
+    VarianceSmoother(Device &device, std::uint32_t width, std::uint32_t height, std::uint32_t channels);
+
+    /// Of pixels, or of differences, which the last column or row has not.
+    enum class Differences { none, right, down };
+    /// What follows is of this half.
+    void begin(const HalfImages &judge);
+    /// The variances of one of its images, smoothed over the neighbourhood (kernels/solver/smooth_variance.cl), at
+    /// least a share of the squared brightness there, and the same for all channels. -1 where there are none. The
+    /// buffer is used again by the next call.
+    const Buffer &smoothed(const Buffer &variance, Differences differences);
+
+  private:
+    void launch(Kernel &kernel);
+    void take_mean(const Buffer &image, bool is_variance);
+    void smooth(std::uint32_t columns, std::uint32_t rows, std::uint32_t apart, double side);
+
+    Device &device_;
+    std::uint32_t width_, height_, channels_;
+    double samples_ = 0; ///< of a pixel
+    Kernel mean_, smooth_, add_, finish_;
+    Buffer image_, other_, brightness_, logarithms_, smoothed_;
+};
+
+/// Sums of images, value by value.
+class ImageMixer {
+  public:
+    explicit ImageMixer(Device &device);
+    /// `result` = a first + b second; it may be one of them.
+    void mix(const Buffer &first, double a, const Buffer &second, double b, Buffer &result);
+
+  private:
+    Kernel mix_;
+};
+
+class WeightedReconstruction {
+  public:
+    /// For images of the solver's size, which is the caller's and must live as long.
+    WeightedReconstruction(Device &device, PoissonSolver &solver);
+
+    /// Writes the solution of one half to `result`, with the variances of `judge`. Unbiased where the two halves are
+    /// independent.
+    PoissonReport solve_half(const HalfImages &half, const HalfImages &judge, Buffer &result);
+    /// Writes the mean of both halves' solutions, by their samples, to `result`, which has as many values as their
+    /// primal. The report is that of both solves.
+    PoissonReport solve(const HalvedImages &halves, Buffer &result);
+
+    /// What a half asks of the solver.
+    static PoissonOptions options();
+    /// As PoissonSolver::compile().
+    static void compile(Device &device, std::uint32_t channels = 3);
+
+  private:
+    Device &device_;
+    PoissonSolver &solver_;
+    VarianceSmoother smoother_;
+    ImageMixer mixer_;
+};
+
+/// The same from images on the host: writes channels * height * width floats to `result`.
+PoissonReport solve_halves(Device &device, PoissonSolver &solver, const std::array<HostImages, 2> &images,
+                           const std::array<std::uint64_t, 2> &samples, float *result);
+
+} // namespace gradus
