@@ -27,13 +27,13 @@
 #define OF_LIGHT(array, index, stride, at) LIGHT_AT(array, index, stride, at)
 #elif FEW_LIGHTS == 1
 #define OF_LIGHT(array, index, stride, at) LIGHT_AT(array, 0u, stride, at)
-#elif FEW_LIGHTS == 2
-#define OF_LIGHT(array, index, stride, at)                                                                             \
-    ((index) < 1u ? LIGHT_AT(array, 0u, stride, at) : LIGHT_AT(array, 1u, stride, at))
 #else
 /* Sums of which all but one are 0, exactly: three choices would become a switch, which PoCL does not vectorise. */
 #define LIGHT_IF(array, index, n, stride, at) ((index) == (n)) * LIGHT_AT(array, n, stride, at)
-#if FEW_LIGHTS == 3
+#if FEW_LIGHTS == 2
+#define OF_LIGHT(array, index, stride, at)                                                                             \
+    (LIGHT_IF(array, index, 0u, stride, at) + LIGHT_IF(array, index, 1u, stride, at))
+#elif FEW_LIGHTS == 3
 #define OF_LIGHT(array, index, stride, at)                                                                             \
     (LIGHT_IF(array, index, 0u, stride, at) + LIGHT_IF(array, index, 1u, stride, at) +                                 \
      LIGHT_IF(array, index, 2u, stride, at))
@@ -49,8 +49,8 @@
 #define BITS_OF_LIGHT(n)                                                                                               \
     | LIGHT_BITS(n, alias_threshold) | LIGHT_BITS(n, probability) | LIGHT_BITS(n, value_r) | LIGHT_BITS(n, value_g) |  \
         LIGHT_BITS(n, value_b) | LIGHT_V3_BITS(n, p) | LIGHT_V3_BITS(n, e1) | LIGHT_V3_BITS(n, e2) |                   \
-        LIGHT_BITS(n, inverse_area) | LIGHT_BITS(n, offset) | light_kinds[(n) * (size_t)unit] |                        \
-        light_alias[(n) * (size_t)unit]
+        LIGHT_BITS(n, inverse_area) | LIGHT_BITS(n, offset) | LIGHT_AT(light_kinds, n, 1u, 0u) |                       \
+        LIGHT_AT(light_alias, n, 1u, 0u)
 #if FEW_LIGHTS == 0
 #define BITS_OF_LIGHTS 0u
 #elif FEW_LIGHTS == 1

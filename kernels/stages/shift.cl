@@ -69,7 +69,12 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
 #endif
 ) {
     const size_t i = work_item();
-    if (i >= count)
+#if MEETS_LIGHTS
+    const uint kept = BITS_OF_LIGHTS;
+#else
+    const uint kept = 0u;
+#endif
+    if (!HAS_ROW(i, count, kept))
         return;
     const uint row = first + (uint)i;
     const uint slot = AT_UINT(path, slot, row);
