@@ -16,6 +16,8 @@ const char *reconstruction_name(Reconstruction reconstruction) {
     return "";
 }
 
+const char *guide_name(Guide guide) { return guide == Guide::filter ? "filter" : "denoiser"; }
+
 const char *accuracy_name(Accuracy accuracy) {
     switch (accuracy) {
     case Accuracy::unbiased:

@@ -9,8 +9,15 @@ enum class Reconstruction {
     l1,       ///< PoissonNorm::l1: robust, and consistent
     l2,       ///< PoissonNorm::l2, one weight for all pixels
     weighted, ///< least squares, each equation by its variance; two halves judge each other (weighted_reconstruction.h)
-    guided    ///< the same with a guide image
+    guided    ///< the same, and a guide image where it has less error (guide/guide_judge.h)
 };
+
+/// What makes the guide of Reconstruction::guided.
+enum class Guide {
+    filter,  ///< a feature filter of our own (guide/feature_filter.h)
+    denoiser ///< Open Image Denoise, where it is installed (guide/denoiser.h)
+};
+const char *guide_name(Guide guide);
 
 /// Whether samples must be kept as two halves.
 constexpr bool needs_halves(Reconstruction reconstruction) {

@@ -1,0 +1,40 @@
+#include "solver/guide/guide_smoother.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <vector>
+
+namespace gradus::solver {
+
+Kernel guide_kernel(Device &device, Precision precision, const char *file, const char *entry, int taps) {
+    KernelLibrary library(
+        device, {{"SOLVER_CHANNELS", 3}, {"SOLVER_WEIGHTED", 0}, {"SOLVER_JOINT", 1}, {"GUIDE_TAPS", taps}}, precision);
+    return std::move(library.build({{entry, fmt::format("kernels/solver/{}.cl", file), entry, {}}}).front());
+}
+
+GuideSmoother::GuideSmoother(const PlaneMaker &make, const Grid &grid, int radius, double sigma)
+    : make_(make), grid_(grid),
+      rows_(guide_kernel(make.device(), make.precision(), "guide_smooth", "guide_smooth_rows", radius)),
+      columns_(guide_kernel(make.device(), make.precision(), "guide_smooth", "guide_smooth_columns", radius)) {
+    std::vector<double> taps;
+    for (int d = -radius; d <= radius; ++d)
+        taps.push_back(std::exp(-0.5 * d * d / (sigma * sigma)));
+    taps_ = make.reals("taps", taps);
+}
+
+void GuideSmoother::run(const Buffer &image, const Buffer &smoothed, std::uint32_t planes) {
+    const std::size_t bytes = std::size_t(grid_.plane) * planes * real_bytes(make_.precision());
+    if (!across_.valid() || across_.bytes() < bytes)
+        across_ = make_.planes("smoothed", grid_, planes);
+    rows_.bind(taps_);
+    rows_.bind("image", image);
+    rows_.bind("smoothed", across_);
+    grid_.launch(rows_, {0, planes});
+    columns_.bind(taps_);
+    columns_.bind("image", across_);
+    columns_.bind("smoothed", smoothed);
+    grid_.launch(columns_, {0, planes});
+}
+
+} // namespace gradus::solver
