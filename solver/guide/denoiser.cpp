@@ -101,19 +101,21 @@ Denoiser::Denoiser(const std::string &library, int threads) : library_(std::make
     const char *named = std::getenv(variable);
     const std::string asked = !library.empty() ? library : named ? named : "";
     bool found = false;
-    if (!asked.empty())
-        found = library_->open(asked);
-    else
-        for (const char *name : usual_names)
-            found = found || library_->open(name);
+    std::string reason; // why not the first of them
+    for (const std::string &name : asked.empty()
+                                       ? std::vector<std::string>(std::begin(usual_names), std::end(usual_names))
+                                       : std::vector<std::string>{asked}) {
+        found = found || library_->open(name);
+        if (const char *text = found ? nullptr : dlerror(); text && reason.empty())
+            reason = text;
+    }
     if (!found) {
-        const char *reason = dlerror();
         throw Error(
             ExitCode::usage,
             fmt::format("no Open Image Denoise: {}. Install its library (libOpenImageDenoise.so.2, from "
                         "https://www.openimagedenoise.org, or as the Python package pyoidn holds it), and let {} "
                         "name the file where the system does not find it",
-                        reason ? reason : "not found", variable));
+                        reason, variable));
     }
     library_->find_all();
     library_->device = library_->new_device(device_type_cpu);

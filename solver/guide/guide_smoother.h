@@ -22,6 +22,9 @@ class GuideSmoother {
     Buffer taps_, across_;
 };
 
+/// Compiles all kernels of guides, several at a time; uses no queue.
+void compile_guide_kernels(Device &device);
+
 /// Compiles a kernel of kernels/solver/FILE.cl for guides of three channels.
 Kernel guide_kernel(Device &device, Precision precision, const char *file, const char *entry, int taps = 0);
 

@@ -14,8 +14,7 @@ GuidedReconstruction::GuidedReconstruction(Device &device, PoissonSolver &solver
 
 void GuidedReconstruction::compile(Device &device) {
     WeightedReconstruction::compile(device);
-    FeatureFilter(device, 1, 1);
-    GuideJudge(device, 1, 1);
+    solver::compile_guide_kernels(device);
 }
 
 void GuidedReconstruction::denoise(const HalfImages &half, const Buffer &solution, const GuideInputs &inputs,

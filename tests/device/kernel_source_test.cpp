@@ -90,8 +90,9 @@ TEST(KernelTraits, AreThoseThatAMethodKnows) {
     std::set<std::string> known = {
         "TRAIT_AOV",         "TRAIT_SHARED_JITTER",  "TRAIT_APART",        "TRAIT_SHIFT_DISTANCE",
         "TRAIT_GRADIENT",    "TRAIT_LIGHT_VERTICES", "TRAIT_LIGHT_STARTS", "TRAIT_STRATIFIED",
-        "TRAIT_ONLY_CHAINS", "TRAIT_HALVES", "SAMPLES_LIGHTS",       "FEW_LIGHTS",         "MANY_LIGHTS",
-        "STRATEGY",          "SOLVER_CHANNELS",      "SOLVER_WEIGHTED",    "SOLVER_JOINT"};
+        "TRAIT_ONLY_CHAINS", "TRAIT_HALVES",         "GUIDE_TAPS",         "SAMPLES_LIGHTS",
+        "FEW_LIGHTS",        "MANY_LIGHTS",          "STRATEGY",           "SOLVER_CHANNELS",
+        "SOLVER_WEIGHTED",   "SOLVER_JOINT"};
     for (const auto &[name, value] : scene_traits(Scene{}))
         known.insert(name);
     known.erase("TRAIT_FAR_CLIP"); // a stage of its own, there or not
