@@ -9,8 +9,9 @@ namespace gradus {
 
 namespace {
 
-/// The solver's own bound of weights, far from what variances give: these have a bound of their own, by place.
-constexpr double no_largest_weight = 1e9;
+/// Variances have a bound by place; this one is for where nothing is seen at all. Multigrid cycles diverge where weights
+/// jump by a factor of 10^9 from pixel to pixel.
+constexpr double largest_weight = 1000;
 
 /// A variance is at least this share of the squared brightness, over the number of samples: none at all is luck.
 constexpr double least_of_a_sample = 1e-3;
@@ -129,7 +130,7 @@ PoissonOptions WeightedReconstruction::options() {
     options.norm = PoissonNorm::l2;
     options.alpha_from_variances = true;
     options.weigh_by_variance = true;
-    options.largest_weight = no_largest_weight;
+    options.largest_weight = largest_weight;
     return options;
 }
 
