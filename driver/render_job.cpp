@@ -220,6 +220,8 @@ class RenderJob {
         image.metadata["seed"] = std::to_string(record_.seed);
         const ReconstructionUsed used = prepared_.method->statistics().reconstruction;
         image.metadata["reconstruction"] = used.name;
+        if (!used.guide.empty())
+            image.metadata["guide"] = used.guide;
         image.metadata["accuracy"] = used.accuracy;
         image.metadata["samples"] = std::to_string(done);
         image.metadata["spp"] = fmt::format("{}", record_.samples_per_pixel);

@@ -36,7 +36,7 @@ nlohmann::json choice_json(const MethodChoice &choice) {
 }
 
 nlohmann::json reconstruction_json(const ReconstructionUsed &used) {
-    return {{"name", used.name}, {"accuracy", used.accuracy}, {"note", used.note}};
+    return {{"name", used.name}, {"guide", used.guide}, {"accuracy", used.accuracy}, {"note", used.note}};
 }
 
 nlohmann::json gathering_json(const Statistics &statistics) {

@@ -28,6 +28,7 @@ TraitMap gradient_traits(const Scene &scene, const RenderOptions &options) {
             {"TRAIT_SHARED_JITTER", 1},
             {"TRAIT_APART", apart},
             {"TRAIT_SHIFT_DISTANCE", distance},
+            {"TRAIT_AOV", options.all_traits || needs_features(options)},
             {"TRAIT_HALVES", needs_halves(options.reconstruction)}};
 }
 

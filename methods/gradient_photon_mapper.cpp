@@ -51,6 +51,7 @@ TraitMap light_vertex_traits(const Scene &scene, const RenderOptions &options) {
             {"TRAIT_LIGHT_STARTS", starts},
             {"TRAIT_ONLY_CHAINS", options.only_chains},
             {"TRAIT_LOBE_LEVELS", options.sampler == RenderOptions::Sampler::sobol},
+            {"TRAIT_AOV", options.all_traits || needs_features(options)},
             {"TRAIT_HALVES", needs_halves(options.reconstruction)}};
 }
 

@@ -9,8 +9,15 @@ enum class Reconstruction {
     l1,       ///< PoissonNorm::l1: robust, and consistent
     l2,       ///< PoissonNorm::l2, one weight for all pixels
     weighted, ///< least squares, each equation by its variance; two halves judge each other (weighted_reconstruction.h)
-    guided    ///< the same with a guide image
+    guided    ///< the same, and a guide image where it has less error (guide/guide_judge.h)
 };
+
+/// What makes the guide of Reconstruction::guided.
+enum class Guide {
+    filter,  ///< a feature filter of our own (guide/feature_filter.h)
+    denoiser ///< Open Image Denoise, where it is installed (guide/denoiser.h)
+};
+inline const char *guide_name(Guide guide) { return guide == Guide::filter ? "filter" : "denoiser"; }
 
 /// Whether samples must be kept as two halves.
 constexpr bool needs_halves(Reconstruction reconstruction) {
@@ -18,7 +25,19 @@ constexpr bool needs_halves(Reconstruction reconstruction) {
 }
 
 /// As --reconstruction names it.
-const char *reconstruction_name(Reconstruction reconstruction);
+inline const char *reconstruction_name(Reconstruction reconstruction) {
+    switch (reconstruction) {
+    case Reconstruction::l1:
+        return "l1";
+    case Reconstruction::l2:
+        return "l2";
+    case Reconstruction::weighted:
+        return "weighted";
+    case Reconstruction::guided:
+        return "guided";
+    }
+    return "";
+}
 
 /// What the mean of many renders tends to.
 enum class Accuracy {
@@ -26,6 +45,16 @@ enum class Accuracy {
     consistent, ///< to what is right as samples grow
     neither
 };
-const char *accuracy_name(Accuracy accuracy);
+inline const char *accuracy_name(Accuracy accuracy) {
+    switch (accuracy) {
+    case Accuracy::unbiased:
+        return "unbiased";
+    case Accuracy::consistent:
+        return "consistent";
+    case Accuracy::neither:
+        return "neither";
+    }
+    return "";
+}
 
 } // namespace gradus
