@@ -61,7 +61,7 @@ std::uint64_t address_space_bytes() {
 
 std::uint64_t least_render_bytes(const Scene &scene, const RenderOptions &options) {
     std::uint64_t channels = 3;
-    if (options.aov)
+    if (needs_features(options))
         channels += 3 + 3 + 1 + 3; // albedo, normal, depth, variance
     if (options.layers)
         channels += 4 * 3; // primal, dx, dy, direct

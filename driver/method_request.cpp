@@ -46,11 +46,22 @@ void add_method_options(CLI::App &command, const Services &services, MethodReque
         ->check(CLI::IsMember({"single", "double", "relaxed"}))
         ->default_str("single")
         ->group(group);
+    const std::map<std::string, RenderOptions::Sampler> samplers{{"sobol", RenderOptions::Sampler::sobol},
+                                                                 {"independent", RenderOptions::Sampler::independent}};
+    command
+        .add_option_function<std::string>(
+            "--sampler", [&request, samplers](const std::string &name) { request.options.sampler = samplers.at(name); },
+            "How the samples of a pixel are drawn: sobol, evenly, from a sequence scrambled by pixel and dimension, "
+            "with less noise; independent, each by itself, whose variances are exact")
+        ->check(CLI::IsMember({"sobol", "independent"}))
+        ->default_str("sobol")
+        ->group(group);
     command.add_flag("--aov", request.options.aov, "Also write albedo, normal, depth and variance layers")
         ->group(group);
     const char *reconstruction = "Reconstruction (gpt, gpm, auto)";
-    add_reconstruction_option(command, reconstruction,
-                              [&request](Reconstruction name) { request.options.reconstruction = name; });
+    add_reconstruction_option(
+        command, reconstruction, [&request](Reconstruction name) { request.options.reconstruction = name; }, true);
+    add_guide_option(command, reconstruction, [&request](Guide guide) { request.options.guide = guide; });
     add_alpha_option(command, reconstruction, "auto",
                      "Weight of the primal image against its differences; auto: from their variances",
                      [&request](std::optional<double> alpha) { request.options.alpha = alpha; });

@@ -23,7 +23,8 @@ void add_photon_options(CLI::App &command, RenderOptions &options) {
     const char *group = "Photons (sppm, gpm)";
     command
         .add_option("--photons", options.photons,
-                    "Light paths a pass, one pass a sample a pixel; 0: as many as leave about five photons a pixel, a million at most")
+                    "Light paths a pass, one pass a sample a pixel; 0: as many as leave about five photons a pixel, a "
+                    "million at most")
         ->check(CLI::Range(std::uint64_t(0), std::uint64_t(std::numeric_limits<std::int32_t>::max())))
         ->capture_default_str()
         ->group(group);

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <vector>
 
 namespace gradus {
 
@@ -19,16 +20,25 @@ std::optional<double> finite_number(const std::string &text) {
     return number;
 }
 
-void add_reconstruction_option(CLI::App &command, const char *group, std::function<void(Reconstruction)> set) {
-    static const std::map<std::string, Reconstruction> reconstructions{
-        {"l1", Reconstruction::l1}, {"l2", Reconstruction::l2}, {"weighted", Reconstruction::weighted}};
+void add_reconstruction_option(CLI::App &command, const char *group, std::function<void(Reconstruction)> set,
+                               bool guided) {
+    static const std::map<std::string, Reconstruction> reconstructions{{"l1", Reconstruction::l1},
+                                                                       {"l2", Reconstruction::l2},
+                                                                       {"weighted", Reconstruction::weighted},
+                                                                       {"guided", Reconstruction::guided}};
+    std::vector<std::string> names{"l1", "l2", "weighted"};
+    if (guided)
+        names.push_back("guided");
     CLI::Option *reconstruction =
         command
             .add_option_function<std::string>(
                 "--reconstruction", [set](const std::string &name) { set(reconstructions.at(name)); },
                 "l1: robust; l2: linear, one weight for all pixels; weighted: linear, each pixel and each difference "
-                "weighted by its variance, and without bias: two halves of the samples judge each other")
-            ->check(CLI::IsMember({"l1", "l2", "weighted"}))
+                "weighted by its variance, and without bias: two halves of the samples judge each other" +
+                    std::string(guided ? "; guided: the same, and a filtered image where that has less error, by "
+                                         "place: consistent, the least error"
+                                       : ""))
+            ->check(CLI::IsMember(names))
             ->default_str("l1")
             ->group(group);
     command
@@ -38,6 +48,20 @@ void add_reconstruction_option(CLI::App &command, const char *group, std::functi
             "The old name of --reconstruction l1 and l2")
         ->check(CLI::IsMember({"L1", "L2"}, CLI::ignore_case))
         ->excludes(reconstruction)
+        ->group(group);
+}
+
+void add_guide_option(CLI::App &command, const char *group, std::function<void(Guide)> set) {
+    command
+        .add_option_function<std::string>(
+            "--guide",
+            [set = std::move(set)](const std::string &name) {
+                set(name == guide_name(Guide::filter) ? Guide::filter : Guide::denoiser);
+            },
+            "Of --reconstruction guided: filter, by albedo, normal, depth and noise; or denoiser, Open Image Denoise "
+            "where it is installed (GRADUS_DENOISER may name its library)")
+        ->check(CLI::IsMember({"filter", "denoiser"}))
+        ->default_str("filter")
         ->group(group);
 }
 

@@ -16,8 +16,12 @@ namespace gradus {
 /// The number that the whole text is, or nothing; NaN and infinity are none.
 std::optional<double> finite_number(const std::string &text);
 
-/// --reconstruction l1|l2|weighted, and --norm, the old name of the first two.
-void add_reconstruction_option(CLI::App &command, const char *group, std::function<void(Reconstruction)> set);
+/// --reconstruction l1|l2|weighted, with `guided` that too, and --norm, the old name of the first two.
+void add_reconstruction_option(CLI::App &command, const char *group, std::function<void(Reconstruction)> set,
+                               bool guided);
+
+/// --guide filter|denoiser.
+void add_guide_option(CLI::App &command, const char *group, std::function<void(Guide)> set);
 
 /// Throws Error(ExitCode::usage) where a weight of the primal is `given` to a reconstruction that has many.
 void check_alpha(Reconstruction reconstruction, bool given);

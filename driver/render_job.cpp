@@ -77,6 +77,7 @@ class RenderJob {
         record_.scene = request_.scene.path;
         record_.method = request_.method.method;
         record_.precision = precision_name(request_.method.options.precision);
+        record_.sampler = request_.method.options.sampler == RenderOptions::Sampler::sobol ? "sobol" : "independent";
         record_.seed = request_.method.options.seed;
 
         RenderOptions options = request_.method.options;
@@ -215,9 +216,12 @@ class RenderJob {
         image.metadata["scene"] = record_.scene;
         image.metadata["method"] = record_.method;
         image.metadata["precision"] = record_.precision;
+        image.metadata["sampler"] = record_.sampler;
         image.metadata["seed"] = std::to_string(record_.seed);
         const ReconstructionUsed used = prepared_.method->statistics().reconstruction;
         image.metadata["reconstruction"] = used.name;
+        if (!used.guide.empty())
+            image.metadata["guide"] = used.guide;
         image.metadata["accuracy"] = used.accuracy;
         image.metadata["samples"] = std::to_string(done);
         image.metadata["spp"] = fmt::format("{}", record_.samples_per_pixel);

@@ -36,7 +36,7 @@ nlohmann::json choice_json(const MethodChoice &choice) {
 }
 
 nlohmann::json reconstruction_json(const ReconstructionUsed &used) {
-    return {{"name", used.name}, {"accuracy", used.accuracy}, {"note", used.note}};
+    return {{"name", used.name}, {"guide", used.guide}, {"accuracy", used.accuracy}, {"note", used.note}};
 }
 
 nlohmann::json gathering_json(const Statistics &statistics) {
@@ -86,6 +86,7 @@ nlohmann::json statistics_to_json(const RenderRecord &record, const Statistics &
                    {"scene", record.scene},
                    {"method", record.method},
                    {"precision", record.precision},
+                   {"sampler", record.sampler},
                    {"device", device_json(record.device)},
                    {"seed", record.seed},
                    {"width", record.width},

@@ -12,7 +12,7 @@ namespace gradus {
 
 /// What Statistics does not know of a render.
 struct RenderRecord {
-    std::string scene, method, precision;
+    std::string scene, method, precision, sampler;
     DeviceDescription device;
     std::uint64_t seed = 0;
     std::uint32_t width = 0, height = 0;

@@ -2,6 +2,7 @@
 
 #include "kernels/shared/tables.h"
 #include "methods/gradient_image.h"
+#include "methods/guide_features.h"
 #include "methods/path_stages.h"
 #include "runtime/seconds_since.h"
 
@@ -18,6 +19,7 @@ DifferenceFilm::DifferenceFilm(Session &session, Stages &stages, const RenderOpt
       combine_(stages.add({.name = "gradient_combine", .strict = true})), film_(session, stages),
       accumulate_(stages.add({.name = "gradient_accumulate", .strict = true, .numbers = {"first_slot", "frames"}})),
       carry_(stages.add({.name = "gradient_carry", .numbers = {"first_slot"}})) {
+    check_guide(options);
     if (options.threads != 1)
         compilers_ = keep_compilers(session.device);
 }

@@ -1,5 +1,7 @@
 #include "methods/gradient_image.h"
 
+#include "methods/guide_features.h"
+#include "solver/guide/guided_reconstruction.h"
 #include "solver/weighted_reconstruction.h"
 
 #include <fmt/format.h>
@@ -99,14 +101,22 @@ void reconstruct_from_film(PoissonSolver &solver, Image &whole, GradientFilms &f
 }
 
 void reconstruct_from_halves(Device &device, PoissonSolver &solver, Image &whole, GradientFilms &films,
-                             const std::function<void()> &films_are_read) {
+                             const RenderOptions &options, const std::function<void()> &films_are_read) {
     const std::size_t pixels = films.pixels();
     HalvedImages halves = half_images(device, films);
     films = GradientFilms();
     if (films_are_read)
         films_are_read();
     Buffer result(device, "result", 3 * pixels * sizeof(float));
-    WeightedReconstruction(device, solver).solve(halves, result);
+    if (options.reconstruction == Reconstruction::guided) {
+        GuideInputs inputs;
+        inputs.features = uploaded_features(device, whole);
+        inputs.direct = uploaded(device, "direct", pixels, [&](std::uint32_t c, float *plane) {
+            std::copy_n(whole.channels[c].values.data(), pixels, plane);
+        });
+        GuidedReconstruction(device, solver, options.guide).solve(halves, inputs, result);
+    } else
+        WeightedReconstruction(device, solver).solve(halves, result);
     const auto mapping = result.map(Access::read);
     for (std::uint32_t c = 0; c < 3; ++c) {
         const float *plane = mapping.as<float>() + c * pixels;
@@ -148,7 +158,8 @@ PoissonOptions poisson_options(const RenderOptions &options, std::uint64_t frame
 
 void compile_reconstruction(Device &device, const RenderOptions &options, std::uint64_t frames) {
     if (needs_halves(options.reconstruction) && halves_have_variances(frames, 1))
-        WeightedReconstruction::compile(device);
+        options.reconstruction == Reconstruction::guided ? GuidedReconstruction::compile(device)
+                                                         : WeightedReconstruction::compile(device);
     else
         PoissonSolver::compile(device, poisson_options(options, frames));
 }
@@ -162,6 +173,8 @@ ReconstructionUsed reconstruction_used(const RenderOptions &options, std::uint64
         reconstruction = Reconstruction::l2;
     }
     used.name = reconstruction_name(reconstruction);
+    if (reconstruction == Reconstruction::guided)
+        used.guide = guide_name(options.guide);
     // One weight by the variances of all pixels is next to independent of each, and not quite.
     const bool l2_is_linear = options.alpha || samples / pixels <= 1;
     const bool unbiased =
@@ -178,9 +191,11 @@ Image reconstruct(Device &device, PoissonSolver &solver, Image whole, GradientFi
     if (layers)
         more = layers_of(whole, films, options.aov);
     if (films.are_halves() && halves_have_variances(films.samples(), films.pixels()))
-        reconstruct_from_halves(device, solver, whole, films, films_are_read);
+        reconstruct_from_halves(device, solver, whole, films, options, films_are_read);
     else
         reconstruct_from_film(solver, whole, films, poisson_options(options, films.frames()), films_are_read);
+    if (options.reconstruction == Reconstruction::guided && !options.aov) // features were there for the guide
+        whole.channels.resize(3);
     whole.channels.insert(whole.channels.begin() + 3, std::make_move_iterator(more.begin()),
                           std::make_move_iterator(more.end()));
     return whole;

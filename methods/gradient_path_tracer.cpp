@@ -28,6 +28,7 @@ TraitMap gradient_traits(const Scene &scene, const RenderOptions &options) {
             {"TRAIT_SHARED_JITTER", 1},
             {"TRAIT_APART", apart},
             {"TRAIT_SHIFT_DISTANCE", distance},
+            {"TRAIT_AOV", options.all_traits || needs_features(options)},
             {"TRAIT_HALVES", needs_halves(options.reconstruction)}};
 }
 
@@ -36,11 +37,7 @@ std::map<std::string, std::string> only_kind(const Session &session) {
     if (session.scene.kinds.size() != 1)
         return {};
     const std::string &kind = session.scene.kinds.front();
-    std::map<std::string, std::string> definitions = {{"BSDF", kind},
-                                                      {"BSDF_IS_DIRAC", bsdf_kind_is_dirac(kind) ? "1" : "0"}};
-    if (bsdf_kind_is_mixed(kind))
-        definitions["BSDF_IS_MIXED"] = "1";
-    return definitions;
+    return definitions_of_kind(kind, bsdf_kind_is_dirac(kind));
 }
 
 StageDeclaration shift_stage(const Session &session) {

@@ -30,19 +30,6 @@ bool has_specular(const Session &session) {
     return std::any_of(session.scene.kinds.begin(), session.scene.kinds.end(), bsdf_kind_is_dirac);
 }
 
-/// A photon that is moved must leave its last vertex by the lobe that its light path sampled there, which no record
-/// tells.
-const Scene &checked_for_lobes(const Scene &scene) {
-    for_each_bsdf(scene, [](const Bsdf &bsdf) {
-        if (bsdf_kind_traits(bsdf.kind).is_mixed)
-            throw Error(ExitCode::usage,
-                        fmt::format("gpm does not know how to move photons that come from {}, a mirror beside a rough "
-                                    "lobe; sppm and gpt do, and rough{} is near it",
-                                    bsdf_kind_name(bsdf), bsdf_kind_name(bsdf)));
-    });
-    return scene;
-}
-
 /// By material record.
 std::vector<std::uint32_t> material_bins(const Scene &scene, const Session &session) {
     const std::vector<std::string> &kinds = session.scene.kinds;
@@ -56,22 +43,21 @@ std::vector<std::uint32_t> material_bins(const Scene &scene, const Session &sess
     return bins;
 }
 
-/// Camera paths of a pixel are stratified. Where light may come straight from a light, or by specular vertices alone,
-/// shifts ask how it left.
+/// Where light may come straight from a light, or by specular vertices alone, shifts ask how it left.
 TraitMap light_vertex_traits(const Scene &scene, const RenderOptions &options) {
     bool starts = options.direct_photons || options.all_traits;
     for_each_bsdf(scene, [&](const Bsdf &bsdf) { starts = starts || bsdf_kind_is_dirac(bsdf_kind_name(bsdf)); });
     return {{"TRAIT_LIGHT_VERTICES", 1},
             {"TRAIT_LIGHT_STARTS", starts},
             {"TRAIT_ONLY_CHAINS", options.only_chains},
-            {"TRAIT_STRATIFIED", 1},
+            {"TRAIT_LOBE_LEVELS", options.sampler == RenderOptions::Sampler::sobol},
+            {"TRAIT_AOV", options.all_traits || needs_features(options)},
             {"TRAIT_HALVES", needs_halves(options.reconstruction)}};
 }
 
-/// Shifted photons leave vertices again whose textures nobody has kept.
-const Scene &checked_for_shifts(const Scene &scene) {
-    if (needs_material_stage(scene))
-        throw Error(ExitCode::usage, "gpm knows no textures and no blends yet; pt, gpt and sppm do");
+const Scene &checked(const Scene &scene) {
+    if (const std::string reason = reason_against_gpm(scene); !reason.empty())
+        throw Error(ExitCode::usage, reason);
     return scene;
 }
 
@@ -91,9 +77,25 @@ const std::vector<std::string> chain_numbers = {"first", "pairs", "chain_rows", 
 
 } // namespace
 
+std::string reason_against_gpm(const Scene &scene) {
+    // Shifted photons leave vertices again whose textures nobody has kept.
+    if (needs_material_stage(scene))
+        return "gpm knows no textures and no blends yet; pt, gpt and sppm do";
+    // They must leave by the lobe that their light path sampled there, which no record tells.
+    std::string mixed;
+    for_each_bsdf(scene, [&](const Bsdf &bsdf) {
+        if (bsdf_kind_traits(bsdf.kind).is_mixed)
+            mixed = bsdf_kind_name(bsdf);
+    });
+    return mixed.empty() ? ""
+                         : fmt::format("gpm does not know how to move photons that come from {}, a mirror beside a "
+                                       "rough lobe; sppm and gpt do, and rough{} is near it",
+                                       mixed, mixed);
+}
+
 GradientPhotonMapper::GradientPhotonMapper(Device &device, const Scene &scene, const RenderOptions &options)
-    : options_(options), session_(device, checked_for_gathering(checked_for_lobes(checked_for_shifts(scene)), options),
-                                  options, light_vertex_traits(scene, options)),
+    : options_(options),
+      session_(device, checked_for_gathering(checked(scene), options), options, light_vertex_traits(scene, options)),
       paths_(session_, stages_, scene, options, true), photons_(session_, stages_, scene, options, 0.5),
       pairs_(stages_, true), bin_(stages_.add({.name = "gather_bin"})),
       order_(stages_, "gather", first_kind_bin + std::uint32_t(session_.scene.kinds.size()), RowsOf::slot),

@@ -28,6 +28,9 @@
 
 namespace gradus {
 
+/// Why the method cannot render a scene; empty where it can.
+std::string reason_against_gpm(const Scene &scene);
+
 class GradientPhotonMapper final : public Method {
   public:
     /// Throws Error(ExitCode::usage) as PhotonMapper does.

@@ -24,6 +24,7 @@ class Tracer; // runtime/trace/tracer.h
 struct RenderOptions : SessionOptions {
     bool layers = false; ///< also what the image was reconstructed from, gradient-domain methods
     Reconstruction reconstruction = Reconstruction::l1; ///< gradient-domain methods
+    Guide guide = Guide::filter;                        ///< of Reconstruction::guided
     /// Of l1 and l2, the weight of the primal; none: from the variances.
     std::optional<double> alpha;
     double shift_threshold = 0.01; ///< offset paths reconnect at surfaces of this roughness (alpha) or more
@@ -50,6 +51,11 @@ struct RenderOptions : SessionOptions {
     /// Called before the method `auto` renders a pilot, with its samples a pixel.
     std::function<void(std::uint64_t)> on_pilot;
 };
+
+/// Whether albedo, normal and depth are kept: to be written, or for a guide.
+inline bool needs_features(const RenderOptions &options) {
+    return options.aov || options.reconstruction == Reconstruction::guided;
+}
 
 class Method {
   public:

@@ -1,7 +1,9 @@
 #include "methods/path_tracer.h"
 
+#include "methods/guide_features.h"
 #include "methods/path_stages.h"
 #include "runtime/seconds_since.h"
+#include "solver/guide/guided_reconstruction.h"
 
 #include <algorithm>
 #include <chrono>
@@ -9,11 +11,14 @@
 namespace gradus {
 
 PathTracer::PathTracer(Device &device, const Scene &scene, const RenderOptions &options)
-    : session_(device, scene, options, {}), camera_(stages_.add(camera_stage())),
-      far_clip_(stages_.add(far_clip_stage(session_))), connect_(stages_.add(connect_stage())),
+    : options_(options),
+      session_(device, scene, options, {{"TRAIT_AOV", options.all_traits || needs_features(options)}}),
+      camera_(stages_.add(camera_stage())), far_clip_(stages_.add(far_clip_stage(session_))),
+      connect_(stages_.add(connect_stage())),
       paths_(session_, stages_, {.kinds = std::uint32_t(session_.scene.kinds.size())}),
       escape_(stages_.add(escape_stage(session_))), emission_(stages_.add(emission_stage(session_))),
-      shade_(stages_.add(shade_stage(false))), film_(session_, stages_) {
+      shade_(stages_.add(shade_stage(false))), film_(session_, stages_, is_guided()) {
+    check_guide(options);
     total_ = session_.pixels() * session_.settings.samples_per_pixel;
     const TableList list = joined(paths_.tables(), film_.tables());
     const std::uint32_t batch =
@@ -57,7 +62,7 @@ bool PathTracer::render_batch() {
         for (std::size_t kind = 0; kind < paths_.kinds(); ++kind)
             run_shade(shade_, hits, hits.kind(0, kind), kind);
     }
-    film_.add(paths, first_pixel);
+    film_.add(paths, first_pixel, first_sample);
     finish(session_.device);
     done_ += paths;
     statistics_.samples += paths;
@@ -67,12 +72,46 @@ bool PathTracer::render_batch() {
 
 Image PathTracer::image() {
     statistics_.non_finite = 0;
-    return film_.image(done_, statistics_.non_finite);
+    Image image = film_.image(done_, statistics_.non_finite);
+    if (is_guided())
+        guide(image);
+    return image;
+}
+
+void PathTracer::guide(Image &image) {
+    const std::uint64_t pixels = session_.pixels();
+    if (has_halves()) {
+        Device &device = session_.device;
+        const std::size_t bytes = 3 * pixels * sizeof(float);
+        HalvedImages halves;
+        for (int i = 0; i < 2; ++i) {
+            halves[i].primal = Buffer(device, "primal", bytes);
+            halves[i].samples = samples_of_half(done_, pixels, i);
+            const auto mapping = halves[i].primal.map(Access::write);
+            for (int c = 0; c < 3; ++c)
+                film_.half_mean(i, done_, c, mapping.as<float>() + c * pixels);
+        }
+        GuideInputs inputs;
+        inputs.features = uploaded_features(device, image);
+        Buffer result(device, "result", bytes);
+        PoissonSolver none(device, image.width, image.height); // samples alone ask for no solve
+        GuidedReconstruction(device, none, options_.guide).solve(halves, inputs, result);
+        const auto mapping = result.map(Access::read);
+        for (int c = 0; c < 3; ++c)
+            std::copy_n(mapping.as<float>() + c * pixels, pixels, image.channels[c].values.begin());
+    }
+    if (!options_.aov)
+        image.channels.resize(3);
 }
 
 Statistics PathTracer::statistics() const {
     Statistics s = collected(statistics_, session_, stages_);
-    s.reconstruction = {"none", accuracy_name(Accuracy::unbiased), ""};
+    if (is_guided() && has_halves())
+        s.reconstruction = {reconstruction_name(Reconstruction::guided), accuracy_name(Accuracy::consistent), "",
+                            guide_name(options_.guide)};
+    else
+        s.reconstruction = {"none", accuracy_name(Accuracy::unbiased),
+                            is_guided() ? "guided needs two samples of each pixel; with less it is their mean" : ""};
     return s;
 }
 

@@ -24,6 +24,13 @@ class PathTracer final : public Method {
     Tracer *tracer() override { return &session_.tracer; }
 
   private:
+    bool is_guided() const { return options_.reconstruction == Reconstruction::guided; }
+    /// Whether both halves have a sample of each pixel.
+    bool has_halves() const { return done_ >= 2 * session_.pixels(); }
+    /// Makes of the mean of all samples one that follows a guide, and leaves its features out if they are not wanted.
+    void guide(Image &image);
+
+    const RenderOptions options_;
     Session session_;
     Stages stages_;
     Stage &camera_, &far_clip_, &connect_;

@@ -1,5 +1,6 @@
 #include "planning/photon_pilot.h"
 
+#include "methods/gradient_photon_mapper.h"
 #include "planning/make_method.h"
 #include "runtime/film/metrics.h"
 #include "runtime/scene/roughness.h"
@@ -51,10 +52,8 @@ struct Mean {
 
 bool may_ask_for_photons(const Scene &scene, const RenderOptions &options) {
     const GatheringSurfaces surfaces = gathering_surfaces(scene, options.gather_roughness);
-    if (needs_material_stage(scene) || scene_traits(scene).at("TRAIT_MIXED_LOBES"))
-        return false; // gpm refuses them
-    return !surfaces.passed.empty() && !surfaces.gathered.empty() && !scene.emitters.empty() &&
-           scene.settings.max_depth != 0 && scene.settings.max_depth != 1;
+    return reason_against_gpm(scene).empty() && !surfaces.passed.empty() && !surfaces.gathered.empty() &&
+           !scene.emitters.empty() && scene.settings.max_depth != 0 && scene.settings.max_depth != 1;
 }
 
 PhotonErrors estimate_photon_errors(const Image &photons_1, const Image &photons_2, const Image &paths_1,

@@ -9,8 +9,15 @@ enum class Reconstruction {
     l1,       ///< PoissonNorm::l1: robust, and consistent
     l2,       ///< PoissonNorm::l2, one weight for all pixels
     weighted, ///< least squares, each equation by its variance; two halves judge each other (weighted_reconstruction.h)
-    guided    ///< the same with a guide image
+    guided    ///< the same, and a guide image where it has less error (guide/guide_judge.h)
 };
+
+/// What makes the guide of Reconstruction::guided.
+enum class Guide {
+    filter,  ///< a feature filter of our own (guide/feature_filter.h)
+    denoiser ///< Open Image Denoise, where it is installed (guide/denoiser.h)
+};
+inline const char *guide_name(Guide guide) { return guide == Guide::filter ? "filter" : "denoiser"; }
 
 /// Whether samples must be kept as two halves.
 constexpr bool needs_halves(Reconstruction reconstruction) {
@@ -18,9 +25,18 @@ constexpr bool needs_halves(Reconstruction reconstruction) {
 }
 
 /// As --reconstruction names it.
-constexpr const char *reconstruction_name(Reconstruction reconstruction) {
-    constexpr const char *names[] = {"l1", "l2", "weighted", "guided"};
-    return names[static_cast<int>(reconstruction)];
+inline const char *reconstruction_name(Reconstruction reconstruction) {
+    switch (reconstruction) {
+    case Reconstruction::l1:
+        return "l1";
+    case Reconstruction::l2:
+        return "l2";
+    case Reconstruction::weighted:
+        return "weighted";
+    case Reconstruction::guided:
+        return "guided";
+    }
+    return "";
 }
 
 /// What the mean of many renders tends to.
@@ -29,9 +45,16 @@ enum class Accuracy {
     consistent, ///< to what is right as samples grow
     neither
 };
-constexpr const char *accuracy_name(Accuracy accuracy) {
-    constexpr const char *names[] = {"unbiased", "consistent", "neither"};
-    return names[static_cast<int>(accuracy)];
+inline const char *accuracy_name(Accuracy accuracy) {
+    switch (accuracy) {
+    case Accuracy::unbiased:
+        return "unbiased";
+    case Accuracy::consistent:
+        return "consistent";
+    case Accuracy::neither:
+        return "neither";
+    }
+    return "";
 }
 
 } // namespace gradus

@@ -157,10 +157,15 @@ PoissonReport WeightedReconstruction::solve_half(const HalfImages &half, const H
 
 PoissonReport WeightedReconstruction::solve(const HalvedImages &halves, Buffer &result) {
     const double first = double(halves[0].samples), second = double(halves[1].samples);
-    Buffer other(device_, "half_solution", result.bytes());
-    const PoissonReport of_first = solve_half(halves[0], halves[1], other);
-    PoissonReport report = solve_half(halves[1], halves[0], result);
-    mixer_.mix(other, first / (first + second), result, second / (first + second), result);
+    std::array<Buffer, 2> solutions = {Buffer(device_, "half_solution", result.bytes()), result};
+    const PoissonReport report = solve_both(halves, solutions);
+    mixer_.mix(solutions[0], first / (first + second), result, second / (first + second), result);
+    return report;
+}
+
+PoissonReport WeightedReconstruction::solve_both(const HalvedImages &halves, std::array<Buffer, 2> &results) {
+    const PoissonReport of_first = solve_half(halves[0], halves[1], results[0]);
+    PoissonReport report = solve_half(halves[1], halves[0], results[1]);
     report.iterations += of_first.iterations;
     report.converged = report.converged && of_first.converged;
     report.objective += of_first.objective;

@@ -62,6 +62,9 @@ class WeightedReconstruction {
     /// primal. The report is that of both solves.
     PoissonReport solve(const HalvedImages &halves, Buffer &result);
 
+    /// The same without the mean: the solution of each half.
+    PoissonReport solve_both(const HalvedImages &halves, std::array<Buffer, 2> &results);
+
     /// What a half asks of the solver.
     static PoissonOptions options();
     /// As PoissonSolver::compile().

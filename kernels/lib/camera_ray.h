@@ -43,5 +43,31 @@ GRADUS_FN camera_sight camera_sight_through(GRADUS_GLOBAL const real *camera, ui
     return sight;
 }
 
+/* Something made of what every camera's record is read for, for HAS_ROW (kernels/shared/stage.h). */
+GRADUS_FN uint camera_bits(GRADUS_GLOBAL const real *camera, uint unit) {
+    uint bits = 0u;
+#define CAMERA_BITS(field)                                                                                             \
+    bits |= as_uint((float)FIELD_OF(camera, camera, 0, field##_x)) |                                                   \
+            as_uint((float)FIELD_OF(camera, camera, 0, field##_y)) |                                                   \
+            as_uint((float)FIELD_OF(camera, camera, 0, field##_z));
+    CAMERA_BITS(origin)
+    CAMERA_BITS(corner)
+    CAMERA_BITS(right)
+    CAMERA_BITS(down)
+#if TRAIT_ORTHOGRAPHIC
+    CAMERA_BITS(step_right)
+    CAMERA_BITS(step_down)
+#endif
+#if TRAIT_THIN_LENS
+    CAMERA_BITS(lens_left)
+    CAMERA_BITS(lens_up)
+#endif
+#if TRAIT_NEAR_CLIP
+    CAMERA_BITS(forward)
+#endif
+#undef CAMERA_BITS
+    return bits;
+}
+
 GRADUS_LIB_END
 #endif

@@ -110,9 +110,10 @@ typedef struct {
     GRADUS_NOT_IN_REGISTERS
 } environment_light_value;
 
-/* At the poles themselves the density has no bound; it is that of a millionth beside them. */
+/* At the poles themselves the density has no bound; it is that of a millionth beside them. No quotient of two numbers,
+ * or it would be packed with that of a Beckmann distribution (kernels/lib/ordered.h). */
 GRADUS_FN real environment_pdf(real importance, real scale, real sine) {
-    return importance * scale / r_max(sine, R(1e-6));
+    return importance * scale * (R(1) / r_max(sine, R(1e-6)));
 }
 
 #if TRAIT_LIGHT_ENVIRONMENT

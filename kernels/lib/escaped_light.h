@@ -5,6 +5,15 @@
 #include "kernels/lib/environment.h"
 #include "kernels/lib/light_found.h"
 
+/* Something made of all that is read of light n, for HAS_ROW (kernels/shared/stage.h). */
+#define ESCAPED_FIELD_BITS(n, field) as_uint((float)FIELD_OF(light, lights, n, field))
+#define ESCAPED_V3_BITS(n, field)                                                                                      \
+    (ESCAPED_FIELD_BITS(n, field##_x) | ESCAPED_FIELD_BITS(n, field##_y) | ESCAPED_FIELD_BITS(n, field##_z))
+#define ESCAPED_BITS(n)                                                                                                \
+    (ESCAPED_FIELD_BITS(n, probability) | ESCAPED_FIELD_BITS(n, value_r) | ESCAPED_FIELD_BITS(n, value_g) |            \
+     ESCAPED_FIELD_BITS(n, value_b) | ESCAPED_FIELD_BITS(n, inverse_area) | ESCAPED_V3_BITS(n, p) |                    \
+     ESCAPED_V3_BITS(n, e1) | ESCAPED_V3_BITS(n, e2))
+
 GRADUS_LIB_BEGIN
 
 /* direction: of unit length, in world space. environment_light: the light's number; a black one's where there is no

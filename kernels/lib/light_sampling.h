@@ -27,13 +27,13 @@
 #define OF_LIGHT(array, index, stride, at) LIGHT_AT(array, index, stride, at)
 #elif FEW_LIGHTS == 1
 #define OF_LIGHT(array, index, stride, at) LIGHT_AT(array, 0u, stride, at)
-#elif FEW_LIGHTS == 2
-#define OF_LIGHT(array, index, stride, at)                                                                             \
-    ((index) < 1u ? LIGHT_AT(array, 0u, stride, at) : LIGHT_AT(array, 1u, stride, at))
 #else
 /* Sums of which all but one are 0, exactly: three choices would become a switch, which PoCL does not vectorise. */
 #define LIGHT_IF(array, index, n, stride, at) ((index) == (n)) * LIGHT_AT(array, n, stride, at)
-#if FEW_LIGHTS == 3
+#if FEW_LIGHTS == 2
+#define OF_LIGHT(array, index, stride, at)                                                                             \
+    (LIGHT_IF(array, index, 0u, stride, at) + LIGHT_IF(array, index, 1u, stride, at))
+#elif FEW_LIGHTS == 3
 #define OF_LIGHT(array, index, stride, at)                                                                             \
     (LIGHT_IF(array, index, 0u, stride, at) + LIGHT_IF(array, index, 1u, stride, at) +                                 \
      LIGHT_IF(array, index, 2u, stride, at))
@@ -42,6 +42,25 @@
     (LIGHT_IF(array, index, 0u, stride, at) + LIGHT_IF(array, index, 1u, stride, at) +                                 \
      LIGHT_IF(array, index, 2u, stride, at) + LIGHT_IF(array, index, 3u, stride, at))
 #endif
+#endif
+/* Something made of all that few lights have, for HAS_ROW (kernels/shared/stage.h). */
+#define LIGHT_BITS(n, field) as_uint((float)LIGHT_AT(lights, n, light_stride, light_##field *(size_t)unit))
+#define LIGHT_V3_BITS(n, field) LIGHT_BITS(n, field##_x) | LIGHT_BITS(n, field##_y) | LIGHT_BITS(n, field##_z)
+#define BITS_OF_LIGHT(n)                                                                                               \
+    | LIGHT_BITS(n, alias_threshold) | LIGHT_BITS(n, probability) | LIGHT_BITS(n, value_r) | LIGHT_BITS(n, value_g) |  \
+        LIGHT_BITS(n, value_b) | LIGHT_V3_BITS(n, p) | LIGHT_V3_BITS(n, e1) | LIGHT_V3_BITS(n, e2) |                   \
+        LIGHT_BITS(n, inverse_area) | LIGHT_BITS(n, offset) | LIGHT_AT(light_kinds, n, 1u, 0u) |                       \
+        LIGHT_AT(light_alias, n, 1u, 0u)
+#if FEW_LIGHTS == 0
+#define BITS_OF_LIGHTS 0u
+#elif FEW_LIGHTS == 1
+#define BITS_OF_LIGHTS 0u BITS_OF_LIGHT(0u)
+#elif FEW_LIGHTS == 2
+#define BITS_OF_LIGHTS 0u BITS_OF_LIGHT(0u) BITS_OF_LIGHT(1u)
+#elif FEW_LIGHTS == 3
+#define BITS_OF_LIGHTS 0u BITS_OF_LIGHT(0u) BITS_OF_LIGHT(1u) BITS_OF_LIGHT(2u)
+#else
+#define BITS_OF_LIGHTS 0u BITS_OF_LIGHT(0u) BITS_OF_LIGHT(1u) BITS_OF_LIGHT(2u) BITS_OF_LIGHT(3u)
 #endif
 #define LIGHT_FIELD(index, field) OF_LIGHT(lights, index, light_stride, light_##field *(size_t)unit)
 #define LIGHT_V3(index, field)                                                                                         \

@@ -1,7 +1,7 @@
 /* With which probability a smooth interface reflects a path. */
 #ifndef GRADUS_LIB_LOBE_CHANCE_H
 #define GRADUS_LIB_LOBE_CHANCE_H
-//! traits: TRAIT_STRATIFIED
+//! traits: TRAIT_LOBE_LEVELS
 #include "kernels/shared/compat.h"
 
 GRADUS_LIB_BEGIN
@@ -20,12 +20,12 @@ GRADUS_FN real level_near(real reflectance) {
     return has_both ? level : reflectance;
 }
 
-/* is_stratified: the path is one of those of TRAIT_STRATIFIED (kernels/lib/path_draw.h). */
-GRADUS_FN real reflection_chance(real reflectance, int is_stratified) {
-#if TRAIT_STRATIFIED
-    return is_stratified ? level_near(reflectance) : reflectance;
+/* is_from_camera: the path is, and so one of those that may be stratified (kernels/lib/path_draw.h). */
+GRADUS_FN real reflection_chance(real reflectance, int is_from_camera) {
+#if TRAIT_LOBE_LEVELS
+    return is_from_camera ? level_near(reflectance) : reflectance;
 #else
-    (void)is_stratified;
+    (void)is_from_camera;
     return reflectance;
 #endif
 }

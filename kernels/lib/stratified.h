@@ -12,12 +12,23 @@
 
 GRADUS_LIB_BEGIN
 
+/* Clang, which most OpenCL compilers are, has a function for it: a quarter of the instructions on AVX-512. */
+#ifdef __has_builtin
+#if __has_builtin(__builtin_bitreverse32)
+#define REVERSES_BITS 1
+#endif
+#endif
+
 GRADUS_FN uint reversed_bits(uint x) {
+#ifdef REVERSES_BITS
+    return __builtin_bitreverse32(x);
+#else
     x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
     x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
     x = ((x >> 4) & 0x0F0F0F0Fu) | ((x & 0x0F0F0F0Fu) << 4);
     x = ((x >> 8) & 0x00FF00FFu) | ((x & 0x00FF00FFu) << 8);
     return (x >> 16) | (x << 16);
+#endif
 }
 
 /* A permutation in which a bit is turned over as those below it and the seed say, and by no others: addition and

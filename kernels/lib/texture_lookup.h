@@ -1,8 +1,11 @@
-/* The value of a texture at a point of a surface; texture_value() of runtime/scene/texture.h is the same in double. All
- * that the scene's textures have is computed for each row and one of it taken: TRAIT_TEXTURES says what they have. */
+/* The value of a texture at a point of a surface; texture_value() of runtime/scene/texture.h is the same in double.
+ *
+ * `features` are those that the textures asked for have (kernels/shared/texture.h), a compile-time constant wherever it
+ * is passed. All of them are computed for each row and one taken; but a texel is the same one to three words to all
+ * formats, so that these differ in arithmetic alone. */
 #ifndef GRADUS_LIB_TEXTURE_LOOKUP_H
 #define GRADUS_LIB_TEXTURE_LOOKUP_H
-//! traits: TRAIT_TEXTURES
+//! traits: FEW_TEXTURES
 #include "kernels/lib/ordered.h"
 #include "kernels/lib/vector.h"
 #include "kernels/shared/scene_records.h"
@@ -10,13 +13,13 @@
 
 GRADUS_LIB_BEGIN
 
-#define TEXTURES_HAVE(feature) ((TRAIT_TEXTURES & (feature)) != 0)
+#define TEXTURES_HAVE(feature) ((features & (feature)) != 0)
 
 /* n itself, computed after x, which must be finite (kernels/lib/ordered.h): indices into one array are packed too. */
 GRADUS_FN uint texture_after(uint n, real x) { return n + (uint)(int)(R(0) * x); }
 
 /* Where a coordinate lies in [0, 1]; 0 for what is no finite number. */
-GRADUS_FN real texture_wrapped(real s, uint flags) {
+GRADUS_FN real texture_wrapped(int features, real s, uint flags) {
     real place = s - r_floor(s);
     if (TEXTURES_HAVE(textures_wrapped_otherwise)) {
         const real twice = s - R(2) * r_floor(R(0.5) * s);
@@ -28,14 +31,14 @@ GRADUS_FN real texture_wrapped(real s, uint flags) {
 }
 
 /* The texel at place i, which is at most one before the picture; any other i is brought into it too. */
-GRADUS_FN uint texture_texel(int i, uint size, uint flags) {
+GRADUS_FN uint texture_texel(int features, int i, uint size, uint flags) {
     const int repeats = !TEXTURES_HAVE(textures_wrapped_otherwise) || texture_wrap(flags) == texture_wrap_repeat;
     const uint inside = r_min((uint)i, size - 1u);
     return i < 0 ? (repeats ? size - 1u : 0u) : inside;
 }
 
 /* The one after that, texel `before`. */
-GRADUS_FN uint texture_next_texel(int i, uint before, uint size, uint flags) {
+GRADUS_FN uint texture_next_texel(int features, int i, uint before, uint size, uint flags) {
     const int repeats = !TEXTURES_HAVE(textures_wrapped_otherwise) || texture_wrap(flags) == texture_wrap_repeat;
     const uint inside = before + 1u < size ? before + 1u : (repeats ? 0u : before);
     return i < 0 ? 0u : inside;
@@ -50,122 +53,219 @@ GRADUS_FN real texture_half(uint bits) {
     return (bits & 0x8000u) != 0u ? -value : value;
 }
 
+/* sRGB to linear, off by 5e-7 of the value: t^2.4 is t^2 and a polynomial in the root of t. */
+GRADUS_FN real texture_srgb(real encoded) {
+    const real t = (encoded + R(0.055)) * R(1 / 1.055);
+    const real s = r_sqrt(t);
+    real power = R(0.1508328195);
+    power = power * s - R(0.7926207378);
+    power = power * s + R(1.812898146);
+    power = power * s - R(2.385718479);
+    power = power * s + R(2.037456747);
+    power = power * s - R(1.283334644);
+    power = power * s + R(1.43265097);
+    power = power * s + R(0.02783566198);
+    return encoded > R(0.04045) ? t * t * power : encoded * R(1 / 12.92);
+}
+
+/* What 8 or 16 bits, or a float's, stand for, linear. Computed after `before` (kernels/lib/ordered.h). */
+GRADUS_FN real texture_value_of(int features, uint bits, uint flags, real before) {
+    const uint code = texture_after(bits, before);
+    const uint format = texture_format(flags);
+    real value = R(0);
+    if (TEXTURES_HAVE(textures_of_bytes | textures_of_words)) {
+        const int are_words =
+            !TEXTURES_HAVE(textures_of_bytes) || (TEXTURES_HAVE(textures_of_words) && format == texture_format_word);
+        value = (real)(int)(code & 0xFFFFu) * (are_words ? R(1) / R(65535) : R(1) / R(255));
+    }
+    if (TEXTURES_HAVE(textures_of_srgb)) {
+        const real linear = texture_srgb(value);
+        value = (flags & texture_flag_srgb) != 0u ? linear : value;
+    }
+    if (TEXTURES_HAVE(textures_of_halves)) {
+        const real half_precise = texture_half(code & 0xFFFFu);
+        value = format == texture_format_half ? half_precise : value;
+    }
+    if (TEXTURES_HAVE(textures_of_reals)) {
+        const real whole = as_float(code);
+        value = format == texture_format_real ? whole : value;
+    }
+    return value;
+}
+
 typedef struct {
     uint flags, offset;
     GRADUS_NOT_IN_REGISTERS
 } texture_place;
 
-/* Texel `number` of a picture, linear. */
-GRADUS_FN rgb texture_fetch(GRADUS_GLOBAL const uint *texels, GRADUS_GLOBAL const real *texture_decode,
-                            texture_place place, uint number) {
-    const uint flags = place.flags;
+/* Texel `number` of a picture, linear, computed after `before`. */
+GRADUS_FN rgb texture_fetch(int features, GRADUS_GLOBAL const uint *texels, texture_place place, uint number,
+                            real before) {
+    const uint flags = place.flags, format = texture_format(flags);
     const int is_color =
         !TEXTURES_HAVE(textures_in_gray) || (TEXTURES_HAVE(textures_in_color) && (flags & texture_flag_color) != 0u);
-    rgb value = rgb_gray(R(0));
-    (void)texels, (void)texture_decode, (void)number;
-    if (TEXTURES_HAVE(textures_of_bytes)) {
-        const int is_this = texture_format(flags) == texture_format_byte;
-        const uint word = texels[place.offset + (is_this ? (is_color ? number : number >> 2) : 0u)];
-        const uint shift = is_color ? 0u : 8u * (number & 3u), step = is_color ? 8u : 0u;
-        const uint curve = (flags & texture_flag_srgb) != 0u ? 256u : 0u;
-        const real r = texture_decode[curve + ((word >> shift) & 255u)];
-        real g = r, b = r;
-        if (TEXTURES_HAVE(textures_in_color)) {
-            g = texture_decode[texture_after(curve, r) + ((word >> (shift + step)) & 255u)];
-            b = texture_decode[texture_after(curve, g) + ((word >> (shift + 2u * step)) & 255u)];
-        }
-        value = rgb_select(is_this, rgb3(r, g, b), value);
-    }
-    if (TEXTURES_HAVE(textures_of_words) || TEXTURES_HAVE(textures_of_halves)) {
-        const int is_half = texture_format(flags) == texture_format_half;
-        const int is_this = is_half | (texture_format(flags) == texture_format_word);
-        const uint at = is_this ? (is_color ? 2u * number : number >> 1) : 0u;
-        const uint first = texels[place.offset + at];
-        const uint second = texels[place.offset + at + ((is_color & is_this) ? 1u : 0u)];
-        const uint bits_r = (is_color ? first : first >> (16u * (number & 1u))) & 0xFFFFu;
-        const uint bits_g = is_color ? first >> 16 : bits_r, bits_b = is_color ? second & 0xFFFFu : bits_r;
-        const real scale = R(1) / R(65535);
-        const real r = is_half ? texture_half(bits_r) : (real)(int)bits_r * scale;
-        const uint after_r = texture_after(bits_g, r);
-        const real g = is_half ? texture_half(after_r) : (real)(int)after_r * scale;
-        const uint after_g = texture_after(bits_b, g);
-        const real b = is_half ? texture_half(after_g) : (real)(int)after_g * scale;
-        value = rgb_select(is_this, rgb3(r, g, b), value);
-    }
-    if (TEXTURES_HAVE(textures_of_reals)) {
-        const int is_this = texture_format(flags) == texture_format_real;
-        const uint at = place.offset + (is_this ? (is_color ? 3u * number : number) : 0u);
-        const uint step = (is_this & is_color) ? 1u : 0u;
-        const real r = as_float(texels[at]);
-        const real g = as_float(texels[texture_after(at + step, r)]);
-        const real b = as_float(texels[texture_after(at + 2u * step, g)]);
-        value = rgb_select(is_this, rgb3(r, g, b), value);
-    }
-    return value;
+    const int has_bytes = TEXTURES_HAVE(textures_of_bytes), has_reals = TEXTURES_HAVE(textures_of_reals);
+    const int has_pairs = TEXTURES_HAVE(textures_of_words | textures_of_halves);
+    const int of_bytes = has_bytes & (format == texture_format_byte);
+    const int of_reals = has_reals & (format == texture_format_real);
+    const int of_pairs = has_pairs & !of_bytes & !of_reals;
+    /* How many words a texel of colour has, and how many texels of gray, as a power of two, a word. */
+    const uint words = of_bytes ? 1u : of_pairs ? 2u : 3u, shared = of_bytes ? 2u : of_pairs ? 1u : 0u;
+    const uint at = place.offset + (is_color ? number * words : number >> shared);
+    const uint first = texels[texture_after(at, before)];
+    const uint second = has_pairs | has_reals ? texels[at + ((is_color & !of_bytes) ? 1u : 0u)] : first;
+    const uint third = has_reals ? texels[at + ((is_color & of_reals) ? 2u : 0u)] : second;
+    /* Of gray the texel's place in its word. */
+    const uint shift = is_color ? 0u : of_bytes ? 8u * (number & 3u) : of_pairs ? 16u * (number & 1u) : 0u;
+    const uint mask = of_bytes ? 0xFFu : of_pairs ? 0xFFFFu : 0xFFFFFFFFu;
+    const real r = texture_value_of(features, (first >> shift) & mask, flags, R(0));
+    if (!TEXTURES_HAVE(textures_in_color))
+        return rgb_gray(r);
+    const uint code_g = of_bytes ? first >> 8 : of_pairs ? first >> 16 : second;
+    const uint code_b = of_bytes ? first >> 16 : of_pairs ? second : third;
+    const real g = texture_value_of(features, code_g & mask, flags, r);
+    const real b = texture_value_of(features, code_b & mask, flags, g);
+    return rgb3(r, is_color ? g : r, is_color ? b : r);
 }
 
 /* One after the other (kernels/lib/ordered.h): a + share (b - a). */
-GRADUS_FN rgb texture_between(rgb a, rgb b, real share) {
+GRADUS_FN rgb texture_between(int features, rgb a, rgb b, real share) {
     const real r = a.r + share * (b.r - a.r);
+    if (!TEXTURES_HAVE(textures_in_color))
+        return rgb_gray(r);
     const real g = a.g + r_after(share, r) * (b.g - a.g);
     const real blue = a.b + r_after(share, g) * (b.b - a.b);
     return rgb3(r, g, blue);
 }
 
-GRADUS_FN rgb texture_lookup(GRADUS_GLOBAL const uint *textures, GRADUS_GLOBAL const real *texture_reals,
-                             GRADUS_GLOBAL const uint *texels, GRADUS_GLOBAL const real *texture_decode, uint unit,
-                             uint texture, real u, real v) {
+/* A field of a texture's record. Where the scene has few textures, FEW_TEXTURES of them, all are loaded once for all
+ * work-items and chosen from, in a sum of which all terms but one are 0. */
+#if FEW_TEXTURES > 0
+GRADUS_FN uint texture_number_of(GRADUS_GLOBAL const uint *textures, uint texture, size_t field) {
+    uint number = 0u;
+#pragma unroll
+    for (uint n = 0; n < FEW_TEXTURES; ++n)
+        number |= (0u - (uint)(texture == n)) & textures[(size_t)n * texture_stride + field];
+    return number;
+}
+GRADUS_FN real texture_real_of(GRADUS_GLOBAL const real *texture_reals, uint texture, size_t field) {
+    real number = R(0);
+#pragma unroll
+    for (uint n = 0; n < FEW_TEXTURES; ++n)
+        number += (texture == n ? R(1) : R(0)) * texture_reals[(size_t)n * texture_real_stride + field];
+    return number;
+}
+/* Something made of all fields of these that are read, for HAS_ROW (kernels/shared/stage.h). */
+GRADUS_FN uint texture_bits(int features, GRADUS_GLOBAL const uint *textures, GRADUS_GLOBAL const real *texture_reals,
+                            uint unit) {
+    uint bits = 0u;
+#pragma unroll
+    for (uint n = 0; n < FEW_TEXTURES; ++n) {
+#define NUMBER_BITS(field) bits |= textures[(size_t)n * texture_stride + texture_##field * (size_t)unit];
+#define REAL_BITS(field)                                                                                               \
+    bits |= as_uint((float)texture_reals[(size_t)n * texture_real_stride + texture_real_##field * (size_t)unit]);
+#define RGB_BITS(field) REAL_BITS(field##_r) REAL_BITS(field##_g) REAL_BITS(field##_b)
+        NUMBER_BITS(flags)
+        NUMBER_BITS(offset)
+        if (TEXTURES_HAVE(textures_mapped)) {
+            REAL_BITS(u_of_u)
+            REAL_BITS(u_of_1)
+            REAL_BITS(v_of_v)
+            REAL_BITS(v_of_1)
+        }
+        if (TEXTURES_HAVE(textures_turned)) {
+            REAL_BITS(u_of_v)
+            REAL_BITS(v_of_u)
+        }
+        if (TEXTURES_HAVE(textures_bilinear | textures_nearest)) {
+            NUMBER_BITS(width)
+            NUMBER_BITS(height)
+        }
+        if (TEXTURES_HAVE(textures_checkerboards)) {
+            RGB_BITS(color_0)
+            RGB_BITS(color_1)
+        }
+        if (TEXTURES_HAVE(textures_scaled)) {
+            RGB_BITS(scale)
+        }
+        if (TEXTURES_HAVE(textures_bounded)) {
+            REAL_BITS(lowest)
+            REAL_BITS(highest)
+        }
+#undef NUMBER_BITS
+#undef REAL_BITS
+#undef RGB_BITS
+    }
+    return bits;
+}
+#else
+GRADUS_FN uint texture_bits(int features, GRADUS_GLOBAL const uint *textures, GRADUS_GLOBAL const real *texture_reals,
+                            uint unit) {
+    (void)features, (void)textures, (void)texture_reals, (void)unit;
+    return 0u;
+}
+GRADUS_FN uint texture_number_of(GRADUS_GLOBAL const uint *textures, uint texture, size_t field) {
+    return (textures + field)[(int)(texture * (uint)texture_stride)];
+}
+GRADUS_FN real texture_real_of(GRADUS_GLOBAL const real *texture_reals, uint texture, size_t field) {
+    return (texture_reals + field)[(int)(texture * (uint)texture_real_stride)];
+}
+#endif
+#define TEXTURE_NUMBER(field) texture_number_of(textures, texture, texture_##field *(size_t)unit)
+#define TEXTURE_REAL(field) texture_real_of(texture_reals, texture, texture_real_##field *(size_t)unit)
+#define TEXTURE_RGB(field) rgb3(TEXTURE_REAL(field##_r), TEXTURE_REAL(field##_g), TEXTURE_REAL(field##_b))
+
+GRADUS_FN rgb texture_lookup(int features, GRADUS_GLOBAL const uint *textures, GRADUS_GLOBAL const real *texture_reals,
+                             GRADUS_GLOBAL const uint *texels, uint unit, uint texture, real u, real v) {
     texture_place place;
-    place.flags = FIELD_OF(texture, textures, texture, flags);
-    place.offset = FIELD_OF(texture, textures, texture, offset);
-    const uint width = FIELD_OF(texture, textures, texture, width);
-    const uint height = FIELD_OF(texture, textures, texture, height);
+    place.flags = TEXTURE_NUMBER(flags);
+    place.offset = TEXTURE_NUMBER(offset);
     real s = u, t = v;
-#if TRAIT_TEXTURES & textures_mapped
-    s = FIELD_OF(texture_real, texture_reals, texture, u_of_u) * u +
-        FIELD_OF(texture_real, texture_reals, texture, u_of_v) * v +
-        FIELD_OF(texture_real, texture_reals, texture, u_of_1);
-    t = FIELD_OF(texture_real, texture_reals, texture, v_of_u) * u +
-        FIELD_OF(texture_real, texture_reals, texture, v_of_v) * v +
-        r_after(FIELD_OF(texture_real, texture_reals, texture, v_of_1), s);
-#endif
+    if (TEXTURES_HAVE(textures_mapped)) {
+        const real along_u = TEXTURE_REAL(u_of_u) * u, along_v = TEXTURE_REAL(v_of_v) * r_after(v, along_u);
+        const int is_turned = TEXTURES_HAVE(textures_turned);
+        s = (is_turned ? along_u + TEXTURE_REAL(u_of_v) * v : along_u) + TEXTURE_REAL(u_of_1);
+        t = (is_turned ? TEXTURE_REAL(v_of_u) * r_after(u, s) + along_v : along_v) + TEXTURE_REAL(v_of_1);
+    }
     rgb value = rgb_gray(R(0));
-#if TRAIT_TEXTURES & (textures_bilinear | textures_nearest)
-    const int is_nearest =
-        !TEXTURES_HAVE(textures_bilinear) || (TEXTURES_HAVE(textures_nearest) && (place.flags & texture_flag_nearest));
-    const real x = texture_wrapped(s, place.flags) * (real)(int)width;
-    const real y = texture_wrapped(r_after(t, x), place.flags) * (real)(int)height;
-    const real to_left = is_nearest ? x : x - R(0.5), to_top = is_nearest ? y : y - R(0.5);
-    const real left = r_floor(to_left), top = r_floor(to_top);
-    /* Nearest: what is at the very edge belongs to the texel before it, which is what texture_texel() says of it. */
-    const uint x_0 = texture_texel((int)left, width, place.flags);
-    const uint y_0 = texture_texel((int)top, height, place.flags);
-    value = texture_fetch(texels, texture_decode, place, y_0 * width + x_0);
-#if TRAIT_TEXTURES & textures_bilinear
-    const uint x_1 = is_nearest ? x_0 : texture_next_texel((int)left, x_0, width, place.flags);
-    const uint y_1 = is_nearest ? y_0 : texture_next_texel((int)top, y_0, height, place.flags);
-    const rgb right = texture_fetch(texels, texture_decode, place, texture_after(y_0 * width + x_1, value.b));
-    const rgb below = texture_fetch(texels, texture_decode, place, texture_after(y_1 * width + x_0, right.b));
-    const rgb opposite = texture_fetch(texels, texture_decode, place, texture_after(y_1 * width + x_1, below.b));
-    const real x_share = is_nearest ? R(0) : to_left - left, y_share = is_nearest ? R(0) : to_top - top;
-    const rgb upper = texture_between(value, right, x_share);
-    const rgb lower = texture_between(below, opposite, r_after(x_share, upper.b));
-    value = texture_between(upper, lower, r_after(y_share, lower.b));
-#endif
-#endif
-#if TRAIT_TEXTURES & textures_checkerboards
-    const real across = r_clamp(s - r_floor(s), R(0), R(1)), down = r_after(t, across);
-    const int is_across = across > R(0.5), is_down = down - r_floor(down) > R(0.5);
-    const rgb field = rgb_select(is_across == is_down, FIELD_RGB(texture_real, texture_reals, texture, color_0),
-                                 FIELD_RGB(texture_real, texture_reals, texture, color_1));
-    value = rgb_select((place.flags & texture_flag_checkerboard) != 0u, field, value);
-#endif
-#if TRAIT_TEXTURES & textures_scaled
-    value = rgb_mul(value, FIELD_RGB(texture_real, texture_reals, texture, scale));
-#endif
-    const real lowest = FIELD_OF(texture_real, texture_reals, texture, lowest);
-    const real highest = FIELD_OF(texture_real, texture_reals, texture, highest);
+    if (TEXTURES_HAVE(textures_bilinear | textures_nearest)) {
+        const uint width = TEXTURE_NUMBER(width), height = TEXTURE_NUMBER(height);
+        const int is_nearest = !TEXTURES_HAVE(textures_bilinear) ||
+                               (TEXTURES_HAVE(textures_nearest) && (place.flags & texture_flag_nearest) != 0u);
+        const real x = texture_wrapped(features, s, place.flags) * (real)(int)width;
+        const real y = texture_wrapped(features, r_after(t, x), place.flags) * (real)(int)height;
+        const real to_left = is_nearest ? x : x - R(0.5), to_top = is_nearest ? y : y - R(0.5);
+        const real left = r_floor(to_left), top = r_floor(to_top);
+        /* Nearest: what is at the very edge belongs to the texel before it, which is what texture_texel() says. */
+        const uint x_0 = texture_texel(features, (int)left, width, place.flags);
+        const uint y_0 = texture_texel(features, (int)top, height, place.flags);
+        value = texture_fetch(features, texels, place, y_0 * width + x_0, R(0));
+        if (TEXTURES_HAVE(textures_bilinear)) {
+            const uint next_x = texture_next_texel(features, (int)left, x_0, width, place.flags);
+            const uint next_y = texture_next_texel(features, (int)top, y_0, height, place.flags);
+            const uint x_1 = is_nearest ? x_0 : next_x, y_1 = is_nearest ? y_0 : next_y;
+            const rgb right = texture_fetch(features, texels, place, y_0 * width + x_1, value.b);
+            const rgb below = texture_fetch(features, texels, place, y_1 * width + x_0, right.b);
+            const rgb opposite = texture_fetch(features, texels, place, y_1 * width + x_1, below.b);
+            const real x_share = is_nearest ? R(0) : to_left - left, y_share = is_nearest ? R(0) : to_top - top;
+            const rgb upper = texture_between(features, value, right, x_share);
+            const rgb lower = texture_between(features, below, opposite, r_after(x_share, upper.b));
+            value = texture_between(features, upper, lower, r_after(y_share, lower.b));
+        }
+    }
+    if (TEXTURES_HAVE(textures_checkerboards)) {
+        const real across = r_clamp(s - r_floor(s), R(0), R(1)), down = r_after(t, across);
+        const int is_across = across > R(0.5), is_down = down - r_floor(down) > R(0.5);
+        const rgb field = rgb_select(is_across == is_down, TEXTURE_RGB(color_0), TEXTURE_RGB(color_1));
+        value = rgb_select((place.flags & texture_flag_checkerboard) != 0u, field, value);
+    }
+    if (TEXTURES_HAVE(textures_scaled))
+        value = rgb_mul(value, TEXTURE_RGB(scale));
+    const real lowest = TEXTURES_HAVE(textures_bounded) ? TEXTURE_REAL(lowest) : R(0);
+    const real highest = TEXTURES_HAVE(textures_bounded) ? TEXTURE_REAL(highest) : R(1);
     const real r = r_clamp(value.r, lowest, highest);
+    if (!TEXTURES_HAVE(textures_in_color | textures_checkerboards | textures_scaled))
+        return rgb_gray(r);
     const real g = r_clamp(r_after(value.g, r), lowest, highest);
     const real b = r_clamp(r_after(value.b, g), lowest, highest);
     return rgb3(r, g, b);

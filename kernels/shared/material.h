@@ -24,9 +24,9 @@ typedef struct {
 
 /* Loads one record; fields that the caller does not use cost nothing once inlined. `unit` is 1, see FIELD_OF in
  * kernels/shared/scene_records.h. */
-#define GRADUS_FIELD_LOAD(name) m.name = record[material_##name * (size_t)unit];
+#define GRADUS_FIELD_LOAD(name) m.name = (materials + material_##name * (size_t)unit)[first];
 GRADUS_FN material material_load(GRADUS_GLOBAL const real *materials, uint index, uint unit) {
-    GRADUS_GLOBAL const real *record = materials + (size_t)index * material_stride;
+    const int first = (int)(index * (uint)material_stride);
     material m;
     GRADUS_MATERIAL_FIELDS(GRADUS_FIELD_LOAD)
     return m;

@@ -140,9 +140,10 @@ enum light_kind {
 
 /* Members of a record: FIELD_OF(light, lights, 3, value_r). `unit` is an argument of each kernel and always 1: a
  * compiler that cannot know this does not join the loads of neighbouring fields into short vectors, which would stop
- * PoCL from vectorising over work-items. */
+ * PoCL from vectorising over work-items. The place of the record is a signed number of 32 bits, which all fields share:
+ * gathers take such ones as they are. */
 #define FIELD_OF(record, array, index, field)                                                                          \
-    ((array)[(size_t)(index)*record##_stride + record##_##field * (size_t)unit])
+    ((array) + record##_##field * (size_t)unit)[(int)((uint)(index) * (uint)record##_stride)]
 #define FIELD_V3(record, array, index, field)                                                                          \
     v3(FIELD_OF(record, array, index, field##_x), FIELD_OF(record, array, index, field##_y),                           \
        FIELD_OF(record, array, index, field##_z))

@@ -1,12 +1,13 @@
 /* How textures lie in device memory, for host and device.
  *
  * `texels` holds the words of all pictures as files store them (Bitmap in runtime/scene/texture.h), `textures` a record
- * of whole numbers for each texture, `texture_reals` one of reals. `material_textures` has textured_parameters numbers
- * for each material record: the texture that stands for the parameter, or texture_none. `texture_decode` has what a
- * byte is worth: 256 as they are, then 256 of sRGB.
+ * of whole numbers for each texture, `texture_reals` one of reals. `material_lookups` has
+ * TRAIT_LOOKUPS numbers for each material record: the textures that the material has, each once. `material_textures`
+ * has textured_parameters numbers for each: which of these stands for the parameter, or texture_none.
  *
  * TRAIT_TEXTURED has a bit for each parameter of GRADUS_TEXTURED_PARAMETERS that some material has as a texture,
- * TRAIT_TEXTURES one for each of the features below that some texture has. */
+ * TRAIT_TEXTURES one for each of the features below that some such texture has, TRAIT_BLEND_TEXTURES those of weights
+ * of blends; TRAIT_BLEND_LEVELS a bit for each depth of nesting at which a weight is a texture. */
 #ifndef GRADUS_SHARED_TEXTURE_H
 #define GRADUS_SHARED_TEXTURE_H
 //! traits: TRAIT_MATERIAL
@@ -95,6 +96,9 @@
 #define textures_mapped 512            /* by to_uv */
 #define textures_scaled 1024
 #define textures_checkerboards 2048
+#define textures_turned 4096   /* to_uv mixes u and v */
+#define textures_bounded 8192  /* what is looked up may be brought into bounds, or these are not 0 and 1 */
+#define textures_of_srgb 16384 /* bytes that are sRGB */
 
 GRADUS_LIB_BEGIN
 

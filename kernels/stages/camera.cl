@@ -47,7 +47,7 @@ STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ra
 #endif
 ) {
     const size_t i = work_item();
-    if (i >= count)
+    if (!HAS_ROW(i, count, camera_bits(camera, unit)))
         return;
     const size_t row = first_row + i;
     const uint slot = first_slot + (uint)i;

@@ -1,7 +1,7 @@
 /* escape: adds the environment's light to the paths that left the scene: rows index[first] on.
  *
  * DIRECT_APART: what the camera sees of it goes to `direct`. */
-//! traits: TRAIT_HIDE_EMITTERS
+//! traits: TRAIT_HIDE_EMITTERS TRAIT_LIGHT_ENVIRONMENT
 #include "kernels/lib/escaped_light.h"
 #include "kernels/lib/mis.h"
 #include "kernels/shared/stage.h"
@@ -18,7 +18,11 @@ STAGE escape(uint count, uint unit, uint first, uint capacity, uint slots, __glo
 #endif
 ) {
     const size_t i = work_item();
-    if (i >= count)
+    uint kept = 0u;
+#if TRAIT_LIGHT_ENVIRONMENT
+    kept = ESCAPED_BITS(environment_light);
+#endif
+    if (!HAS_ROW(i, count, kept))
         return;
     const uint row = index[first + i];
     const uint slot = AT_UINT(path, slot, row);

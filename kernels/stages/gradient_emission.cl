@@ -32,7 +32,11 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint stride, uint cap
 #endif
 ) {
     const size_t i = work_item();
-    if (i >= count)
+    uint kept = 0u;
+#if ESCAPED && TRAIT_LIGHT_ENVIRONMENT
+    kept = ESCAPED_BITS(environment_light);
+#endif
+    if (!HAS_ROW(i, count, kept))
         return;
     const uint row = index[first + i];
     const uint slot = AT_UINT(path, slot, row);

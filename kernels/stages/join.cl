@@ -14,7 +14,7 @@
 //! traits: TRAIT_REFRACTION TRAIT_APART SAMPLES_LIGHTS
 #include "kernels/lib/bsdf.h"
 #include "kernels/lib/ordered.h"
-#include "kernels/lib/random.h"
+#include "kernels/lib/path_draw.h"
 #include "kernels/lib/textured_material.h"
 #include "kernels/lib/vertex_frame.h"
 #include "kernels/shared/stage.h"
@@ -128,7 +128,7 @@ STAGE join(uint count, uint unit, uint first, uint capacity, uint slots, uint ro
 #endif
 
     const random4 u =
-        random_draw(AT_UINT(path, key_0, row), AT_UINT(path, key_1, row), random_dimension_scatter(depth - 1u));
+        PATH_DRAW(AT_UINT(path, key_0, row), AT_UINT(path, key_1, row), random_dimension_scatter(depth - 1u));
     real eta = R(1);
 #if TRAIT_REFRACTION
     eta = AT(path, eta, row);

@@ -7,26 +7,42 @@
  * offset paths share: so it is a coordinate of the paths that shifts keep. Of first vertices, where offset paths are
  * those of the neighbours, all pixels of a sample share it (TRAIT_SHARED_JITTER). Plane j has the rays of offset path
  * j, plane_rows rows further on each. OF_LIGHT_PATHS: rays of light paths. */
-//! traits: TRAIT_TEXTURED TRAIT_TWO_FACED TRAIT_SPHERES TRAIT_TRIANGLES TRAIT_BLENDS TRAIT_SHARED_JITTER
+//! traits: TRAIT_TEXTURED TRAIT_TWO_FACED TRAIT_SPHERES TRAIT_TRIANGLES TRAIT_BLENDS TRAIT_SHARED_JITTER TRAIT_LOOKUPS
+//! traits: TRAIT_TEXTURES TRAIT_BLEND_TEXTURES TRAIT_BLEND_LEVELS
 #include "kernels/lib/approximation.h"
 #include "kernels/lib/division.h"
 #include "kernels/lib/material_side.h"
-#include "kernels/lib/random.h"
+#include "kernels/lib/path_draw.h"
 #include "kernels/lib/sample_number.h"
 #include "kernels/lib/surface_side.h"
 #include "kernels/lib/texture_lookup.h"
 #include "kernels/lib/textured_material.h"
 #include "kernels/shared/stage.h"
 
+/* What texture number n of the material is worth here. */
+#define LOOKED_UP(n)                                                                                                   \
+    texture_lookup(TRAIT_TEXTURES, textures, texture_reals, texels, unit,                                              \
+                   (material_lookups + (n) * (size_t)unit)[(int)(record * (uint)TRAIT_LOOKUPS)], u, v)
 #define LOOK_UP(name)                                                                                                  \
-    const uint number = material_textures[(size_t)record * textured_parameters + parameter_##name * (size_t)unit];     \
+    const uint number =                                                                                                \
+        (material_textures + parameter_##name * (size_t)unit)[(int)(record * (uint)textured_parameters)];              \
     const int is_constant = number == texture_none;                                                                    \
-    const rgb looked_up =                                                                                              \
-        texture_lookup(textures, texture_reals, texels, texture_decode, unit, is_constant ? 0u : number, u, v);        \
-    GRADUS_GLOBAL const real *constants = materials + (size_t)record * material_stride;
+    const int constants = (int)(record * (uint)material_stride);                                                       \
+    CHOOSE_LOOKED_UP
+#if TRAIT_LOOKUPS == 1
+#define CHOOSE_LOOKED_UP const rgb looked_up = looked_up_0;
+#elif TRAIT_LOOKUPS == 2
+#define CHOOSE_LOOKED_UP const rgb looked_up = rgb_select(number == 1u, looked_up_1, looked_up_0);
+#elif TRAIT_LOOKUPS == 3
+#define CHOOSE_LOOKED_UP                                                                                               \
+    const rgb looked_up = rgb_select(number == 2u, looked_up_2, rgb_select(number == 1u, looked_up_1, looked_up_0));
+#else
+/* Many: each where it is needed, so that they need not be kept. */
+#define CHOOSE_LOOKED_UP const rgb looked_up = LOOKED_UP(is_constant ? 0u : number);
+#endif
 #define LEAVE(field, value)                                                                                            \
     surface[(size_t)textured_##field * traced_rows + row] =                                                            \
-        is_constant ? constants[material_##field * (size_t)unit] : (value);
+        is_constant ? (materials + material_##field * (size_t)unit)[constants] : (value);
 #define LEAVE_COLOR(with, name, value, text)                                                                           \
     if (IS_TEXTURED(name)) {                                                                                           \
         LOOK_UP(name)                                                                                                  \
@@ -45,8 +61,8 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
                     __global const real *triangles, __global const real *triangle_texcoords,
                     __global const real *spheres, __global const real *sphere_axes, uint triangle_count,
                     __global const uint *primitive_material, __global const real *materials,
-                    __global const uint *material_textures, __global const uint *textures,
-                    __global const real *texture_reals, __global const uint *texels, __global const real *texture_decode
+                    __global const uint *material_textures, __global const uint *material_lookups,
+                    __global const uint *textures, __global const real *texture_reals, __global const uint *texels
 #if TRAIT_TWO_FACED
                     ,
                     __global const real *triangle_normals, __global const uint *material_back
@@ -72,7 +88,8 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
 #endif
 ) {
     const size_t i = work_item();
-    if (i >= count)
+    const uint kept = texture_bits(TRAIT_TEXTURES | TRAIT_BLEND_TEXTURES, textures, texture_reals, unit);
+    if (!HAS_ROW(i, count, kept))
         return;
     const size_t row = (size_t)get_global_id(2) * plane_rows + i;
     const uint met = AT_UINT(traced, primitive, row);
@@ -114,11 +131,12 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
 #if OF_LIGHT_PATHS
     const uint key_0 = AT_UINT(light_path, key_0, i), key_1 = AT_UINT(light_path, key_1, i);
     const uint depth = AT_UINT(light_path, depth, i);
+    real choice = random_draw(key_0, key_1, random_dimension_blend(depth)).a;
 #else
     const uint key_0 = AT_UINT(path, key_0, i), key_1 = AT_UINT(path, key_1, i);
     const uint depth = AT_UINT(path, depth, i);
+    real choice = PATH_DRAW(key_0, key_1, random_dimension_blend(depth)).a;
 #endif
-    real choice = random_draw(key_0, key_1, random_dimension_blend(depth)).a;
 #if TRAIT_SHARED_JITTER
     /* An additive sequence, as the places within the pixel are: what all pixels share does not average out. */
     const uint place = first_sample_low + divide(AT_UINT(path, slot, i), pixels_multiplier, pixels_shift);
@@ -133,20 +151,31 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
         const uint first = FIELD_OF(blend, blends, record, first), second = FIELD_OF(blend, blends, record, second);
         const int is_blend = first != blend_none;
         real weight = blend_weights[record];
-#if TRAIT_TEXTURES
-        const uint number = FIELD_OF(blend, blends, record, weight_texture);
-        const int is_constant = number == texture_none;
-        const real looked_up = rgb_luminance(
-            texture_lookup(textures, texture_reals, texels, texture_decode, unit, is_constant ? 0u : number, u, v));
-        weight = is_constant ? weight : looked_up;
-#endif
+        if ((TRAIT_BLEND_LEVELS >> min(level, 30u)) & 1) {
+            const uint number = FIELD_OF(blend, blends, record, weight_texture);
+            const int is_constant = number == texture_none;
+            const real looked_up = rgb_luminance(texture_lookup(TRAIT_BLEND_TEXTURES, textures, texture_reals, texels,
+                                                                unit, is_constant ? 0u : number, u, v));
+            weight = is_constant ? weight : looked_up;
+        }
         /* What is left of the number decides on the next level. */
         const int takes_second = choice < weight;
         const real rest = takes_second ? choice / weight : (choice - weight) / (R(1) - weight);
         record = is_blend ? (takes_second ? second : first) : record;
         choice = is_blend ? r_min(rest, R(0.99999994)) : choice;
     }
-    *(GRADUS_GLOBAL uint *)(surface + (size_t)surface_record * traced_rows + row) = record;
+#endif
+#if TRAIT_LOOKUPS >= 1 && TRAIT_LOOKUPS <= 3
+    const rgb looked_up_0 = LOOKED_UP(0u);
+#if TRAIT_LOOKUPS >= 2
+    const rgb looked_up_1 = LOOKED_UP(1u);
+#endif
+#if TRAIT_LOOKUPS == 3
+    const rgb looked_up_2 = LOOKED_UP(2u);
+#endif
 #endif
     GRADUS_TEXTURED_PARAMETERS(LEAVE_COLOR, LEAVE_NUMBER, )
+#if TRAIT_BLENDS
+    *(GRADUS_GLOBAL uint *)(surface + (size_t)surface_record * traced_rows + row) = record;
+#endif
 }

@@ -37,7 +37,12 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
 #endif
 ) {
     const size_t i = work_item();
-    if (i >= count)
+#if SAMPLES_LIGHTS && !BSDF_IS_DIRAC
+    const uint kept = BITS_OF_LIGHTS;
+#else
+    const uint kept = 0u;
+#endif
+    if (!HAS_ROW(i, count, kept))
         return;
     const uint old = index[first + i];
     const size_t row = to + i;

@@ -23,6 +23,7 @@
 #include "kernels/lib/gradient.h"
 #include "kernels/lib/light_sampling.h"
 #include "kernels/lib/ordered.h"
+#include "kernels/lib/path_draw.h"
 #include "kernels/lib/reconnectable.h"
 #include "kernels/lib/shift_reconnection.h"
 #include "kernels/lib/shift_specular.h"
@@ -68,7 +69,12 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
 #endif
 ) {
     const size_t i = work_item();
-    if (i >= count)
+#if MEETS_LIGHTS
+    const uint kept = BITS_OF_LIGHTS;
+#else
+    const uint kept = 0u;
+#endif
+    if (!HAS_ROW(i, count, kept))
         return;
     const uint row = first + (uint)i;
     const uint slot = AT_UINT(path, slot, row);
@@ -115,7 +121,7 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
 
 #if MEETS_LIGHTS
     /* The base path's light sample, made again. */
-    const random4 u = random_draw(AT_UINT(path, key_0, row), AT_UINT(path, key_1, row),
+    const random4 u = PATH_DRAW(AT_UINT(path, key_0, row), AT_UINT(path, key_1, row),
                                   random_dimension_light(AT_UINT(path, depth, row) - 1u));
     const chosen_light chosen = light_sampling(lights, light_kinds, light_alias, light_count, scene_diameter, unit,
                                                base, u ENVIRONMENT_ARGUMENTS);

@@ -39,7 +39,7 @@ GatherPaths::GatherPaths(Session &session, Stages &stages, const Scene &scene, c
                          bool planes)
     : session_(session), samples_lights_(!options.direct_photons),
       // What the camera features of a gather point need, where `shade` does not see it.
-      features_(options.aov && options.direct_photons), planes_(planes),
+      features_(needs_features(options) && options.direct_photons), planes_(planes),
       has_smooth_(has_smooth_surface(scene, options)),
       camera_(stages.add(defined_as(camera_stage(), "PLANES", planes))), far_clip_(stages.add(far_clip_stage(session))),
       connect_(stages.add(wanted_if(connect_stage(), has_smooth_ || samples_lights_))),

@@ -361,7 +361,8 @@ SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits) {
         add_textures(scene, tables);
         add_blends(scene, tables);
     }
-    tables.camera_clips = camera_clips(scene);
+    if (traits.at("TRAIT_NEAR_CLIP") || traits.at("TRAIT_FAR_CLIP"))
+        tables.camera_clips = camera_clips(scene);
     tables.camera_kind = scene.camera.kind;
     tables.camera = make_camera_record(scene.camera, scene.film, tables.camera_clips);
     // Kernels compiled for both kinds of primitives read a record of each, whichever they then take.
@@ -379,7 +380,7 @@ std::size_t table_bytes(const SceneTables &t) {
                 t.primitive_light.size() + t.primitive_bin.size() + t.primitive_back_bin.size() +
                 t.material_back.size() + t.light_kinds.size() + t.light_alias.size() + t.emissions.size() +
                 t.emission_alias.size() + t.triangle_texcoords.size() + t.sphere_axes.size() + t.texture_reals.size() +
-                t.texture_decode.size() + t.textures.size() + t.texels.size() + t.material_textures.size() +
+                t.material_lookups.size() + t.textures.size() + t.texels.size() + t.material_textures.size() +
                 t.blends.size() + t.record_kind.size() + t.blend_weights.size());
 }
 

@@ -2,6 +2,7 @@
 
 #include "kernels/shared/texture.h"
 #include "runtime/error.h"
+#include "runtime/scene/traits.h"
 
 #include <algorithm>
 #include <map>
@@ -30,16 +31,10 @@ std::map<const Bitmap *, std::uint32_t> add_bitmaps(const Scene &scene, SceneTab
 std::uint32_t flags_of(const Texture &texture) {
     std::uint32_t flags = std::uint32_t(texture.wrap) << 4;
     flags |= texture.is_nearest ? texture_flag_nearest : 0;
-    flags |= texture.is_srgb ? texture_flag_srgb : 0;
     if (texture.kind == Texture::Kind::checkerboard)
         return flags | texture_flag_checkerboard;
+    flags |= texture.is_srgb && texture.bitmap->format == Bitmap::Format::byte ? texture_flag_srgb : 0;
     return flags | std::uint32_t(texture.bitmap->format) | (texture.bitmap->is_color ? texture_flag_color : 0);
-}
-
-void add_decoding(SceneTables &tables) {
-    for (const bool is_srgb : {false, true})
-        for (int value = 0; value < 256; ++value)
-            tables.texture_decode.push_back(float(is_srgb ? srgb_to_linear_value(value / 255.0) : value / 255.0));
 }
 
 } // namespace
@@ -62,7 +57,6 @@ void add_textures(const Scene &scene, SceneTables &tables) {
     tables.triangle_texcoords.resize(std::max<std::size_t>(tables.triangle_texcoords.size(), texcoords_stride));
 
     const std::map<const Bitmap *, std::uint32_t> offsets = add_bitmaps(scene, tables);
-    add_decoding(tables);
     for (const Texture &texture : scene.textures) {
         const bool has_bitmap = texture.bitmap != nullptr;
         tables.textures.insert(tables.textures.end(),
@@ -74,12 +68,17 @@ void add_textures(const Scene &scene, SceneTables &tables) {
         for (const auto *color : {&texture.scale, &texture.color_0, &texture.color_1})
             reals.insert(reals.end(), color->begin(), color->end());
     }
+    const auto lookups = std::size_t(std::max(1, most_lookups(scene)));
     for (const Bsdf &bsdf : material_records(scene)) {
         const std::size_t first = tables.material_textures.size();
         tables.material_textures.resize(first + textured_parameters, texture_none);
+        std::vector<std::int32_t> distinct = distinct_textures(bsdf);
         for_each_textured_parameter(bsdf, [&](int number, std::int32_t texture) {
-            tables.material_textures[first + std::size_t(number)] = std::uint32_t(texture);
+            tables.material_textures[first + std::size_t(number)] =
+                std::uint32_t(std::ranges::find(distinct, texture) - distinct.begin());
         });
+        distinct.resize(lookups, 0);
+        tables.material_lookups.insert(tables.material_lookups.end(), distinct.begin(), distinct.end());
     }
     if (scene.textures.empty()) { // kernels may ask for one, whatever they then take
         tables.textures.assign(texture_stride, 0);

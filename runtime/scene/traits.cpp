@@ -38,7 +38,10 @@ constexpr TraitText descriptions[] = {
     {"TRAIT_MATERIAL", "materials that differ from place to place or from path to path"},
     {"TRAIT_BLENDS", "mixtures of BSDFs, how deeply nested"},
     {"TRAIT_TEXTURED", "parameters of materials that are textures, a bit each"},
-    {"TRAIT_TEXTURES", "what textures have, a bit each"},
+    {"TRAIT_TEXTURES", "what these textures have, a bit each"},
+    {"TRAIT_LOOKUPS", "the most textures that a material has"},
+    {"TRAIT_BLEND_TEXTURES", "what textures that are weights of blends have, a bit each"},
+    {"TRAIT_BLEND_LEVELS", "depths of nesting at which weights of blends are textures, a bit each"},
     {"TRAIT_FILTER_TENT", "tent pixel filter"},
     {"TRAIT_FILTER_GAUSSIAN", "Gaussian pixel filter"},
     {"TRAIT_FILTER_SIGNED", "pixel filter with negative lobes"},
@@ -105,15 +108,35 @@ bool bsdf_kind_is_dirac(const std::string &name) {
     return place < kinds().size() && kinds()[place].is_dirac;
 }
 
+namespace {
+
+/// Whether what a texture is worth may leave its bounds, or these are not 0 and 1.
+bool may_need_bounds(const Texture &texture) {
+    if (texture.lowest > 0 || texture.highest < 1 || texture.scale != Texture().scale)
+        return true;
+    const auto is_unit = [](float value) { return value >= 0 && value <= 1; };
+    if (texture.kind == Texture::Kind::checkerboard)
+        return !std::ranges::all_of(texture.color_0, is_unit) || !std::ranges::all_of(texture.color_1, is_unit);
+    return texture.bitmap->format == Bitmap::Format::half || texture.bitmap->format == Bitmap::Format::real;
+}
+
+} // namespace
+
 int texture_features(const Texture &texture) {
     using namespace lib_float;
     int features = texture.to_uv == Texture().to_uv ? 0 : textures_mapped;
+    if (texture.to_uv[1] != 0 || texture.to_uv[3] != 0)
+        features |= textures_turned;
+    if (may_need_bounds(texture))
+        features |= textures_bounded;
     if (texture.scale != Texture().scale)
         features |= textures_scaled;
     if (texture.kind == Texture::Kind::checkerboard)
         return features | textures_checkerboards;
     const int formats[] = {textures_of_bytes, textures_of_words, textures_of_halves, textures_of_reals};
     features |= formats[int(texture.bitmap->format)];
+    if (texture.is_srgb && texture.bitmap->format == Bitmap::Format::byte)
+        features |= textures_of_srgb;
     features |= texture.bitmap->is_color ? textures_in_color : textures_in_gray;
     features |= texture.is_nearest ? textures_nearest : textures_bilinear;
     return features | (texture.wrap == Texture::Wrap::repeat ? 0 : textures_wrapped_otherwise);
@@ -140,6 +163,21 @@ void for_each_textured_parameter(const Bsdf &bsdf, const std::function<void(int 
 #undef GRADUS_VISIT
 }
 
+std::vector<std::int32_t> distinct_textures(const Bsdf &bsdf) {
+    std::vector<std::int32_t> distinct;
+    for_each_textured_parameter(bsdf, [&](int, std::int32_t texture) {
+        if (std::ranges::count(distinct, texture) == 0)
+            distinct.push_back(texture);
+    });
+    return distinct;
+}
+
+int most_lookups(const Scene &scene) {
+    std::size_t most = 0;
+    for_each_bsdf(scene, [&](const Bsdf &bsdf) { most = std::max(most, distinct_textures(bsdf).size()); });
+    return int(most);
+}
+
 int blend_depth(const Scene &scene, const Bsdf &bsdf) {
     if (bsdf.blend == no_blend)
         return 0;
@@ -148,20 +186,53 @@ int blend_depth(const Scene &scene, const Bsdf &bsdf) {
            std::max(blend_depth(scene, scene.blended[blend.first]), blend_depth(scene, scene.blended[blend.second]));
 }
 
-void for_each_blend(const Scene &scene, const Bsdf &bsdf, const std::function<void(const Blend &)> &visit) {
+void for_each_blend(const Scene &scene, const Bsdf &bsdf, const std::function<void(const Blend &, int level)> &visit,
+                    int level) {
     if (bsdf.blend == no_blend)
         return;
     const Blend &blend = scene.blends[std::size_t(bsdf.blend)];
-    visit(blend);
-    for_each_blend(scene, scene.blended[blend.first], visit);
-    for_each_blend(scene, scene.blended[blend.second], visit);
+    visit(blend, level);
+    for_each_blend(scene, scene.blended[blend.first], visit, level + 1);
+    for_each_blend(scene, scene.blended[blend.second], visit, level + 1);
 }
-
-bool needs_material_stage(const Scene &scene) { return scene_traits(scene).at("TRAIT_MATERIAL") != 0; }
 
 bool bsdf_kind_is_mixed(const std::string &name) {
     const std::size_t place = place_of(name);
     return place < kinds().size() && kinds()[place].is_mixed;
+}
+
+namespace {
+
+/// Of textures and blends.
+void add_material_traits(const Scene &scene, TraitMap &traits) {
+    for (const Shape &shape : scene.shapes) {
+        const Material &material = scene.materials[shape.material];
+        for (const Bsdf *side : {&material.front, &material.back}) {
+            traits["TRAIT_BLENDS"] = std::max(traits["TRAIT_BLENDS"], blend_depth(scene, *side));
+            for_each_blend(scene, *side, [&](const Blend &blend, int level) {
+                if (blend.weight.texture == no_texture)
+                    return;
+                traits["TRAIT_BLEND_TEXTURES"] |= texture_features(scene.textures[std::size_t(blend.weight.texture)]);
+                traits["TRAIT_BLEND_LEVELS"] |= 1 << std::min(level, 30);
+            });
+        }
+    }
+    for_each_bsdf(scene, [&](const Bsdf &bsdf) {
+        for_each_textured_parameter(bsdf, [&](int number, std::int32_t texture) {
+            traits["TRAIT_TEXTURED"] |= 1 << number;
+            traits["TRAIT_TEXTURES"] |= texture_features(scene.textures[std::size_t(texture)]);
+        });
+    });
+    traits["TRAIT_LOOKUPS"] = most_lookups(scene);
+    traits["TRAIT_MATERIAL"] = traits["TRAIT_TEXTURED"] != 0 || traits["TRAIT_BLENDS"] > 0;
+}
+
+} // namespace
+
+bool needs_material_stage(const Scene &scene) {
+    TraitMap traits;
+    add_material_traits(scene, traits);
+    return traits.at("TRAIT_MATERIAL") != 0;
 }
 
 TraitMap scene_traits(const Scene &scene) {
@@ -176,13 +247,6 @@ TraitMap scene_traits(const Scene &scene) {
         if (shape.emitter >= 0)
             traits[mesh ? "TRAIT_LIGHT_TRIANGLE" : "TRAIT_LIGHT_SPHERE"] = 1;
         const Material &material = scene.materials[shape.material];
-        for (const Bsdf *side : {&material.front, &material.back}) {
-            traits["TRAIT_BLENDS"] = std::max(traits["TRAIT_BLENDS"], blend_depth(scene, *side));
-            for_each_blend(scene, *side, [&](const Blend &blend) {
-                if (blend.weight.texture != no_texture)
-                    traits["TRAIT_TEXTURES"] |= texture_features(scene.textures[std::size_t(blend.weight.texture)]);
-            });
-        }
         if (material.two_sided) {
             traits["TRAIT_TWO_SIDED"] = 1;
             if (!(material.front == material.back))
@@ -197,12 +261,8 @@ TraitMap scene_traits(const Scene &scene) {
             traits["TRAIT_REFRACTION"] = 1;
         if (kind.has_roughness && bsdf.alpha_u != bsdf.alpha_v)
             traits["TRAIT_ANISOTROPIC"] = 1;
-        for_each_textured_parameter(bsdf, [&](int number, std::int32_t texture) {
-            traits["TRAIT_TEXTURED"] |= 1 << number;
-            traits["TRAIT_TEXTURES"] |= texture_features(scene.textures[std::size_t(texture)]);
-        });
     });
-    traits["TRAIT_MATERIAL"] = traits["TRAIT_TEXTURED"] != 0 || traits["TRAIT_BLENDS"] > 0;
+    add_material_traits(scene, traits);
     for (const Emitter &emitter : scene.emitters) {
         if (emitter.value == Rgb{})
             continue; // black: no light
@@ -260,7 +320,8 @@ TraitMap with_all_traits(TraitMap traits) {
     for (auto &[name, value] : traits) {
         // The filter and hidden emitters change the picture; the rest only makes room for what is not there.
         const bool setting = name.starts_with("TRAIT_FILTER") || name == "TRAIT_HIDE_EMITTERS" ||
-                             name.starts_with("TRAIT_TEXTURE") || name == "TRAIT_MATERIAL" || name == "TRAIT_BLENDS";
+                             name.starts_with("TRAIT_TEXTURE") || name == "TRAIT_MATERIAL" || name == "TRAIT_LOOKUPS" ||
+                             name.starts_with("TRAIT_BLEND");
         if (!setting)
             value = 1;
     }

@@ -30,6 +30,12 @@ std::uint32_t textured_column_count(int textured);
 /// in GRADUS_TEXTURED_PARAMETERS, its index in Scene::textures.
 void for_each_textured_parameter(const Bsdf &bsdf, const std::function<void(int number, std::int32_t texture)> &visit);
 
+/// The textures among these, each once.
+std::vector<std::int32_t> distinct_textures(const Bsdf &bsdf);
+
+/// The most that a BSDF of the scene's shapes has.
+int most_lookups(const Scene &scene);
+
 /// Whether a shape has a material with textures or a blend, which the stage `material` reads.
 bool needs_material_stage(const Scene &scene);
 
@@ -88,7 +94,8 @@ void for_each_bsdf(const Scene &scene, Visit visit) {
 /// Blends within blends that a BSDF has, itself counted in.
 int blend_depth(const Scene &scene, const Bsdf &bsdf);
 /// Calls visit(blend) for each blend within a BSDF.
-void for_each_blend(const Scene &scene, const Bsdf &bsdf, const std::function<void(const Blend &)> &visit);
+void for_each_blend(const Scene &scene, const Bsdf &bsdf, const std::function<void(const Blend &, int level)> &visit,
+                    int level = 0);
 
 /// The kinds that occur on the scene's shapes, in the order of GRADUS_BSDF_KINDS.
 std::vector<std::string> bsdf_kinds(const Scene &scene);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace gradus {
@@ -21,6 +22,8 @@ struct SegmentColumns {
     const float *direction[3];
     /// Of four lines of so many rows, row i of each is much like that of the others; 0: nothing is known.
     std::size_t line = 0;
+    /// From this row on they are rays of a camera, pixel after pixel; only where `line` is 0.
+    std::size_t alike_from = std::numeric_limits<std::size_t>::max();
 };
 
 /// Some rows [begin, end) and, line by line, those `apart` rows further on, which belong to them.

@@ -67,6 +67,7 @@ struct RecordedRays {
     std::vector<RTCRayHit16> extension;
     std::vector<RTCRay16> shadow;
     std::vector<int> extension_lanes, shadow_lanes; // how many lanes of each packet are rays
+    bool of_camera = false;
 };
 
 struct Tracer::Implementation {
@@ -119,7 +120,8 @@ struct Tracer::Implementation {
     /// Says which primitive of the scene comes next in a geometry.
     void name(const Scene &s, const Shape &shape, std::size_t triangle, std::uint32_t number, Geometry place);
     void attach(RTCGeometry geometry, Geometry place);
-    std::uint64_t trace_extension(const RayColumns &ray, const RowLines &chunk_rows, RecordedRays *record);
+    std::uint64_t trace_extension(const RayColumns &ray, const RowLines &chunk_rows, bool of_camera,
+                                  RecordedRays *record);
     std::uint64_t trace_shadow(const ShadowColumns &shadow, const RowLines &chunk_rows, RecordedRays *record);
     /// Runs task(0) to task(count - 1) on the threads that trace.
     template <class Task>
@@ -135,6 +137,8 @@ struct Tracer::Implementation {
         });
     }
     bool beams(RayOrder order) const { return coherent && order != RayOrder::none; }
+    /// Rays of a camera are alike in whatever scene, and in order as they come but for their octants.
+    bool camera_beams() const { return !coherent && !some_are_passable; }
     std::uint32_t primitive_of(unsigned geometry, unsigned primitive) const {
         if (geometry >= passable_triangles)
             return geometry < geometries ? passable[geometry - passable_triangles].primitive(primitive) : ray_escaped;
@@ -359,17 +363,20 @@ void for_each_packet(const std::vector<std::uint32_t> &rows, const std::vector<s
 
 } // namespace
 
-std::uint64_t Tracer::Implementation::trace_extension(const RayColumns &ray, const RowLines &chunk_rows,
+std::uint64_t Tracer::Implementation::trace_extension(const RayColumns &ray, const RowLines &chunk_rows, bool of_camera,
                                                       RecordedRays *record) {
     RayOrdering &ordering = orderings.local();
     const std::vector<std::uint32_t> &rows =
-        ordering.sort(ray, ray.primitive, ray_pending, chunk_rows, extension_order);
-    RTCIntersectContext context = new_context(beams(extension_order));
+        ordering.sort(ray, ray.primitive, ray_pending, chunk_rows, of_camera ? RayOrder::octant : extension_order);
+    const bool as_beams = of_camera || beams(extension_order);
+    RTCIntersectContext context = new_context(as_beams);
+    if (record)
+        record->of_camera = of_camera;
     alignas(64) RTCRayHit16 packet;
     prepare(packet.ray);
     for (int lane = 0; lane < width; ++lane)
         packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
-    for_each_packet(rows, ordering.groups(), beams(extension_order), [&](const std::uint32_t *row, int lanes) {
+    for_each_packet(rows, ordering.groups(), as_beams, [&](const std::uint32_t *row, int lanes) {
         fill(packet.ray, ray, row, std::numeric_limits<float>::infinity());
         for (int lane = 0; lane < width; ++lane)
             packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
@@ -408,20 +415,20 @@ std::uint64_t Tracer::Implementation::trace_shadow(const ShadowColumns &shadow, 
 
 namespace {
 
-/// Cuts `count` rows into chunks.
+/// Cuts `count` rows into chunks, from row `first` on.
 class Chunks {
   public:
-    Chunks(const SegmentColumns &columns, std::size_t count)
-        : count_(count), line_(columns.line > 0 ? columns.line : count), lines_(columns.line > 0 ? 4 : 1),
-          chunk_(chunk / lines_), of_line_((line_ + chunk_ - 1) / chunk_) {}
+    Chunks(const SegmentColumns &columns, std::size_t count, std::size_t first = 0)
+        : count_(count), first_(first), line_(columns.line > 0 ? columns.line : count),
+          lines_(columns.line > 0 ? 4 : 1), chunk_(chunk / lines_), of_line_((line_ + chunk_ - 1) / chunk_) {}
     std::size_t size() const { return count_ == 0 ? 0 : count_ / (lines_ * line_) * of_line_; }
     RowLines operator[](std::size_t number) const {
-        const std::size_t first = number / of_line_ * lines_ * line_, begin = number % of_line_ * chunk_;
+        const std::size_t first = first_ + number / of_line_ * lines_ * line_, begin = number % of_line_ * chunk_;
         return {first + begin, first + std::min(begin + chunk_, line_), lines_, line_};
     }
 
   private:
-    std::size_t count_, line_;
+    std::size_t count_, first_, line_;
     std::uint32_t lines_;
     std::size_t chunk_, of_line_;
 };
@@ -431,14 +438,19 @@ class Chunks {
 TraceCounts Tracer::trace(const RayColumns &ray, std::size_t rays, const ShadowColumns &shadow, std::size_t shadows) {
     Implementation &im = *implementation_;
     const bool keep = im.record_interval > 0 && im.calls++ % im.record_interval == 0;
-    const Chunks ray_chunks(ray, rays), shadow_chunks(shadow, shadows);
-    const std::size_t extension_tasks = ray_chunks.size(), tasks = extension_tasks + shadow_chunks.size();
+    const std::size_t scattered = im.camera_beams() && ray.line == 0 ? std::min(rays, ray.alike_from) : rays;
+    const Chunks ray_chunks(ray, scattered), camera_chunks(ray, rays - scattered, scattered);
+    const Chunks shadow_chunks(shadow, shadows);
+    const std::size_t scattered_tasks = ray_chunks.size(), extension_tasks = scattered_tasks + camera_chunks.size();
+    const std::size_t tasks = extension_tasks + shadow_chunks.size();
     std::vector<RecordedRays> kept(keep ? tasks : 0);
     std::atomic<std::uint64_t> extension_count{0}, shadow_count{0};
     im.run(tasks, [&](std::size_t task) {
         RecordedRays *record = keep ? &kept[task] : nullptr;
-        if (task < extension_tasks)
-            extension_count += im.trace_extension(ray, ray_chunks[task], record);
+        if (task < scattered_tasks)
+            extension_count += im.trace_extension(ray, ray_chunks[task], false, record);
+        else if (task < extension_tasks)
+            extension_count += im.trace_extension(ray, camera_chunks[task - scattered_tasks], true, record);
         else
             shadow_count += im.trace_shadow(shadow, shadow_chunks[task - extension_tasks], record);
     });
@@ -517,7 +529,8 @@ Replayed Tracer::replay(ReplayedAs as) {
                 result.rays += std::accumulate(lanes->begin(), lanes->end(), std::uint64_t(0));
         const double start = now();
         im.run(call.size(), [&](std::size_t task) {
-            trace_again(im.scene, call[task], extension_beams, shadow_beams, as == ReplayedAs::single);
+            trace_again(im.scene, call[task], extension_beams || (as_traced && call[task].of_camera), shadow_beams,
+                        as == ReplayedAs::single);
         });
         result.seconds += now() - start;
     }

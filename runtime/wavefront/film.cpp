@@ -11,9 +11,10 @@ namespace gradus {
 
 using namespace lib_float;
 
-Film::Film(Session &session, Stages &stages)
+Film::Film(Session &session, Stages &stages, bool halves)
     : session_(session),
-      accumulate_(stages.add({.name = "accumulate", .strict = true, .numbers = {"first_slot", "first_pixel"}})) {}
+      accumulate_(stages.add({.name = "accumulate", .strict = true, .numbers = {"first_slot", "first_pixel"}})),
+      halves_(halves) {}
 
 TableList Film::tables() const {
     const bool aov = session_.has("TRAIT_AOV");
@@ -22,6 +23,7 @@ TableList Film::tables() const {
             {.name = "filtered", .rows = RowsOf::slot, .columns = session_.has("TRAIT_FILTER_SIGNED") ? 1u : 0u},
             {.name = "feature", .rows = RowsOf::slot, .columns = with_aov(feature_columns)},
             {.name = "film", .rows = RowsOf::pixel, .columns = film_columns},
+            {.name = "odd_film", .rows = RowsOf::pixel, .columns = halves_ ? std::uint32_t(film_columns) : 0u},
             {.name = "feature_film", .rows = RowsOf::pixel, .columns = with_aov(feature_film_columns)}};
 }
 
@@ -31,14 +33,22 @@ void Film::attach(Tables &tables) {
 }
 
 void Film::clear() {
-    for (const char *name : {"film", "feature_film", "splat_film"})
+    for (const char *name : {"film", "odd_film", "feature_film", "splat_film"})
         if (tables_->has(name))
             (*tables_)[name].clear();
 }
 
-void Film::add(std::uint32_t count, std::uint32_t first_pixel) {
+void Film::add(std::uint32_t count, std::uint32_t first_pixel, std::uint64_t first_sample) {
     // One launch a sample of each pixel: within a launch no pixel occurs twice.
     const std::uint32_t pixels = session_.pixels();
+    if (halves_) { // and all of a half
+        for (std::uint32_t slot = 0, done = 0; slot < count; slot += done, first_pixel = 0, ++first_sample) {
+            done = std::min(pixels - first_pixel, count - slot);
+            accumulate_.bind("film", (*tables_)[first_sample % 2 == 0 ? "film" : "odd_film"]);
+            accumulate_.run(done, {{"first_slot", slot}, {"first_pixel", first_pixel}});
+        }
+        return;
+    }
     for (std::uint32_t slot = 0; slot < count; slot += pixels)
         accumulate_.run(std::min(pixels, count - slot), {{"first_slot", slot}, {"first_pixel", first_pixel}});
 }
@@ -46,17 +56,22 @@ void Film::add(std::uint32_t count, std::uint32_t first_pixel) {
 Image Film::image(std::uint64_t samples, std::uint64_t &non_finite, std::uint64_t light_paths) const {
     const std::size_t count = session_.pixels();
     const HostTable film((*tables_)["film"], count, tables_->precision());
-    std::optional<HostTable> splats;
+    std::optional<HostTable> odd, splats;
+    if (halves_)
+        odd.emplace((*tables_)["odd_film"], count, tables_->precision());
     if (light_paths > 0 && tables_->has("splat_film"))
         splats.emplace((*tables_)["splat_film"], count, tables_->precision());
     Image image;
     image.width = session_.film.crop_width;
     image.height = session_.film.crop_height;
+    const auto rejected = [&](std::size_t pixel) {
+        return film.uint(film_rejected, pixel) + (odd ? odd->uint(film_rejected, pixel) : 0);
+    };
     for (std::size_t pixel = 0; pixel < count; ++pixel)
-        non_finite += film.uint(film_rejected, pixel) + (splats ? splats->uint(film_rejected, pixel) : 0);
+        non_finite += rejected(pixel) + (splats ? splats->uint(film_rejected, pixel) : 0);
     const std::uint64_t of_all = samples / count, with_one_more = samples % count;
     const auto taken = [&](std::size_t pixel) {
-        return double(of_all + (pixel < with_one_more ? 1 : 0)) - film.uint(film_rejected, pixel);
+        return double(of_all + (pixel < with_one_more ? 1 : 0)) - rejected(pixel);
     };
     const auto add = [&](const std::string &name, auto mean) {
         Channel channel{name, std::vector<float>(count)};
@@ -69,7 +84,7 @@ Image Film::image(std::uint64_t samples, std::uint64_t &non_finite, std::uint64_
     };
     const auto over_taken = [&](double sum, std::size_t pixel) { return taken(pixel) > 0 ? sum / taken(pixel) : 0.0; };
     const auto mean_color = [&](int channel, std::size_t pixel) {
-        return over_taken(sum_of(film, channel, pixel), pixel);
+        return over_taken(sum_of(film, channel, pixel) + (odd ? sum_of(*odd, channel, pixel) : 0.0), pixel);
     };
     const char *const colors[3] = {"R", "G", "B"};
     for (int c = 0; c < 3; ++c)
@@ -102,6 +117,17 @@ Image Film::image(std::uint64_t samples, std::uint64_t &non_finite, std::uint64_
             return taken(pixel) > 1 ? std::max(0.0, square - mean * mean) / (taken(pixel) - 1) : 0.0;
         });
     return image;
+}
+
+void Film::half_mean(int half, std::uint64_t samples, int color, float *plane) const {
+    const std::size_t count = session_.pixels();
+    const HostTable film((*tables_)[half == 0 ? "film" : "odd_film"], count, tables_->precision());
+    for (std::size_t pixel = 0; pixel < count; ++pixel) {
+        const std::uint64_t all = samples / count + (pixel < samples % count ? 1 : 0);
+        const double taken = double((all + (half == 0 ? 1 : 0)) / 2) - film.uint(film_rejected, pixel);
+        const double sum = film.real(film_sum_r + color, pixel) + film.real(film_correction_r + color, pixel);
+        plane[pixel] = static_cast<float>(taken > 0 ? sum / taken : 0.0);
+    }
 }
 
 } // namespace gradus

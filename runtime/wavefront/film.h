@@ -12,20 +12,24 @@ namespace gradus {
 
 class Film {
   public:
-    /// Declares the stage `accumulate`.
-    Film(Session &session, Stages &stages);
+    /// Declares the stage `accumulate`. `halves`: even and odd samples of a pixel are also known apart.
+    Film(Session &session, Stages &stages, bool halves = false);
 
     TableList tables() const;
     /// To be called once they are allocated; all is zero.
     void attach(Tables &tables);
 
     /// Adds the samples of slots [0, count), which belong to the pixels from `first_pixel` on, cyclically.
-    void add(std::uint32_t count, std::uint32_t first_pixel);
+    /// `first_sample`: which sample of its pixel the first is, where halves are kept.
+    void add(std::uint32_t count, std::uint32_t first_pixel, std::uint64_t first_sample = 0);
 
     /// The means after `samples` samples: the first `samples` modulo pixels have one more than the rest. Where there
     /// are splats (splats.h), their sums over `light_paths`, the paths that they are of, are added; 0: they are left
     /// out. Adds the samples and splats that were left out to `non_finite`. Variances are those of the samples alone.
     Image image(std::uint64_t samples, std::uint64_t &non_finite, std::uint64_t light_paths = 0) const;
+
+    /// Writes the mean of a half of `samples` samples, 0: the even ones, for one of R, G and B.
+    void half_mean(int half, std::uint64_t samples, int color, float *plane) const;
 
     /// All zero again, splats too.
     void clear();
@@ -33,6 +37,7 @@ class Film {
   private:
     Session &session_;
     Stage &accumulate_;
+    bool halves_;
     Tables *tables_ = nullptr;
 };
 

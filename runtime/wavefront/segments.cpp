@@ -18,6 +18,7 @@ class Segments {
           rows_(places.count) {
         const std::size_t capacity = places.rows, rows = places.count;
         columns.line = places.line;
+        columns.alike_from = places.alike_from;
         if (precision != Precision::double_) {
             float *reals = view_.as<float>();
             for (int axis = 0; axis < 3; ++axis) {

@@ -6,6 +6,7 @@
 #include "runtime/trace/tracer.h"
 
 #include <cstdint>
+#include <limits>
 
 namespace gradus {
 
@@ -16,7 +17,9 @@ struct SegmentTable {
     std::size_t rows = 0;          ///< of the table: how far its columns are apart
     std::uint32_t count = 0;
     int origin = 0, direction = 0, answer = 0; ///< the columns: the first of three, of three, the only one
-    std::uint32_t line = 0; ///< SegmentColumns::line
+    std::uint32_t line = 0;                    ///< SegmentColumns::line
+    /// SegmentColumns::alike_from
+    std::size_t alike_from = std::numeric_limits<std::size_t>::max();
 };
 
 /// Finds what `rays` meet first (their answers: ray_pending before, a primitive or ray_escaped after), and whether

@@ -12,6 +12,7 @@ namespace gradus {
 
 namespace {
 
+constexpr std::size_t most_few_textures = 8;      // kernels/lib/texture_lookup.h
 constexpr std::uint32_t most_few_lights = 4;      // kernels/lib/light_sampling.h chooses among so many
 constexpr std::uint32_t least_many_lights = 4097; // 24 bits choose among fewer with an error of 2e-4 at most
 constexpr std::uint32_t deepest = 1u << 16;       // where a file asks for paths without end
@@ -23,7 +24,8 @@ TraitMap traits_for(const Scene &scene, const SessionOptions &options, const Tra
         traits = with_all_traits(traits);
     // Settings of a method, which no scene has.
     traits["TRAIT_SHARED_JITTER"] = 0;
-    traits["TRAIT_STRATIFIED"] = 0;
+    traits["TRAIT_STRATIFIED"] = options.sampler == SessionOptions::Sampler::sobol;
+    traits["TRAIT_LOBE_LEVELS"] = 0;
     traits["TRAIT_HALVES"] = 0;
     traits["TRAIT_GRADIENT"] = 0;
     traits["TRAIT_LIGHT_VERTICES"] = 0;
@@ -52,7 +54,13 @@ FilmSettings with_crop(FilmSettings film) {
 
 std::vector<Buffer> make_scene_buffers(Device &device, const SceneTables &t, Precision precision) {
     std::vector<Buffer> buffers;
+    const auto check = [](const char *name, std::size_t elements) {
+        if (elements > std::size_t(std::numeric_limits<std::int32_t>::max())) // FIELD_OF in scene_records.h
+            throw Error(ExitCode::device,
+                        fmt::format("the scene's table of {} is larger than kernels can address", name));
+    };
     const auto reals = [&](const char *name, const std::vector<float> &values) {
+        check(name, values.size());
         if (precision == Precision::double_) {
             const std::vector<double> wide(values.begin(), values.end());
             buffers.emplace_back(device, name, wide.data(), wide.size() * sizeof(double));
@@ -88,10 +96,10 @@ std::vector<Buffer> make_scene_buffers(Device &device, const SceneTables &t, Pre
         reals("triangle_texcoords", t.triangle_texcoords);
         reals("sphere_axes", t.sphere_axes);
         reals("texture_reals", t.texture_reals);
-        reals("texture_decode", t.texture_decode);
         numbers("textures", t.textures);
         numbers("texels", t.texels);
         numbers("material_textures", t.material_textures);
+        numbers("material_lookups", t.material_lookups);
         numbers("blends", t.blends);
         numbers("record_kind", t.record_kind);
         reals("blend_weights", t.blend_weights);
@@ -110,6 +118,8 @@ Session::Session(Device &session_device, const Scene &s, const SessionOptions &s
     traits["SAMPLES_LIGHTS"] = scene.light_count > 0 && options.strategy != SessionOptions::Strategy::bsdf;
     traits["FEW_LIGHTS"] =
         scene.light_count <= most_few_lights && !options.all_traits ? static_cast<int>(scene.light_count) : 0;
+    const std::size_t textures = s.textures.size();
+    traits["FEW_TEXTURES"] = textures <= most_few_textures && !options.all_traits ? static_cast<int>(textures) : 0;
     traits["MANY_LIGHTS"] = scene.light_count >= least_many_lights;
     numbers = {{"unit", 1},
                {"triangle_count", scene.triangle_count},

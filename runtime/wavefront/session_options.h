@@ -22,6 +22,10 @@ struct SessionOptions {
     Precision precision = Precision::single; ///< of the kernels; rays are always traced in float
     bool aov = false;                        ///< also albedo, normal, depth, variance
     bool all_traits = false; ///< for measuring: compile the kernels for everything, as if the scene had it
+    /// How the samples of a pixel draw: each by itself, or together from a Sobol sequence, scrambled by pixel and
+    /// dimension (kernels/lib/stratified.h). Light paths of photons are independent in either case.
+    enum class Sampler { sobol, independent };
+    Sampler sampler = Sampler::sobol;
     enum class Strategy { mis, light, bsdf };
     Strategy strategy = Strategy::mis; ///< for tests: light sampling alone or BSDF sampling alone
     std::string dump_kernels;          ///< folder for the source of each kernel as it was compiled; empty: none

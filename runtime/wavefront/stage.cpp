@@ -11,6 +11,15 @@
 
 namespace gradus {
 
+std::map<std::string, std::string> definitions_of_kind(const std::string &kind, bool is_dirac) {
+    std::map<std::string, std::string> definitions = {{"BSDF_IS_DIRAC", is_dirac ? "1" : "0"}};
+    if (!kind.empty())
+        definitions["BSDF"] = kind;
+    if (bsdf_kind_is_mixed(kind))
+        definitions["BSDF_IS_MIXED"] = "1";
+    return definitions;
+}
+
 namespace {
 
 constexpr std::size_t no_kernel = ~std::size_t(0);
@@ -40,11 +49,8 @@ KernelRequest request_of(const StageDeclaration &declaration, std::string kind, 
         kind = "specular";
         request.definitions["SPECULAR_KINDS"] = fmt::format("{}u", dirac_kinds);
     }
-    if (!are_alike)
-        request.definitions["BSDF"] = kind;
-    request.definitions["BSDF_IS_DIRAC"] = fmt::format("{:d}", is_dirac);
-    if (bsdf_kind_is_mixed(kind))
-        request.definitions["BSDF_IS_MIXED"] = "1";
+    for (const auto &[name, value] : definitions_of_kind(are_alike ? "" : kind, is_dirac))
+        request.definitions[name] = value;
     request.name = fmt::format("{} {}", declaration.name, are_alike || chooses ? "dirac" : kind);
     return request;
 }

@@ -21,6 +21,9 @@ enum class DiracKinds {
     left_out ///< none: nothing is launched on them
 };
 
+/// What a kernel of BSDF kind `kind` is compiled with; empty: of none that it calls.
+std::map<std::string, std::string> definitions_of_kind(const std::string &kind, bool is_dirac);
+
 /// Which kernels a stage has.
 struct StageDeclaration {
     std::string name = {};  ///< its row in the profile; kernels by kind add theirs

@@ -30,6 +30,7 @@ struct ReconstructionUsed {
     std::string name;     ///< "l1", "weighted"; "none": the mean of the samples
     std::string accuracy; ///< "unbiased", "consistent" or "neither"
     std::string note;     ///< a sentence where it is not the one that was asked for, else empty
+    std::string guide{};  ///< of "guided": "filter" or "denoiser"; else empty
 };
 
 /// What a stage took.

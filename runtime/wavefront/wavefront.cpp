@@ -44,7 +44,8 @@ StageDeclaration classify_stage(const std::map<std::string, std::string> &defini
 Wavefront::Wavefront(Session &session, Stages &stages, const BinLayout &layout,
                      const std::map<std::string, std::string> &definitions, const std::vector<std::string> &numbers,
                      bool of_light_paths)
-    : session_(session), layout_(layout), material_(stages.add(material_stage(session, of_light_paths))),
+    : session_(session), layout_(layout), fresh_are_alike_(!of_light_paths && !session.has("TRAIT_THIN_LENS")),
+      material_(stages.add(material_stage(session, of_light_paths))),
       classify_(stages.add(classify_stage(definitions, numbers))),
       count_(stages.add(partition_stage("partition_count", "partition count", {"bins", "rows"}))),
       scan_(stages.add(partition_stage("partition_scan", "partition scan", {"bins", "chunks"}))),
@@ -88,10 +89,11 @@ void Wavefront::trace() {
     SegmentTable connections; // stays empty where paths are connected to no light
     if (tables_->has("shadow"))
         connections = {&(*tables_)["shadow"], rows, vertices_, shadow_origin_x, shadow_direction_x, shadow_open};
+    SegmentTable ray{&(*tables_)["ray"], rows, rays(), ray_origin_x, ray_direction_x, ray_primitive};
+    if (fresh_are_alike_)
+        ray.alike_from = vertices_;
     const TraceCounts counts =
-        trace_segments(session_.tracer, tables_->precision(),
-                       {&(*tables_)["ray"], rows, rays(), ray_origin_x, ray_direction_x, ray_primitive}, connections,
-                       session_.trace_seconds);
+        trace_segments(session_.tracer, tables_->precision(), ray, connections, session_.trace_seconds);
     session_.rays["extension"] += counts.extension;
     session_.rays["shadow"] += counts.shadow;
     if (material_.is_wanted())

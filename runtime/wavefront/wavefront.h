@@ -109,6 +109,7 @@ class Wavefront {
   private:
     Session &session_;
     BinLayout layout_;
+    bool fresh_are_alike_; ///< paths that begin: neighbours' rays lie side by side
     Stage &material_, &classify_, &count_, &scan_, &scatter_;
     Tables *tables_ = nullptr;
     Hits hits_;

@@ -1,6 +1,7 @@
 // Stratified random numbers: their strata, that they are uniform, and that pixels and dimensions do not know each
 // other; and the choices that are made with them.
 #define TRAIT_STRATIFIED 1
+#define TRAIT_LOBE_LEVELS 1
 #include "tests/kernels/precision.h"
 #include "tests/support/chi_square.h"
 

@@ -59,12 +59,11 @@ std::string name_of_threads(const ::testing::TestParamInfo<std::pair<const char 
     return testing::test_name(std::string(info.param.first) + "_" + info.param.second);
 }
 
-INSTANTIATE_TEST_SUITE_P(Program, Threads,
-                         ::testing::Values(std::pair{"materials", "single"}, std::pair{"cornell-box", "double"}),
-                         name_of_threads);
+INSTANTIATE_TEST_SUITE_P(Program, Threads, ::testing::Values(std::pair{"materials", "single"}), name_of_threads);
 INSTANTIATE_TEST_SUITE_P(Full, Threads,
-                         ::testing::Values(std::pair{"cornell-box", "single"}, std::pair{"plates", "single"},
-                                           std::pair{"textures", "single"}, std::pair{"sundial", "single"}),
+                         ::testing::Values(std::pair{"cornell-box", "single"}, std::pair{"cornell-box", "double"},
+                                           std::pair{"plates", "single"}, std::pair{"textures", "single"},
+                                           std::pair{"sundial", "single"}),
                          name_of_threads);
 
 } // namespace

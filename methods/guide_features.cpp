@@ -1,0 +1,28 @@
+#include "methods/guide_features.h"
+
+#include "solver/guide/denoiser.h"
+#include "solver/guide/feature_filter.h"
+
+#include <algorithm>
+
+namespace gradus {
+
+Buffer uploaded_features(Device &device, const Image &image) {
+    const std::size_t pixels = std::size_t(image.width) * image.height;
+    Buffer buffer(device, "guide_features", FeatureFilter::features * pixels * sizeof(float));
+    const auto mapping = buffer.map(Access::write);
+    std::size_t count = 0;
+    for (const Channel &channel : image.channels) {
+        const std::string &name = channel.name;
+        if (name.starts_with("albedo.") || name.starts_with("normal.") || name == "depth.Z")
+            std::copy(channel.values.begin(), channel.values.end(), mapping.as<float>() + pixels * count++);
+    }
+    return buffer;
+}
+
+void check_guide(const RenderOptions &options) {
+    if (options.reconstruction == Reconstruction::guided && options.guide == Guide::denoiser)
+        Denoiser();
+}
+
+} // namespace gradus

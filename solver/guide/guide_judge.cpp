@@ -1,0 +1,87 @@
+#include "solver/guide/guide_judge.h"
+
+#include "kernels/shared/guide_shared.h"
+#include "kernels/shared/solver_shared.h"
+#include "runtime/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace gradus {
+
+namespace {
+
+/// Darker pixels count as this share of the squared mean brightness of the image.
+constexpr double least_brightness = 0.01;
+
+solver::Grid judged_grid(std::uint32_t width, std::uint32_t height) {
+    if (width == 0 || height == 0)
+        throw Error(ExitCode::usage, "a guided image needs a width and a height");
+    return {width, height};
+}
+
+} // namespace
+
+GuideJudge::GuideJudge(Device &device, std::uint32_t width, std::uint32_t height, Precision precision)
+    : make_(device, precision), grid_(judged_grid(width, height)),
+      moments_(solver::guide_kernel(device, precision, "guide_judge", "guide_moments")),
+      share_(solver::guide_kernel(device, precision, "guide_judge", "guide_share")),
+      blend_(solver::guide_kernel(device, precision, "guide_judge", "guide_blend")), wide_(make_, grid_, 9, 3.0),
+      narrow_(make_, grid_, 3, 1.0) {}
+
+double GuideJudge::squared_brightness(const Buffer &image) const {
+    const Buffer::Mapping mapping(image, Access::read, Wait::now);
+    const std::size_t pixels = std::size_t(grid_.width) * grid_.height;
+    const float *value = mapping.as<float>();
+    double sum = 0;
+    for (std::size_t i = 0; i < 3 * pixels; ++i)
+        sum += std::isfinite(value[i]) ? std::abs(double(value[i])) : 0;
+    const double mean = sum / (3 * double(pixels));
+    return mean * mean;
+}
+
+void GuideJudge::run(const std::array<const Buffer *, 2> &halves, double share,
+                     const std::array<const Buffer *, 2> &guides, Buffer &result) {
+    const Buffer moments = make_.planes("moments", grid_, GUIDE_MOMENTS);
+    const Buffer smoothed = make_.planes("smoothed", grid_, GUIDE_MOMENTS);
+    const Buffer shares = make_.planes("shares", grid_, GUIDE_SHARES);
+    for (Kernel *kernel : {&moments_, &blend_}) {
+        kernel->set_real("share", share);
+        kernel->bind("first_half", *halves[0]);
+        kernel->bind("second_half", *halves[1]);
+        kernel->bind("first_guide", *guides[0]);
+        kernel->bind("second_guide", *guides[1]);
+    }
+    // At least what squares to a number of full precision.
+    moments_.set_real("least_brightness", std::max(least_brightness * squared_brightness(*guides[0]), 1e-30));
+    moments_.bind(moments);
+    moments_.bind(shares);
+    grid_.launch(moments_, {0, 1});
+    wide_.run(moments, smoothed, GUIDE_MOMENTS);
+    share_.bind("moments", smoothed);
+    share_.bind(shares);
+    grid_.launch(share_, {0, 1});
+    narrow_.run(shares, moments, GUIDE_SHARES);
+    blend_.bind("smoothed", moments);
+    blend_.bind("result", result);
+    grid_.launch(blend_, {0, 1});
+    finish(make_.device());
+    wide_.release();
+    narrow_.release();
+
+    mean_share_ = make_.precision() == Precision::double_ ? mean_inside<double>(shares) : mean_inside<float>(shares);
+}
+
+template <class Real>
+double GuideJudge::mean_inside(const Buffer &plane) const {
+    const Buffer::Mapping mapping(plane, Access::read, Wait::now);
+    double sum = 0;
+    for (std::size_t y = 0; y < grid_.height; ++y) {
+        const Real *line = mapping.as<Real>() + (y + 1) * grid_.row + SOLVER_MARGIN;
+        sum += std::accumulate(line, line + grid_.width, 0.0);
+    }
+    return sum / (double(grid_.width) * grid_.height);
+}
+
+} // namespace gradus

@@ -1,0 +1,68 @@
+#include "solver/guide/guided_reconstruction.h"
+
+#include <vector>
+
+namespace gradus {
+
+GuidedReconstruction::GuidedReconstruction(Device &device, PoissonSolver &solver, Guide guide)
+    : device_(device), solver_(solver), judge_(device, solver.width(), solver.height()) {
+    if (guide == Guide::denoiser)
+        denoiser_ = std::make_unique<Denoiser>();
+    else
+        filter_ = std::make_unique<FeatureFilter>(device, solver.width(), solver.height());
+}
+
+void GuidedReconstruction::compile(Device &device) {
+    WeightedReconstruction::compile(device);
+    solver::compile_guide_kernels(device);
+}
+
+void GuidedReconstruction::denoise(const HalfImages &half, const Buffer &solution, const GuideInputs &inputs,
+                                   Buffer &guide) {
+    const std::size_t values = solution.bytes() / sizeof(float);
+    const auto features = inputs.features.map(Access::read);
+    std::vector<float> direct(values), color(values), sum(values);
+    if (inputs.direct.valid())
+        inputs.direct.read(direct.data(), solution.bytes());
+    Denoiser::Images images;
+    images.color = color.data();
+    images.albedo = features.as<float>();
+    images.normal = features.as<float>() + values;
+    const bool is_solved = half.dx.valid();
+    for (int turn = 0; turn < (is_solved ? 2 : 1); ++turn) {
+        (turn == 0 ? half.primal : solution).read(color.data(), solution.bytes());
+        for (std::size_t i = 0; i < values; ++i)
+            color[i] += direct[i];
+        denoiser_->run(images, solver_.width(), solver_.height(), color.data());
+        for (std::size_t i = 0; i < values; ++i)
+            sum[i] += (color[i] - direct[i]) * (is_solved ? 0.5f : 1.0f);
+    }
+    const auto written = guide.map(Access::write);
+    std::copy(sum.begin(), sum.end(), written.as<float>());
+}
+
+PoissonReport GuidedReconstruction::solve(const HalvedImages &halves, const GuideInputs &inputs, Buffer &result) {
+    const bool is_solved = halves[0].dx.valid();
+    PoissonReport report;
+    std::array<Buffer, 2> solutions;
+    if (is_solved) {
+        for (Buffer &solution : solutions)
+            solution = Buffer(device_, "half_solution", result.bytes());
+        report = WeightedReconstruction(device_, solver_).solve_both(halves, solutions);
+    } else
+        solutions = {halves[0].primal, halves[1].primal};
+
+    std::array<Buffer, 2> guides;
+    for (Buffer &guide : guides)
+        guide = Buffer(device_, "guide", result.bytes());
+    const double share = double(halves[0].samples) / double(halves[0].samples + halves[1].samples);
+    if (filter_)
+        filter_->run({&solutions[0], &solutions[1]}, share, inputs.features, {&guides[0], &guides[1]});
+    else
+        for (int i = 0; i < 2; ++i)
+            denoise(halves[i], solutions[i], inputs, guides[i]);
+    judge_.run({&solutions[0], &solutions[1]}, share, {&guides[0], &guides[1]}, result);
+    return report;
+}
+
+} // namespace gradus

@@ -1,0 +1,51 @@
+// A consistent reconstruction of two halves with a guide image, which counts as far as it is right by place.
+#pragma once
+
+#include "solver/guide/denoiser.h"
+#include "solver/guide/feature_filter.h"
+#include "solver/guide/guide_judge.h"
+#include "solver/reconstruction.h"
+#include "solver/weighted_reconstruction.h"
+
+#include <functional>
+#include <memory>
+
+namespace gradus {
+
+/// What a guide is made of beside the halves.
+struct GuideInputs {
+    /// Seven planes: albedo, normal and depth.
+    Buffer features;
+    /// Three planes that are added to the result at last, as light that is seen without noise is; none: nothing. A
+    /// denoiser sees them.
+    Buffer direct;
+};
+
+class GuidedReconstruction {
+  public:
+    /// For images of three channels of the solver's size, which is the caller's and must live as long. Throws as
+    /// Denoiser does where the guide is one.
+    GuidedReconstruction(Device &device, PoissonSolver &solver, Guide guide);
+
+    /// Writes the image, without `direct`, to `result`, which has as many values as the halves' primal. Halves without
+    /// differences are their primal, and no solver is asked. The report is that of the solves.
+    PoissonReport solve(const HalvedImages &halves, const GuideInputs &inputs, Buffer &result);
+    /// The mean over the pixels of the share of the guide in the last image.
+    double mean_share() const { return judge_.mean_share(); }
+
+    /// As PoissonSolver::compile().
+    static void compile(Device &device);
+
+  private:
+    /// The mean of the denoised primal, whose noise is of each pixel alone, and of the denoised solution, which has
+    /// less of it: what is wrong with either differs.
+    void denoise(const HalfImages &half, const Buffer &solution, const GuideInputs &inputs, Buffer &guide);
+
+    Device &device_;
+    PoissonSolver &solver_;
+    std::unique_ptr<Denoiser> denoiser_;
+    std::unique_ptr<FeatureFilter> filter_;
+    GuideJudge judge_;
+};
+
+} // namespace gradus
