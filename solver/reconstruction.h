@@ -17,7 +17,7 @@ enum class Guide {
     filter,  ///< a feature filter of our own (guide/feature_filter.h)
     denoiser ///< Open Image Denoise, where it is installed (guide/denoiser.h)
 };
-const char *guide_name(Guide guide);
+constexpr const char *guide_name(Guide guide) { return guide == Guide::filter ? "filter" : "denoiser"; }
 
 /// Whether samples must be kept as two halves.
 constexpr bool needs_halves(Reconstruction reconstruction) {
@@ -25,7 +25,10 @@ constexpr bool needs_halves(Reconstruction reconstruction) {
 }
 
 /// As --reconstruction names it.
-const char *reconstruction_name(Reconstruction reconstruction);
+constexpr const char *reconstruction_name(Reconstruction reconstruction) {
+    constexpr const char *names[] = {"l1", "l2", "weighted", "guided"};
+    return names[static_cast<int>(reconstruction)];
+}
 
 /// What the mean of many renders tends to.
 enum class Accuracy {
@@ -33,6 +36,9 @@ enum class Accuracy {
     consistent, ///< to what is right as samples grow
     neither
 };
-const char *accuracy_name(Accuracy accuracy);
+constexpr const char *accuracy_name(Accuracy accuracy) {
+    constexpr const char *names[] = {"unbiased", "consistent", "neither"};
+    return names[static_cast<int>(accuracy)];
+}
 
 } // namespace gradus
