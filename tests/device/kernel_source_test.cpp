@@ -96,7 +96,7 @@ TEST(KernelTraits, AreThoseThatAMethodKnows) {
                                    "MANY_LIGHTS",        "STRATEGY",
                                    "SOLVER_CHANNELS",    "SOLVER_WEIGHTED",
                                    "SOLVER_JOINT",       "TRAIT_HALVES",
-                                   "FEW_TEXTURES",       "GUIDE_TAPS"};
+                                   "FEW_TEXTURES"};
     for (const auto &[name, value] : scene_traits(Scene{}))
         known.insert(name);
     known.erase("TRAIT_FAR_CLIP"); // a stage of its own, there or not
