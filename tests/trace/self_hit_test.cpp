@@ -84,12 +84,12 @@ struct Surfaces {
             double u = chance.uniform(), v = chance.uniform();
             if (u + v > 1)
                 u = 1 - u, v = 1 - v;
-            target = v3_mad(v3_mad(FIELD_V3(triangle, tables.triangles, primitive, p0), float(u),
-                                   FIELD_V3(triangle, tables.triangles, primitive, e1)),
-                            float(v), FIELD_V3(triangle, tables.triangles, primitive, e2));
+            target = v3_mad(v3_mad(FIELD_V3(triangle, tables.triangles.data(), primitive, p0), float(u),
+                                   FIELD_V3(triangle, tables.triangles.data(), primitive, e1)),
+                            float(v), FIELD_V3(triangle, tables.triangles.data(), primitive, e2));
         } else {
-            target =
-                v3_add(FIELD_V3(sphere, tables.spheres, primitive - tables.triangle_count, center), chance.direction());
+            target = v3_add(FIELD_V3(sphere, tables.spheres.data(), primitive - tables.triangle_count, center),
+                            chance.direction());
         }
         const vec3 direction = chance.direction();
         return primitive_hit_of(tables.triangles.data(), tables.spheres.data(), unit, tables.triangle_count, primitive,
