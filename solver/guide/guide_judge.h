@@ -13,7 +13,7 @@
 // what the guide's bias adds to the image. The image is consistent, and its error falls as that of U at last.
 //
 // It is a filter on images, after the solver: as a third kind of equation in the solve the same guides gave 1.1 to
-// twice the squared error, since a guide's errors go together from pixel to pixel, which equations take for
+// 2.8 times the squared error, since a guide's errors go together from pixel to pixel, which equations take for
 // independent.
 #pragma once
 
