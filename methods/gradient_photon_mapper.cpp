@@ -70,7 +70,7 @@ TraitMap light_vertex_traits(const Scene &scene, const RenderOptions &options) {
 /// Shifted photons leave vertices again whose textures nobody has kept.
 const Scene &checked_for_shifts(const Scene &scene) {
     if (needs_material_stage(scene))
-        throw Error(ExitCode::usage, "gpm knows no textures and no blends yet; pt, gpt and sppm do");
+        throw Error(ExitCode::usage, "gpm knows no textures, no blends and no normal maps yet; pt, gpt and sppm do");
     return scene;
 }
 

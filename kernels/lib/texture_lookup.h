@@ -134,16 +134,17 @@ GRADUS_FN rgb texture_lookup(GRADUS_GLOBAL const uint *textures, GRADUS_GLOBAL c
     const int is_nearest =
         !TEXTURES_HAVE(textures_bilinear) || (TEXTURES_HAVE(textures_nearest) && (place.flags & texture_flag_nearest));
     const real x = texture_wrapped(s, place.flags) * (real)(int)width;
-    const real y = texture_wrapped(r_after(t, x), place.flags) * (real)(int)height;
+    const uint flags_down = texture_flags_along_v(place.flags);
+    const real y = texture_wrapped(r_after(t, x), flags_down) * (real)(int)height;
     const real to_left = is_nearest ? x : x - R(0.5), to_top = is_nearest ? y : y - R(0.5);
     const real left = r_floor(to_left), top = r_floor(to_top);
     /* Nearest: what is at the very edge belongs to the texel before it, which is what texture_texel() says of it. */
     const uint x_0 = texture_texel((int)left, width, place.flags);
-    const uint y_0 = texture_texel((int)top, height, place.flags);
+    const uint y_0 = texture_texel((int)top, height, flags_down);
     value = texture_fetch(texels, texture_decode, place, y_0 * width + x_0);
 #if TRAIT_TEXTURES & textures_bilinear
     const uint x_1 = is_nearest ? x_0 : texture_next_texel((int)left, x_0, width, place.flags);
-    const uint y_1 = is_nearest ? y_0 : texture_next_texel((int)top, y_0, height, place.flags);
+    const uint y_1 = is_nearest ? y_0 : texture_next_texel((int)top, y_0, height, flags_down);
     const rgb right = texture_fetch(texels, texture_decode, place, texture_after(y_0 * width + x_1, value.b));
     const rgb below = texture_fetch(texels, texture_decode, place, texture_after(y_1 * width + x_0, right.b));
     const rgb opposite = texture_fetch(texels, texture_decode, place, texture_after(y_1 * width + x_1, below.b));

@@ -28,7 +28,7 @@ std::map<const Bitmap *, std::uint32_t> add_bitmaps(const Scene &scene, SceneTab
 }
 
 std::uint32_t flags_of(const Texture &texture) {
-    std::uint32_t flags = std::uint32_t(texture.wrap) << 4;
+    std::uint32_t flags = std::uint32_t(texture.wrap) << 4 | std::uint32_t(texture.wrap_along_v()) << 8;
     flags |= texture.is_nearest ? texture_flag_nearest : 0;
     flags |= texture.is_srgb ? texture_flag_srgb : 0;
     if (texture.kind == Texture::Kind::checkerboard)
@@ -40,6 +40,16 @@ void add_decoding(SceneTables &tables) {
     for (const bool is_srgb : {false, true})
         for (int value = 0; value < 256; ++value)
             tables.texture_decode.push_back(float(is_srgb ? srgb_to_linear_value(value / 255.0) : value / 255.0));
+}
+
+void add_normal_map(const NormalTexture &map, SceneTables &tables) {
+    std::uint32_t flags = 0;
+    if (map.kind != NormalTexture::Kind::none)
+        flags = normal_map_there | (map.turns_over ? normal_map_turns : 0) | (map.shadows ? normal_map_shadows : 0) |
+                (map.kind == NormalTexture::Kind::bump ? normal_map_is_bump : 0) |
+                (map.is_outside ? normal_map_is_outside : 0);
+    tables.normal_maps.insert(tables.normal_maps.end(), {flags, flags == 0 ? 0 : std::uint32_t(map.texture)});
+    tables.bump_scales.push_back(map.scale);
 }
 
 } // namespace
@@ -80,6 +90,7 @@ void add_textures(const Scene &scene, SceneTables &tables) {
         for_each_textured_parameter(bsdf, [&](int number, std::int32_t texture) {
             tables.material_textures[first + std::size_t(number)] = std::uint32_t(texture);
         });
+        add_normal_map(bsdf.map, tables);
     }
     if (scene.textures.empty()) { // kernels may ask for one, whatever they then take
         tables.textures.assign(texture_stride, 0);

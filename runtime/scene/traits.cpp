@@ -38,6 +38,7 @@ constexpr TraitText descriptions[] = {
     {"TRAIT_MATERIAL", "materials that differ from place to place or from path to path"},
     {"TRAIT_BLENDS", "mixtures of BSDFs, how deeply nested"},
     {"TRAIT_TEXTURED", "parameters of materials that are textures, a bit each"},
+    {"TRAIT_TEXTURED_NORMALS", "1: normal maps, 2: bump maps"},
     {"TRAIT_TEXTURES", "what textures have, a bit each"},
     {"TRAIT_FILTER_TENT", "tent pixel filter"},
     {"TRAIT_FILTER_GAUSSIAN", "Gaussian pixel filter"},
@@ -116,7 +117,8 @@ int texture_features(const Texture &texture) {
     features |= formats[int(texture.bitmap->format)];
     features |= texture.bitmap->is_color ? textures_in_color : textures_in_gray;
     features |= texture.is_nearest ? textures_nearest : textures_bilinear;
-    return features | (texture.wrap == Texture::Wrap::repeat ? 0 : textures_wrapped_otherwise);
+    const bool repeats = texture.wrap == Texture::Wrap::repeat && texture.wrap_along_v() == Texture::Wrap::repeat;
+    return features | (repeats ? 0 : textures_wrapped_otherwise);
 }
 
 std::uint32_t textured_column_count(int textured) {
@@ -201,8 +203,14 @@ TraitMap scene_traits(const Scene &scene) {
             traits["TRAIT_TEXTURED"] |= 1 << number;
             traits["TRAIT_TEXTURES"] |= texture_features(scene.textures[std::size_t(texture)]);
         });
+        if (bsdf.map.kind != NormalTexture::Kind::none) {
+            traits["TRAIT_TEXTURED_NORMALS"] |=
+                bsdf.map.kind == NormalTexture::Kind::bump ? textured_normals_bump : textured_normals_given;
+            traits["TRAIT_TEXTURES"] |= texture_features(scene.textures[std::size_t(bsdf.map.texture)]);
+        }
     });
-    traits["TRAIT_MATERIAL"] = traits["TRAIT_TEXTURED"] != 0 || traits["TRAIT_BLENDS"] > 0;
+    traits["TRAIT_MATERIAL"] =
+        traits["TRAIT_TEXTURED"] != 0 || traits["TRAIT_TEXTURED_NORMALS"] != 0 || traits["TRAIT_BLENDS"] > 0;
     for (const Emitter &emitter : scene.emitters) {
         if (emitter.value == Rgb{})
             continue; // black: no light

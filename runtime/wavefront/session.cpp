@@ -91,6 +91,8 @@ std::vector<Buffer> make_scene_buffers(Device &device, const SceneTables &t, Pre
         numbers("textures", t.textures);
         numbers("texels", t.texels);
         numbers("material_textures", t.material_textures);
+        numbers("normal_maps", t.normal_maps);
+        reals("bump_scales", t.bump_scales);
         numbers("blends", t.blends);
         numbers("record_kind", t.record_kind);
         reals("blend_weights", t.blend_weights);
