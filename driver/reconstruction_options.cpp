@@ -56,7 +56,7 @@ void add_guide_option(CLI::App &command, const char *group, std::function<void(G
         .add_option_function<std::string>(
             "--guide",
             [set = std::move(set)](const std::string &name) {
-                set(name == guide_name(Guide::filter) ? Guide::filter : Guide::denoiser);
+                set(name == "denoiser" ? Guide::denoiser : Guide::filter);
             },
             "Of --reconstruction guided: filter, by albedo, normal, depth and noise; or denoiser, Open Image Denoise "
             "where it is installed (GRADUS_DENOISER may name its library)")

@@ -12,7 +12,8 @@ namespace gradus {
 
 PathTracer::PathTracer(Device &device, const Scene &scene, const RenderOptions &options)
     : options_(options),
-      session_(device, scene, options, {{"TRAIT_AOV", options.all_traits || needs_features(options)}}),
+      session_(device, scene, options,
+               {{"TRAIT_AOV", options.all_traits || needs_features(options)}, {"TRAIT_HALVES", is_guided()}}),
       camera_(stages_.add(camera_stage())), far_clip_(stages_.add(far_clip_stage(session_))),
       connect_(stages_.add(connect_stage())),
       paths_(session_, stages_, {.kinds = std::uint32_t(session_.scene.kinds.size())}),

@@ -17,7 +17,7 @@ enum class Guide {
     filter,  ///< a feature filter of our own (guide/feature_filter.h)
     denoiser ///< Open Image Denoise, where it is installed (guide/denoiser.h)
 };
-inline const char *guide_name(Guide guide) { return guide == Guide::filter ? "filter" : "denoiser"; }
+constexpr const char *guide_name(Guide guide) { return guide == Guide::filter ? "filter" : "denoiser"; }
 
 /// Whether samples must be kept as two halves.
 constexpr bool needs_halves(Reconstruction reconstruction) {

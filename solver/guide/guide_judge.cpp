@@ -42,7 +42,7 @@ double GuideJudge::squared_brightness(const Buffer &image) const {
 }
 
 void GuideJudge::run(const std::array<const Buffer *, 2> &halves, double share,
-                     const std::array<const Buffer *, 2> &guides, Buffer &result) {
+                     const std::array<const Buffer *, 2> &guides, Buffer &result, const Buffer *followed) {
     const Buffer moments = make_.planes("moments", grid_, GUIDE_MOMENTS);
     const Buffer smoothed = make_.planes("smoothed", grid_, GUIDE_MOMENTS);
     const Buffer shares = make_.planes("shares", grid_, GUIDE_SHARES);
@@ -63,6 +63,10 @@ void GuideJudge::run(const std::array<const Buffer *, 2> &halves, double share,
     share_.bind(shares);
     grid_.launch(share_, {0, 1});
     narrow_.run(shares, moments, GUIDE_SHARES);
+    if (followed) {
+        blend_.bind("first_guide", *followed);
+        blend_.bind("second_guide", *followed);
+    }
     blend_.bind("smoothed", moments);
     blend_.bind("result", result);
     grid_.launch(blend_, {0, 1});

@@ -31,8 +31,9 @@ class GuideJudge {
     /// Writes the image that follows `guides` as far as they are right to `result`, which may be one of the images.
     /// All are of three channels, planes as PoissonImages has them. `share`: of the samples that the first half has.
     /// A pixel whose halves are not finite follows the guide, one whose guide is not finite the halves.
+    /// `followed`: the guide that is followed instead of the mean of both, made of all samples as they are of halves.
     void run(const std::array<const Buffer *, 2> &halves, double share, const std::array<const Buffer *, 2> &guides,
-             Buffer &result);
+             Buffer &result, const Buffer *followed = nullptr);
     /// The mean over the pixels of the share of the guide in the last image.
     double mean_share() const { return mean_share_; }
 

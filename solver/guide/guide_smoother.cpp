@@ -23,29 +23,28 @@ constexpr GuideKernel guide_kernels[] = {
     {"guide_smooth", "guide_smooth_columns", 9},
 };
 
-KernelLibrary guide_library(Device &device, Precision precision, int taps) {
-    return {
-        device, {{"SOLVER_CHANNELS", 3}, {"SOLVER_WEIGHTED", 0}, {"SOLVER_JOINT", 1}, {"GUIDE_TAPS", taps}}, precision};
+KernelLibrary guide_library(Device &device, Precision precision) {
+    return {device, {{"SOLVER_CHANNELS", 3}, {"SOLVER_WEIGHTED", 0}, {"SOLVER_JOINT", 1}}, precision};
 }
 
-KernelRequest guide_request(const char *file, const char *entry) {
-    return {entry, fmt::format("kernels/solver/{}.cl", file), entry, {}};
+KernelRequest guide_request(const GuideKernel &kernel) {
+    KernelRequest request{kernel.entry, fmt::format("kernels/solver/{}.cl", kernel.file), kernel.entry, {}};
+    if (kernel.taps > 0)
+        request.definitions["GUIDE_TAPS"] = fmt::format("{}", kernel.taps);
+    return request;
 }
 
 } // namespace
 
 Kernel guide_kernel(Device &device, Precision precision, const char *file, const char *entry, int taps) {
-    return std::move(guide_library(device, precision, taps).build({guide_request(file, entry)}).front());
+    return std::move(guide_library(device, precision).build({guide_request({file, entry, taps})}).front());
 }
 
 void compile_guide_kernels(Device &device) {
-    for (const int taps : {0, 3, 9}) {
-        std::vector<KernelRequest> requests;
-        for (const GuideKernel &kernel : guide_kernels)
-            if (kernel.taps == taps)
-                requests.push_back(guide_request(kernel.file, kernel.entry));
-        guide_library(device, Precision::single, taps).build(requests);
-    }
+    std::vector<KernelRequest> requests;
+    for (const GuideKernel &kernel : guide_kernels)
+        requests.push_back(guide_request(kernel));
+    guide_library(device, Precision::single).build(requests);
 }
 
 GuideSmoother::GuideSmoother(const PlaneMaker &make, const Grid &grid, int radius, double sigma)

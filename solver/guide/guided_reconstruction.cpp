@@ -17,25 +17,24 @@ void GuidedReconstruction::compile(Device &device) {
     solver::compile_guide_kernels(device);
 }
 
-void GuidedReconstruction::denoise(const HalfImages &half, const Buffer &solution, const GuideInputs &inputs,
+void GuidedReconstruction::denoise(const Buffer &primal, const Buffer *solution, const GuideInputs &inputs,
                                    Buffer &guide) {
-    const std::size_t values = solution.bytes() / sizeof(float);
+    const std::size_t values = primal.bytes() / sizeof(float);
     const auto features = inputs.features.map(Access::read);
     std::vector<float> direct(values), color(values), sum(values);
     if (inputs.direct.valid())
-        inputs.direct.read(direct.data(), solution.bytes());
+        inputs.direct.read(direct.data(), primal.bytes());
     Denoiser::Images images;
     images.color = color.data();
     images.albedo = features.as<float>();
     images.normal = features.as<float>() + values;
-    const bool is_solved = half.dx.valid();
-    for (int turn = 0; turn < (is_solved ? 2 : 1); ++turn) {
-        (turn == 0 ? half.primal : solution).read(color.data(), solution.bytes());
+    for (int turn = 0; turn < (solution ? 2 : 1); ++turn) {
+        (turn == 0 ? primal : *solution).read(color.data(), primal.bytes());
         for (std::size_t i = 0; i < values; ++i)
             color[i] += direct[i];
         denoiser_->run(images, solver_.width(), solver_.height(), color.data());
         for (std::size_t i = 0; i < values; ++i)
-            sum[i] += (color[i] - direct[i]) * (is_solved ? 0.5f : 1.0f);
+            sum[i] += (color[i] - direct[i]) * (solution ? 0.5f : 1.0f);
     }
     const auto written = guide.map(Access::write);
     std::copy(sum.begin(), sum.end(), written.as<float>());
@@ -56,12 +55,24 @@ PoissonReport GuidedReconstruction::solve(const HalvedImages &halves, const Guid
     for (Buffer &guide : guides)
         guide = Buffer(device_, "guide", result.bytes());
     const double share = double(halves[0].samples) / double(halves[0].samples + halves[1].samples);
-    if (filter_)
-        filter_->run({&solutions[0], &solutions[1]}, share, inputs.features, {&guides[0], &guides[1]});
-    else
-        for (int i = 0; i < 2; ++i)
-            denoise(halves[i], solutions[i], inputs, guides[i]);
-    judge_.run({&solutions[0], &solutions[1]}, share, {&guides[0], &guides[1]}, result);
+    const std::array<const Buffer *, 2> images{&solutions[0], &solutions[1]}, of_halves{&guides[0], &guides[1]};
+    if (filter_) {
+        filter_->run(images, share, inputs.features, {&guides[0], &guides[1]});
+        judge_.run(images, share, of_halves, result);
+        return report;
+    }
+    for (int i = 0; i < 2; ++i)
+        denoise(halves[i].primal, is_solved ? &solutions[i] : nullptr, inputs, guides[i]);
+    // Halves tell how good a denoised image is. One of all samples is a little better.
+    ImageMixer mixer(device_);
+    Buffer primal(device_, "primal", result.bytes()), solution, guide(device_, "guide", result.bytes());
+    mixer.mix(halves[0].primal, share, halves[1].primal, 1 - share, primal);
+    if (is_solved) {
+        solution = Buffer(device_, "solution", result.bytes());
+        mixer.mix(solutions[0], share, solutions[1], 1 - share, solution);
+    }
+    denoise(primal, is_solved ? &solution : nullptr, inputs, guide);
+    judge_.run(images, share, of_halves, result, &guide);
     return report;
 }
 

@@ -38,8 +38,8 @@ class GuidedReconstruction {
 
   private:
     /// The mean of the denoised primal, whose noise is of each pixel alone, and of the denoised solution, which has
-    /// less of it: what is wrong with either differs.
-    void denoise(const HalfImages &half, const Buffer &solution, const GuideInputs &inputs, Buffer &guide);
+    /// less of it: what is wrong with either differs. Without a solution it is that of the primal.
+    void denoise(const Buffer &primal, const Buffer *solution, const GuideInputs &inputs, Buffer &guide);
 
     Device &device_;
     PoissonSolver &solver_;

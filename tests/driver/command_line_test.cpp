@@ -25,12 +25,35 @@ TEST_F(CommandLine, HelpAndVersion) {
           "--stats",    "--aov",      "--png",    "--write-partial", "--dump-kernels", "--all-traits", "--strategy"})
         EXPECT_THAT(render.out, HasSubstr(option));
     const Outcome solve = run({"solve", "--help"});
-    for (const char *option :
-         {"--primal",          "--dx",          "--dy",          "--direct",   "--layers",      "--layer ",
-          "--variance-primal", "--variance-dx", "--variance-dy", "--output",   "--png",         "--stats",
-          "--quiet",           "--norm",        "--alpha",       "--weights",  "--per-channel", "--no-mean-correction",
-          "--method",          "--tolerance",   "--iterations",  "--damping",  "--device",      "--nthreads",
-          "L1   least",        "L2   least",    "Examples:",     "very_direct"})
+    for (const char *option : {"--primal",
+                               "--dx",
+                               "--dy",
+                               "--direct",
+                               "--layers",
+                               "--layer ",
+                               "--variance-primal",
+                               "--variance-dx",
+                               "--variance-dy",
+                               "--output",
+                               "--png",
+                               "--stats",
+                               "--quiet",
+                               "--norm",
+                               "--alpha",
+                               "--weights",
+                               "--per-channel",
+                               "--no-mean-correction",
+                               "--method",
+                               "--tolerance",
+                               "--iterations",
+                               "--damping",
+                               "--device",
+                               "--nthreads",
+                               "l1   least",
+                               "l2   least",
+                               "Examples:",
+                               "very_direct",
+                               "--reconstruction"})
         EXPECT_THAT(solve.out, HasSubstr(option));
     for (const char *command : {"inspect", "devices", "compare", "solve", "warm"})
         EXPECT_EQ(run({command, "--help"}).exit_code, 0) << command;

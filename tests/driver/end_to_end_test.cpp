@@ -93,6 +93,36 @@ TEST_P(EndToEndLayers, AreWrittenOnlyOnRequest) {
     EXPECT_EQ(run({"solve", "plain.exr", "-o", "again.exr"}).exit_code, 6);
 }
 
+TEST_P(EndToEndLayers, HaveBothHalvesForTheWeightedReconstruction) {
+    ASSERT_EQ(
+        render_with("halves.exr", {"--reconstruction", "weighted", "--layers", "--stats", "halves.json"}).exit_code, 0);
+    const Image image = read_image(at("halves.exr"));
+    EXPECT_EQ(image.channels.size(), 3u + 12 + 36);
+    const char *const accuracy = std::string(GetParam()) == "gpm" ? "consistent" : "unbiased";
+    EXPECT_EQ(image.metadata.at("reconstruction"), "weighted");
+    EXPECT_EQ(image.metadata.at("accuracy"), accuracy);
+    const nlohmann::json used = nlohmann::json::parse(text_of("halves.json")).at("reconstruction");
+    EXPECT_EQ(used.at("name"), "weighted");
+    EXPECT_EQ(used.at("accuracy"), accuracy);
+    EXPECT_EQ(used.at("note"), "");
+    ASSERT_EQ(run({"solve", "halves.exr", "-o", "again.exr", "--reconstruction", "weighted", "-q"}).exit_code, 0);
+    const Image again = read_image(at("again.exr"));
+    for (const char *color : {"R", "G", "B"})
+        EXPECT_EQ(image.find(color)->values, again.find(color)->values);
+    EXPECT_EQ(again.metadata.at("reconstruction"), "weighted");
+
+    const Outcome alpha = render_with("x.exr", {"--reconstruction", "weighted", "--alpha", "0.2"});
+    EXPECT_EQ(alpha.exit_code, 2);
+    EXPECT_THAT(alpha.err, ::testing::HasSubstr("--alpha"));
+    EXPECT_EQ(run({"solve", "halves.exr", "-o", "x.exr", "--reconstruction", "weighted", "--method", "cg"}).exit_code,
+              2);
+    EXPECT_EQ(render_with("x.exr", {"--reconstruction", "l1", "--norm", "L1"}).exit_code, 2);
+    ASSERT_EQ(render_with("plain.exr", {"--layers"}).exit_code, 0);
+    const Outcome none = run({"solve", "plain.exr", "-o", "x.exr", "--reconstruction", "weighted"});
+    EXPECT_EQ(none.exit_code, 6);
+    EXPECT_THAT(none.err, ::testing::HasSubstr("primal_even"));
+}
+
 INSTANTIATE_TEST_SUITE_P(Methods, EndToEndLayers, ::testing::Values("gpt", "gpm"),
                          [](const auto &info) { return std::string(info.param); });
 

@@ -191,7 +191,7 @@ struct BiasCase {
     std::uint32_t side;
     std::size_t seeds;
     std::uint64_t samples;
-    bool shows_own; ///< noise is skewed enough for the bias of weights from the same half to show
+    bool is_recorded; ///< in docs/stability.md: not those that few runs do
 };
 
 class WeightedBias : public ::testing::TestWithParam<BiasCase> {};
@@ -249,21 +249,21 @@ TEST_P(WeightedBias, IsNone) {
                 of_own.squared / of_own.standard_error);
     EXPECT_TRUE(bias.is_none());
     EXPECT_LE(std::fabs(z), 4);
-    if (c.shows_own) {
-        EXPECT_FALSE(of_own.is_none()) << "the test cannot see a bias";
-    }
+    EXPECT_FALSE(of_own.is_none()) << "the test cannot see a bias";
+    if (!c.is_recorded)
+        return;
     record_stability({"Reconstruction", "weights from the variances of the same samples darken what is skewed",
                       fmt::format("scenes/{}.xml, {} seeds of {} samples", c.scene, c.seeds, c.samples),
                       "unbiased: each half takes the other's variances", "bias of blocks of 8 x 8 at most",
-                      bias.at_most(), 0.05});
+                      bias.at_most(), 0.02});
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, WeightedBias, ::testing::Values(BiasCase{"cornell-box", 32, 40, 4, true}));
 INSTANTIATE_TEST_SUITE_P(Full, WeightedBias,
-                         ::testing::Values(BiasCase{"cornell-box", 48, 64, 16, true},
-                                           BiasCase{"plates", 48, 64, 4, true}, BiasCase{"plates", 48, 64, 16, true},
-                                           BiasCase{"door-ajar", 48, 64, 4, true},
-                                           BiasCase{"door-ajar", 48, 64, 16, true}));
+                         ::testing::Values(BiasCase{"cornell-box", 48, 64, 16, false},
+                                           BiasCase{"plates", 48, 64, 4, false}, BiasCase{"plates", 48, 64, 16, false},
+                                           BiasCase{"door-ajar", 48, 64, 4, false},
+                                           BiasCase{"door-ajar", 48, 64, 16, false}));
 
 } // namespace
 } // namespace gradus::testing

@@ -83,7 +83,7 @@ void expect_layers(const Image &image, const std::function<double(int c, std::ui
             for (std::uint32_t x = 0; x < size; ++x) {
                 const double value = expected(c, x, y);
                 ASSERT_NEAR(layer(image, "primal", c, x, y), value, rounding) << x << ", " << y;
-                ASSERT_NEAR(layer(image, "", c, x, y), value, 4 * rounding) << x << ", " << y;
+                ASSERT_NEAR(image.find(colors[c])->values[y * size + x], value, 4 * rounding) << x << ", " << y;
                 if (x + 1 < size) {
                     const double difference = expected(c, x + 1, y) - value;
                     ASSERT_NEAR(layer(image, "dx", c, x, y), difference, rounding) << x << ", " << y;
@@ -156,6 +156,55 @@ TEST(Textures, SidesHaveTheirOwn) {
             const auto [u, v] = seen_place(maker.scene, x, y, std::uint32_t(options.seed));
             return texture_value(maker.scene.textures[from_behind ? 1 : 0], u, v)[std::size_t(c)];
         });
+    }
+}
+
+/// A wall of a textured colour, and `pictures` of four numbers by pictures of one texel, the others as constants; with
+/// `others` textures that nothing has.
+Image lit_wall(int pictures, int others) {
+    SceneMaker maker(size, 1);
+    maker.look({0, 0, 3}, {0, 0, 0}, 40);
+    maker.directional_light({3, 3, 3}, {0.6f, 0, -0.8f});
+    maker.scene.settings.max_depth = 2;
+    Bsdf bsdf;
+    bsdf.kind = BsdfKind::principled;
+    Number *const numbers[] = {&bsdf.metallic, &bsdf.sheen, &bsdf.flatness, &bsdf.clearcoat};
+    for (int i = 0; i < 4; ++i) {
+        const std::uint32_t code = 40 + 50 * std::uint32_t(i);
+        numbers[i]->value = float(code) / 255;
+        if (i >= pictures)
+            continue;
+        auto bitmap = std::make_shared<Bitmap>();
+        bitmap->resize(1, 1, Bitmap::Format::byte, false);
+        bitmap->set(0, 0, 0, code);
+        Texture texture;
+        texture.bitmap = bitmap;
+        numbers[i]->texture = std::int32_t(maker.scene.textures.size());
+        maker.scene.textures.push_back(texture);
+    }
+    Texture mapped = random_texture();
+    mapped.to_uv = {2, 0, 0.25f, 0, 3, 0};
+    bsdf.reflectance = textured(maker, mapped);
+    maker.scene.textures.resize(maker.scene.textures.size() + std::size_t(others), random_texture());
+    maker.parallelogram({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, maker.material(bsdf));
+    return render(maker.scene, RenderOptions(), "pt").image;
+}
+
+/// However many a material has, which decides how kernels look them up, and the scene, which decides how they are read.
+TEST(Textures, SeveralOfAMaterialAreEachInTheirPlace) {
+    const Image constants = lit_wall(0, 0);
+    for (const auto &[pictures, others] : {std::pair{1, 0}, {2, 9}, {4, 0}}) {
+        const Image image = lit_wall(pictures, others);
+        double largest = 0;
+        for (int c = 0; c < 3; ++c)
+            for (std::uint32_t y = 0; y < size; ++y)
+                for (std::uint32_t x = 0; x < size; ++x) {
+                    const double expected = constants.find(colors[c])->values[y * size + x];
+                    ASSERT_NEAR(image.find(colors[c])->values[y * size + x], expected, rounding)
+                        << pictures << " pictures, " << others << " others, at " << x << ", " << y;
+                    largest = std::max(largest, expected);
+                }
+        EXPECT_GT(largest, 0.1);
     }
 }
 
