@@ -71,6 +71,8 @@ GRADUS_FN random4 random_draw(uint key_0, uint key_1, uint dimension) {
 /* Which part of a blend a path meets at a vertex: far from the others, and not by the highest bits alone, which the
  * hash does not spread. */
 #define random_dimension_blend(depth) (0x2545F491u + (depth))
+/* Which of the normals that a map may have a light path takes. */
+#define random_dimension_normal(depth) (0x6A09E667u + (depth))
 
 GRADUS_LIB_END
 #endif

@@ -233,16 +233,17 @@ GRADUS_FN rgb texture_lookup(int features, GRADUS_GLOBAL const uint *textures, G
         const int is_nearest = !TEXTURES_HAVE(textures_bilinear) ||
                                (TEXTURES_HAVE(textures_nearest) && (place.flags & texture_flag_nearest) != 0u);
         const real x = texture_wrapped(features, s, place.flags) * (real)(int)width;
-        const real y = texture_wrapped(features, r_after(t, x), place.flags) * (real)(int)height;
+        const uint flags_down = texture_flags_along_v(place.flags);
+        const real y = texture_wrapped(features, r_after(t, x), flags_down) * (real)(int)height;
         const real to_left = is_nearest ? x : x - R(0.5), to_top = is_nearest ? y : y - R(0.5);
         const real left = r_floor(to_left), top = r_floor(to_top);
         /* Nearest: what is at the very edge belongs to the texel before it, which is what texture_texel() says. */
         const uint x_0 = texture_texel(features, (int)left, width, place.flags);
-        const uint y_0 = texture_texel(features, (int)top, height, place.flags);
+        const uint y_0 = texture_texel(features, (int)top, height, flags_down);
         value = texture_fetch(features, texels, place, y_0 * width + x_0, R(0));
         if (TEXTURES_HAVE(textures_bilinear)) {
             const uint next_x = texture_next_texel(features, (int)left, x_0, width, place.flags);
-            const uint next_y = texture_next_texel(features, (int)top, y_0, height, place.flags);
+            const uint next_y = texture_next_texel(features, (int)top, y_0, height, flags_down);
             const uint x_1 = is_nearest ? x_0 : next_x, y_1 = is_nearest ? y_0 : next_y;
             const rgb right = texture_fetch(features, texels, place, y_0 * width + x_1, value.b);
             const rgb below = texture_fetch(features, texels, place, y_1 * width + x_0, right.b);

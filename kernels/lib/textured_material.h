@@ -3,7 +3,7 @@
  * macros here are what they were without textures. */
 #ifndef GRADUS_LIB_TEXTURED_MATERIAL_H
 #define GRADUS_LIB_TEXTURED_MATERIAL_H
-//! traits: TRAIT_MATERIAL TRAIT_TEXTURED TRAIT_BLENDS TRAIT_ANISOTROPIC TRAIT_SHADING_NORMALS
+//! traits: TRAIT_MATERIAL TRAIT_TEXTURED TRAIT_TEXTURED_NORMALS TRAIT_BLENDS TRAIT_ANISOTROPIC TRAIT_SHADING_NORMALS
 #include "kernels/lib/surface_point.h"
 #include "kernels/shared/material.h"
 #include "kernels/shared/tables.h"
@@ -21,9 +21,20 @@ GRADUS_LIB_BEGIN
         textured_last_##name = textured_##name##_r + (IS_TEXTURED(name) ? 2 : -1),
 #define GRADUS_NUMBER_COLUMN(with, name, value, text)                                                                  \
     textured_##name, textured_last_##name = textured_##name + (IS_TEXTURED(name) ? 0 : -1),
-enum textured_column { GRADUS_TEXTURED_PARAMETERS(GRADUS_COLOR_COLUMNS, GRADUS_NUMBER_COLUMN, ) textured_columns };
+enum textured_column {
+    GRADUS_TEXTURED_PARAMETERS(GRADUS_COLOR_COLUMNS, GRADUS_NUMBER_COLUMN, ) textured_parameter_columns
+};
 #undef GRADUS_COLOR_COLUMNS
 #undef GRADUS_NUMBER_COLUMN
+
+/* Then, only with TRAIT_TEXTURED_NORMALS, a mapped_normal: its vector, and its flags as a number. */
+enum textured_normal_column {
+    textured_normal_x = textured_parameter_columns,
+    textured_normal_y,
+    textured_normal_z,
+    textured_normal_flags,
+    textured_columns = textured_parameter_columns + (TRAIT_TEXTURED_NORMALS ? 4 : 0)
+};
 
 /* Columns of `surface` that follow; they are no part of tables of vertices. */
 enum surface_column {

@@ -7,7 +7,8 @@
  *
  * TRAIT_TEXTURED has a bit for each parameter of GRADUS_TEXTURED_PARAMETERS that some material has as a texture,
  * TRAIT_TEXTURES one for each of the features below that some such texture has, TRAIT_BLEND_TEXTURES those of weights
- * of blends; TRAIT_BLEND_LEVELS a bit for each depth of nesting at which a weight is a texture. */
+ * of blends, TRAIT_NORMAL_TEXTURES those of normal maps and bump maps; TRAIT_BLEND_LEVELS a bit for each depth of
+ * nesting at which a weight is a texture, TRAIT_TEXTURED_NORMALS one for each of textured_normals_.... */
 #ifndef GRADUS_SHARED_TEXTURE_H
 #define GRADUS_SHARED_TEXTURE_H
 //! traits: TRAIT_MATERIAL
@@ -47,6 +48,12 @@
     FIELD(blend, second, "")                                                                                           \
     FIELD(blend, weight_texture, "or texture_none")
 
+/* By material record: where its normal comes from, bits of normal_map_... and the texture. What a bump map's texture is
+ * times, in lengths, is in `bump_scales`, by record. */
+#define GRADUS_NORMAL_MAP_FIELDS(FIELD)                                                                                \
+    FIELD(normal_map, flags, "0 where no texture turns the normal")                                                    \
+    FIELD(normal_map, texture, "")
+
 /* (u, v) at the three vertices of a triangle, and the axes of a sphere. */
 #define GRADUS_TRIANGLE_TEXCOORDS_FIELDS(FIELD)                                                                        \
     FIELD(texcoords, u_0, "")                                                                                          \
@@ -66,7 +73,8 @@
     FIELD(sphere_axes, third_y, "")                                                                                    \
     FIELD(sphere_axes, third_z, "")
 
-/* texture_flags: the lowest two bits are the format (Bitmap::Format), bits 4 and 5 how it wraps (Texture::Wrap). */
+/* texture_flags: the lowest two bits are the format (Bitmap::Format), bits 4 and 5 how it wraps along u
+ * (Texture::Wrap), 8 and 9 along v. */
 #define texture_format(flags) ((flags)&3u)
 #define texture_format_byte 0u
 #define texture_format_word 1u
@@ -75,10 +83,23 @@
 #define texture_flag_color 4u
 #define texture_flag_nearest 8u
 #define texture_wrap(flags) (((flags) >> 4) & 3u)
+#define texture_flags_along_v(flags) ((flags) >> 4) /* for texture_wrap() */
 #define texture_wrap_repeat 0u
 #define texture_wrap_mirror 1u
 #define texture_flag_checkerboard 64u
 #define texture_flag_srgb 128u
+
+/* The lowest three go with a vertex (kernels/lib/mapped_normal.h). */
+#define normal_map_there 1u   /* a texture turns the normal */
+#define normal_map_turns 2u   /* it is turned over where it would be seen from behind */
+#define normal_map_shadows 4u /* light that grazes is dimmed */
+#define normal_map_of_vertex 7u
+#define normal_map_is_bump 8u
+#define normal_map_is_outside 16u /* of what makes the material two-sided */
+
+/* Bits of TRAIT_TEXTURED_NORMALS. */
+#define textured_normals_given 1
+#define textured_normals_bump 2
 
 #define texture_none 0xFFFFFFFFu
 #define blend_none 0xFFFFFFFFu
@@ -106,6 +127,7 @@ GRADUS_LIB_BEGIN
 enum texture_field { GRADUS_TEXTURE_FIELDS(GRADUS_TEXTURE_INDEX) texture_stride };
 enum texture_real_field { GRADUS_TEXTURE_REAL_FIELDS(GRADUS_TEXTURE_INDEX) texture_real_stride };
 enum blend_field { GRADUS_BLEND_FIELDS(GRADUS_TEXTURE_INDEX) blend_stride };
+enum normal_map_field { GRADUS_NORMAL_MAP_FIELDS(GRADUS_TEXTURE_INDEX) normal_map_stride };
 enum texcoords_field { GRADUS_TRIANGLE_TEXCOORDS_FIELDS(GRADUS_TEXTURE_INDEX) texcoords_stride };
 enum sphere_axes_field { GRADUS_SPHERE_AXES_FIELDS(GRADUS_TEXTURE_INDEX) sphere_axes_stride };
 #undef GRADUS_TEXTURE_INDEX

@@ -5,6 +5,7 @@
  *
  * What has no value asks the tracer nothing. */
 #include "kernels/lib/bsdf_evaluate.h"
+#include "kernels/lib/bsdf_frame.h"
 #include "kernels/lib/gradient.h"
 #include "kernels/lib/textured_material.h"
 
@@ -31,7 +32,9 @@ STAGE evaluate(uint count, uint unit, uint first, uint first_line, uint stride, 
     const int is_asked = own.is_own & (kind_number(kind) == PASTE(bsdf_kind_, BSDF));
 #endif
     const material m = VERTEX_MATERIAL(own_vertex, own.row);
-    const frame axes = VERTEX_FRAME(own_vertex, own.row, m);
+    const vec3 towards = AT_V3(own_vertex, wi, own.row);
+    const bsdf_frame place = BSDF_FRAME(own_vertex, own.row, m, towards);
+    const frame axes = place.axes;
     const size_t at = (size_t)line * capacity + row;
     const vec3 wo = v3(AT(evaluation, value_r, at), AT(evaluation, value_g, at), AT(evaluation, value_b, at));
     int asks_dirac = 0;
@@ -39,8 +42,9 @@ STAGE evaluate(uint count, uint unit, uint first, uint first_line, uint stride, 
     /* The step takes the lobe that the base path has sampled. */
     asks_dirac = (line >= 4u) & (AT(path, pdf, row) == R(0));
 #endif
+    const vec3 wo_local = frame_to_local(axes, wo);
     const bsdf_value v =
-        bsdf_evaluate(m, frame_to_local(axes, AT_V3(own_vertex, wi, own.row)), frame_to_local(axes, wo), asks_dirac);
+        MAPPED_VALUE(place, bsdf_evaluate(m, frame_to_local(axes, towards), wo_local, asks_dirac), wo_local);
     const int is_nothing = line < 4u ? !(rgb_max(v.value) > R(0)) : !(v.pdf > R(0));
     /* What is not asked here is stored as it was: a store behind a condition costs several of these. */
     const rgb value = rgb_select(is_asked, v.value, rgb3(wo.x, wo.y, wo.z));

@@ -9,6 +9,7 @@
  *
  * FEATURES: also leaves the features that the camera sees, in the place of `shade` (by BSDF kind). */
 #include "kernels/lib/bsdf.h"
+#include "kernels/lib/bsdf_frame.h"
 #include "kernels/lib/surface_point.h"
 #include "kernels/lib/textured_material.h"
 #include "kernels/lib/vertex_frame.h"
@@ -61,7 +62,8 @@ STAGE gather(uint count, uint unit, uint first, uint to, uint capacity, uint gat
         const material m = HIT_MATERIAL(point.material, capacity, old);
         const rgb albedo = PASTE(BSDF, _albedo)(m);
         SET_RGB(feature, albedo, slot, albedo);
-        SET_V3(feature, normal, slot, point.shading);
+        const bsdf_frame place = HIT_FRAME(point, m, v3_neg(direction), capacity, old);
+        SET_V3(feature, normal, slot, place.axes.n);
         AT(feature, depth, slot) = distance;
     }
 #endif

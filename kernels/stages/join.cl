@@ -11,8 +11,9 @@
  * `weigh`, after the light that they see here is weighed.
  *
  * Russian roulette goes by the brightest of them all. */
-//! traits: TRAIT_REFRACTION TRAIT_APART SAMPLES_LIGHTS
+//! traits: TRAIT_REFRACTION TRAIT_APART TRAIT_TEXTURED_NORMALS SAMPLES_LIGHTS
 #include "kernels/lib/bsdf.h"
+#include "kernels/lib/bsdf_frame.h"
 #include "kernels/lib/ordered.h"
 #include "kernels/lib/path_draw.h"
 #include "kernels/lib/textured_material.h"
@@ -35,12 +36,18 @@ STAGE join(uint count, uint unit, uint first, uint capacity, uint slots, uint ro
     const uint slot = AT_UINT(path, slot, row), depth = AT_UINT(path, depth, row);
 #if !BSDF_IS_DIRAC
     const material m = VERTEX_MATERIAL(vertex, row);
+    const vec3 world_wo = AT_V3(ray, direction, row);
+#if !TRAIT_TEXTURED_NORMALS
     const frame axes = VERTEX_FRAME(vertex, row, m);
-    const vec3 wo = frame_to_local(axes, AT_V3(ray, direction, row));
+    const vec3 wo = frame_to_local(axes, world_wo);
+#endif
     const real pdf = AT(event, pdf, row);
     const real inverse_pdf = pdf > R(0) ? R(1) / pdf : R(0);
 #if SAMPLES_LIGHTS
-    const vec3 to_light = frame_to_local(axes, AT_V3(event, to_light, row));
+    const vec3 world_to_light = AT_V3(event, to_light, row);
+#if !TRAIT_TEXTURED_NORMALS
+    const vec3 to_light = frame_to_local(axes, world_to_light);
+#endif
     const rgb arriving = AT_RGB(event, arriving, row);
     const real inverse_light_pdf = AT(event, inverse_light_pdf, row);
     real gained = R(0); /* by offset paths that see what the base path's vertex sees */
@@ -69,9 +76,20 @@ STAGE join(uint count, uint unit, uint first, uint capacity, uint slots, uint ro
         /* Only those that are fully connected come to a Dirac vertex. */
         const real change = R(1);
 #else
-        const vec3 wi = frame_to_local(axes, AT_V3(offset, wi, at));
+        const vec3 towards = AT_V3(offset, wi, at);
+#if TRAIT_TEXTURED_NORMALS
+        /* Which normal is seen is a matter of where from. */
+        const bsdf_frame place = BSDF_FRAME(vertex, row, m, towards);
+        const frame axes = place.axes;
+        const vec3 wo = frame_to_local(axes, world_wo);
 #if SAMPLES_LIGHTS
-        const bsdf_value f_light = PASTE(BSDF, _evaluate)(m, wi, to_light, transport_radiance);
+        const vec3 to_light = frame_to_local(axes, world_to_light);
+#endif
+#endif
+        const vec3 wi = frame_to_local(axes, towards);
+#if SAMPLES_LIGHTS
+        const bsdf_value f_light =
+            MAPPED_VALUE(place, PASTE(BSDF, _evaluate)(m, wi, to_light, transport_radiance), to_light);
         const rgb gain = rgb_select(is_there, rgb_mul(rgb_mul(so_far, arriving), f_light.value), rgb_gray(R(0)));
         const real gain_bsdf = is_there ? ratio * f_light.pdf * inverse_light_pdf : R(0);
         SET_RGB(evaluation, value, at, gain);
@@ -85,7 +103,7 @@ STAGE join(uint count, uint unit, uint first, uint capacity, uint slots, uint ro
 #else
         const vec3 wo_after = wo;
 #endif
-        const bsdf_value f = PASTE(BSDF, _evaluate)(m, wi, wo_after, transport_radiance);
+        const bsdf_value f = MAPPED_VALUE(place, PASTE(BSDF, _evaluate)(m, wi, wo_after, transport_radiance), wo_after);
         const rgb rough_weight = rgb_scale(f.value, inverse_pdf);
         const real rough_change = f.pdf * inverse_pdf;
 #if BSDF_IS_MIXED

@@ -6,15 +6,22 @@
  * TRAIT_BLENDS: also the record that a blend has come to, chosen by a number of the path's key and depth, which its
  * offset paths share: so it is a coordinate of the paths that shifts keep. Of first vertices, where offset paths are
  * those of the neighbours, all pixels of a sample share it (TRAIT_SHARED_JITTER). Plane j has the rays of offset path
- * j, plane_rows rows further on each. OF_LIGHT_PATHS: rays of light paths. */
+ * j, plane_rows rows further on each. OF_LIGHT_PATHS: rays of light paths.
+ *
+ * TRAIT_TEXTURED_NORMALS: also the normal that a map makes, as it is seen from the ray's side, and what goes with it
+ * (kernels/lib/mapped_normal.h). */
 //! traits: TRAIT_TEXTURED TRAIT_TWO_FACED TRAIT_SPHERES TRAIT_TRIANGLES TRAIT_BLENDS TRAIT_SHARED_JITTER TRAIT_LOOKUPS
 //! traits: TRAIT_TEXTURES TRAIT_BLEND_TEXTURES TRAIT_BLEND_LEVELS
+//! traits: TRAIT_TEXTURED_NORMALS TRAIT_NORMAL_TEXTURES TRAIT_TWO_SIDED
 #include "kernels/lib/approximation.h"
 #include "kernels/lib/division.h"
+#include "kernels/lib/mapped_normal.h"
 #include "kernels/lib/material_side.h"
+#include "kernels/lib/normal_map.h"
 #include "kernels/lib/path_draw.h"
 #include "kernels/lib/sample_number.h"
 #include "kernels/lib/surface_side.h"
+#include "kernels/lib/texture_gradient.h"
 #include "kernels/lib/texture_lookup.h"
 #include "kernels/lib/textured_material.h"
 #include "kernels/shared/stage.h"
@@ -63,9 +70,17 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
                     __global const uint *primitive_material, __global const real *materials,
                     __global const uint *material_textures, __global const uint *material_lookups,
                     __global const uint *textures, __global const real *texture_reals, __global const uint *texels
+#if TRAIT_TWO_FACED || TRAIT_TEXTURED_NORMALS
+                    ,
+                    __global const real *triangle_normals
+#endif
 #if TRAIT_TWO_FACED
                     ,
-                    __global const real *triangle_normals, __global const uint *material_back
+                    __global const uint *material_back
+#endif
+#if TRAIT_TEXTURED_NORMALS
+                    ,
+                    __global const uint *normal_maps, __global const real *bump_scales
 #endif
 #if TRAIT_BLENDS
                     ,
@@ -88,7 +103,8 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
 #endif
 ) {
     const size_t i = work_item();
-    const uint kept = texture_bits(TRAIT_TEXTURES | TRAIT_BLEND_TEXTURES, textures, texture_reals, unit);
+    const uint kept =
+        texture_bits(TRAIT_TEXTURES | TRAIT_BLEND_TEXTURES | TRAIT_NORMAL_TEXTURES, textures, texture_reals, unit);
     if (!HAS_ROW(i, count, kept))
         return;
     const size_t row = (size_t)get_global_id(2) * plane_rows + i;
@@ -177,5 +193,60 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
     GRADUS_TEXTURED_PARAMETERS(LEAVE_COLOR, LEAVE_NUMBER, )
 #if TRAIT_BLENDS
     *(GRADUS_GLOBAL uint *)(surface + (size_t)surface_record * traced_rows + row) = record;
+#endif
+#if TRAIT_TEXTURED_NORMALS
+    vec3 along_u = v3(R(0), R(0), R(0)), along_v = along_u;
+#if TRAIT_TRIANGLES
+    const real u_0 = FIELD_OF(texcoords, triangle_texcoords, triangle, u_0);
+    const real v_0 = FIELD_OF(texcoords, triangle_texcoords, triangle, v_0);
+    const real u_1 = FIELD_OF(texcoords, triangle_texcoords, triangle, u_1) - u_0;
+    const real v_1 = FIELD_OF(texcoords, triangle_texcoords, triangle, v_1) - v_0;
+    const real u_2 = FIELD_OF(texcoords, triangle_texcoords, triangle, u_2) - u_0;
+    const real v_2 = FIELD_OF(texcoords, triangle_texcoords, triangle, v_2) - v_0;
+    const vec3 e1 = FIELD_V3(triangle, triangles, triangle, e1), e2 = FIELD_V3(triangle, triangles, triangle, e2);
+    const real determinant = u_1 * v_2 - u_2 * v_1;
+    const real inverse = determinant == R(0) ? R(0) : R(1) / determinant;
+    along_u = v3_scale(v3_mad(v3_scale(e1, v_2), -v_1, e2), inverse);
+    along_v = v3_scale(v3_mad(v3_scale(e2, u_1), -u_2, e1), inverse);
+#endif
+#if TRAIT_SPHERES
+    const vec3 first_axis = FIELD_V3(sphere_axes, sphere_axes, sphere, first);
+    const vec3 second_axis = FIELD_V3(sphere_axes, sphere_axes, sphere, second);
+    const vec3 third_axis = FIELD_V3(sphere_axes, sphere_axes, sphere, third);
+    const real sine = r_sqrt(x * x + y * y), inverse_sine = sine > R(0) ? R(1) / sine : R(0);
+    const real half_turn = R(3.14159265358979) * FIELD_OF(sphere, spheres, sphere, radius);
+    const vec3 meridian =
+        v3_sub(v3_scale(v3_mad(v3_scale(first_axis, x), y, second_axis), z * inverse_sine), v3_scale(third_axis, sine));
+    along_u =
+        v3_select(is_sphere, v3_scale(v3_mad(v3_scale(second_axis, x), -y, first_axis), R(2) * half_turn), along_u);
+    along_v = v3_select(is_sphere, v3_scale(meridian, half_turn), along_v);
+#endif
+    const uint map_flags = FIELD_OF(normal_map, normal_maps, record, flags);
+    const uint map_texture = FIELD_OF(normal_map, normal_maps, record, texture);
+    const textured_surface place = textured_surface_at(
+        hit.normal, shading_normal_at(triangle_normals, unit, triangle_count, primitive, hit), along_u, along_v);
+    vec3 mapped = place.shading;
+#if TRAIT_TEXTURED_NORMALS & textured_normals_given
+    const rgb map_color =
+        texture_lookup(TRAIT_NORMAL_TEXTURES, textures, texture_reals, texels, unit, map_texture, u, v);
+    mapped = normal_of_color(place, map_color);
+#endif
+#if TRAIT_TEXTURED_NORMALS & textured_normals_bump
+    const texture_slope slope =
+        texture_gradient(TRAIT_NORMAL_TEXTURES, textures, texture_reals, texels, unit, map_texture, u, v);
+    const real bump_scale = bump_scales[record];
+    const vec3 bumped = normal_of_height(place, bump_scale * slope.u, bump_scale * slope.v);
+    mapped = v3_select((map_flags & normal_map_is_bump) != 0u, bumped, mapped);
+#endif
+#if TRAIT_TWO_SIDED
+    const int is_from_behind =
+        ((primitive_material[primitive] & material_two_sided) != 0u) & (v3_dot(place.shading, direction) > R(0));
+    const vec3 from_behind = normal_from_behind(place.shading, mapped, (map_flags & normal_map_is_outside) != 0u);
+    mapped = v3_select(is_from_behind, from_behind, mapped);
+#endif
+    surface[(size_t)textured_normal_x * traced_rows + row] = mapped.x;
+    surface[(size_t)textured_normal_y * traced_rows + row] = mapped.y;
+    surface[(size_t)textured_normal_z * traced_rows + row] = mapped.z;
+    surface[(size_t)textured_normal_flags * traced_rows + row] = (real)(int)(map_flags & normal_map_of_vertex);
 #endif
 }

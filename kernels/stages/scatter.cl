@@ -11,9 +11,13 @@
  *
  * TRAIT_LIGHT_VERTICES: leaves a record of each vertex, from `to_vertex` on, for who shifts photons.
  *
+ * TRAIT_TEXTURED_NORMALS: a turned normal goes by who looks, and that is where the light path goes. So it takes either
+ * of the two normals, the other one as often as it is tilted, and the sample counts where that is the one seen.
+ *
  * TRAIT_ONLY_CHAINS: leaves a photon only where the vertex before is too smooth to gather at. */
-//! traits: TRAIT_SHADING_NORMALS TRAIT_ANISOTROPIC TRAIT_LIGHT_VERTICES TRAIT_ONLY_CHAINS
+//! traits: TRAIT_SHADING_NORMALS TRAIT_ANISOTROPIC TRAIT_LIGHT_VERTICES TRAIT_ONLY_CHAINS TRAIT_TEXTURED_NORMALS
 #include "kernels/lib/bsdf.h"
+#include "kernels/lib/bsdf_frame.h"
 #include "kernels/lib/random.h"
 #include "kernels/lib/surface_point.h"
 #include "kernels/lib/textured_material.h"
@@ -55,8 +59,25 @@ STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint ma
                          primitive_material, material_back, AT_UINT_IN(ray_old, ray, primitive, old), from, direction),
         capacity, old);
     const material m = HIT_MATERIAL(point.material, capacity, old);
+#if TRAIT_TEXTURED_NORMALS
+    const mapped_normal map = mapped_normal_at(surface, capacity, old);
+    const real aligned = v3_dot(map.normal, point.shading);
+    const real tilted = R(0.5) * r_sqrt(r_max(R(1) - aligned * aligned, R(0)));
+    const real turned_chance = (map.flags & normal_map_turns) != 0u ? tilted : R(0);
+    const int is_turned = random_draw(key_0, key_1, random_dimension_normal(before)).a < turned_chance;
+    const vec3 turned_normal = mapped_normal_turned(point.shading, map.normal);
+    const vec3 taken_normal = v3_select(is_turned, turned_normal, map.normal);
+    const vec3 normal = v3_select(map.flags != 0u, taken_normal, point.shading);
+    const bsdf_frame place = bsdf_frame_around(normal, point.shading, point.along, map.flags, m);
+    const frame axes = place.axes;
+    const real front = v3_dot(point.shading, v3_neg(direction));
+#else
     const frame axes = surface_frame(point.shading, point.along, m);
+#endif
     const vec3 wi = frame_to_local(axes, v3_neg(direction));
+#if !TRAIT_TEXTURED_NORMALS
+    const real front = wi.z;
+#endif
     const uint edges = before + 1u;
 #if TRAIT_LIGHT_VERTICES
     const uint vertex_before = AT_UINT_IN(light_path_old, light_path, vertex, old);
@@ -65,7 +86,7 @@ STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint ma
     uint left = left_before;
 #if LEAVES_PHOTONS && !BSDF_IS_DIRAC
     const uint gathers = material_gathers[point.material];
-    const int is_kept = (gathers == gathers_around) | ((gathers == gathers_in_front) & (wi.z > R(0)));
+    const int is_kept = (gathers == gathers_around) | ((gathers == gathers_in_front) & (front > R(0)));
 #if TRAIT_ONLY_CHAINS
     const int is_after_one = vertex_before != light_vertex_none;
     const uint last = FIELD_OF(light_vertex_mark, light_vertex_marks, is_after_one ? vertex_before : 0u, material);
@@ -91,10 +112,17 @@ STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint ma
 #endif
 
     const random4 u = random_draw(key_0, key_1, random_dimension_scatter(before));
-    const bsdf_sample s = PASTE(BSDF, _sample)(m, wi, u.a, u.b, u.c, transport_importance);
-    const vec3 next = v3_normalize(frame_to_world(axes, s.wo));
+    const bsdf_sample sampled = PASTE(BSDF, _sample)(m, wi, u.a, u.b, u.c, transport_importance);
+    const vec3 next = v3_normalize(frame_to_world(axes, sampled.wo));
+#if TRAIT_TEXTURED_NORMALS
+    const int is_seen = mapped_normal_turns(map, point.shading, next) == is_turned;
+    const real chance = is_turned ? turned_chance : R(1) - turned_chance;
+    const bsdf_sample s = mapped_sample(sampled, is_seen ? mapped_factor(place.flags, place.own, wi) / chance : R(0));
+#else
+    const bsdf_sample s = sampled;
+#endif
     real turned = R(1);
-#if TRAIT_SHADING_NORMALS
+#if TRAIT_SHADING_NORMALS || TRAIT_TEXTURED_NORMALS
     const real cosines = r_abs(v3_dot(point.geometric, direction) * s.wo.z);
     turned = r_abs(wi.z * v3_dot(point.geometric, next)) / r_max(cosines, R(1e-12));
 #endif

@@ -11,6 +11,7 @@
  * of the vertex is left in `vertex` and `event`. */
 //! traits: TRAIT_REFRACTION TRAIT_AOV SAMPLES_LIGHTS
 #include "kernels/lib/bsdf.h"
+#include "kernels/lib/bsdf_frame.h"
 #include "kernels/lib/light_sampling.h"
 #include "kernels/lib/mis.h"
 #include "kernels/lib/path_draw.h"
@@ -58,7 +59,8 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
                          primitive_material, material_back, AT_UINT_IN(ray_old, ray, primitive, old), from, direction),
         capacity, old);
     const material m = HIT_MATERIAL(point.material, capacity, old);
-    const frame axes = surface_frame(point.shading, point.along, m);
+    const bsdf_frame place = HIT_FRAME(point, m, v3_neg(direction), capacity, old);
+    const frame axes = place.axes;
     const vec3 wi = frame_to_local(axes, v3_neg(direction));
     const int goes_on = depth + 1u < max_depth;
 
@@ -67,7 +69,7 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
     if (depth == 0u) {
         const rgb albedo = PASTE(BSDF, _albedo)(m);
         SET_RGB(feature, albedo, slot, albedo);
-        SET_V3(feature, normal, slot, point.shading);
+        SET_V3(feature, normal, slot, axes.n);
         AT(feature, depth, slot) = r_sqrt(v3_length_squared(v3_sub(point.position, from)));
     }
 #endif
@@ -82,7 +84,7 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
                                                point.position, l ENVIRONMENT_ARGUMENTS);
     const light_choice light = chosen.choice;
     const vec3 to_light = frame_to_local(axes, light.direction);
-    const bsdf_value f = PASTE(BSDF, _evaluate)(m, wi, to_light, transport_radiance);
+    const bsdf_value f = MAPPED_VALUE(place, PASTE(BSDF, _evaluate)(m, wi, to_light, transport_radiance), to_light);
 #if WITH_OFFSETS
     const rgb arriving = rgb_scale(light.value, goes_on ? R(1) / chosen.probability : R(0));
     const real light_pdf = light.pdf * chosen.probability;
@@ -119,7 +121,8 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
 #endif
 
     const random4 u = PATH_DRAW(key_0, key_1, random_dimension_scatter(depth));
-    const bsdf_sample s = PASTE(BSDF, _sample)(m, wi, u.a, u.b, u.c, transport_radiance);
+    const bsdf_sample sampled = PASTE(BSDF, _sample)(m, wi, u.a, u.b, u.c, transport_radiance);
+    const bsdf_sample s = MAPPED_SAMPLE(place, sampled);
     const rgb scattered = rgb_mul(throughput, s.weight);
     real eta = R(1);
 #if TRAIT_REFRACTION

@@ -20,6 +20,7 @@
  * at once. */
 //! traits: TRAIT_SHIFT_DISTANCE TRAIT_ENVIRONMENT TRAIT_MIXED_LOBES SAMPLES_LIGHTS
 #include "kernels/lib/bsdf_evaluate.h"
+#include "kernels/lib/bsdf_frame.h"
 #include "kernels/lib/gradient.h"
 #include "kernels/lib/light_sampling.h"
 #include "kernels/lib/ordered.h"
@@ -103,8 +104,9 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
 #endif
     const int base_is_rough = ((base_kind & kind_is_rough) != 0u) & !base_is_dirac;
     const material base_material = VERTEX_MATERIAL(vertex, row);
-    const frame base_axes = VERTEX_FRAME(vertex, row, base_material);
-    const vec3 base_wi = frame_to_local(base_axes, AT_V3(vertex, wi, row));
+    const vec3 base_towards = AT_V3(vertex, wi, row);
+    const frame base_axes = BSDF_FRAME(vertex, row, base_material, base_towards).axes;
+    const vec3 base_wi = frame_to_local(base_axes, base_towards);
     const vec3 base_wo = frame_to_local(base_axes, base_direction);
     const uint next_light = primitive_light[present];
     int is_behind = 0;
@@ -158,8 +160,10 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
 #endif
 #if TRAIT_APART || defined(BSDF)
         const material m = VERTEX_MATERIAL(own_vertex, own.row);
-        const frame axes = VERTEX_FRAME(own_vertex, own.row, m);
-        const vec3 wi = frame_to_local(axes, AT_V3(own_vertex, wi, own.row));
+        const vec3 towards = AT_V3(own_vertex, wi, own.row);
+        const bsdf_frame place = BSDF_FRAME(own_vertex, own.row, m, towards);
+        const frame axes = place.axes;
+        const vec3 wi = frame_to_local(axes, towards);
 #endif
 
         /* The light sample. */
@@ -196,7 +200,8 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         AT(shift, light_jacobian, at) = light_jacobian;
         asks_light = own.is_own & !is_dirac & arrives & (light_jacobian > R(0));
 #ifdef BSDF
-        const bsdf_value of_light = bsdf_evaluate(m, wi, frame_to_local(axes, to_light), 0);
+        const vec3 wo_light = frame_to_local(axes, to_light);
+        const bsdf_value of_light = MAPPED_VALUE(place, bsdf_evaluate(m, wi, wo_light, 0), wo_light);
         asks_light &= rgb_max(of_light.value) > R(0);
         const rgb request = of_light.value;
 #else
@@ -280,7 +285,8 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
 #endif
         const size_t step = (size_t)(4u + j) * capacity + row;
 #ifdef BSDF
-        const bsdf_value of_step = bsdf_evaluate(m, wi, frame_to_local(axes, direction), ASKS_DIRAC);
+        const vec3 wo_step = frame_to_local(axes, direction);
+        const bsdf_value of_step = MAPPED_VALUE(place, bsdf_evaluate(m, wi, wo_step, ASKS_DIRAC), wo_step);
         const int has_density = of_step.pdf > R(0);
         works &= reconnects | has_density;
         SET_RGB(evaluation, value, step, of_step.value);

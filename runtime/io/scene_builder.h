@@ -62,8 +62,11 @@ class SceneBuilder {
                                          const Location &location, bool &is_srgb);
     /// The texture that an element describes, with its values clamped to the range: one of the scene's.
     FoundTexture texture(const Element &element, double lowest, double highest);
+    const Texture &texture_at(std::int32_t index) const { return scene_.textures[std::size_t(index)]; }
     /// A mixture of two sides of surfaces (Blend in runtime/scene/scene.h).
     Bsdf blend(const Bsdf &first, const Bsdf &second, const Number &weight);
+    /// The material with a map under it, or under each part of a blend. Throws SceneError where one has a map already.
+    Material with_map(Material material, const NormalTexture &map, const Location &location);
     /// Whether light passes a side of a surface, or any part of a blend there.
     bool transmits(const Bsdf &bsdf) const;
     /// Builds a nested object by its plugin. Throws SceneError where its type is not known.
@@ -73,6 +76,7 @@ class SceneBuilder {
     Diagnostics &diagnostics() { return diagnostics_; }
 
   private:
+    Bsdf with_map(const Bsdf &bsdf, const NormalTexture &map, const Location &location);
     void index(const Element &element, int depth);
     void check_children(const Element &element);
     const Element &resolve(const Element &reference);

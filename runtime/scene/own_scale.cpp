@@ -59,6 +59,11 @@ double bring_to_own_scale(Scene &scene) {
         multiply(sphere.center, float(factor));
         sphere.radius *= float(factor);
     }
+    for (Material &material : scene.materials)
+        for (Bsdf *side : {&material.front, &material.back})
+            side->map.scale *= float(factor);
+    for (Bsdf &bsdf : scene.blended)
+        bsdf.map.scale *= float(factor);
     for (Emitter &emitter : scene.emitters) {
         multiply(emitter.position, float(factor));
         if (emitter.kind == Emitter::Kind::point || emitter.kind == Emitter::Kind::spot)

@@ -92,12 +92,29 @@ enum class BsdfKind : std::uint32_t { GRADUS_BSDF_KINDS(GRADUS_KIND_NAME) };
 
 constexpr std::int32_t no_blend = -1;
 
+/// A texture that turns the shading normal under a BSDF.
+struct NormalTexture {
+    enum class Kind {
+        none,
+        normal, ///< its colour is the normal: x along dp/du, z along the shading normal, each from [-1, 1] to [0, 1]
+        bump    ///< its luminance, times `scale`, is a height along the normal
+    };
+    Kind kind = Kind::none;
+    std::int32_t texture = no_texture;
+    float scale = 1;         ///< of a bump map, in lengths
+    bool turns_over = false; ///< a normal that would be seen from behind is turned about the surface's own
+    bool shadows = false;    ///< light that grazes the surface is dimmed
+    bool is_outside = false; ///< the material was two-sided before it had the map
+    bool operator==(const NormalTexture &) const = default;
+};
+
 /// One side of a surface. The members are those of GRADUS_MATERIAL_PARAMETERS; what its kind does not name is ignored.
 #define GRADUS_COLOR_MEMBER(with, name, value, text) Color name{value, value, value};
 #define GRADUS_NUMBER_MEMBER(with, name, value, text) Number name = value;
 struct Bsdf {
     BsdfKind kind = BsdfKind::diffuse;
     GRADUS_MATERIAL_PARAMETERS(GRADUS_COLOR_MEMBER, GRADUS_NUMBER_MEMBER, )
+    NormalTexture map;
     std::int32_t blend = no_blend; ///< index into Scene::blends, which then says all: a mixture of two others
     bool operator==(const Bsdf &) const = default;
 };

@@ -381,7 +381,8 @@ std::size_t table_bytes(const SceneTables &t) {
                 t.material_back.size() + t.light_kinds.size() + t.light_alias.size() + t.emissions.size() +
                 t.emission_alias.size() + t.triangle_texcoords.size() + t.sphere_axes.size() + t.texture_reals.size() +
                 t.material_lookups.size() + t.textures.size() + t.texels.size() + t.material_textures.size() +
-                t.blends.size() + t.record_kind.size() + t.blend_weights.size());
+                t.blends.size() + t.record_kind.size() + t.blend_weights.size() + t.normal_maps.size() +
+                t.bump_scales.size());
 }
 
 } // namespace gradus

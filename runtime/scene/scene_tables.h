@@ -18,7 +18,8 @@ struct SceneTables {
     std::vector<std::uint32_t> primitive_material, primitive_light, primitive_bin, primitive_back_bin;
     /// Only where textures are: kernels/shared/texture.h.
     std::vector<float> triangle_texcoords, sphere_axes, texture_reals;
-    std::vector<std::uint32_t> textures, texels, material_textures, material_lookups;
+    std::vector<std::uint32_t> textures, texels, material_textures, material_lookups, normal_maps;
+    std::vector<float> bump_scales;
     /// By material record, where materials are blended: records of kernels/shared/texture.h, and the place in `kinds`.
     std::vector<std::uint32_t> blends, record_kind;
     std::vector<float> blend_weights;

@@ -130,14 +130,14 @@ std::array<double, 3> texture_value(const Texture &texture, double u, double v) 
     if (texture.kind == Texture::Kind::checkerboard)
         return finished(texture, checkerboard(texture, s, t));
     const Bitmap &bitmap = *texture.bitmap;
-    const double x = wrapped(s, texture.wrap) * bitmap.width, y = wrapped(t, texture.wrap) * bitmap.height;
+    const double x = wrapped(s, texture.wrap) * bitmap.width, y = wrapped(t, texture.wrap_along_v()) * bitmap.height;
     if (texture.is_nearest)
         return finished(texture, texel(texture, std::min(std::uint32_t(x), bitmap.width - 1),
                                        std::min(std::uint32_t(y), bitmap.height - 1)));
     const auto left = std::int64_t(std::floor(x - 0.5)), top = std::int64_t(std::floor(y - 0.5));
     const double right_share = x - 0.5 - double(left), bottom_share = y - 0.5 - double(top);
     const auto row = [&](std::int64_t at) {
-        const std::uint32_t line = texel_at(at, bitmap.height, texture.wrap);
+        const std::uint32_t line = texel_at(at, bitmap.height, texture.wrap_along_v());
         return plus(times(1 - right_share, texel(texture, texel_at(left, bitmap.width, texture.wrap), line)),
                     times(right_share, texel(texture, texel_at(left + 1, bitmap.width, texture.wrap), line)));
     };

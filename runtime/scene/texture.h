@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,8 @@ struct Texture {
     bool is_nearest = false;              ///< else bilinear
     bool is_srgb = false;                 ///< what is stored is sRGB and becomes linear, texel by texel; bytes only
     Wrap wrap = Wrap::repeat;
+    std::optional<Wrap> wrap_v; ///< along v, where it is another one there
+    Wrap wrap_along_v() const { return wrap_v.value_or(wrap); }
     /// (u, v) of the surface to that of the texture: rows of a matrix on (u, v, 1). The texture is [0, 1]^2, v down.
     std::array<float, 6> to_uv{1, 0, 0, 0, 1, 0};
     std::array<float, 3> color_0{0.4f, 0.4f, 0.4f}, color_1{0.2f, 0.2f, 0.2f}; ///< of a checkerboard

@@ -29,12 +29,22 @@ std::map<const Bitmap *, std::uint32_t> add_bitmaps(const Scene &scene, SceneTab
 }
 
 std::uint32_t flags_of(const Texture &texture) {
-    std::uint32_t flags = std::uint32_t(texture.wrap) << 4;
+    std::uint32_t flags = std::uint32_t(texture.wrap) << 4 | std::uint32_t(texture.wrap_along_v()) << 8;
     flags |= texture.is_nearest ? texture_flag_nearest : 0;
     if (texture.kind == Texture::Kind::checkerboard)
         return flags | texture_flag_checkerboard;
     flags |= texture.is_srgb && texture.bitmap->format == Bitmap::Format::byte ? texture_flag_srgb : 0;
     return flags | std::uint32_t(texture.bitmap->format) | (texture.bitmap->is_color ? texture_flag_color : 0);
+}
+
+void add_normal_map(const NormalTexture &map, SceneTables &tables) {
+    std::uint32_t flags = 0;
+    if (map.kind != NormalTexture::Kind::none)
+        flags = normal_map_there | (map.turns_over ? normal_map_turns : 0) | (map.shadows ? normal_map_shadows : 0) |
+                (map.kind == NormalTexture::Kind::bump ? normal_map_is_bump : 0) |
+                (map.is_outside ? normal_map_is_outside : 0);
+    tables.normal_maps.insert(tables.normal_maps.end(), {flags, flags == 0 ? 0 : std::uint32_t(map.texture)});
+    tables.bump_scales.push_back(map.scale);
 }
 
 } // namespace
@@ -79,6 +89,7 @@ void add_textures(const Scene &scene, SceneTables &tables) {
         });
         distinct.resize(lookups, 0);
         tables.material_lookups.insert(tables.material_lookups.end(), distinct.begin(), distinct.end());
+        add_normal_map(bsdf.map, tables);
     }
     if (scene.textures.empty()) { // kernels may ask for one, whatever they then take
         tables.textures.assign(texture_stride, 0);

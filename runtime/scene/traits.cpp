@@ -41,6 +41,8 @@ constexpr TraitText descriptions[] = {
     {"TRAIT_TEXTURES", "what these textures have, a bit each"},
     {"TRAIT_LOOKUPS", "the most textures that a material has"},
     {"TRAIT_BLEND_TEXTURES", "what textures that are weights of blends have, a bit each"},
+    {"TRAIT_TEXTURED_NORMALS", "1: normal maps, 2: bump maps"},
+    {"TRAIT_NORMAL_TEXTURES", "what textures of these have, a bit each"},
     {"TRAIT_BLEND_LEVELS", "depths of nesting at which weights of blends are textures, a bit each"},
     {"TRAIT_FILTER_TENT", "tent pixel filter"},
     {"TRAIT_FILTER_GAUSSIAN", "Gaussian pixel filter"},
@@ -139,7 +141,8 @@ int texture_features(const Texture &texture) {
         features |= textures_of_srgb;
     features |= texture.bitmap->is_color ? textures_in_color : textures_in_gray;
     features |= texture.is_nearest ? textures_nearest : textures_bilinear;
-    return features | (texture.wrap == Texture::Wrap::repeat ? 0 : textures_wrapped_otherwise);
+    const bool repeats = texture.wrap == Texture::Wrap::repeat && texture.wrap_along_v() == Texture::Wrap::repeat;
+    return features | (repeats ? 0 : textures_wrapped_otherwise);
 }
 
 std::uint32_t textured_column_count(int textured) {
@@ -203,7 +206,7 @@ bool bsdf_kind_is_mixed(const std::string &name) {
 
 namespace {
 
-/// Of textures and blends.
+/// Of textures, blends and normal maps.
 void add_material_traits(const Scene &scene, TraitMap &traits) {
     for (const Shape &shape : scene.shapes) {
         const Material &material = scene.materials[shape.material];
@@ -222,9 +225,15 @@ void add_material_traits(const Scene &scene, TraitMap &traits) {
             traits["TRAIT_TEXTURED"] |= 1 << number;
             traits["TRAIT_TEXTURES"] |= texture_features(scene.textures[std::size_t(texture)]);
         });
+        if (bsdf.map.kind != NormalTexture::Kind::none) {
+            traits["TRAIT_TEXTURED_NORMALS"] |=
+                bsdf.map.kind == NormalTexture::Kind::bump ? textured_normals_bump : textured_normals_given;
+            traits["TRAIT_NORMAL_TEXTURES"] |= texture_features(scene.textures[std::size_t(bsdf.map.texture)]);
+        }
     });
     traits["TRAIT_LOOKUPS"] = most_lookups(scene);
-    traits["TRAIT_MATERIAL"] = traits["TRAIT_TEXTURED"] != 0 || traits["TRAIT_BLENDS"] > 0;
+    traits["TRAIT_MATERIAL"] =
+        traits["TRAIT_TEXTURED"] != 0 || traits["TRAIT_TEXTURED_NORMALS"] != 0 || traits["TRAIT_BLENDS"] > 0;
 }
 
 } // namespace
@@ -321,7 +330,7 @@ TraitMap with_all_traits(TraitMap traits) {
         // The filter and hidden emitters change the picture; the rest only makes room for what is not there.
         const bool setting = name.starts_with("TRAIT_FILTER") || name == "TRAIT_HIDE_EMITTERS" ||
                              name.starts_with("TRAIT_TEXTURE") || name == "TRAIT_MATERIAL" || name == "TRAIT_LOOKUPS" ||
-                             name.starts_with("TRAIT_BLEND");
+                             name == "TRAIT_NORMAL_TEXTURES" || name.starts_with("TRAIT_BLEND");
         if (!setting)
             value = 1;
     }

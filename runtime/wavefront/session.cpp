@@ -100,6 +100,8 @@ std::vector<Buffer> make_scene_buffers(Device &device, const SceneTables &t, Pre
         numbers("texels", t.texels);
         numbers("material_textures", t.material_textures);
         numbers("material_lookups", t.material_lookups);
+        numbers("normal_maps", t.normal_maps);
+        reals("bump_scales", t.bump_scales);
         numbers("blends", t.blends);
         numbers("record_kind", t.record_kind);
         reals("blend_weights", t.blend_weights);

@@ -54,8 +54,10 @@ struct Session {
     std::uint32_t vertex_columns_not_needed() const {
         return has("TRAIT_ANISOTROPIC") ? 0 : has("TRAIT_SHADING_NORMALS") ? 3 : 6;
     }
-    /// Columns that tables of surface vertices have behind those: textured parameters.
-    std::uint32_t textured_columns() const { return textured_column_count(traits.at("TRAIT_TEXTURED")); }
+    /// Columns that tables of surface vertices have behind those: textured parameters, and normals from textures.
+    std::uint32_t textured_columns() const {
+        return textured_column_count(traits.at("TRAIT_TEXTURED")) + (has("TRAIT_TEXTURED_NORMALS") ? 4 : 0);
+    }
     /// Columns of `surface`: those, and the record that a blend has come to.
     std::uint32_t surface_columns() const { return textured_columns() + (has("TRAIT_BLENDS") ? 1 : 0); }
     /// Of so many columns of a table of surface vertices those that are allocated.

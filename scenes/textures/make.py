@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Makes the pictures in this folder, which scenes/textures.xml uses: as PNG files, with what Python brings."""
+"""Makes the pictures in this folder, which scenes/textures.xml and tests/scenes/relief.xml use: as PNG files, with what
+Python brings."""
 
 import math
 import pathlib
@@ -42,6 +43,21 @@ def tiles(x, y):
     return colours[(x // 16 + 2 * (y // 16)) % 4]
 
 
+def ripples(x, y):
+    """Heights that tile over 32 x 32."""
+    turn = 2 * math.pi / 32
+    return (0.5 + 0.25 * math.sin(2 * turn * x + 1.5 * math.sin(turn * y)) + 0.2 * math.cos(3 * turn * y + turn * x),)
+
+
+def dents(x, y):
+    """Normals of round dents, steep enough for many to be seen from behind."""
+    across, down = x % 8 - 3.5, y % 8 - 3.5
+    distance = math.hypot(across, down)
+    steep = 0.9 * distance / 3.5 if distance < 3.5 else 0
+    normal = (steep * across / distance, -steep * down / distance, math.sqrt(1 - steep**2)) if steep > 0 else (0, 0, 1)
+    return tuple(0.5 + 0.5 * n for n in normal)
+
+
 def main():
     noise = random.Random(1)
     write_png("wood.png", 48, 32, 3, 8, wood)
@@ -49,6 +65,8 @@ def main():
     write_png("hues.png", 12, 8, 3, 16, lambda x, y: (x / 11, y / 7, 1 - (x + y) / 18))
     write_png("brushed.png", 24, 6, 1, 8, lambda x, y: (0.12 + 0.35 * noise.random(),))
     write_png("spots.png", 24, 24, 1, 16, lambda x, y: (1 if (x % 12 - 6) ** 2 + (y % 12 - 6) ** 2 < 16 else 0.1,))
+    write_png("ripples.png", 32, 32, 1, 16, ripples)
+    write_png("dents.png", 16, 16, 3, 16, dents)
 
 
 if __name__ == "__main__":

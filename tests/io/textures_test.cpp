@@ -232,5 +232,149 @@ TEST_F(TexturePlugin, BombsAreRefused) {
     EXPECT_THAT(error(bitmap_text("bomb.png")), HasSubstr("far more than a file of its size holds"));
 }
 
+TEST_F(TexturePlugin, WrapsOtherwiseAlongV) {
+    write<std::uint8_t>("a.png", 3, OIIO::TypeDesc::UINT8, 255);
+    const Texture found = texture(bitmap_text("a.png", "<string name=\"wrapModeU\" value=\"clamp\"/>"
+                                                       "<string name=\"wrapModeV\" value=\"mirror\"/>"),
+                                  "0.6.0");
+    EXPECT_EQ(found.wrap, Texture::Wrap::clamp);
+    EXPECT_EQ(found.wrap_along_v(), Texture::Wrap::mirror);
+    const Texture alike = texture(bitmap_text("a.png", "<string name=\"wrapMode\" value=\"clamp\"/>"), "0.6.0");
+    EXPECT_EQ(alike.wrap_along_v(), Texture::Wrap::clamp);
+    EXPECT_THAT(error(bitmap_text("a.png", "<string name=\"wrapModeV\" value=\"zero\"/>")),
+                HasSubstr("unknown wrap_mode \"zero\""));
+}
+
+class MapPlugin : public TexturePlugin {
+  protected:
+    void SetUp() override { write<float>("n.exr", 3, OIIO::TypeDesc::FLOAT, 1); }
+    LoadedScene load_bsdf(const std::string &bsdf, const std::string &version = "3.0.0") {
+        return load_scene(folder_.write("scene.xml", around(bsdf, version)));
+    }
+    std::string error_of_bsdf(const std::string &bsdf) {
+        return error_of(folder_.write("scene.xml", around(bsdf, "3.0.0")));
+    }
+    /// The one material of a file without warnings.
+    Material material(const std::string &bsdf, const std::string &version = "3.0.0") {
+        const LoadedScene loaded = load_bsdf(bsdf, version);
+        EXPECT_THAT(loaded.warnings, IsEmpty());
+        EXPECT_EQ(loaded.scene.textures.size(), 1u);
+        return loaded.scene.materials.at(0);
+    }
+    static std::string around(const std::string &bsdf, const std::string &version) {
+        return scene_around(
+            "<texture type=\"bitmap\" id=\"map\"><string name=\"filename\" value=\"n.exr\"/></texture>" +
+                std::string("<shape type=\"cube\">") + bsdf + "</shape><emitter type=\"constant\"/>",
+            version, "");
+    }
+};
+
+const std::string map_text = "<ref id=\"map\"/>", wood = "<bsdf type=\"diffuse\"/>";
+
+TEST_F(MapPlugin, Defaults) {
+    const Bsdf normal =
+        material("<bsdf type=\"normalmap\"><ref name=\"normalmap\" id=\"map\"/>" + wood + "</bsdf>").front;
+    EXPECT_EQ(normal.kind, BsdfKind::diffuse);
+    EXPECT_EQ(normal.map.kind, NormalTexture::Kind::normal);
+    EXPECT_EQ(normal.map.texture, 0);
+    EXPECT_TRUE(normal.map.turns_over);
+    EXPECT_TRUE(normal.map.shadows);
+    EXPECT_FALSE(normal.map.is_outside);
+    const Bsdf bump = material("<bsdf type=\"bumpmap\">" + map_text + wood + "</bsdf>").front;
+    EXPECT_EQ(bump.map.kind, NormalTexture::Kind::bump);
+    EXPECT_EQ(bump.map.scale, 1);
+    EXPECT_TRUE(bump.map.turns_over);
+    EXPECT_TRUE(bump.map.shadows);
+}
+
+TEST_F(MapPlugin, Parameters) {
+    const std::string both = "<boolean name=\"flip_invalid_normals\" value=\"false\"/>"
+                             "<boolean name=\"use_shadowing_function\" value=\"false\"/>";
+    const Bsdf bump =
+        material("<bsdf type=\"bumpmap\">" + map_text + wood + both + "<float name=\"scale\" value=\"-2.5\"/></bsdf>")
+            .front;
+    EXPECT_EQ(bump.map.scale, -2.5f);
+    EXPECT_FALSE(bump.map.turns_over);
+    EXPECT_FALSE(bump.map.shadows);
+    const Bsdf normal = material("<bsdf type=\"normalmap\">" + map_text + wood + both + "</bsdf>").front;
+    EXPECT_FALSE(normal.map.turns_over);
+    EXPECT_FALSE(normal.map.shadows);
+}
+
+/// Values of a normal map and heights are no parameters to be clamped.
+TEST_F(MapPlugin, TexturesKeepTheirValues) {
+    const LoadedScene loaded = load_bsdf("<bsdf type=\"bumpmap\">" + map_text + wood + "</bsdf>");
+    EXPECT_LT(loaded.scene.textures.at(0).lowest, -1e30f);
+    EXPECT_GT(loaded.scene.textures.at(0).highest, 1e30f);
+}
+
+TEST_F(MapPlugin, OfOldFiles) {
+    for (const char *type : {"bumpmap", "normalmap"}) {
+        const Bsdf bsdf = material("<bsdf type=\"" + std::string(type) +
+                                       "\"><texture type=\"scale\"><float name=\"scale\" value=\"3\"/>" + map_text +
+                                       "</texture>" + wood + "</bsdf>",
+                                   "0.6.0")
+                              .front;
+        EXPECT_FALSE(bsdf.map.turns_over) << type;
+        EXPECT_FALSE(bsdf.map.shadows) << type;
+        EXPECT_EQ(bsdf.map.scale, 1) << type;
+    }
+    const LoadedScene scaled =
+        load_bsdf("<bsdf type=\"bumpmap\"><texture type=\"scale\"><float name=\"scale\" value=\"3\"/>" + map_text +
+                      "</texture>" + wood + "</bsdf>",
+                  "0.5.0");
+    EXPECT_EQ(scaled.scene.textures.at(0).scale[0], 3);
+}
+
+TEST_F(MapPlugin, WithinOthersAndAround) {
+    const std::string bump = "<bsdf type=\"bumpmap\">" + map_text, end = "</bsdf>";
+    const Material inside = material("<bsdf type=\"twosided\">" + bump + wood + end + end);
+    EXPECT_TRUE(inside.two_sided);
+    EXPECT_FALSE(inside.front.map.is_outside);
+    EXPECT_EQ(inside.front, inside.back);
+    const Material outside = material(bump + "<bsdf type=\"twosided\">" + wood + end + end);
+    EXPECT_TRUE(outside.two_sided);
+    EXPECT_TRUE(outside.front.map.is_outside);
+    EXPECT_EQ(outside.front, outside.back);
+    const Material faces = material("<bsdf type=\"twosided\">" + bump + wood + end + wood + end);
+    EXPECT_EQ(faces.front.map.kind, NormalTexture::Kind::bump);
+    EXPECT_EQ(faces.back.map.kind, NormalTexture::Kind::none);
+    const Material holes = material(bump + "<bsdf type=\"mask\">" + wood + end + end);
+    EXPECT_EQ(holes.opacity, 0.5f);
+    EXPECT_EQ(holes.front.map.kind, NormalTexture::Kind::bump);
+    // Parts of blends have it each; nothing to turn where nothing is.
+    const LoadedScene blend =
+        load_bsdf(bump + "<bsdf type=\"blendbsdf\">" + wood + "<bsdf type=\"null\"/>" + end + end);
+    const Blend &parts = blend.scene.blends.at(std::size_t(blend.scene.materials.at(0).front.blend));
+    EXPECT_EQ(blend.scene.blended.at(parts.first).map.kind, NormalTexture::Kind::bump);
+    EXPECT_EQ(blend.scene.blended.at(parts.second).map.kind, NormalTexture::Kind::none);
+    // A BSDF referenced without its wrapper has no map.
+    EXPECT_EQ(material(bump + "<bsdf type=\"diffuse\" id=\"plain\"/>" + end + "</shape><shape type=\"cube\">" +
+                       "<ref id=\"plain\"/>")
+                  .front.map.kind,
+              NormalTexture::Kind::bump);
+    EXPECT_EQ(load_bsdf(bump + "<bsdf type=\"diffuse\" id=\"plain\"/>" + end + "</shape><shape type=\"cube\">" +
+                        "<ref id=\"plain\"/>")
+                  .scene.materials.at(1)
+                  .front.map.kind,
+              NormalTexture::Kind::none);
+}
+
+TEST_F(MapPlugin, WhatIsWrong) {
+    for (const std::string type : {"bumpmap", "normalmap"}) {
+        const std::string begin = "<bsdf type=\"" + type + "\">", end = "</bsdf>";
+        EXPECT_THAT(error_of_bsdf(begin + wood + end), HasSubstr(type + " needs one nested texture, not 0"));
+        EXPECT_THAT(error_of_bsdf(begin + map_text + map_text + wood + end), HasSubstr("one nested texture, not 2"));
+        EXPECT_THAT(error_of_bsdf(begin + map_text + end), HasSubstr(type + " needs one nested BSDF, not 0"));
+        EXPECT_THAT(error_of_bsdf(begin + map_text + begin + map_text + wood + end + end),
+                    HasSubstr("around another one is not supported"));
+    }
+    EXPECT_THAT(load_bsdf("<bsdf type=\"bumpmap\"><texture type=\"checkerboard\"/>" + wood + "</bsdf>").warnings,
+                ElementsAre(HasSubstr("has no slope")));
+    write<std::uint8_t>("n.png", 3, OIIO::TypeDesc::UINT8, 255);
+    EXPECT_THAT(load_bsdf("<bsdf type=\"normalmap\">" + bitmap_text("n.png") + wood + "</bsdf>").warnings,
+                ElementsAre(HasSubstr("decoded from sRGB")));
+}
+
 } // namespace
 } // namespace gradus

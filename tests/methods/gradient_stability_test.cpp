@@ -3,6 +3,7 @@
 // Jacobian without cosines at the tiny lamp, Dirac vertices that merge in the caustic.
 #include "tests/methods/gradient_bias.h"
 #include "tests/support/small_scenes.h"
+#include "tests/support/textures.h"
 
 #include <gtest/gtest.h>
 
@@ -145,6 +146,48 @@ TEST(GradientStability, AtTheShadowOfALamp) {
     expect_no_bias(gradient_bias(scene.scene, {8, 16, 256}),
                    {area, one_sees, "a card's shadow on a wall, by a lamp", tests_both, 0.15});
 }
+
+/// A floor under a normal map and, before it, a ball that mirrors under a bump map; the first is near or the second.
+class NormalMapStability : public ::testing::TestWithParam<const char *> {};
+
+TEST_P(NormalMapStability, IsUnbiased) {
+    const bool is_mirror = std::string(GetParam()) == "mirror";
+    SceneMaker scene = scene_for_bias();
+    const auto map_of = [&](NormalTexture::Kind kind, unsigned seed, float up) {
+        Texture texture = random_texture(5, 5, Bitmap::Format::real, true, seed);
+        texture.lowest = -1e30f;
+        texture.highest = 1e30f;
+        texture.scale = {1, 1, up};
+        NormalTexture map;
+        map.kind = kind;
+        map.texture = std::int32_t(scene.scene.textures.size());
+        map.scale = 0.1f;
+        map.turns_over = map.shadows = true;
+        scene.scene.textures.push_back(texture);
+        return map;
+    };
+    Bsdf floor = diffuse(0.7), ball;
+    ball.kind = BsdfKind::conductor;
+    floor.map = map_of(NormalTexture::Kind::normal, 1, is_mirror ? 2 : 1);
+    ball.map = map_of(NormalTexture::Kind::bump, 2, 1);
+    scene.floor(-2, 2, 2, scene.material(two_sided(floor, floor)));
+    scene.sphere({0.2f, 0.4f, 0}, is_mirror ? 0.4f : 0.15f, scene.material(ball));
+    scene.lamp({0.5f, 2, 0}, 0.8f, 0.8f, 6, scene.material(diffuse(0)));
+    scene.look({0, 1.3, -2.6}, {0, 0.3, 0}, 30);
+    expect_no_bias(
+        gradient_bias(scene.scene, {8, 32, 256}),
+        is_mirror ? GradientRow{area, "bump beside a mirror: base and offset path are mirrored far apart",
+                                "a ball that mirrors under a bump map, on a floor under a normal map",
+                                "each copies the half vector in the frame that its own place has; unbiased", 0.4}
+                  : GradientRow{area,
+                                "normal maps that turn the frame over: which normal is seen depends on where from, "
+                                "and reconnected paths come from elsewhere",
+                                "a floor of random normals, of which many face away from the eye",
+                                "each path has the normal that its own direction sees; unbiased", 0.2});
+}
+
+INSTANTIATE_TEST_SUITE_P(Maps, NormalMapStability, ::testing::Values("turned", "mirror"),
+                         [](const auto &info) { return std::string(info.param); });
 
 } // namespace
 } // namespace gradus::testing

@@ -106,7 +106,8 @@ TEST_P(GradientReference, IsMetByPrimalAndDifferences) {
 }
 
 #ifdef GRADUS_MANY_KINDS
-INSTANTIATE_TEST_SUITE_P(Image, GradientReference, ::testing::Values(ReferenceCase{"plastics"}), name_of_reference);
+INSTANTIATE_TEST_SUITE_P(Image, GradientReference,
+                         ::testing::Values(ReferenceCase{"plastics"}, ReferenceCase{"relief"}), name_of_reference);
 #else
 INSTANTIATE_TEST_SUITE_P(Image, GradientReference,
                          ::testing::Values(ReferenceCase{"cornell-box"}, ReferenceCase{"torus-rough-glass", 0.02},

@@ -47,7 +47,7 @@ INSTANTIATE_TEST_SUITE_P(Image, OwnReference,
                          name_of_scene);
 INSTANTIATE_TEST_SUITE_P(Full, OwnReference,
                          ::testing::Values("holes-7", "holes-28", "door-ajar", "cornell-box-glossy",
-                                           "slab-and-ball-soft", "lamp-in-egg-soft"),
+                                           "slab-and-ball-soft", "lamp-in-egg-soft", "relief"),
                          name_of_scene);
 
 struct SharedCase {

@@ -90,6 +90,7 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(Copies, ShiftInverse,
                          ::testing::Values(InverseCase{"plates_copied", "plates", 0.2},
                                            InverseCase{"plastics", "plastics", 0.01},
+                                           InverseCase{"relief", "relief", 0.01},
                                            InverseCase{"torus_copied", "torus-rough-glass", 0.2},
                                            InverseCase{"materials_near", "materials", 0.01, 0.02}),
                          name_of_inverse);

@@ -287,5 +287,170 @@ TEST(Textures, PhotonsMeetThem) {
     EXPECT_THROW(render(maker.scene, options, "gpm"), Error);
 }
 
+/// Their kernels take longer to compile than ./check can afford; tests/scene has what maps make of normals.
+class NormalMaps : public ::testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Full, NormalMaps, ::testing::Values(0));
+
+NormalTexture map_of(Scene &scene, const Texture &texture, NormalTexture::Kind kind) {
+    NormalTexture map;
+    map.kind = kind;
+    map.texture = std::int32_t(scene.textures.size());
+    scene.textures.push_back(texture);
+    scene.textures.back().lowest = -1e30f;
+    scene.textures.back().highest = 1e30f;
+    return map;
+}
+
+double dot(const std::array<double, 3> &a, const std::array<double, 3> &b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+std::array<double, 3> unit(const std::array<double, 3> &a) {
+    const double length = std::sqrt(dot(a, a));
+    return {a[0] / length, a[1] / length, a[2] / length};
+}
+
+/// What a white wall under a map is worth in light from one direction, with the irradiance pi across that: front is its
+/// own normal, mapped the map's, both towards the camera where flags do not turn the latter.
+double expected_of(const NormalTexture &map, const std::array<double, 3> &front, std::array<double, 3> mapped,
+                   const std::array<double, 3> &wi, const std::array<double, 3> &light) {
+    if (map.turns_over && dot(wi, front) * dot(wi, mapped) <= 0)
+        for (std::size_t i = 0; i < 3; ++i)
+            mapped[i] = 2 * dot(front, mapped) * front[i] - mapped[i];
+    const double cosine = dot(mapped, light), own = dot(front, light), tilt = dot(front, mapped);
+    if (dot(mapped, wi) <= 0 || cosine <= 0 || own <= 0)
+        return 0;
+    const double roughness = std::min(0.125 * (1 / (tilt * tilt) - 1), 1.0);
+    return cosine * (map.shadows ? 2 / (1 + std::sqrt(1 + roughness * (1 / (own * own) - 1))) : 1);
+}
+
+/// Shading and its differences over a wall of normals, from the front and through `twosided` from behind.
+TEST_P(NormalMaps, DifferencesOfAWallAreThoseOfItsNormals) {
+    for (const int flags : {0, 1, 2, 3})
+        for (const int side : {0, 1, 2}) { // the front; the back of `twosided` around the map; and within it
+            Texture texture = random_texture(5, 4, Bitmap::Format::real, true, 5);
+            texture.scale = {1, 1, 1.5f};
+            SceneMaker maker(size, 1);
+            const double z = side == 0 ? 3 : -3;
+            maker.look({0, 0, z}, {0, 0, 0}, 40);
+            const std::array<double, 3> towards = unit({0.6, 0.3, side == 0 ? 0.7 : -0.7});
+            const auto irradiance = float(std::numbers::pi);
+            maker.directional_light({irradiance, irradiance, irradiance},
+                                    {-float(towards[0]), -float(towards[1]), -float(towards[2])});
+            maker.scene.settings.max_depth = 2;
+            Bsdf white = diffuse(1);
+            white.map = map_of(maker.scene, texture, NormalTexture::Kind::normal);
+            white.map.turns_over = (flags & 1) != 0;
+            white.map.shadows = (flags & 2) != 0;
+            white.map.is_outside = side == 2;
+            maker.parallelogram({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, maker.material(two_sided(white, white)));
+            RenderOptions options = exact_options();
+            options.strategy = SessionOptions::Strategy::mis;
+            const Image image = render(maker.scene, options, "gpt").image;
+            std::size_t turned = 0, close = 0;
+            const auto expected = [&](std::uint32_t x, std::uint32_t y, bool &is_close) {
+                const auto [u, v] = seen_place(maker.scene, x, y, std::uint32_t(options.seed));
+                const std::array<double, 3> color = texture_value(maker.scene.textures[0], u, v);
+                std::array<double, 3> mapped = unit({2 * color[0] - 1, 2 * color[1] - 1, 2 * color[2] - 1});
+                const double front = side == 0 ? 1 : -1;
+                if (side == 1)
+                    mapped[2] = -mapped[2];
+                if (side == 2)
+                    mapped = {-mapped[0], -mapped[1], -mapped[2]};
+                const std::array<double, 3> wi = unit({2 - 4 * u, 2 - 4 * v, z});
+                turned += front * wi[2] * dot(wi, mapped) <= 0 ? 1 : 0;
+                is_close = std::fabs(dot(wi, mapped)) < 1e-4;
+                return expected_of(white.map, {0, 0, front}, mapped, wi, towards);
+            };
+            double largest = 0;
+            // The shadowing divides by the square of the tilt, and normals turn by up to 2 of 5 texels' change at
+            // their shortest, which is some 0.1: values err by ten times what those of a texture do.
+            const double tolerance = 20 * rounding;
+            for (std::uint32_t y = 0; y + 1 < size; ++y)
+                for (std::uint32_t x = 0; x + 1 < size; ++x) {
+                    bool is_close = false, is_close_right = false;
+                    const double value = expected(x, y, is_close), right = expected(x + 1, y, is_close_right);
+                    close += is_close || is_close_right ? 1 : 0;
+                    if (is_close || is_close_right)
+                        continue;
+                    ASSERT_NEAR(layer(image, "primal", 0, x, y), value, tolerance)
+                        << flags << side << ": " << x << ", " << y;
+                    ASSERT_NEAR(layer(image, "dx", 0, x, y), right - value, 2 * tolerance)
+                        << flags << side << ": " << x << ", " << y;
+                    largest = std::max(largest, value);
+                }
+            EXPECT_GT(largest, 0.5);
+            EXPECT_GT(turned, 50u);
+            EXPECT_LT(close, 10u);
+        }
+}
+
+/// A map of nothing but the surface's own normal, or of one height, leaves the image as it is.
+TEST_P(NormalMaps, ThatTurnNothingChangeNothing) {
+    const char *method = "pt"; // of gpt and sppm the kernels take longer than the test is worth
+    {
+        std::vector<Image> images;
+        for (const auto kind : {NormalTexture::Kind::none, NormalTexture::Kind::normal, NormalTexture::Kind::bump}) {
+            Texture texture = random_texture(3, 3, Bitmap::Format::real, true);
+            auto bitmap = std::make_shared<Bitmap>(*texture.bitmap);
+            for (std::size_t i = 0; i < bitmap->words.size(); ++i)
+                bitmap->words[i] = std::bit_cast<std::uint32_t>(i % 3 == 2 ? 1.0f : 0.5f);
+            texture.bitmap = bitmap;
+            SceneMaker maker(16, 16);
+            maker.look({0, 0.5, 3}, {0, 0, 0}, 45);
+            maker.lamp({0, 1.9f, 0.5f}, 0.5f, 0.5f, 5, maker.material(diffuse(0)));
+            maker.scene.settings.max_depth = 5;
+            Bsdf bsdfs[3] = {diffuse(0.7), Bsdf(), Bsdf()};
+            bsdfs[1].kind = BsdfKind::roughconductor_ggx;
+            bsdfs[1].alpha_u = 0.4f, bsdfs[1].alpha_v = 0.2f;
+            bsdfs[2].kind = BsdfKind::dielectric;
+            for (Bsdf &bsdf : bsdfs)
+                if (kind != NormalTexture::Kind::none) {
+                    bsdf.map = map_of(maker.scene, texture, kind);
+                    bsdf.map.turns_over = bsdf.map.shadows = true;
+                }
+            maker.cube(maker.material(two_sided(bsdfs[0], bsdfs[0])));
+            for (Vector3 &p : maker.scene.meshes.back().positions)
+                p = {2 * p.x, 2 * p.y, 4 * p.z};
+            maker.sphere({-0.6f, 0, 0}, 0.5f, maker.material(bsdfs[1]));
+            maker.sphere({0.6f, 0, 0}, 0.5f, maker.material(bsdfs[2]));
+            RenderOptions options;
+            options.photons = 20000;
+            images.push_back(render(maker.scene, options, method).image);
+        }
+        for (const std::size_t other : {1, 2}) {
+            std::size_t off = 0;
+            for (std::uint32_t y = 0; y < 16; ++y)
+                for (std::uint32_t x = 0; x < 16; ++x) {
+                    const double value = pixel(images[0], x, y);
+                    // To rounding, which glass magnifies; where it decides what a path meets, a sample is another.
+                    off += std::fabs(pixel(images[other], x, y) - value) > 1e-3 * value ? 1 : 0;
+                }
+            std::printf("%s, map %zu: %zu pixels differ\n", method, other, off);
+            EXPECT_LE(off, 5u) << method << ", map " << other; // of 256
+        }
+    }
+}
+
+/// Photons and paths see the same, also where normals turn over: light paths must know who looks.
+TEST_P(NormalMaps, PhotonsMeetThem) {
+    SceneMaker maker(16, 64);
+    maker.look({0, 0, 0.95}, {0, 0, 0}, 90);
+    Bsdf bsdf = diffuse(0.8);
+    Texture texture = random_texture();
+    texture.scale = {1, 1, 0.8f};
+    bsdf.map = map_of(maker.scene, texture, NormalTexture::Kind::normal);
+    bsdf.map.turns_over = bsdf.map.shadows = true;
+    maker.cube(maker.material(bsdf), -1, true);
+    maker.lamp({0, 0.9f, 0}, 0.5f, 0.5f, 5, maker.material(diffuse(0)));
+    maker.scene.settings.max_depth = 6;
+    RenderOptions options;
+    const Spread paths = spread_of(render(maker.scene, options, "pt").image);
+    const Spread photons = spread_of(render(maker.scene, options, "sppm").image);
+    std::printf("mean by paths %.5f, by photons %.5f\n", paths.mean, photons.mean);
+    EXPECT_NEAR(photons.mean / paths.mean, 1, 0.03); // as of textures
+    EXPECT_THROW(render(maker.scene, options, "gpm"), Error);
+}
+
 } // namespace
 } // namespace gradus::testing

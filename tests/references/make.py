@@ -48,6 +48,7 @@ REFERENCES = {
     # Small ones, of plugins.
     "thin-lens": ("../tests/scenes/thin-lens.xml", 48, {}, 16384),
     "orthographic": ("../tests/scenes/orthographic.xml", 48, {}, 16384),
+    "relief": ("../tests/scenes/relief.xml", 48, {}, 16384),
     "clipped": ("../tests/scenes/clipped.xml", 48, {}, 16384),
     "clipped-mitchell": ("../tests/scenes/clipped.xml", 48, {"rfilter": "mitchell"}, 65536),
     "plastics": ("plastics.xml", 48, {}, 32768),

@@ -1,6 +1,6 @@
 // <texture type="bitmap">: a picture from a file.
 //   filename; filter_type (bilinear, nearest), wrap_mode (repeat, mirror, clamp), raw (false), to_uv
-//   0.x: filterType (ewa and trilinear are read as bilinear), wrapMode, wrapModeU and wrapModeV where alike, gamma (1
+//   0.x: filterType (ewa and trilinear are read as bilinear), wrapMode, wrapModeU, wrapModeV, gamma (1
 //   is raw), channel (r, g, b, a), uscale, vscale, uoffset, voffset
 #include "runtime/io/plugins/parameters_of_textures.h"
 #include "runtime/io/plugins/plugin.h"
@@ -10,20 +10,15 @@ namespace gradus {
 
 namespace {
 
-Texture::Wrap read_wrap(Properties &properties) {
-    std::string name = lower_case(properties.string("wrap_mode", "repeat"));
-    const std::string u = lower_case(properties.string("wrap_mode_u", name));
-    const std::string v = lower_case(properties.string("wrap_mode_v", u));
-    if (u != v)
-        throw properties.error("wrap_mode_v", "a texture wraps alike along u and v here");
-    name = u;
+Texture::Wrap read_wrap(Properties &properties, const char *parameter, const std::string &otherwise) {
+    const std::string name = lower_case(properties.string(parameter, otherwise));
     if (name == "repeat")
         return Texture::Wrap::repeat;
     if (name == "mirror")
         return Texture::Wrap::mirror;
     if (name == "clamp")
         return Texture::Wrap::clamp;
-    throw properties.error("wrap_mode", "unknown wrap_mode \"" + name + "\" (known: repeat, mirror, clamp)");
+    throw properties.error(parameter, "unknown wrap_mode \"" + name + "\" (known: repeat, mirror, clamp)");
 }
 
 bool read_is_nearest(Properties &properties) {
@@ -41,7 +36,11 @@ Texture texture_bitmap(Properties &properties, SceneBuilder &builder) {
     Texture texture;
     texture.kind = Texture::Kind::bitmap;
     texture.is_nearest = read_is_nearest(properties);
-    texture.wrap = read_wrap(properties);
+    const std::string of_both = properties.string("wrap_mode", "repeat");
+    texture.wrap = read_wrap(properties, "wrap_mode_u", of_both);
+    const Texture::Wrap along_v = read_wrap(properties, "wrap_mode_v", properties.string("wrap_mode_u", of_both));
+    if (along_v != texture.wrap)
+        texture.wrap_v = along_v;
     read_to_uv(properties, texture);
     bool is_raw = properties.boolean("raw", false);
     if (properties.has("gamma")) {

@@ -1,0 +1,36 @@
+#include "runtime/io/plugins/parameters_of_maps.h"
+
+#include <limits>
+
+namespace gradus {
+
+Material read_mapped(Properties &properties, SceneBuilder &builder, NormalTexture::Kind kind) {
+    const auto nested = properties.objects("bsdf");
+    const auto textures = properties.objects("texture");
+    if (nested.size() != 1)
+        throw SceneError(properties.location(),
+                         properties.type() + " needs one nested BSDF, not " + std::to_string(nested.size()));
+    if (textures.size() != 1)
+        throw SceneError(properties.location(),
+                         properties.type() + " needs one nested texture, not " + std::to_string(textures.size()));
+    NormalTexture map;
+    map.kind = kind;
+    const bool is_of_now = !properties.element().is_legacy();
+    map.turns_over = properties.boolean("flip_invalid_normals", is_of_now);
+    map.shadows = properties.boolean("use_shadowing_function", is_of_now);
+    if (kind == NormalTexture::Kind::bump)
+        map.scale = float(properties.number("scale", 1));
+    const FoundTexture found = builder.texture(*textures.front().element, std::numeric_limits<float>::lowest(),
+                                               std::numeric_limits<float>::max());
+    map.texture = found.index;
+    const Texture &texture = builder.texture_at(found.index);
+    if (kind == NormalTexture::Kind::bump && (texture.kind != Texture::Kind::bitmap || texture.is_nearest))
+        properties.diagnostics().warn(textures.front().location,
+                                      "a texture in steps has no slope: as a bump map it turns no normals");
+    if (kind == NormalTexture::Kind::normal && texture.is_srgb)
+        properties.diagnostics().warn(textures.front().location,
+                                      "the normal map is decoded from sRGB; nearly all are meant to be read raw");
+    return builder.with_map(builder.build_object<Material>(*nested.front().element), map, nested.front().location);
+}
+
+} // namespace gradus
