@@ -9,8 +9,8 @@ namespace gradus {
 
 namespace {
 
-/// Variances have a bound by place; this one is for where nothing is seen at all. Multigrid cycles diverge where weights
-/// jump by a factor of 10^9 from pixel to pixel.
+/// Variances have a bound by place; this one is for where nothing is seen at all. Multigrid cycles diverge where
+/// weights jump by a factor of 10^9 from pixel to pixel.
 constexpr double largest_weight = 1000;
 
 /// A variance is at least this share of the squared brightness, over the number of samples: none at all is luck.

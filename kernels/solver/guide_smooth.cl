@@ -1,5 +1,5 @@
-/* Gaussian means over the neighbourhood, along rows and then along columns, GUIDE_TAPS pixels far. The taps are the host's; what lies outside
- * of the image is zero, so that a plane of ones smoothed alike tells how much was inside. */
+/* Gaussian means over the neighbourhood, along rows and then along columns, GUIDE_TAPS pixels far. The taps are the
+ * host's; what lies outside of the image is zero, so that a plane of ones smoothed alike tells how much was inside. */
 #include "kernels/solver/grid.h"
 
 SOLVE guide_smooth_rows(GRID, __global const real *taps, __global const real *image, __global real *smoothed) {

@@ -11,11 +11,10 @@ GRADUS_FN real together(real sum, real variance) { return sum < R(0) || variance
 
 /* The base weights: 0 for what is missing, else 1 or by inverse variance. */
 SOLVE base_weights(GRID, uint weight_plane, uint by_variances, real mean_gradient_variance, real mean_primal_variance,
-                   real largest_weight,
-                   __global const real *valid_primal, __global const real *valid_dx, __global const real *valid_dy,
-                   __global const real *primal_variance, __global const real *dx_variance,
-                   __global const real *dy_variance, __global real *base_x, __global real *base_y,
-                   __global real *base_data) {
+                   real largest_weight, __global const real *valid_primal, __global const real *valid_dx,
+                   __global const real *valid_dy, __global const real *primal_variance,
+                   __global const real *dx_variance, __global const real *dy_variance, __global real *base_x,
+                   __global real *base_y, __global real *base_data) {
     SOLVER_PLACE
     const size_t at = GRID_AT(0, x, y), to = channel * weight_plane + at;
     real wx = R(1), wy = R(1), wd = R(1);

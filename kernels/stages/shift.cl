@@ -124,7 +124,7 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
 #if MEETS_LIGHTS
     /* The base path's light sample, made again. */
     const random4 u = PATH_DRAW(AT_UINT(path, key_0, row), AT_UINT(path, key_1, row),
-                                  random_dimension_light(AT_UINT(path, depth, row) - 1u));
+                                random_dimension_light(AT_UINT(path, depth, row) - 1u));
     const chosen_light chosen = light_sampling(lights, light_kinds, light_alias, light_count, scene_diameter, unit,
                                                base, u ENVIRONMENT_ARGUMENTS);
     const light_choice s = chosen.choice;

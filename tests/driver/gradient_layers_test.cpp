@@ -37,10 +37,12 @@ class GradientLayers : public GradientImagesTest {
                 expected.push_back(start + float(i));
         EXPECT_EQ(images.planes.at(layer), expected) << layer_name(layer);
     }
-    /// Each layer's red begins at a hundred more than that of the layer before.
+    /// Each layer's red begins at a hundred more than that of the layer before. Those of halves are not there.
     void expect_all_layers(const GradientImages &images) const {
         float first = 100;
         for (const GradientLayer layer : gradient_layers) {
+            if (is_of_half(layer))
+                continue;
             expect_colours(images, layer, first);
             first += 100;
         }
@@ -93,6 +95,33 @@ TEST_F(GradientLayers, OneFileWithLayers) {
     sources.variances = true;
     const GradientImages images = read_gradient_images(sources);
     expect_all_layers(images);
+}
+
+TEST_F(GradientLayers, HalvesAreReadWhereTheyAreAskedFor) {
+    const std::string path = write("halves.exr", counting_image(3, 2,
+                                                                layers({{"primal_even", 100},
+                                                                        {"dx_even", 200},
+                                                                        {"dy_even", 300},
+                                                                        {"primal_even_variance", 400},
+                                                                        {"dx_even_variance", 500},
+                                                                        {"dy_even_variance", 600},
+                                                                        {"primal_odd", 700},
+                                                                        {"dx_odd", 800},
+                                                                        {"dy_odd", 900},
+                                                                        {"primal_odd_variance", 1000},
+                                                                        {"dx_odd_variance", 1100},
+                                                                        {"dy_odd_variance", 1200}})));
+    GradientSources sources = layered(path);
+    sources.halves = true;
+    const GradientImages images = read_gradient_images(sources);
+    float first = 100;
+    for (const auto &half : half_layers)
+        for (const GradientLayer layer : half) {
+            expect_colours(images, layer, first);
+            first += 100;
+        }
+    sources.halves = false;
+    expect_error(sources, ExitCode::image, HasSubstr("primal"));
 }
 
 TEST_F(GradientLayers, NamesOfOtherRenderersInAnyCase) {

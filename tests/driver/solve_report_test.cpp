@@ -34,6 +34,7 @@ PoissonReport full_report() {
 
 TEST(SolveReport, JsonHoldsEverything) {
     SolveRecord record;
+    record.reconstruction = "l1";
     record.norm = "L1";
     record.weights = "uniform";
     record.width = 640;
@@ -47,6 +48,7 @@ TEST(SolveReport, JsonHoldsEverything) {
     nlohmann::json expected = {
         {"version", version()},
         {"method", "irls, pcg"},
+        {"reconstruction", "l1"},
         {"norm", "L1"},
         {"weights", "uniform"},
         {"alpha", 0.125},
