@@ -13,7 +13,7 @@ namespace gradus {
 
 std::map<std::string, std::string> definitions_of_kind(const std::string &kind, bool is_dirac) {
     std::map<std::string, std::string> definitions;
-    definitions.emplace("BSDF_IS_DIRAC", is_dirac ? "1" : "0");
+    definitions.emplace("BSDF_IS_DIRAC", std::string(1, is_dirac ? '1' : '0'));
     if (!kind.empty())
         definitions["BSDF"] = kind;
     if (bsdf_kind_is_mixed(kind))

@@ -305,7 +305,7 @@ double dot(const std::array<double, 3> &a, const std::array<double, 3> &b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-std::array<double, 3> unit(const std::array<double, 3> &a) {
+std::array<double, 3> normalised(const std::array<double, 3> &a) {
     const double length = std::sqrt(dot(a, a));
     return {a[0] / length, a[1] / length, a[2] / length};
 }
@@ -333,7 +333,7 @@ TEST_P(NormalMaps, DifferencesOfAWallAreThoseOfItsNormals) {
             SceneMaker maker(size, 1);
             const double z = side == 0 ? 3 : -3;
             maker.look({0, 0, z}, {0, 0, 0}, 40);
-            const std::array<double, 3> towards = unit({0.6, 0.3, side == 0 ? 0.7 : -0.7});
+            const std::array<double, 3> towards = normalised({0.6, 0.3, side == 0 ? 0.7 : -0.7});
             const auto irradiance = float(std::numbers::pi);
             maker.directional_light({irradiance, irradiance, irradiance},
                                     {-float(towards[0]), -float(towards[1]), -float(towards[2])});
@@ -351,13 +351,13 @@ TEST_P(NormalMaps, DifferencesOfAWallAreThoseOfItsNormals) {
             const auto expected = [&](std::uint32_t x, std::uint32_t y, bool &is_close) {
                 const auto [u, v] = seen_place(maker.scene, x, y, std::uint32_t(options.seed));
                 const std::array<double, 3> color = texture_value(maker.scene.textures[0], u, v);
-                std::array<double, 3> mapped = unit({2 * color[0] - 1, 2 * color[1] - 1, 2 * color[2] - 1});
+                std::array<double, 3> mapped = normalised({2 * color[0] - 1, 2 * color[1] - 1, 2 * color[2] - 1});
                 const double front = side == 0 ? 1 : -1;
                 if (side == 1)
                     mapped[2] = -mapped[2];
                 if (side == 2)
                     mapped = {-mapped[0], -mapped[1], -mapped[2]};
-                const std::array<double, 3> wi = unit({2 - 4 * u, 2 - 4 * v, z});
+                const std::array<double, 3> wi = normalised({2 - 4 * u, 2 - 4 * v, z});
                 turned += front * wi[2] * dot(wi, mapped) <= 0 ? 1 : 0;
                 is_close = std::fabs(dot(wi, mapped)) < 1e-4;
                 return expected_of(white.map, {0, 0, front}, mapped, wi, towards);
