@@ -50,6 +50,8 @@ void print_digests(std::uint32_t width, std::uint32_t height, int threads, bool 
     for (const LinearMethod method :
          {LinearMethod::jacobi, LinearMethod::cg, LinearMethod::pcg, LinearMethod::multigrid})
         for (const bool weighted : {false, true}) {
+            if (few && weighted && method == LinearMethod::cg)
+                continue; // the kernels of jacobi and of pcg
             PoissonOptions options;
             options.norm = PoissonNorm::l2;
             options.method = method;
