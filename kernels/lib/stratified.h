@@ -49,6 +49,9 @@ GRADUS_FN uint sobol_second(uint number) {
     return number ^ (number >> 16);
 }
 
+/* n itself, computed after x, or like expressions would be packed (kernels/lib/ordered.h). */
+GRADUS_FN uint number_after(uint n, real x) { return n + (uint)(int)(R(0) * x); }
+
 /* The draw of sample `number` of a pixel: pairs (a, b) and (c, d). `key`: a hash of pixel and seed. */
 GRADUS_FN random4 stratified_draw(uint key, uint number, uint dimension) {
     const uint reversed = reversed_bits(number);
@@ -56,12 +59,12 @@ GRADUS_FN random4 stratified_draw(uint key, uint number, uint dimension) {
     const random_bits second = random_hash(first.w, dimension, 1u, 0x73747261u);
     /* In which order: scrambled numbers of samples, so that 2^m of them are others of the sequence that form a net. */
     const uint in_first = reversed_bits(turned_by_lower_bits(reversed, first.x));
-    const uint in_second = reversed_bits(turned_by_lower_bits(reversed, second.x));
     random4 u;
     u.a = random_unit(reversed_bits(turned_by_lower_bits(in_first, first.y)));
-    u.b = random_unit(reversed_bits(turned_by_lower_bits(sobol_second(in_first), first.z)));
+    u.b = random_unit(reversed_bits(turned_by_lower_bits(sobol_second(number_after(in_first, u.a)), first.z)));
+    const uint in_second = reversed_bits(turned_by_lower_bits(number_after(reversed, u.b), second.x));
     u.c = random_unit(reversed_bits(turned_by_lower_bits(in_second, second.y)));
-    u.d = random_unit(reversed_bits(turned_by_lower_bits(sobol_second(in_second), second.z)));
+    u.d = random_unit(reversed_bits(turned_by_lower_bits(sobol_second(number_after(in_second, u.c)), second.z)));
     return u;
 }
 
