@@ -53,7 +53,7 @@ GRADUS_FN real mapped_factor(uint flags, vec3 own, vec3 wo) {
     const real shadowing = R(2) / (R(1) + r_sqrt(R(1) + roughness * tangent_squared(cosine)));
     const real factor = (flags & normal_map_shadows) != 0u ? shadowing : R(1);
     const int is_on_both = cosine * wo.z > R(0);
-    return flags == 0u || is_on_both ? (flags == 0u ? R(1) : factor) : R(0);
+    return flags == 0u || is_on_both ? factor : R(0);
 }
 
 GRADUS_LIB_END

@@ -12,6 +12,9 @@ GRADUS_LIB_BEGIN
 /* x itself, computed after y, which must be finite. Adding 0 y cannot be folded away: y might be infinite. */
 GRADUS_FN real r_after(real x, real y) { return x + R(0) * y; }
 
+/* n itself, computed after x, which must be finite: whole numbers and indices into one array are packed too. */
+GRADUS_FN uint uint_after(uint n, real x) { return n + (uint)(int)(R(0) * x); }
+
 /* v itself, computed after y, which must be finite. */
 GRADUS_FN vec3 v3_after(vec3 v, real y) { return v3(r_after(v.x, y), r_after(v.y, y), r_after(v.z, y)); }
 

@@ -8,12 +8,29 @@
 #define GRADUS_LIB_SAMPLE_NUMBER_H
 //! traits: TRAIT_HALVES
 
+#include "kernels/shared/compat.h"
+
+GRADUS_LIB_BEGIN
+
+typedef struct {
+    uint low, high;
+    GRADUS_NOT_IN_REGISTERS
+} sample_number;
+
+/* Of the sample `more` samples of its pixel after the one at the place (first_low, first_high). */
+GRADUS_FN sample_number sample_number_of(uint first_low, uint first_high, uint more) {
+    const uint low = first_low + more, high = first_high + (low < first_low ? 1u : 0u);
+    sample_number number;
 #if TRAIT_HALVES
-#define SAMPLE_LOW(low, high) ((low) >> 1 | (high) << 31)
-#define SAMPLE_HIGH(low, high) ((high) >> 1 | (low) << 31)
+    number.low = low >> 1 | high << 31;
+    number.high = high >> 1 | low << 31;
 #else
-#define SAMPLE_LOW(low, high) (low)
-#define SAMPLE_HIGH(low, high) (high)
+    number.low = low;
+    number.high = high;
 #endif
+    return number;
+}
+
+GRADUS_LIB_END
 
 #endif

@@ -8,6 +8,7 @@
  * where what is sampled is not all noise: an edge in a pixel, reflection or refraction, a point of a light. */
 #ifndef GRADUS_LIB_STRATIFIED_H
 #define GRADUS_LIB_STRATIFIED_H
+#include "kernels/lib/ordered.h"
 #include "kernels/lib/random.h"
 
 GRADUS_LIB_BEGIN
@@ -49,9 +50,6 @@ GRADUS_FN uint sobol_second(uint number) {
     return number ^ (number >> 16);
 }
 
-/* n itself, computed after x, or like expressions would be packed (kernels/lib/ordered.h). */
-GRADUS_FN uint number_after(uint n, real x) { return n + (uint)(int)(R(0) * x); }
-
 /* The draw of sample `number` of a pixel: pairs (a, b) and (c, d). `key`: a hash of pixel and seed. */
 GRADUS_FN random4 stratified_draw(uint key, uint number, uint dimension) {
     const uint reversed = reversed_bits(number);
@@ -61,10 +59,10 @@ GRADUS_FN random4 stratified_draw(uint key, uint number, uint dimension) {
     const uint in_first = reversed_bits(turned_by_lower_bits(reversed, first.x));
     random4 u;
     u.a = random_unit(reversed_bits(turned_by_lower_bits(in_first, first.y)));
-    u.b = random_unit(reversed_bits(turned_by_lower_bits(sobol_second(number_after(in_first, u.a)), first.z)));
-    const uint in_second = reversed_bits(turned_by_lower_bits(number_after(reversed, u.b), second.x));
+    u.b = random_unit(reversed_bits(turned_by_lower_bits(sobol_second(uint_after(in_first, u.a)), first.z)));
+    const uint in_second = reversed_bits(turned_by_lower_bits(uint_after(reversed, u.b), second.x));
     u.c = random_unit(reversed_bits(turned_by_lower_bits(in_second, second.y)));
-    u.d = random_unit(reversed_bits(turned_by_lower_bits(sobol_second(number_after(in_second, u.c)), second.z)));
+    u.d = random_unit(reversed_bits(turned_by_lower_bits(sobol_second(uint_after(in_second, u.c)), second.z)));
     return u;
 }
 

@@ -15,9 +15,6 @@ GRADUS_LIB_BEGIN
 
 #define TEXTURES_HAVE(feature) ((features & (feature)) != 0)
 
-/* n itself, computed after x, which must be finite (kernels/lib/ordered.h): indices into one array are packed too. */
-GRADUS_FN uint texture_after(uint n, real x) { return n + (uint)(int)(R(0) * x); }
-
 /* Where a coordinate lies in [0, 1]; 0 for what is no finite number. */
 GRADUS_FN real texture_wrapped(int features, real s, uint flags) {
     real place = s - r_floor(s);
@@ -70,7 +67,7 @@ GRADUS_FN real texture_srgb(real encoded) {
 
 /* What 8 or 16 bits, or a float's, stand for, linear. Computed after `before` (kernels/lib/ordered.h). */
 GRADUS_FN real texture_value_of(int features, uint bits, uint flags, real before) {
-    const uint code = texture_after(bits, before);
+    const uint code = uint_after(bits, before);
     const uint format = texture_format(flags);
     real value = R(0);
     if (TEXTURES_HAVE(textures_of_bytes | textures_of_words)) {
@@ -112,7 +109,7 @@ GRADUS_FN rgb texture_fetch(int features, GRADUS_GLOBAL const uint *texels, text
     /* How many words a texel of colour has, and how many texels of gray, as a power of two, a word. */
     const uint words = of_bytes ? 1u : of_pairs ? 2u : 3u, shared = of_bytes ? 2u : of_pairs ? 1u : 0u;
     const uint at = place.offset + (is_color ? number * words : number >> shared);
-    const uint first = texels[texture_after(at, before)];
+    const uint first = texels[uint_after(at, before)];
     const uint second = has_pairs | has_reals ? texels[at + ((is_color & !of_bytes) ? 1u : 0u)] : first;
     const uint third = has_reals ? texels[at + ((is_color & of_reals) ? 2u : 0u)] : second;
     /* Of gray the texel's place in its word. */

@@ -59,30 +59,28 @@ STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ra
 #endif
     const uint more_samples = divide(number, pixels_multiplier, pixels_shift);
     const uint pixel = number - more_samples * pixels;
-    const uint place_low = first_sample_low + more_samples;
-    const uint place_high = first_sample_high + (place_low < first_sample_low ? 1u : 0u);
-    const uint sample_low = SAMPLE_LOW(place_low, place_high), sample_high = SAMPLE_HIGH(place_low, place_high);
+    const sample_number sample = sample_number_of(first_sample_low, first_sample_high, more_samples);
     const uint line = divide(pixel, width_multiplier, width_shift);
     const uint y = line + crop_y;
     const uint x = pixel - line * crop_width + crop_x;
 
 #if TRAIT_STRATIFIED
-    random_bits key = random_key(seed_low, seed_high, y * film_width + x, 0u, sample_high);
-    key.y = sample_low;
+    random_bits key = random_key(seed_low, seed_high, y * film_width + x, 0u, sample.high);
+    key.y = sample.low;
 #else
-    const random_bits key = random_key(seed_low, seed_high, y * film_width + x, sample_low, sample_high);
+    const random_bits key = random_key(seed_low, seed_high, y * film_width + x, sample.low, sample.high);
 #endif
 #if TRAIT_SHARED_JITTER
     /* All pixels of a sample share their place within the pixel. Places follow each other in a sequence that fills the
      * pixel evenly: what all pixels share does not average out over the image. */
-    const random_bits start = random_key(seed_low, seed_high, 0xFFFFFFFFu, 0u, sample_high);
-    const point2 place = additive_sequence(start.x, start.y, sample_low);
+    const random_bits start = random_key(seed_low, seed_high, 0xFFFFFFFFu, 0u, sample.high);
+    const point2 place = additive_sequence(start.x, start.y, sample.low);
     random4 u;
     u.a = place.x;
     u.b = place.y;
 #if TRAIT_THIN_LENS
     /* And their point of the lens: so base and offset paths are each other's first segments. */
-    const random4 lens = stratified_draw(start.z, sample_low, random_dimension_camera);
+    const random4 lens = stratified_draw(start.z, sample.low, random_dimension_camera);
     u.c = lens.a;
     u.d = lens.b;
 #else

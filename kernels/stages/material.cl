@@ -155,11 +155,10 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
 #endif
 #if TRAIT_SHARED_JITTER
     /* An additive sequence, as the places within the pixel are: what all pixels share does not average out. */
-    const uint place = first_sample_low + divide(AT_UINT(path, slot, i), pixels_multiplier, pixels_shift);
-    const uint place_high = first_sample_high + (place < first_sample_low ? 1u : 0u);
-    const uint sample = SAMPLE_LOW(place, place_high), high = SAMPLE_HIGH(place, place_high);
-    const random_bits start = random_key(seed_low, seed_high, 0xFFFFFFFDu, 0u, high);
-    const real shared = random_unit(start.x + sample * 2654435769u);
+    const sample_number sample = sample_number_of(first_sample_low, first_sample_high,
+                                                  divide(AT_UINT(path, slot, i), pixels_multiplier, pixels_shift));
+    const random_bits start = random_key(seed_low, seed_high, 0xFFFFFFFDu, 0u, sample.high);
+    const real shared = random_unit(start.x + sample.low * 2654435769u);
     choice = depth == 0u ? shared : choice;
 #endif
 #pragma unroll
