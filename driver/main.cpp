@@ -39,8 +39,7 @@ int main(int argc, char **argv) {
         prepared.solve = [solver](const gradus::HostImages &images, const gradus::PoissonOptions &options,
                                   float *result) { return solver->solve(images, options, result); };
         prepared.solve_halves = [device, solver](const std::array<gradus::HostImages, 2> &images,
-                                                 const std::array<std::uint64_t, 2> &samples, gradus::Reconstruction,
-                                                 float *result) {
+                                                 const std::array<std::uint64_t, 2> &samples, float *result) {
             return gradus::solve_halves(*device, *solver, images, samples, result);
         };
         return prepared;

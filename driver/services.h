@@ -29,9 +29,9 @@ struct PreparedSolver {
     std::shared_ptr<void> device; ///< outlives the solver
     DeviceDescription description;
     std::function<PoissonReport(const HostImages &, const PoissonOptions &, float *result)> solve;
-    /// From both halves, of so many samples each, where `reconstruction` needs them.
+    /// From both halves, of so many samples each.
     std::function<PoissonReport(const std::array<HostImages, 2> &, const std::array<std::uint64_t, 2> &samples,
-                                Reconstruction reconstruction, float *result)>
+                                float *result)>
         solve_halves;
 };
 

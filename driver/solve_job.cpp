@@ -94,9 +94,8 @@ class SolveJob {
         planes.dy_variance = images_.find(GradientLayer::dy_variance);
         result_.resize(std::size_t(images_.width) * images_.height * channels);
         for (int i = 0; i < request_.repeats; ++i)
-            report_ = request_.sources.halves
-                          ? solver.solve_halves(halves(), samples_of_halves(), request_.reconstruction, result_.data())
-                          : solver.solve(planes, request_.options, result_.data());
+            report_ = request_.sources.halves ? solver.solve_halves(halves(), samples_of_halves(), result_.data())
+                                              : solver.solve(planes, request_.options, result_.data());
         if (const float *direct = planes.direct; direct && request_.sources.halves)
             for (std::size_t i = 0; i < result_.size(); ++i)
                 result_[i] += direct[i];

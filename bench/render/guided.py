@@ -3,10 +3,10 @@
 
     python3 bench/render/guided.py [SCENE ...] [--spp 16 64 256] [--seeds 3] [--variants gpt:filter pt:denoiser ...]
 
-SCENE as in convergence.py; the default are eight scenes with references of another renderer. A variant is METHOD:GUIDE.
-The rival has clean features, and as many samples as pt takes in the seconds that the variant rendered and
-reconstructed for; the rival's denoising is not counted. Then the same at equal samples. Each figure is the median over
-the seeds. Open Image Denoise is that of the Python package pyoidn (bench/peers).
+SCENE is one that convergence.py finds a reference for; the default are eight of these. A variant is METHOD:GUIDE. The
+rival has clean features, and as many samples as pt takes in the seconds that the variant rendered and reconstructed
+for; the rival's denoising is not counted. Then the same at equal samples. Each figure is the median over the seeds.
+Open Image Denoise is that of the Python package pyoidn (bench/peers).
 """
 
 import argparse
@@ -24,7 +24,6 @@ import denoiser_setup  # noqa: E402
 import renders  # noqa: E402
 from pythons import find_python  # noqa: E402
 
-SCENES = ["cornell-box", "door-ajar", "materials", "plates", "torus-soft-256", "textures", "sundial", "plastics"]
 VARIANTS = ["gpt:filter", "gpt:denoiser", "pt:filter", "pt:denoiser"]
 
 
@@ -69,7 +68,7 @@ def ratios(arguments, scene, python, samples, seed, folder):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("scenes", nargs="*", default=SCENES)
+    parser.add_argument("scenes", nargs="*", default=renders.RECONSTRUCTION_SCENES)
     parser.add_argument("--spp", nargs="+", type=int, default=[16, 64, 256])
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--variants", nargs="+", default=VARIANTS)
@@ -79,15 +78,10 @@ def main():
     if not python:
         sys.exit(denoiser_setup.HOW_TO_GET)
     os.environ.setdefault("GRADUS_DENOISER", str(denoiser_library(python)))
-    known = renders.scene_names()
     print("relMSE over that of denoised pt, at equal time / equal samples")
     print(f"{'scene':16} {'spp':>4} {'pt denoised':>11}  " + "  ".join(f"{name:>13}" for name in arguments.variants))
     with tempfile.TemporaryDirectory() as folder:
-        for name in arguments.scenes:
-            if name not in known:
-                print(f"{name}: not there, left out")
-                continue
-            scene = renders.find_scene(name)
+        for scene in renders.scenes_with_reference(arguments.scenes):
             for samples in arguments.spp:
                 runs = [ratios(arguments, scene, python, samples, seed, pathlib.Path(folder))
                         for seed in range(1, arguments.seeds + 1)]

@@ -3,8 +3,8 @@
 
     python3 bench/render/reconstructions.py [SCENE ...] [--spp 4 16 64] [--seeds 3] [--reconstructions l1 l2 weighted]
 
-SCENE as in convergence.py; the default are eight scenes with references of another renderer. Each figure is the median
-over the seeds; a ratio is the median of the seeds' ratios.
+SCENE is one that convergence.py finds a reference for; the default are eight of these. Each figure is the median over
+the seeds; a ratio is the median of the seeds' ratios.
 """
 
 import argparse
@@ -16,8 +16,6 @@ import tempfile
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 import renders  # noqa: E402
-
-SCENES = ["cornell-box", "door-ajar", "materials", "plates", "torus-soft-256", "textures", "sundial", "plastics"]
 
 
 def errors(arguments, scene, samples, seed, folder):
@@ -34,7 +32,7 @@ def errors(arguments, scene, samples, seed, folder):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("scenes", nargs="*", default=SCENES)
+    parser.add_argument("scenes", nargs="*", default=renders.RECONSTRUCTION_SCENES)
     parser.add_argument("--spp", nargs="+", type=int, default=[4, 16, 64])
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--method", default="gpt")
@@ -42,14 +40,9 @@ def main():
     parser.add_argument("--gradus", default=renders.ROOT / "build" / "gradus")
     arguments = parser.parse_args()
     first, *others = arguments.reconstructions
-    known = renders.scene_names()
     print(f"{'scene':18} {'spp':>4}  {'relMSE ' + first:>12}  " + "  ".join(f"{o + '/' + first:>14}" for o in others))
     with tempfile.TemporaryDirectory() as folder:
-        for name in arguments.scenes:
-            if name not in known and ":" not in name:
-                print(f"{name}: not there, left out")
-                continue
-            scene = renders.find_scene(name)
+        for scene in renders.scenes_with_reference(arguments.scenes):
             for samples in arguments.spp:
                 runs = [errors(arguments, scene, samples, seed, pathlib.Path(folder))
                         for seed in range(1, arguments.seeds + 1)]
