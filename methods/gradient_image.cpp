@@ -167,7 +167,7 @@ Image reconstruct(Device &device, PoissonSolver &solver, Image whole, GradientFi
         reconstruct_from_halves(device, solver, whole, films, options, films_are_read);
     else
         reconstruct_from_film(solver, whole, films, poisson_options(options, films.frames()), films_are_read);
-    if (options.reconstruction == Reconstruction::guided && !options.aov) // features were there for the guide
+    if (!options.aov && !layers) // features, if any, were there for the guide
         whole.channels.resize(3);
     whole.channels.insert(whole.channels.begin() + 3, std::make_move_iterator(more.begin()),
                           std::make_move_iterator(more.end()));

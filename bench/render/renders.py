@@ -22,9 +22,6 @@ SHARED_SCENES = {"cornell-box-256": ("cornell-box/scene.xml", 256, 256, 30, "cor
 # Light that paths from the camera find by chance alone, so that their errors are those of another kind of scene.
 PHOTON_SCENES = ["metal-ring", "metal-ring-soft", "torus-smooth-glass-soft", "slab-and-ball-soft", "lamp-in-egg-soft",
                  "cornell-box-glossy"]
-# Scenes that differ in what makes them hard to reconstruct, to weigh reconstructions against each other.
-RECONSTRUCTION_SCENES = ["cornell-box", "door-ajar", "materials", "plates", "torus-soft-256", "textures", "sundial",
-                         "plastics"]
 NO_ROULETTE = 1_000_000  # a depth at which no path begins with Russian roulette
 NO_GRADIENTS = 6  # gradus's exit code for an input image that does not fit
 
@@ -112,16 +109,6 @@ def find_scene(text):
     return Scene(f"{pathlib.Path(path).stem} {size}", pathlib.Path(path).resolve(), int(width), int(height))
 
 
-def scenes_with_reference(names):
-    """Those scenes, one after the other; says of each that has no reference here that it is left out."""
-    known = scene_names()
-    for name in names:
-        if name in known:
-            yield find_scene(name)
-        else:
-            print(f"{name}: not there, left out")
-
-
 def box_filter(scene):
     """References are made with the box filter: the options that say so, where the scene has that parameter."""
     return ["-D", "rfilter=box"] if "$rfilter" in scene.file.read_text() else []
@@ -154,6 +141,15 @@ def compare(gradus, image, reference, *options):
     return {**compared["images"][0], "reference_relative_mse": compared["reference_relative_mse"]}
 
 
+def split_variant(text):
+    """METHOD, METHOD:RECONSTRUCTION or METHOD:guided:GUIDE as the method and the options that say the rest."""
+    method, *more = text.split(":")
+    options = ["--reconstruction", "--guide"]
+    if len(more) > len(options):
+        sys.exit(f"'{text}' is not METHOD, METHOD:RECONSTRUCTION or METHOD:guided:GUIDE")
+    return method, [word for pair in zip(options, more) for word in pair]
+
+
 def known_methods(gradus):
     """The methods that this program has, as its help lists them."""
     listed = re.search(r"--method\s+TEXT:\{([^}]*)\}", run(gradus, "render", "--help"))
@@ -162,14 +158,15 @@ def known_methods(gradus):
     return listed.group(1).split(",")
 
 
-def reconstruction_seconds(gradus, image):
+def reconstruction_seconds(gradus, image, options=()):
     """Seconds in which the image is reconstructed from its gradients, all kernels compiled; 0 where it has none.
+    options: those of its render that say how.
 
     A render reconstructs once, after the time that its statistics call render_seconds, and loads kernels meanwhile;
     here the third of three is timed."""
     record, output = pathlib.Path(image).with_suffix(".solved.json"), pathlib.Path(image).with_suffix(".solved.exr")
     result = finished(gradus, "solve", image, "-o", output, "--stats", record, "--repeats", 3, "--quiet",
-                      accepted=(0, NO_GRADIENTS))
+                      *options, accepted=(0, NO_GRADIENTS))
     if result.returncode == NO_GRADIENTS:
         return 0.0
     return json.loads(record.read_text())["seconds"]
