@@ -22,9 +22,6 @@ SHARED_SCENES = {"cornell-box-256": ("cornell-box/scene.xml", 256, 256, 30, "cor
 # Light that paths from the camera find by chance alone, so that their errors are those of another kind of scene.
 PHOTON_SCENES = ["metal-ring", "metal-ring-soft", "torus-smooth-glass-soft", "slab-and-ball-soft", "lamp-in-egg-soft",
                  "cornell-box-glossy"]
-# Scenes that differ in what makes them hard to reconstruct, to weigh reconstructions against each other.
-RECONSTRUCTION_SCENES = ["cornell-box", "door-ajar", "materials", "plates", "torus-soft-256", "textures", "sundial",
-                         "plastics"]
 NO_ROULETTE = 1_000_000  # a depth at which no path begins with Russian roulette
 NO_GRADIENTS = 6  # gradus's exit code for an input image that does not fit
 
@@ -110,16 +107,6 @@ def find_scene(text):
     if not pathlib.Path(path).exists():
         sys.exit(f"{path}: no such scene")
     return Scene(f"{pathlib.Path(path).stem} {size}", pathlib.Path(path).resolve(), int(width), int(height))
-
-
-def scenes_with_reference(names):
-    """Those scenes, one after the other; says of each that has no reference here that it is left out."""
-    known = scene_names()
-    for name in names:
-        if name in known:
-            yield find_scene(name)
-        else:
-            print(f"{name}: not there, left out")
 
 
 def box_filter(scene):
