@@ -123,7 +123,7 @@ void reconstruct_from_halves(Device &device, PoissonSolver &solver, Image &whole
 
 PoissonOptions poisson_options(const RenderOptions &options, std::uint64_t frames) {
     PoissonOptions poisson;
-    poisson.norm = options.reconstruction == Reconstruction::l1 ? PoissonNorm::l1 : PoissonNorm::l2;
+    poisson.norm = options.reconstruction == Reconstruction::l2 ? PoissonNorm::l2 : PoissonNorm::l1;
     poisson.alpha_from_variances = !options.alpha && frames > 1;
     poisson.alpha = options.alpha.value_or(poisson.alpha);
     return poisson;
@@ -141,9 +141,9 @@ ReconstructionUsed reconstruction_used(const RenderOptions &options, std::uint64
     Reconstruction reconstruction = options.reconstruction;
     ReconstructionUsed used;
     if (needs_halves(reconstruction) && !halves_have_variances(samples, pixels)) {
-        used.note = fmt::format("{} needs {} samples of each pixel, two in each half; with less it is l2",
+        used.note = fmt::format("{} needs {} samples of each pixel, two in each half; with less it is l1",
                                 reconstruction_name(reconstruction), 2 * least_half_samples);
-        reconstruction = Reconstruction::l2;
+        reconstruction = Reconstruction::l1;
     }
     used.name = reconstruction_name(reconstruction);
     if (reconstruction == Reconstruction::guided)

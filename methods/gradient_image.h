@@ -28,7 +28,7 @@ void compile_reconstruction(Device &device, const RenderOptions &options, std::u
 PoissonOptions poisson_options(const RenderOptions &options, std::uint64_t frames);
 
 /// How an image of so many samples is reconstructed, and what its mean tends to. Halves of one sample have no
-/// variances to judge each other by: l2 then.
+/// variances to judge each other by: l1 then.
 ReconstructionUsed reconstruction_used(const RenderOptions &options, std::uint64_t samples, std::uint64_t pixels);
 
 } // namespace gradus

@@ -23,7 +23,7 @@ class Tracer; // runtime/trace/tracer.h
 /// What methods that reconstruct ask beside that.
 struct RenderOptions : SessionOptions {
     bool layers = false; ///< also what the image was reconstructed from, gradient-domain methods
-    Reconstruction reconstruction = Reconstruction::l1; ///< gradient-domain methods
+    Reconstruction reconstruction = Reconstruction::weighted; ///< gradient-domain methods
     Guide guide = Guide::filter;                        ///< of Reconstruction::guided
     /// Of l1 and l2, the weight of the primal; none: from the variances.
     std::optional<double> alpha;

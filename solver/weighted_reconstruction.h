@@ -3,7 +3,9 @@
 // Least squares with weights by inverse variance have the least error, but variances of the same samples bias them: of
 // skewed noise what is too dark also looks too sure. So each half of the samples is solved for with the other's
 // variances, which know nothing of its noise. Whatever the weights, the solution is linear in the half's images, so its
-// mean is right, and so is that of both halves. (Rousselle et al. 2016 weigh by the variances of the samples
+// mean is right, and so is that of both halves. The halves may share what all pixels of a sample share, the places
+// within pixels: given these, a half's images agree on average with one image, which any weights leave as it is.
+// (Rousselle et al. 2016 weigh by the variances of the samples
 // themselves.)
 #pragma once
 
