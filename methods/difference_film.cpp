@@ -1,12 +1,14 @@
 #include "methods/difference_film.h"
 
 #include "kernels/shared/tables.h"
+#include "methods/error_layer.h"
 #include "methods/gradient_image.h"
 #include "methods/guide_features.h"
 #include "methods/path_stages.h"
 #include "runtime/seconds_since.h"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <utility>
 
@@ -57,9 +59,9 @@ void DifferenceFilm::begin() {
 
 const std::vector<DirectPixel> &DifferenceFilm::edges(std::uint64_t samples, bool last) {
     constexpr std::uint64_t most = 0xFFFFFFFFu; // far more than have an effect
-    const auto a_pixel = std::uint32_t(std::min((samples + session_.pixels() - 1) / session_.pixels(), most));
-    const bool is_old = last ? a_pixel != edge_samples_ : a_pixel > std::uint64_t(2) * edge_samples_;
-    if (is_old && session_.max_depth() != 0 && !session_.settings.hide_emitters) {
+    const auto all = std::uint32_t(std::min((samples + session_.pixels() - 1) / session_.pixels(), most));
+    const std::uint32_t a_pixel = last ? all : std::bit_floor(all);
+    if (a_pixel != edge_samples_ && session_.max_depth() != 0 && !session_.settings.hide_emitters) {
         const auto start = std::chrono::steady_clock::now();
         edges_ =
             sample_direct_edges(session_.scene, session_.film, session_.tracer, options_.seed, a_pixel, edge_rays_);
@@ -117,11 +119,14 @@ Image DifferenceFilm::image(std::uint64_t samples, bool layers, bool last, std::
                                                  session_.film.crop_height, options_.precision,
                                                  kept.size() > 2 ? samples_of_half(samples, pixels, int(i)) : samples));
     used_ = reconstruction_used(options_, samples, pixels);
-    Image image = reconstruct(session_.device, *solver_, std::move(whole), std::move(films), edges(samples, last),
-                              options_, layers, [&] {
-                                  if (last)
-                                      tables_->release_all_but({counts_});
-                              });
+    relative_error_.reset();
+    Image image = reconstruct(
+        session_.device, *solver_, std::move(whole), std::move(films), edges(samples, last), options_, layers,
+        [&] {
+            if (last)
+                tables_->release_all_but({counts_});
+        },
+        tells_error_ && has_error_layer(options_, keeps_halves(options_)) ? &relative_error_ : nullptr);
     if (last)
         solver_.reset();
     return image;
@@ -129,6 +134,7 @@ Image DifferenceFilm::image(std::uint64_t samples, bool layers, bool last, std::
 
 void DifferenceFilm::add_to(Statistics &statistics) const {
     statistics.reconstruction = used_;
+    statistics.estimated_error = relative_error_;
     statistics.rays["edge"] = edge_rays_;
     statistics.render_seconds += edge_seconds_;
     statistics.stages.push_back({"edges of lights", edge_seconds_, 0, 0});
