@@ -203,7 +203,7 @@ Image reconstruct(Device &device, PoissonSolver &solver, Image whole, GradientFi
             errors = errors_of_solves(solver, films, poisson);
         reconstruct_from_film(solver, whole, films, poisson, films_are_read);
     }
-    if (options.reconstruction == Reconstruction::guided && !options.aov) // features were there for the guide
+    if (!options.aov && !layers) // features, if any, were there for the guide
         whole.channels.resize(3);
     whole.channels.insert(whole.channels.begin() + 3, std::make_move_iterator(more.begin()),
                           std::make_move_iterator(more.end()));

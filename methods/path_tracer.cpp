@@ -6,9 +6,12 @@
 #include "runtime/seconds_since.h"
 #include "solver/guide/guided_reconstruction.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <iterator>
 #include <vector>
 
 namespace gradus {
@@ -100,6 +103,7 @@ SquaredErrors PathTracer::errors_of_mean() const {
 
 void PathTracer::guide(Image &image, SquaredErrors *errors) {
     const std::uint64_t pixels = session_.pixels();
+    std::vector<Channel> layers;
     if (has_halves()) {
         Device &device = session_.device;
         const std::size_t bytes = 3 * pixels * sizeof(float);
@@ -108,8 +112,13 @@ void PathTracer::guide(Image &image, SquaredErrors *errors) {
             halves[i].primal = Buffer(device, "primal", bytes);
             halves[i].samples = samples_of_half(done_, pixels, i);
             const auto mapping = halves[i].primal.map(Access::write);
-            for (int c = 0; c < 3; ++c)
-                film_.half_mean(i, done_, c, mapping.as<float>() + c * pixels);
+            for (int c = 0; c < 3; ++c) {
+                float *plane = mapping.as<float>() + c * pixels;
+                film_.half_mean(i, done_, c, plane);
+                if (options_.layers)
+                    layers.push_back({fmt::format("primal_{}.{}", i == 0 ? "even" : "odd", "RGB"[c]),
+                                      std::vector<float>(plane, plane + pixels)});
+            }
         }
         GuideInputs inputs;
         inputs.features = uploaded_features(device, image);
@@ -120,8 +129,10 @@ void PathTracer::guide(Image &image, SquaredErrors *errors) {
         for (int c = 0; c < 3; ++c)
             std::copy_n(mapping.as<float>() + c * pixels, pixels, image.channels[c].values.begin());
     }
-    if (!options_.aov)
+    if (!options_.aov && !options_.layers)
         image.channels.resize(3);
+    image.channels.insert(image.channels.begin() + 3, std::make_move_iterator(layers.begin()),
+                          std::make_move_iterator(layers.end()));
 }
 
 Statistics PathTracer::statistics() const {

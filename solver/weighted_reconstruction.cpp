@@ -1,6 +1,9 @@
 #include "solver/weighted_reconstruction.h"
 
+#include "runtime/seconds_since.h"
+
 #include <algorithm>
+#include <chrono>
 #include <iterator>
 #include <map>
 #include <utility>
@@ -196,22 +199,14 @@ PoissonReport WeightedReconstruction::solve_both(const HalvedImages &halves, std
     return report;
 }
 
-PoissonReport solve_halves(Device &device, PoissonSolver &solver, const std::array<HostImages, 2> &images,
-                           const std::array<std::uint64_t, 2> &samples, float *result) {
+PoissonReport solve_weighted(Device &device, PoissonSolver &solver, const HostHalves &halves, float *result) {
+    const auto start = std::chrono::steady_clock::now();
     const std::size_t bytes = std::size_t(solver.width()) * solver.height() * solver.channels() * sizeof(float);
-    HalvedImages halves;
-    for (int i = 0; i < 2; ++i) {
-        halves[i].primal = Buffer(device, "primal", images[i].primal, bytes);
-        halves[i].dx = Buffer(device, "dx", images[i].dx, bytes);
-        halves[i].dy = Buffer(device, "dy", images[i].dy, bytes);
-        halves[i].primal_variance = Buffer(device, "primal_variance", images[i].primal_variance, bytes);
-        halves[i].dx_variance = Buffer(device, "dx_variance", images[i].dx_variance, bytes);
-        halves[i].dy_variance = Buffer(device, "dy_variance", images[i].dy_variance, bytes);
-        halves[i].samples = samples[i];
-    }
     Buffer solution(device, "solution", bytes);
-    const PoissonReport report = WeightedReconstruction(device, solver).solve(halves, solution);
+    PoissonReport report =
+        WeightedReconstruction(device, solver).solve(uploaded_halves(device, halves, bytes), solution);
     solution.read(result, bytes);
+    report.seconds = seconds_since(start);
     return report;
 }
 

@@ -1,7 +1,10 @@
 #include "solver/guide/guided_reconstruction.h"
 
+#include "runtime/seconds_since.h"
 #include "solver/guide/guided_errors.h"
 
+#include <algorithm>
+#include <chrono>
 #include <vector>
 
 namespace gradus {
@@ -84,6 +87,29 @@ PoissonReport GuidedReconstruction::solve(const HalvedImages &halves, const Guid
     denoise(primal, is_solved ? &solution : nullptr, inputs, guide);
     judge_.run(images, share, of_halves, result, &guide);
     finish_errors();
+    return report;
+}
+
+PoissonReport solve_guided(Device &device, PoissonSolver &solver, const HostHalves &halves,
+                           const HostGuideInputs &inputs, Guide guide, float *result) {
+    const auto start = std::chrono::steady_clock::now();
+    const std::size_t plane = std::size_t(solver.width()) * solver.height();
+    GuideInputs uploaded;
+    uploaded.features = Buffer(device, "guide_features", FeatureFilter::features * plane * sizeof(float));
+    {
+        const auto features = uploaded.features.map(Access::write);
+        float *to = std::copy_n(inputs.albedo, 3 * plane, features.as<float>());
+        to = std::copy_n(inputs.normal, 3 * plane, to);
+        std::copy_n(inputs.depth, plane, to);
+    }
+    const std::size_t bytes = 3 * plane * sizeof(float);
+    if (inputs.direct)
+        uploaded.direct = Buffer(device, "direct", inputs.direct, bytes);
+    Buffer solution(device, "solution", bytes);
+    PoissonReport report =
+        GuidedReconstruction(device, solver, guide).solve(uploaded_halves(device, halves, bytes), uploaded, solution);
+    solution.read(result, bytes);
+    report.seconds = seconds_since(start);
     return report;
 }
 

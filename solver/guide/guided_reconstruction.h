@@ -51,4 +51,14 @@ class GuidedReconstruction {
     GuideJudge judge_;
 };
 
+/// GuideInputs in memory of the host: planes of width * height floats, three of albedo and of the normal, one of depth,
+/// three of `direct`, which may be null.
+struct HostGuideInputs {
+    const float *albedo = nullptr, *normal = nullptr, *depth = nullptr, *direct = nullptr;
+};
+
+/// The same from images on the host: writes 3 * height * width floats to `result`, without `direct`.
+PoissonReport solve_guided(Device &device, PoissonSolver &solver, const HostHalves &halves,
+                           const HostGuideInputs &inputs, Guide guide, float *result);
+
 } // namespace gradus
