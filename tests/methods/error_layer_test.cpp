@@ -3,9 +3,11 @@
 #include "runtime/error.h"
 #include "tests/methods/reference_scene.h"
 #include "tests/support/gradient_layers.h"
+#include "tests/support/stability.h"
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <numbers>
 #include <random>
 
@@ -16,6 +18,12 @@ constexpr std::uint32_t side = 64;
 
 Image plain_image(float value) {
     return image_of(side, side, [value](int, std::uint32_t, std::uint32_t) { return value; });
+}
+
+/// R, G and B alone.
+Image select_colors(Image image) {
+    image.channels.resize(3);
+    return image;
 }
 
 SquaredErrors known_errors(float variance) {
@@ -196,6 +204,103 @@ INSTANTIATE_TEST_SUITE_P(Reconstructions, ErrorOfRenders,
                                            RenderedErrors{"gpt", Reconstruction::weighted, 0.6, 1.3},
                                            RenderedErrors{"gpt", Reconstruction::guided, 0.4, 2.5},
                                            RenderedErrors{"pt", Reconstruction::guided, 0.4, 2.5}));
+
+/// A render of a grey wall where one sample in two hundred is thirty times as bright: the image's mean after 16 and 32
+/// samples a pixel, and the estimate at 16.
+struct SkewedRender {
+    double of_16, of_32, estimate;
+};
+SkewedRender skewed_render(std::mt19937 &generator) {
+    constexpr std::uint32_t across = 16;
+    std::binomial_distribution<int> bright_of_8(8, 0.005), bright_of_16(16, 0.005);
+    constexpr double brighter = 30;
+    Image image = image_of(across, across, [](int, std::uint32_t, std::uint32_t) { return 0.0; });
+    std::array<std::vector<float>, 2> halves{std::vector<float>(3 * across * across), halves[0]};
+    SkewedRender render{};
+    for (std::size_t i = 0; i < across * across; ++i) {
+        const auto of_half = [&] { return 1 + brighter * bright_of_8(generator) / 8; };
+        const double first = of_half(), second = of_half(), later = 1 + brighter * bright_of_16(generator) / 16;
+        for (std::size_t c = 0; c < 3; ++c) {
+            halves[0][c * across * across + i] = float(first);
+            halves[1][c * across * across + i] = float(second);
+            image.channels[c].values[i] = float((first + second) / 2);
+        }
+        render.of_16 += (first + second) / 2 / (across * across);
+        render.of_32 += ((first + second) / 4 + later / 2) / (across * across);
+    }
+    render.estimate = add_error_layer(image, errors_of_halves(halves[0], halves[1], 0.5)).value();
+    return render;
+}
+
+/// What ending by the error does to the mean of many renders, in standard deviations of one's mean at 16 samples: each
+/// ends there where the estimate is below that of half of the renders, which is where it does most, and else at 32.
+struct Darkening {
+    double shift, standard_error;
+};
+Darkening darkening_of(const std::vector<SkewedRender> &renders) {
+    std::vector<double> estimates, means, changes;
+    for (const SkewedRender &render : renders) {
+        estimates.push_back(render.estimate);
+        means.push_back(render.of_16);
+    }
+    const auto middle = estimates.begin() + std::ptrdiff_t(estimates.size() / 2);
+    std::nth_element(estimates.begin(), middle, estimates.end());
+    // Both means share most of their noise, so that the difference is seen well.
+    for (const SkewedRender &render : renders)
+        changes.push_back(render.estimate <= *middle ? render.of_16 - render.of_32 : 0.0);
+    const double deviation = spread_of(means).standard_error * std::sqrt(double(renders.size()));
+    return {spread_of(changes).mean / deviation, spread_of(changes).standard_error / deviation};
+}
+
+/// A quarter is the bound that holds for any noise (driver/error_watch.h).
+TEST(ErrorLayer, EndingByItDarkensByLessThanAQuarterOfAStandardError) {
+    std::mt19937 generator(3);
+    std::vector<SkewedRender> renders;
+    for (int i = 0; i < 2500; ++i)
+        renders.push_back(skewed_render(generator));
+    const Darkening dark = darkening_of(renders);
+    EXPECT_LT(dark.shift, -4 * dark.standard_error) << "the test cannot see it";
+    record_stability(
+        {"Reconstruction", "a render that ends by its own estimated error ends sooner where rare light was missed",
+         "2500 renders, one sample in two hundred thirty times as bright as the others, half of them end at 16 "
+         "samples, the others at 32",
+         "estimates are means over all pixels, and looks are few: the mean is low by less than a quarter of "
+         "what chance moves it by in one render",
+         "what the mean of many renders is low by, and four standard errors, in standard errors of one render's",
+         std::fabs(dark.shift) + 4 * dark.standard_error, 0.25});
+}
+
+/// The same of renders.
+class ErrorStop : public ::testing::TestWithParam<const char *> {};
+
+TEST_P(ErrorStop, DarkensTheMeanByLessThanAQuarterOfItsStandardError) {
+    constexpr std::uint32_t width = 32, height = 24;
+    constexpr std::uint64_t pixels = width * height, seeds = 400;
+    Scene scene = own_scene(std::string(GetParam()) + ".xml", width, height);
+    scene.settings.samples_per_pixel = 32;
+    std::vector<SkewedRender> renders;
+    const auto mean_of = [](const Image &image) { return compare_means(image, image).image; };
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+        RenderOptions options;
+        options.seed = seed;
+        options.error = true;
+        const auto method = make_method("pt", shared_device(), scene, options);
+        method->pause_at(16 * pixels);
+        while (method->done_samples() < 16 * pixels)
+            method->render_batch();
+        renders.push_back({mean_of(select_colors(method->image())), 0, 0});
+        renders.back().estimate = method->statistics().estimated_error.value();
+        while (method->render_batch()) {
+        }
+        renders.back().of_32 = mean_of(select_colors(method->image()));
+    }
+    const Darkening dark = darkening_of(renders);
+    std::printf("%s: the mean changes by %.3f +- %.3f standard errors of one render's\n", GetParam(), dark.shift,
+                dark.standard_error);
+    EXPECT_LE(std::fabs(dark.shift), 0.25 + 4 * dark.standard_error);
+}
+
+INSTANTIATE_TEST_SUITE_P(Full, ErrorStop, ::testing::Values("materials", "door-ajar", "cornell-box"));
 
 TEST(ErrorLayer, IsWhereItIsAskedForAndHalvesAre) {
     struct Case {
