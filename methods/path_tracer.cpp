@@ -1,8 +1,8 @@
 #include "methods/path_tracer.h"
 
 #include "methods/error_layer.h"
-#include "methods/guide_features.h"
 #include "methods/path_stages.h"
+#include "methods/reconstruction_inputs.h"
 #include "runtime/seconds_since.h"
 #include "solver/guide/guided_reconstruction.h"
 
@@ -106,23 +106,19 @@ void PathTracer::guide(Image &image, SquaredErrors *errors) {
     std::vector<Channel> layers;
     if (has_halves()) {
         Device &device = session_.device;
-        const std::size_t bytes = 3 * pixels * sizeof(float);
         HalvedImages halves;
         for (int i = 0; i < 2; ++i) {
-            halves[i].primal = Buffer(device, "primal", bytes);
-            halves[i].samples = samples_of_half(done_, pixels, i);
-            const auto mapping = halves[i].primal.map(Access::write);
-            for (int c = 0; c < 3; ++c) {
-                float *plane = mapping.as<float>() + c * pixels;
-                film_.half_mean(i, done_, c, plane);
+            halves[i].primal = uploaded(device, "primal", pixels, [&](std::uint32_t c, float *plane) {
+                film_.half_mean(i, done_, int(c), plane);
                 if (options_.layers)
                     layers.push_back({fmt::format("primal_{}.{}", i == 0 ? "even" : "odd", "RGB"[c]),
                                       std::vector<float>(plane, plane + pixels)});
-            }
+            });
+            halves[i].samples = samples_of_half(done_, pixels, i);
         }
         GuideInputs inputs;
         inputs.features = uploaded_features(device, image);
-        Buffer result(device, "result", bytes);
+        Buffer result(device, "result", halves[0].primal.bytes());
         PoissonSolver none(device, image.width, image.height); // samples alone ask for no solve
         GuidedReconstruction(device, none, options_.guide).solve(halves, inputs, result, errors);
         const auto mapping = result.map(Access::read);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <initializer_list>
 #include <iterator>
 #include <map>
 #include <utility>
@@ -27,14 +28,15 @@ struct Smoothing {
 // Standard deviations of 0.4, 0.8, 1.6, 3.3 and 6.6 pixels in all.
 constexpr Smoothing smoothings[] = {{1, 0.07}, {1, 0.5}, {2, 0.5}, {4, 0.5}, {8, 0.5}};
 
-constexpr const char *kernel_names[] = {"mean_of_channels", "smooth_image", "add_logarithm", "geometric_mean",
-                                        "mix_images"};
+constexpr auto smoothing_kernels = {"mean_of_channels", "smooth_image", "add_logarithm", "geometric_mean"};
 
-std::vector<Kernel> build_smoothing(Device &device, std::uint32_t channels) {
+/// Kernels of one program: to build one of them is to compile all.
+std::vector<Kernel> weighted_kernels(Device &device, std::uint32_t channels,
+                                     std::initializer_list<const char *> names) {
     KernelLibrary library(
         device, {{"SOLVER_CHANNELS", static_cast<int>(channels)}, {"SOLVER_WEIGHTED", 0}, {"SOLVER_JOINT", 1}});
     std::vector<KernelRequest> requests;
-    for (const char *name : kernel_names)
+    for (const char *name : names)
         requests.push_back({name, "kernels/solver/smooth_variance.cl", name, {}});
     return library.build(requests);
 }
@@ -49,7 +51,7 @@ std::vector<float> values_of(const Buffer &image) {
 
 VarianceSmoother::VarianceSmoother(Device &device, std::uint32_t width, std::uint32_t height, std::uint32_t channels)
     : device_(device), width_(width), height_(height), channels_(channels) {
-    std::vector<Kernel> kernels = build_smoothing(device, channels);
+    std::vector<Kernel> kernels = weighted_kernels(device, channels, smoothing_kernels);
     mean_ = std::move(kernels[0]);
     smooth_ = std::move(kernels[1]);
     add_ = std::move(kernels[2]);
@@ -117,7 +119,7 @@ const Buffer &VarianceSmoother::smoothed(const Buffer &variance, Differences dif
     return smoothed_;
 }
 
-ImageMixer::ImageMixer(Device &device) : mix_(std::move(build_smoothing(device, 3)[4])) {}
+ImageMixer::ImageMixer(Device &device) : mix_(std::move(weighted_kernels(device, 3, {"mix_images"}).front())) {}
 
 void ImageMixer::mix(const Buffer &first, double a, const Buffer &second, double b, Buffer &result) {
     const auto count = static_cast<std::uint32_t>(result.bytes() / sizeof(float));
@@ -144,7 +146,7 @@ PoissonOptions WeightedReconstruction::options() {
 }
 
 void WeightedReconstruction::compile(Device &device, std::uint32_t channels) {
-    build_smoothing(device, channels);
+    weighted_kernels(device, channels, smoothing_kernels);
     PoissonSolver::compile(device, options(), channels);
 }
 

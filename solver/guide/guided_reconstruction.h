@@ -8,7 +8,6 @@
 #include "solver/squared_errors.h"
 #include "solver/weighted_reconstruction.h"
 
-#include <functional>
 #include <memory>
 
 namespace gradus {
@@ -42,7 +41,8 @@ class GuidedReconstruction {
   private:
     /// The mean of the denoised primal, whose noise is of each pixel alone, and of the denoised solution, which has
     /// less of it: what is wrong with either differs. Without a solution it is that of the primal.
-    void denoise(const Buffer &primal, const Buffer *solution, const GuideInputs &inputs, Buffer &guide);
+    void denoise(const Buffer &primal, const Buffer *solution, const Buffer &direct, const Denoiser::Features &features,
+                 Buffer &guide);
 
     Device &device_;
     PoissonSolver &solver_;
