@@ -58,7 +58,8 @@ void DifferenceFilm::begin() {
 const std::vector<DirectPixel> &DifferenceFilm::edges(std::uint64_t samples, bool last) {
     constexpr std::uint64_t most = 0xFFFFFFFFu; // far more than have an effect
     const auto all = std::uint32_t(std::min((samples + session_.pixels() - 1) / session_.pixels(), most));
-    const std::uint32_t a_pixel = last ? all : std::bit_floor(all);
+    const bool is_whole = last || all == session_.settings.samples_per_pixel;
+    const std::uint32_t a_pixel = is_whole ? all : std::bit_floor(all);
     if (a_pixel != edge_samples_ && session_.max_depth() != 0 && !session_.settings.hide_emitters) {
         const auto start = std::chrono::steady_clock::now();
         edges_ =

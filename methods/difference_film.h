@@ -47,8 +47,8 @@ class DifferenceFilm {
     void add_to(Statistics &statistics) const;
 
   private:
-    /// What the camera sees of lights at their edges, for an image of so many samples. Images before the last take that
-    /// of a power of two, whichever were asked for before.
+    /// What the camera sees of lights at their edges, for an image of so many samples. Images under way take that of a
+    /// power of two, whichever were asked for before.
     const std::vector<DirectPixel> &edges(std::uint64_t samples, bool last);
 
     Session &session_;

@@ -7,7 +7,7 @@
 //
 // A guide that is made of the noise of both halves follows it, by the weights that they share; that looks like less
 // than no bias. So a bias that cannot be told from none counts as one standard error of its measure: with the feature
-// filter that makes estimates right within a factor of two (docs/design.md).
+// filter that brings estimates to within a factor of two or three (docs/design.md).
 #pragma once
 
 #include "methods/method.h"

@@ -147,7 +147,7 @@ class ErrorOfRenders : public ::testing::TestWithParam<RenderedErrors> {
 };
 
 /// Of 16 samples, against 2048 of another seed. Of two renders whose error all pixels share in part, the places within
-/// the pixel. What guides are wrong by is known within a factor of two (error_layer.h).
+/// the pixel. What guides are wrong by is known within a factor of two or three (error_layer.h).
 TEST_P(ErrorOfRenders, IsNearTheTruth) {
     static const Image truth = [] {
         RenderOptions options;
