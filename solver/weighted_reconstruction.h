@@ -12,6 +12,7 @@
 #include "runtime/device/program.h"
 #include "solver/halves.h"
 #include "solver/poisson_solver.h"
+#include "solver/squared_errors.h"
 
 namespace gradus {
 
@@ -62,7 +63,8 @@ class WeightedReconstruction {
     PoissonReport solve_half(const HalfImages &half, const HalfImages &judge, Buffer &result);
     /// Writes the mean of both halves' solutions, by their samples, to `result`, which has as many values as their
     /// primal. The report is that of both solves.
-    PoissonReport solve(const HalvedImages &halves, Buffer &result);
+    /// `errors`: gets what the halves tell of the image's error.
+    PoissonReport solve(const HalvedImages &halves, Buffer &result, SquaredErrors *errors = nullptr);
 
     /// The same without the mean: the solution of each half.
     PoissonReport solve_both(const HalvedImages &halves, std::array<Buffer, 2> &results);
