@@ -2,15 +2,21 @@
 #ifndef GRADUS_LIB_LIGHT_SAMPLING_H
 #define GRADUS_LIB_LIGHT_SAMPLING_H
 //! traits: TRAIT_LIGHT_TRIANGLE TRAIT_LIGHT_SPHERE TRAIT_LIGHT_POINT TRAIT_LIGHT_DIRECTIONAL TRAIT_LIGHT_CONSTANT
-//! traits: TRAIT_LIGHT_ENVIRONMENT TRAIT_LIGHT_SPOT FEW_LIGHTS
+//! traits: TRAIT_LIGHT_ENVIRONMENT TRAIT_LIGHT_SPOT TRAIT_TEXTURED_LIGHTS FEW_LIGHTS
 #include "kernels/lib/environment.h"
 #include "kernels/lib/light.h"
 #include "kernels/lib/light_draw.h"
+#include "kernels/lib/light_texture.h"
 #include "kernels/lib/random.h"
+
+/* Bits of TRAIT_TEXTURED_LIGHTS, as 0 or 1. */
+#define LIGHTS_HAVE_SURFACE_TEXTURES (TRAIT_TEXTURED_LIGHTS & 1)
+#define LIGHTS_HAVE_PICTURES ((TRAIT_TEXTURED_LIGHTS >> 1 | TRAIT_TEXTURED_LIGHTS >> 2) & 1)
+#define TRAIT_LIGHT_PROJECTOR (TRAIT_TEXTURED_LIGHTS >> 2 & 1)
 
 #define LIGHT_KINDS                                                                                                    \
     (TRAIT_LIGHT_TRIANGLE + TRAIT_LIGHT_SPHERE + TRAIT_LIGHT_POINT + TRAIT_LIGHT_DIRECTIONAL + TRAIT_LIGHT_CONSTANT +  \
-     TRAIT_LIGHT_ENVIRONMENT + TRAIT_LIGHT_SPOT)
+     TRAIT_LIGHT_ENVIRONMENT + TRAIT_LIGHT_SPOT + TRAIT_LIGHT_PROJECTOR)
 #if LIGHT_KINDS > 1
 #define IS_LIGHT_KIND(name) (kind == light_kind_##name)
 #define IS_LIGHT(chosen, name, trait) ((trait) && (chosen).kind == light_kind_##name)
@@ -53,6 +59,9 @@ typedef struct {
     light_choice choice;
     uint light, kind;
     real probability; /* of choosing the light */
+#if TRAIT_TEXTURED_LIGHTS
+    rgb untextured; /* choice.value without its texture */
+#endif
 } chosen_light;
 
 /* The environment's map, whose axes are x, y and z in world space. */
@@ -75,7 +84,8 @@ GRADUS_FN light_choice light_from_environment(rgb value, vec3 x, vec3 y, vec3 z,
 
 GRADUS_FN chosen_light light_sampling(GRADUS_GLOBAL const real *lights, GRADUS_GLOBAL const uint *light_kinds,
                                       GRADUS_GLOBAL const uint *light_alias, uint light_count, real scene_diameter,
-                                      uint unit, vec3 position, random4 u ENVIRONMENT_PARAMETERS) {
+                                      uint unit, vec3 position,
+                                      random4 u ENVIRONMENT_PARAMETERS LIGHT_TEXTURE_PARAMETERS) {
     (void)light_kinds, (void)scene_diameter;
     const light_drawn drawn = light_draw(u.a, u.b, light_count);
     const uint column = drawn.column;
@@ -84,7 +94,7 @@ GRADUS_FN chosen_light light_sampling(GRADUS_GLOBAL const real *lights, GRADUS_G
     const real probability = LIGHT_FIELD(light, probability);
     const rgb value = rgb3(LIGHT_FIELD(light, value_r), LIGHT_FIELD(light, value_g), LIGHT_FIELD(light, value_b));
     const vec3 p = LIGHT_V3(light, p);
-#if TRAIT_LIGHT_TRIANGLE || TRAIT_LIGHT_SPHERE || TRAIT_LIGHT_ENVIRONMENT || TRAIT_LIGHT_SPOT
+#if TRAIT_LIGHT_TRIANGLE || TRAIT_LIGHT_SPHERE || TRAIT_LIGHT_ENVIRONMENT || TRAIT_LIGHT_SPOT || TRAIT_LIGHT_PROJECTOR
     const vec3 e1 = LIGHT_V3(light, e1);
 #endif
     uint kind = 0u;
@@ -130,6 +140,38 @@ GRADUS_FN chosen_light light_sampling(GRADUS_GLOBAL const real *lights, GRADUS_G
 #endif
 
     chosen_light chosen;
+#if TRAIT_TEXTURED_LIGHTS
+    texture_point place = point_of_nothing();
+#if TRAIT_LIGHT_PROJECTOR
+    s = light_choice_select(IS_LIGHT_KIND(projector), light_from_point(value, p, position), s);
+#endif
+#if LIGHTS_HAVE_PICTURES
+    const vec3 away = v3_neg(s.direction);
+    const real ahead = v3_dot(e1, away);
+    place = point_of_picture(light_pictures, unit, light, away, ahead);
+#endif
+#if TRAIT_LIGHT_PROJECTOR
+    s.value = rgb_scale(s.value, IS_LIGHT_KIND(projector) ? light_projector_profile(place, ahead) : R(1));
+#endif
+#if LIGHTS_HAVE_SURFACE_TEXTURES && TRAIT_LIGHT_TRIANGLE
+    const point2 on_light = warp_uniform_triangle(u.c, u.d);
+    place = texture_point_select(IS_LIGHT_KIND(triangle),
+                                 point_of_triangle(triangle_texcoords, unit,
+                                                   FIELD_OF(light_texture, light_textures, light, triangle), on_light.x,
+                                                   on_light.y),
+                                 place);
+#endif
+#if LIGHTS_HAVE_SURFACE_TEXTURES && TRAIT_LIGHT_SPHERE
+    place =
+        texture_point_select(IS_LIGHT_KIND(sphere),
+                             point_of_sphere(sphere_axes, unit, FIELD_OF(light_texture, light_textures, light, sphere),
+                                             v3_scale(s.normal, e1.y), place),
+                             place);
+#endif
+    chosen.untextured = s.value;
+    s.value = rgb_mul(
+        s.value, light_texture_at(light_textures, textures, texture_reals, texels, texture_decode, unit, light, place));
+#endif
     chosen.choice = s;
     chosen.light = light;
     chosen.kind = kind;

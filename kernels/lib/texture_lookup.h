@@ -8,6 +8,7 @@
 #include "kernels/shared/scene_records.h"
 #include "kernels/shared/texture.h"
 
+#if HAS_TEXTURES || !defined(__OPENCL_VERSION__)
 GRADUS_LIB_BEGIN
 
 #define TEXTURES_HAVE(feature) ((TRAIT_TEXTURES & (feature)) != 0)
@@ -112,14 +113,63 @@ GRADUS_FN rgb texture_between(rgb a, rgb b, real share) {
     return rgb3(r, g, blue);
 }
 
+/* Where a texture is looked up. What the scene's textures do not ask for costs nothing. */
+typedef struct {
+    real u, v;
+    uint triangle;      /* of the scene; 0 on spheres */
+    real second, third; /* barycentric weights of its second and third vertex */
+    GRADUS_NOT_IN_REGISTERS
+} texture_point;
+
+#if TRAIT_TEXTURES & textures_of_meshes
+/* A channel of it, whose number at the first corner is at `at`. The gathers come one after the other
+ * (kernels/lib/ordered.h), after `before`. */
+GRADUS_FN real texture_of_corners(GRADUS_GLOBAL const uint *texels, int is_this, uint at, uint corner,
+                                  texture_point point, real before) {
+    /* Words that are none of an attribute may be no number, which must not come into an index. */
+    const uint first = texture_after(at, before);
+    const real word_a = as_float(texels[first]);
+    const real a = is_this ? word_a : R(0);
+    const real word_b = as_float(texels[texture_after(first + corner, a)]);
+    const real b = is_this ? word_b : R(0);
+    const real word_c = as_float(texels[texture_after(first + 2u * corner, b)]);
+    const real c = is_this ? word_c : R(0);
+    const real rest = R(1) - point.second - point.third;
+    return rest * a + r_after(point.second, c) * b + point.third * c;
+}
+
+/* A mesh attribute; of other textures any value. */
+GRADUS_FN rgb texture_of_mesh(GRADUS_GLOBAL const uint *texels, uint flags, uint offset, uint first, uint count,
+                              texture_point point) {
+    const int is_this = (flags & texture_flag_attribute) != 0u, is_by_face = (flags & texture_flag_by_face) != 0u;
+    const uint channels = (flags & texture_flag_color) != 0u ? 3u : 1u;
+    const uint corner = (is_this & !is_by_face) ? channels : 0u, step = (is_this & (channels > 1u)) ? 1u : 0u;
+    /* Who asks for what is not there, and then takes a constant, may be anywhere. */
+    const uint triangle = r_min(point.triangle - first, count - 1u);
+    const uint at = is_this ? offset + triangle * (is_by_face ? channels : 3u * channels) : 0u;
+    const real r = texture_of_corners(texels, is_this, at, corner, point, R(0));
+    const real g = texture_of_corners(texels, is_this, at + step, corner, point, r);
+    const real b = texture_of_corners(texels, is_this, at + 2u * step, corner, point, g);
+    return rgb3(r, g, b);
+}
+#endif
+
 GRADUS_FN rgb texture_lookup(GRADUS_GLOBAL const uint *textures, GRADUS_GLOBAL const real *texture_reals,
                              GRADUS_GLOBAL const uint *texels, GRADUS_GLOBAL const real *texture_decode, uint unit,
-                             uint texture, real u, real v) {
+                             uint texture, texture_point point) {
+    const real u = point.u, v = point.v;
     texture_place place;
     place.flags = FIELD_OF(texture, textures, texture, flags);
     place.offset = FIELD_OF(texture, textures, texture, offset);
-    const uint width = FIELD_OF(texture, textures, texture, width);
-    const uint height = FIELD_OF(texture, textures, texture, height);
+    uint width = FIELD_OF(texture, textures, texture, width);
+    uint height = FIELD_OF(texture, textures, texture, height);
+#if TRAIT_TEXTURES & textures_of_meshes
+    const rgb of_mesh = texture_of_mesh(texels, place.flags, place.offset, width, height, point);
+    const int is_of_mesh = (place.flags & texture_flag_attribute) != 0u;
+    place.offset = is_of_mesh ? 0u : place.offset;
+    width = is_of_mesh ? 1u : width;
+    height = is_of_mesh ? 1u : height;
+#endif
     real s = u, t = v;
 #if TRAIT_TEXTURES & textures_mapped
     s = FIELD_OF(texture_real, texture_reals, texture, u_of_u) * u +
@@ -160,6 +210,9 @@ GRADUS_FN rgb texture_lookup(GRADUS_GLOBAL const uint *textures, GRADUS_GLOBAL c
                                  FIELD_RGB(texture_real, texture_reals, texture, color_1));
     value = rgb_select((place.flags & texture_flag_checkerboard) != 0u, field, value);
 #endif
+#if TRAIT_TEXTURES & textures_of_meshes
+    value = rgb_select(is_of_mesh, of_mesh, value);
+#endif
 #if TRAIT_TEXTURES & textures_scaled
     value = rgb_mul(value, FIELD_RGB(texture_real, texture_reals, texture, scale));
 #endif
@@ -172,4 +225,5 @@ GRADUS_FN rgb texture_lookup(GRADUS_GLOBAL const uint *textures, GRADUS_GLOBAL c
 }
 
 GRADUS_LIB_END
+#endif
 #endif

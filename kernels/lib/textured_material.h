@@ -3,7 +3,7 @@
  * macros here are what they were without textures. */
 #ifndef GRADUS_LIB_TEXTURED_MATERIAL_H
 #define GRADUS_LIB_TEXTURED_MATERIAL_H
-//! traits: TRAIT_MATERIAL TRAIT_TEXTURED TRAIT_BLENDS TRAIT_ANISOTROPIC TRAIT_SHADING_NORMALS
+//! traits: TRAIT_MATERIAL TRAIT_TEXTURED TRAIT_TEXTURED_LIGHTS TRAIT_BLENDS TRAIT_ANISOTROPIC TRAIT_SHADING_NORMALS
 #include "kernels/lib/surface_point.h"
 #include "kernels/shared/material.h"
 #include "kernels/shared/tables.h"
@@ -27,7 +27,10 @@ enum textured_column { GRADUS_TEXTURED_PARAMETERS(GRADUS_COLOR_COLUMNS, GRADUS_N
 
 /* Columns of `surface` that follow; they are no part of tables of vertices. */
 enum surface_column {
-    surface_record = textured_columns,
+    surface_emission_r = textured_columns, /* what the light of a surface is times */
+    surface_emission_g,
+    surface_emission_b,
+    surface_record = textured_columns + (TRAIT_TEXTURED_LIGHTS & textured_lights_of_surfaces ? 3 : 0),
     surface_columns = surface_record + (TRAIT_BLENDS > 0 ? 1 : 0)
 };
 
@@ -51,6 +54,12 @@ GRADUS_FN material material_with_textures(material m, GRADUS_GLOBAL const real *
 /* The record that a blend has come to in a row of `surface`. */
 GRADUS_FN uint surface_record_at(GRADUS_GLOBAL const real *surface, size_t rows, size_t row) {
     return *(GRADUS_GLOBAL const uint *)(surface + (size_t)surface_record * rows + row);
+}
+
+/* What the light of the surface is times, by the row of a ray that met it. */
+GRADUS_FN rgb surface_emission_at(GRADUS_GLOBAL const real *surface, size_t rows, size_t row) {
+    return rgb3(surface[(size_t)surface_emission_r * rows + row], surface[(size_t)surface_emission_g * rows + row],
+                surface[(size_t)surface_emission_b * rows + row]);
 }
 
 /* A hit as the stage `material` has it. */
@@ -95,6 +104,15 @@ GRADUS_LIB_END
 #define VERTEX_MATERIAL(table, row) material_load(materials, AT_UINT(table, material, row), unit)
 #define SET_VERTEX_TEXTURED(table, to_row, rows, row)
 
+#endif
+
+/* The radiance of a light_found that a ray has met, from row `row` of `surface`, which has `rows` rows. */
+#if TRAIT_TEXTURED_LIGHTS & 1
+#define EMISSION_ARGUMENT , __global const real *surface
+#define FOUND_RADIANCE(found, surface, rows, row) rgb_mul((found).radiance, surface_emission_at(surface, rows, row))
+#else
+#define EMISSION_ARGUMENT
+#define FOUND_RADIANCE(found, surface, rows, row) (found).radiance
 #endif
 
 #endif

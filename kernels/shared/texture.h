@@ -9,11 +9,20 @@
  * TRAIT_TEXTURES one for each of the features below that some texture has. */
 #ifndef GRADUS_SHARED_TEXTURE_H
 #define GRADUS_SHARED_TEXTURE_H
-//! traits: TRAIT_MATERIAL
+//! traits: TRAIT_MATERIAL TRAIT_TEXTURED_LIGHTS
 #include "kernels/shared/bsdf_list.h"
 #include "kernels/shared/compat.h"
 
-#if TRAIT_MATERIAL || !defined(__OPENCL_VERSION__)
+/* Whether there are textures at all; kernels/lib/texture_lookup.h is for those. */
+#define HAS_TEXTURES (TRAIT_MATERIAL || TRAIT_TEXTURED_LIGHTS)
+
+/* TRAIT_TEXTURED_LIGHTS: what lights have textures. A projector counts though its picture be one colour. */
+#define textured_lights_of_surfaces 1
+#define textured_lights_spots 2
+#define textured_lights_projectors 4
+#define textured_lights_pictures 6 /* spots or projectors */
+
+#if TRAIT_MATERIAL || TRAIT_TEXTURED_LIGHTS || !defined(__OPENCL_VERSION__)
 
 #define GRADUS_TEXTURE_FIELDS(FIELD)                                                                                   \
     FIELD(texture, flags, "bits of texture_flag_...")                                                                  \
@@ -39,6 +48,21 @@
     FIELD(texture_real, color_1_r, "")                                                                                 \
     FIELD(texture_real, color_1_g, "")                                                                                 \
     FIELD(texture_real, color_1_b, "")
+
+/* By light, and one for the black light behind them. */
+#define GRADUS_LIGHT_TEXTURE_FIELDS(FIELD)                                                                             \
+    FIELD(light_texture, texture, "what its value is times, or texture_none")                                          \
+    FIELD(light_texture, triangle, "of the scene, of a light that is one; else 0")                                     \
+    FIELD(light_texture, sphere, "the same")
+/* Also by light: what in a direction d adds to u and v of a picture, after division by the cosine to the light's axis
+ * and before 1/2: unit vectors over the picture's width and height at distance 1. */
+#define GRADUS_PICTURE_FIELDS(FIELD)                                                                                   \
+    FIELD(picture, along_u_x, "")                                                                                      \
+    FIELD(picture, along_u_y, "")                                                                                      \
+    FIELD(picture, along_u_z, "")                                                                                      \
+    FIELD(picture, along_v_x, "")                                                                                      \
+    FIELD(picture, along_v_y, "")                                                                                      \
+    FIELD(picture, along_v_z, "")
 
 /* By material record: of which others it is a blend. The weight is in `blend_weights`, by record. */
 #define GRADUS_BLEND_FIELDS(FIELD)                                                                                     \
@@ -78,6 +102,8 @@
 #define texture_wrap_mirror 1u
 #define texture_flag_checkerboard 64u
 #define texture_flag_srgb 128u
+#define texture_flag_attribute 256u /* of a mesh: below */
+#define texture_flag_by_face 512u
 
 #define texture_none 0xFFFFFFFFu
 #define blend_none 0xFFFFFFFFu
@@ -95,12 +121,18 @@
 #define textures_mapped 512            /* by to_uv */
 #define textures_scaled 1024
 #define textures_checkerboards 2048
+#define textures_of_meshes 4096 /* mesh attributes */
+
+/* A mesh attribute is three records of one or three reals for each triangle, or one by face, in `texels` too, from the
+ * first triangle of the scene that has it (texture_width says which) on, texture_height triangles. */
 
 GRADUS_LIB_BEGIN
 
 #define GRADUS_TEXTURE_INDEX(record, field, text) record##_##field,
 enum texture_field { GRADUS_TEXTURE_FIELDS(GRADUS_TEXTURE_INDEX) texture_stride };
 enum texture_real_field { GRADUS_TEXTURE_REAL_FIELDS(GRADUS_TEXTURE_INDEX) texture_real_stride };
+enum light_texture_field { GRADUS_LIGHT_TEXTURE_FIELDS(GRADUS_TEXTURE_INDEX) light_texture_stride };
+enum picture_field { GRADUS_PICTURE_FIELDS(GRADUS_TEXTURE_INDEX) picture_stride };
 enum blend_field { GRADUS_BLEND_FIELDS(GRADUS_TEXTURE_INDEX) blend_stride };
 enum texcoords_field { GRADUS_TRIANGLE_TEXCOORDS_FIELDS(GRADUS_TEXTURE_INDEX) texcoords_stride };
 enum sphere_axes_field { GRADUS_SPHERE_AXES_FIELDS(GRADUS_TEXTURE_INDEX) sphere_axes_stride };

@@ -5,12 +5,13 @@
 //! traits: TRAIT_HIDE_EMITTERS
 #include "kernels/lib/light_found.h"
 #include "kernels/lib/mis.h"
+#include "kernels/lib/textured_material.h"
 #include "kernels/shared/stage.h"
 
 STAGE emission(uint count, uint unit, uint first, uint capacity, uint slots, __global const uint *index,
                __global const real *ray, __global const real *path, __global real *radiance,
                __global const real *triangles, __global const real *spheres, uint triangle_count,
-               __global const uint *primitive_light, __global const real *lights, uint light_count
+               __global const uint *primitive_light, __global const real *lights, uint light_count EMISSION_ARGUMENT
 #if DIRECT_APART
                ,
                __global real *direct
@@ -32,7 +33,7 @@ STAGE emission(uint count, uint unit, uint first, uint capacity, uint slots, __g
     weight = AT_UINT(path, depth, row) > 0u ? weight : R(0);
 #endif
     const rgb throughput = AT_RGB(path, throughput, row);
-    const rgb gained = rgb_mul(rgb_scale(found.radiance, weight), throughput);
+    const rgb gained = rgb_mul(rgb_scale(FOUND_RADIANCE(found, surface, capacity, row), weight), throughput);
 #if DIRECT_APART
     const int is_seen = AT_UINT(path, depth, row) == 0u;
     const rgb seen = rgb_add(AT_RGB_IN(direct, radiance, value, slot), rgb_select(is_seen, gained, rgb_gray(R(0))));

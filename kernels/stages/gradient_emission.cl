@@ -7,6 +7,7 @@
 //! traits: TRAIT_LIGHT_TRIANGLE TRAIT_LIGHT_SPHERE TRAIT_APART
 #include "kernels/lib/escaped_light.h"
 #include "kernels/lib/mis.h"
+#include "kernels/lib/textured_material.h"
 #include "kernels/lib/weighted_difference.h"
 #include "kernels/shared/stage.h"
 
@@ -24,11 +25,15 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint stride, uint cap
 #else
                         ,
                         __global const real *ray, __global const real *triangles, __global const real *spheres,
-                        uint triangle_count, __global const uint *primitive_light, uint light_count
+                        uint triangle_count, __global const uint *primitive_light, uint light_count EMISSION_ARGUMENT
 #endif
 #if TRAIT_APART
                         ,
                         __global const real *shift, __global const real *offset_ray
+#if !ESCAPED && (TRAIT_TEXTURED_LIGHTS & 1)
+                        ,
+                        __global const real *offset_surface
+#endif
 #endif
 ) {
     const size_t i = work_item();
@@ -56,7 +61,11 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint stride, uint cap
 #if STRATEGY == STRATEGY_BSDF
     base_light = R(0);
 #endif
+#if ESCAPED
     rgb radiance = found.radiance;
+#else
+    rgb radiance = FOUND_RADIANCE(found, surface, capacity, row);
+#endif
 #if STRATEGY == STRATEGY_LIGHT
     radiance = rgb_scale(radiance, bsdf_pdf > R(0) ? R(0) : R(1));
     base_light = R(0);
@@ -134,7 +143,12 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint stride, uint cap
         own_light = R(0);
         own_share = own_pdf > R(0) ? R(0) : R(1);
 #endif
-        const rgb own_value = rgb_scale(rgb_mul(so_far, own.radiance), own_share / (R(1) + own_light));
+#if ESCAPED
+        const rgb own_radiance = own.radiance;
+#else
+        const rgb own_radiance = FOUND_RADIANCE(own, offset_surface, 4u * (size_t)capacity, sent);
+#endif
+        const rgb own_value = rgb_scale(rgb_mul(so_far, own_radiance), own_share / (R(1) + own_light));
         found_there = rgb_select(is_apart, own_value, found_there);
         mine = rgb_select(is_apart, alone, base);
         mine_other = is_apart ? R(0) : base_light;

@@ -1,19 +1,20 @@
 /* material: reads the textures of what each ray met, before `classify`: leaves in its row of `surface` the textured
  * parameters of the material there, those of GRADUS_TEXTURED_PARAMETERS in TRAIT_TEXTURED. A parameter that this
  * material has as a constant is left as that. `traced` is a table of rays, of traced_rows rows like `surface`. Rays
- * that met nothing leave what nobody reads.
+ * that met nothing leave what nobody reads. TRAIT_TEXTURED_LIGHTS: also what the light of an emitting surface is times.
  *
  * TRAIT_BLENDS: also the record that a blend has come to, chosen by a number of the path's key and depth, which its
  * offset paths share: so it is a coordinate of the paths that shifts keep. Of first vertices, where offset paths are
  * those of the neighbours, all pixels of a sample share it (TRAIT_SHARED_JITTER). Plane j has the rays of offset path
  * j, plane_rows rows further on each. OF_LIGHT_PATHS: rays of light paths. */
-//! traits: TRAIT_TEXTURED TRAIT_TWO_FACED TRAIT_SPHERES TRAIT_TRIANGLES TRAIT_BLENDS TRAIT_SHARED_JITTER
-#include "kernels/lib/approximation.h"
+//! traits: TRAIT_TEXTURED TRAIT_TEXTURED_LIGHTS TRAIT_TWO_FACED TRAIT_SPHERES TRAIT_TRIANGLES TRAIT_BLENDS
+//! TRAIT_SHARED_JITTER
 #include "kernels/lib/division.h"
+#include "kernels/lib/light_texture.h"
 #include "kernels/lib/material_side.h"
 #include "kernels/lib/random.h"
 #include "kernels/lib/surface_side.h"
-#include "kernels/lib/texture_lookup.h"
+#include "kernels/lib/surface_uv.h"
 #include "kernels/lib/textured_material.h"
 #include "kernels/shared/stage.h"
 
@@ -21,7 +22,7 @@
     const uint number = material_textures[(size_t)record * textured_parameters + parameter_##name * (size_t)unit];     \
     const int is_constant = number == texture_none;                                                                    \
     const rgb looked_up =                                                                                              \
-        texture_lookup(textures, texture_reals, texels, texture_decode, unit, is_constant ? 0u : number, u, v);        \
+        texture_lookup(textures, texture_reals, texels, texture_decode, unit, is_constant ? 0u : number, point);       \
     GRADUS_GLOBAL const real *constants = materials + (size_t)record * material_stride;
 #define LEAVE(field, value)                                                                                            \
     surface[(size_t)textured_##field * traced_rows + row] =                                                            \
@@ -46,6 +47,10 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
                     __global const uint *primitive_material, __global const real *materials,
                     __global const uint *material_textures, __global const uint *textures,
                     __global const real *texture_reals, __global const uint *texels, __global const real *texture_decode
+#if TRAIT_TEXTURED_LIGHTS & 1
+                    ,
+                    __global const uint *primitive_light, __global const uint *light_textures, uint light_count
+#endif
 #if TRAIT_TWO_FACED
                     ,
                     __global const real *triangle_normals, __global const uint *material_back
@@ -84,30 +89,17 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
     const int behind = is_met_from_behind(triangle_normals, unit, triangle_count, primitive, hit, direction);
     record = material_on_side(material_back, primitive_material[primitive], behind);
 #endif
-    real u = R(0), v = R(0);
+    texture_point point = point_of_nothing();
 #if TRAIT_TRIANGLES
-    const uint triangle = TRIANGLE_OF(primitive);
-    const real rest = R(1) - hit.u - hit.v;
-    u = rest * FIELD_OF(texcoords, triangle_texcoords, triangle, u_0) +
-        hit.u * FIELD_OF(texcoords, triangle_texcoords, triangle, u_1) +
-        hit.v * FIELD_OF(texcoords, triangle_texcoords, triangle, u_2);
-    v = rest * FIELD_OF(texcoords, triangle_texcoords, triangle, v_0) +
-        hit.u * FIELD_OF(texcoords, triangle_texcoords, triangle, v_1) +
-        hit.v * FIELD_OF(texcoords, triangle_texcoords, triangle, v_2);
+    point = point_of_triangle(triangle_texcoords, unit, TRIANGLE_OF(primitive), hit.u, hit.v);
 #endif
 #if TRAIT_SPHERES
     const uint sphere = SPHERE_OF(primitive);
-    /* Component after component, axis after axis (kernels/lib/ordered.h). */
-    const vec3 normal = v3_ordered(hit.normal);
-    const real facing = FIELD_OF(sphere, spheres, sphere, facing);
-    const real x = facing * v3_dot(normal, FIELD_V3(sphere_axes, sphere_axes, sphere, first));
-    const real y = facing * v3_dot(v3_after(normal, x), FIELD_V3(sphere_axes, sphere_axes, sphere, second));
-    const real z = facing * v3_dot(v3_after(normal, y), FIELD_V3(sphere_axes, sphere_axes, sphere, third));
-    const real around = approx_turn(y, x);
-    const real down = R(2) * approx_turn(r_sqrt(x * x + y * y), r_after(z, around));
+    const texture_point on_sphere = point_of_sphere(
+        sphere_axes, unit, sphere, v3_scale(hit.normal, FIELD_OF(sphere, spheres, sphere, facing)), point);
     const int is_sphere = !TRAIT_TRIANGLES || primitive >= triangle_count;
-    u = is_sphere ? around : u;
-    v = is_sphere ? down : v;
+    point.u = is_sphere ? on_sphere.u : point.u;
+    point.v = is_sphere ? on_sphere.v : point.v;
 #endif
 #if TRAIT_BLENDS
 #if OF_LIGHT_PATHS
@@ -135,7 +127,7 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
         const uint number = FIELD_OF(blend, blends, record, weight_texture);
         const int is_constant = number == texture_none;
         const real looked_up = rgb_luminance(
-            texture_lookup(textures, texture_reals, texels, texture_decode, unit, is_constant ? 0u : number, u, v));
+            texture_lookup(textures, texture_reals, texels, texture_decode, unit, is_constant ? 0u : number, point));
         weight = is_constant ? weight : looked_up;
 #endif
         /* What is left of the number decides on the next level. */
@@ -147,4 +139,12 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
     *(GRADUS_GLOBAL uint *)(surface + (size_t)surface_record * traced_rows + row) = record;
 #endif
     GRADUS_TEXTURED_PARAMETERS(LEAVE_COLOR, LEAVE_NUMBER, )
+#if TRAIT_TEXTURED_LIGHTS & 1
+    const uint named = primitive_light[primitive];
+    const rgb of_light = light_texture_at(light_textures, textures, texture_reals, texels, texture_decode, unit,
+                                          named < light_count ? named : light_count, point);
+    surface[(size_t)surface_emission_r * traced_rows + row] = of_light.r;
+    surface[(size_t)surface_emission_g * traced_rows + row] = of_light.g;
+    surface[(size_t)surface_emission_b * traced_rows + row] = of_light.b;
+#endif
 }

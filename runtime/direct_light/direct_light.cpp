@@ -6,9 +6,12 @@
 #define TRAIT_LIGHT_SPHERE 1
 #define TRAIT_LIGHT_CONSTANT 1
 #define TRAIT_LIGHT_ENVIRONMENT 1
+#define TRAIT_TEXTURED_LIGHTS 7
+#define TRAIT_TEXTURES 8191
 #include "kernels/lib/additive_sequence.h"
 #include "kernels/lib/escaped_light.h"
 #include "kernels/lib/filter_table.h"
+#include "kernels/lib/light_texture.h"
 #include "kernels/lib/stratified.h"
 #include "kernels/shared/tables.h"
 #include "runtime/direct_light/lit_rectangle.h"
@@ -70,9 +73,32 @@ class DirectRays {
         const vec3 origin = camera_rays_.origin(i), direction = camera_rays_.direction(i);
         const primitive_hit hit = primitive_hit_of(tables_.triangles.data(), tables_.spheres.data(), unit,
                                                    tables_.triangle_count, primitive, origin, direction);
-        return light_found_at(tables_.primitive_light.data(), lights, tables_.light_count, unit, tables_.triangle_count,
-                              primitive, hit, origin, direction)
-            .radiance;
+        const rgb found = light_found_at(tables_.primitive_light.data(), lights, tables_.light_count, unit,
+                                         tables_.triangle_count, primitive, hit, origin, direction)
+                              .radiance;
+        return tables_.light_textures.empty() ? found : textured(found, primitive, hit, as_one);
+    }
+
+    /// The light of a surface that may have a texture; `as_one`: as if it were its mean.
+    rgb textured(rgb found, std::uint32_t primitive, const primitive_hit &hit, bool as_one) const {
+        const std::uint32_t light = tables_.primitive_light[primitive];
+        if (FIELD_OF(light_texture, tables_.light_textures, light, texture) == texture_none)
+            return found;
+        const float *mean = &tables_.light_means[std::size_t(light) * 3];
+        if (as_one)
+            return rgb_max(found) > 0 ? rgb3(mean[0], mean[1], mean[2]) : found;
+        const bool is_sphere = primitive >= tables_.triangle_count;
+        texture_point point = point_of_nothing();
+        if (is_sphere) {
+            const std::uint32_t sphere = primitive - tables_.triangle_count;
+            const float facing = FIELD_OF(sphere, tables_.spheres, sphere, facing);
+            point = point_of_sphere(tables_.sphere_axes.data(), unit, sphere, v3_scale(hit.normal, facing), point);
+        } else {
+            point = point_of_triangle(tables_.triangle_texcoords.data(), unit, primitive, hit.u, hit.v);
+        }
+        return rgb_mul(found, light_texture_at(tables_.light_textures.data(), tables_.textures.data(),
+                                               tables_.texture_reals.data(), tables_.texels.data(),
+                                               tables_.texture_decode.data(), unit, light, point));
     }
 
     const SceneTables &tables_;

@@ -17,6 +17,9 @@ struct SceneTables {
     /// By primitive. The material bears the bit material_two_sided; the bins are those of `classify`, by the side.
     std::vector<std::uint32_t> primitive_material, primitive_light, primitive_bin, primitive_back_bin;
     /// Only where textures are: kernels/shared/texture.h.
+    std::vector<std::uint32_t> light_textures; ///< by light, only where lights have textures; so are:
+    std::vector<float> light_pictures,
+        light_means; ///< the latter, three numbers, are what the value is times in the mean
     std::vector<float> triangle_texcoords, sphere_axes, texture_reals, texture_decode;
     std::vector<std::uint32_t> textures, texels, material_textures;
     /// By material record, where materials are blended: records of kernels/shared/texture.h, and the place in `kinds`.

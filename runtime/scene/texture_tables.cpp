@@ -4,6 +4,7 @@
 #include "runtime/error.h"
 
 #include <algorithm>
+#include <bit>
 #include <map>
 
 namespace gradus {
@@ -12,6 +13,11 @@ using namespace lib_float;
 
 namespace {
 
+void check_words(std::uint64_t words) {
+    if (words >= 0xFFFFFFFFu)
+        throw Error(ExitCode::device, "the scene's textures and mesh attributes have more than 16 GiB");
+}
+
 /// The pictures one after the other, each once. By picture: its first word.
 std::map<const Bitmap *, std::uint32_t> add_bitmaps(const Scene &scene, SceneTables &tables) {
     std::map<const Bitmap *, std::uint32_t> offsets;
@@ -19,12 +25,77 @@ std::map<const Bitmap *, std::uint32_t> add_bitmaps(const Scene &scene, SceneTab
     for (const Texture &texture : scene.textures)
         if (texture.bitmap && offsets.emplace(texture.bitmap.get(), std::uint32_t(words)).second)
             words += texture.bitmap->words.size();
-    if (words >= 0xFFFFFFFFu)
-        throw Error(ExitCode::device, "the scene's textures have more than 16 GiB of pixels");
+    check_words(words);
     tables.texels.resize(std::size_t(words) + 1); // one at least
     for (const auto &[bitmap, offset] : offsets)
         std::copy(bitmap->words.begin(), bitmap->words.end(), tables.texels.begin() + offset);
     return offsets;
+}
+
+/// How a mesh attribute lies in the words.
+struct AttributePlace {
+    std::uint32_t offset = 0, channels = 1;
+    std::uint32_t first = 0, count = 1; ///< the triangles that are there
+    /// Of one triangle.
+    std::size_t words(const std::string &name) const { return std::size_t(channels) * (is_by_face(name) ? 1 : 3); }
+};
+
+/// Calls visit(attribute or nullptr, mesh, number of its first triangle) for each mesh of the scene, in the order of
+/// the tables.
+template <class Visit>
+void for_each_mesh(const Scene &scene, const std::string &name, const Visit &visit) {
+    std::size_t first = 0;
+    for (const Shape &shape : scene.shapes)
+        if (shape.kind == Shape::Kind::mesh) {
+            const Mesh &mesh = scene.meshes[shape.geometry];
+            visit(find_attribute(mesh, name), mesh, first);
+            first += mesh.triangles.size();
+        }
+}
+
+void put_attribute(const MeshAttribute &attribute, const Mesh &mesh, const AttributePlace &place, std::uint32_t *to) {
+    const bool by_face = is_by_face(attribute.name);
+    for (std::size_t triangle = 0; triangle < mesh.triangles.size(); ++triangle)
+        for (std::size_t corner = 0; corner < (by_face ? 1u : 3u); ++corner) {
+            const std::size_t element = by_face ? triangle : mesh.triangles[triangle][corner];
+            for (std::size_t c = 0; c < place.channels; ++c)
+                *to++ = std::bit_cast<std::uint32_t>(
+                    attribute.values[element * attribute.channels + (attribute.channels > 1 ? c : 0)]);
+        }
+}
+
+/// The mesh attributes that textures name, each from the first triangle that has it to the last.
+std::map<std::string, AttributePlace> add_attributes(const Scene &scene, SceneTables &tables) {
+    std::map<std::string, AttributePlace> places;
+    for (const Texture &texture : scene.textures) {
+        const std::string &name = texture.attribute;
+        if (texture.kind != Texture::Kind::mesh_attribute || places.contains(name))
+            continue;
+        AttributePlace &place = places[name];
+        std::size_t begin = SIZE_MAX, end = 0;
+        for_each_mesh(scene, name, [&](const MeshAttribute *attribute, const Mesh &mesh, std::size_t first) {
+            if (!attribute)
+                return;
+            place.channels = std::max(place.channels, attribute->channels);
+            begin = std::min(begin, first);
+            end = std::max(end, first + mesh.triangles.size());
+        });
+        if (begin >= end) { // no shape has it: none takes what is there
+            begin = 0;
+            end = 1;
+        }
+        const std::size_t words = place.words(name), base = tables.texels.size();
+        check_words(base + (end - begin) * words);
+        tables.texels.resize(base + (end - begin) * words);
+        place.offset = std::uint32_t(base);
+        place.first = std::uint32_t(begin);
+        place.count = std::uint32_t(end - begin);
+        for_each_mesh(scene, name, [&](const MeshAttribute *attribute, const Mesh &mesh, std::size_t first) {
+            if (attribute)
+                put_attribute(*attribute, mesh, place, &tables.texels[base + (first - begin) * words]);
+        });
+    }
+    return places;
 }
 
 std::uint32_t flags_of(const Texture &texture) {
@@ -33,6 +104,9 @@ std::uint32_t flags_of(const Texture &texture) {
     flags |= texture.is_srgb ? texture_flag_srgb : 0;
     if (texture.kind == Texture::Kind::checkerboard)
         return flags | texture_flag_checkerboard;
+    if (texture.kind == Texture::Kind::mesh_attribute)
+        return texture_format_real | texture_flag_attribute |
+               (is_by_face(texture.attribute) ? texture_flag_by_face : 0);
     return flags | std::uint32_t(texture.bitmap->format) | (texture.bitmap->is_color ? texture_flag_color : 0);
 }
 
@@ -62,12 +136,19 @@ void add_textures(const Scene &scene, SceneTables &tables) {
     tables.triangle_texcoords.resize(std::max<std::size_t>(tables.triangle_texcoords.size(), texcoords_stride));
 
     const std::map<const Bitmap *, std::uint32_t> offsets = add_bitmaps(scene, tables);
+    const std::map<std::string, AttributePlace> attributes = add_attributes(scene, tables);
     add_decoding(tables);
     for (const Texture &texture : scene.textures) {
         const bool has_bitmap = texture.bitmap != nullptr;
+        const bool is_attribute = texture.kind == Texture::Kind::mesh_attribute;
+        const AttributePlace attribute = is_attribute ? attributes.at(texture.attribute) : AttributePlace();
+        const std::uint32_t flags = flags_of(texture) | (attribute.channels > 1 ? texture_flag_color : 0);
         tables.textures.insert(tables.textures.end(),
-                               {flags_of(texture), has_bitmap ? offsets.at(texture.bitmap.get()) : 0,
-                                has_bitmap ? texture.bitmap->width : 1, has_bitmap ? texture.bitmap->height : 1});
+                               {flags, has_bitmap ? offsets.at(texture.bitmap.get()) : attribute.offset,
+                                has_bitmap     ? texture.bitmap->width
+                                : is_attribute ? attribute.first
+                                               : 1,
+                                has_bitmap ? texture.bitmap->height : attribute.count});
         auto &reals = tables.texture_reals;
         reals.insert(reals.end(), texture.to_uv.begin(), texture.to_uv.end());
         reals.insert(reals.end(), {texture.lowest, texture.highest});

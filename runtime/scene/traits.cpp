@@ -34,6 +34,7 @@ constexpr TraitText descriptions[] = {
     {"TRAIT_LIGHT_CONSTANT", "sampling of a constant environment"},
     {"TRAIT_LIGHT_ENVIRONMENT", "an environment map"},
     {"TRAIT_LIGHT_SPOT", "spots"},
+    {"TRAIT_TEXTURED_LIGHTS", "lights with textures, a bit each for surfaces, spots and projectors"},
     {"TRAIT_HIDE_EMITTERS", "emitters that the camera does not see"},
     {"TRAIT_MATERIAL", "materials that differ from place to place or from path to path"},
     {"TRAIT_BLENDS", "mixtures of BSDFs, how deeply nested"},
@@ -112,6 +113,8 @@ int texture_features(const Texture &texture) {
         features |= textures_scaled;
     if (texture.kind == Texture::Kind::checkerboard)
         return features | textures_checkerboards;
+    if (texture.kind == Texture::Kind::mesh_attribute)
+        return features | textures_of_meshes;
     const int formats[] = {textures_of_bytes, textures_of_words, textures_of_halves, textures_of_reals};
     features |= formats[int(texture.bitmap->format)];
     features |= texture.bitmap->is_color ? textures_in_color : textures_in_gray;
@@ -155,6 +158,25 @@ void for_each_blend(const Scene &scene, const Bsdf &bsdf, const std::function<vo
     visit(blend);
     for_each_blend(scene, scene.blended[blend.first], visit);
     for_each_blend(scene, scene.blended[blend.second], visit);
+}
+
+void for_each_texture(const Scene &scene, const Shape &shape, const std::function<void(std::int32_t)> &visit) {
+    const auto visit_if = [&](std::int32_t texture) {
+        if (texture != no_texture)
+            visit(texture);
+    };
+    const Material &material = scene.materials[shape.material];
+    visit_if(material.opacity.texture);
+    if (shape.emitter >= 0)
+        visit_if(scene.emitters[std::size_t(shape.emitter)].texture);
+    for (const Bsdf *side : {&material.front, &material.back}) {
+        if (side == &material.back && !material.two_sided)
+            continue;
+        for_each_blend(scene, *side, [&](const Blend &blend) { visit_if(blend.weight.texture); });
+        for_each_part(scene, *side, [&](const Bsdf &part) {
+            for_each_textured_parameter(part, [&](int, std::int32_t texture) { visit_if(texture); });
+        });
+    }
 }
 
 bool needs_material_stage(const Scene &scene) { return scene_traits(scene).at("TRAIT_MATERIAL") != 0; }
@@ -202,13 +224,26 @@ TraitMap scene_traits(const Scene &scene) {
             traits["TRAIT_TEXTURES"] |= texture_features(scene.textures[std::size_t(texture)]);
         });
     });
-    traits["TRAIT_MATERIAL"] = traits["TRAIT_TEXTURED"] != 0 || traits["TRAIT_BLENDS"] > 0;
+    const auto texture_light = [&](const Emitter &emitter, int bit) {
+        if (emitter.texture != no_texture)
+            traits["TRAIT_TEXTURES"] |= texture_features(scene.textures[std::size_t(emitter.texture)]);
+        if (emitter.texture != no_texture || emitter.kind == Emitter::Kind::projector)
+            traits["TRAIT_TEXTURED_LIGHTS"] |= bit;
+    };
+    for (const Shape &shape : scene.shapes)
+        if (shape.emitter >= 0)
+            texture_light(scene.emitters[std::size_t(shape.emitter)], textured_lights_of_surfaces);
+    traits["TRAIT_MATERIAL"] = traits["TRAIT_TEXTURED"] != 0 || traits["TRAIT_BLENDS"] > 0 ||
+                               traits["TRAIT_TEXTURED_LIGHTS"] != 0; // of surfaces, so far
     for (const Emitter &emitter : scene.emitters) {
         if (emitter.value == Rgb{})
             continue; // black: no light
         switch (emitter.kind) {
         case Emitter::Kind::area:
             break; // by the shape that bears it
+        case Emitter::Kind::projector:
+            texture_light(emitter, textured_lights_projectors);
+            break;
         case Emitter::Kind::constant:
             traits["TRAIT_ENVIRONMENT"] = 1;
             traits["TRAIT_LIGHT_CONSTANT"] = 1;
@@ -225,6 +260,7 @@ TraitMap scene_traits(const Scene &scene) {
             break;
         case Emitter::Kind::spot:
             traits["TRAIT_LIGHT_SPOT"] = 1;
+            texture_light(emitter, textured_lights_spots);
             break;
         }
     }

@@ -95,6 +95,10 @@ std::vector<Buffer> make_scene_buffers(Device &device, const SceneTables &t, Pre
         numbers("record_kind", t.record_kind);
         reals("blend_weights", t.blend_weights);
     }
+    if (!t.light_textures.empty()) {
+        numbers("light_textures", t.light_textures);
+        reals("light_pictures", t.light_pictures);
+    }
     return buffers;
 }
 

@@ -2,6 +2,7 @@
 // kernels are compiled for, and what was counted.
 #pragma once
 
+#include "kernels/shared/texture.h"
 #include "runtime/device/buffer.h"
 #include "runtime/device/program.h"
 #include "runtime/scene/scene_tables.h"
@@ -56,8 +57,11 @@ struct Session {
     }
     /// Columns that tables of surface vertices have behind those: textured parameters.
     std::uint32_t textured_columns() const { return textured_column_count(traits.at("TRAIT_TEXTURED")); }
-    /// Columns of `surface`: those, and the record that a blend has come to.
-    std::uint32_t surface_columns() const { return textured_columns() + (has("TRAIT_BLENDS") ? 1 : 0); }
+    /// Columns of `surface`: those, what the light of a surface is times, and the record that a blend has come to.
+    std::uint32_t surface_columns() const {
+        const bool emits = (traits.at("TRAIT_TEXTURED_LIGHTS") & textured_lights_of_surfaces) != 0;
+        return textured_columns() + (emits ? 3 : 0) + (has("TRAIT_BLENDS") ? 1 : 0);
+    }
     /// Of so many columns of a table of surface vertices those that are allocated.
     std::uint32_t vertex_columns(std::uint32_t all) const {
         return all - vertex_columns_not_needed() + textured_columns();

@@ -43,7 +43,8 @@ TEST_P(OwnReference, IsMet) { EXPECT_TRUE(renders_as_referenced(own_reference(Ge
 INSTANTIATE_TEST_SUITE_P(Image, OwnReference,
                          ::testing::Values("cornell-box", "torus-rough-glass", "plates", "holes-14", "materials",
                                            "plastics", "metal-ring-soft", "torus-smooth-glass-soft", "sundial",
-                                           "thin-lens", "orthographic", "clipped", "clipped-mitchell", "textures"),
+                                           "thin-lens", "orthographic", "clipped", "clipped-mitchell", "textures",
+                                           "lamps"),
                          name_of_scene);
 INSTANTIATE_TEST_SUITE_P(Full, OwnReference,
                          ::testing::Values("holes-7", "holes-28", "door-ajar", "cornell-box-glossy",

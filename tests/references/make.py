@@ -50,6 +50,7 @@ REFERENCES = {
     "orthographic": ("../tests/scenes/orthographic.xml", 48, {}, 16384),
     "clipped": ("../tests/scenes/clipped.xml", 48, {}, 16384),
     "clipped-mitchell": ("../tests/scenes/clipped.xml", 48, {"rfilter": "mitchell"}, 65536),
+    "lamps": ("../tests/scenes/lamps.xml", 48, {}, 16384),
     "plastics": ("plastics.xml", 48, {}, 32768),
 }
 

@@ -1,6 +1,6 @@
 // Textures on the host, and the kernels' lookups against them.
 #define TRAIT_TEXTURED 1
-#define TRAIT_TEXTURES 4095
+#define TRAIT_TEXTURES 8191
 #include "kernels/lib/texture_lookup.h"
 #include "runtime/scene/scene_tables.h"
 #include "runtime/scene/texture.h"
@@ -158,7 +158,7 @@ TEST(TextureLookup, IsTheHostsToRounding) {
                 const std::array<double, 3> expected = texture_value(texture, u, v);
                 const lib_float::rgb actual =
                     lib_float::texture_lookup(tables.textures.data(), tables.texture_reals.data(), tables.texels.data(),
-                                              tables.texture_decode.data(), 1, std::uint32_t(i), u, v);
+                                              tables.texture_decode.data(), 1, std::uint32_t(i), {u, v, 0, 0, 0});
                 const double scale = std::max({texture.scale[0], texture.scale[1], texture.scale[2]});
                 const double tolerance = (2 * rounding + 4 * 0x1p-24) * scale;
                 const float values[] = {actual.r, actual.g, actual.b};
@@ -189,7 +189,7 @@ TEST(TextureLookup, StaysWithinThePicture) {
             const float v = std::bit_cast<float>(std::uint32_t(random()));
             const lib_float::rgb value =
                 lib_float::texture_lookup(tables.textures.data(), tables.texture_reals.data(), tables.texels.data(),
-                                          tables.texture_decode.data(), 1, 1, u, v);
+                                          tables.texture_decode.data(), 1, 1, {u, v, 0, 0, 0});
             ASSERT_EQ(value.g, 0.25f) << u << ", " << v;
         }
     }
