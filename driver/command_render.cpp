@@ -31,9 +31,10 @@ void add_render_command(CLI::App &app, const Services &services, std::function<i
         ->type_name("FILE.exr")
         ->group(output);
     command
-        .add_flag("--layers", request->method.options.layers,
-                  "Also write what the image was reconstructed from (gpt), for `gradus solve`: primal, dx, dy, direct; "
-                  "with --aov also their variances")
+        .add_flag(
+            "--layers", request->method.options.layers,
+            "Also write what the image was reconstructed from, for `gradus solve`: primal, dx, dy, direct; with "
+            "--aov also their variances; of weighted and guided both halves and, of guided, albedo, normal, depth")
         ->group(output);
     command.add_flag("--png", request->outputs.png, "Also write a PNG beside it: sRGB curve, exposure 1, clamped")
         ->group(output);

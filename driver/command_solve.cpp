@@ -6,10 +6,13 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <map>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace gradus {
 namespace {
@@ -30,6 +33,10 @@ Sought is the image I with the differences Gx to the right and Gy downwards, and
        the variances of the other half, and the mean of both. Without bias where the halves are independent. It needs
        what `gradus render --layers --reconstruction weighted` writes: primal_even, dx_even, dy_even, primal_odd and so
        on, and the variance of each.
+  guided
+       both halves of weighted, and a filtered image of them where that has less error, by place. It also needs albedo,
+       normal and depth, as `gradus render --layers --reconstruction guided` writes them; of path tracing, the halves'
+       primal alone.
 A small alpha trusts the differences, a large one the primal; auto takes the ratio of their variances.
 
 Methods: multigrid cycles; cg, conjugate gradients; pcg, the same preconditioned by a multigrid cycle; jacobi, which is
@@ -67,12 +74,13 @@ std::string complain_about_damping(std::string &text) {
 }
 
 GradientLayer layer_called(const std::string &name) {
-    for (const GradientLayer layer : gradient_layers)
+    std::vector<std::string> names;
+    for (const GradientLayer layer : gradient_layers) {
         if (name == layer_name(layer))
             return layer;
-    throw Error(ExitCode::usage, fmt::format("'{}' is none of primal, dx, dy, direct, primal_variance, dx_variance, "
-                                             "dy_variance",
-                                             name));
+        names.push_back(layer_name(layer));
+    }
+    throw Error(ExitCode::usage, fmt::format("'{}' is none of {}", name, fmt::join(names, ", ")));
 }
 
 /// "dx=NAME"; the name may be empty.
@@ -144,13 +152,11 @@ void add_output_options(CLI::App &command, SolveRequest &request) {
 void add_problem_options(CLI::App &command, SolveRequest &request) {
     const char *group = "What is solved";
     PoissonOptions &options = request.options;
-    add_reconstruction_option(
-        command, group,
-        [&request, &options](Reconstruction reconstruction) {
-            request.reconstruction = reconstruction;
-            options.norm = reconstruction == Reconstruction::l1 ? PoissonNorm::l1 : PoissonNorm::l2;
-        },
-        false);
+    add_reconstruction_option(command, group, [&request, &options](Reconstruction reconstruction) {
+        request.reconstruction = reconstruction;
+        options.norm = reconstruction == Reconstruction::l1 ? PoissonNorm::l1 : PoissonNorm::l2;
+    });
+    add_guide_option(command, group, [&request](Guide guide) { request.guide = guide; });
     add_alpha_option(command, group, "0.2",
                      "Weight of the primal, from 0 (its mean alone) on; auto: from the variances",
                      [&request, &options](std::optional<double> alpha) {

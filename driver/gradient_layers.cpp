@@ -40,7 +40,10 @@ const std::map<GradientLayer, Names> all_names = {
     {GradientLayer::dy_odd, {"dy_odd", nullptr, {"dyodd"}}},
     {GradientLayer::primal_odd_variance, {"primal_odd_variance", nullptr, {"primaloddvariance"}}},
     {GradientLayer::dx_odd_variance, {"dx_odd_variance", nullptr, {"dxoddvariance"}}},
-    {GradientLayer::dy_odd_variance, {"dy_odd_variance", nullptr, {"dyoddvariance"}}}};
+    {GradientLayer::dy_odd_variance, {"dy_odd_variance", nullptr, {"dyoddvariance"}}},
+    {GradientLayer::albedo, {"albedo", nullptr, {"albedo"}}},
+    {GradientLayer::normal, {"normal", nullptr, {"normal", "normals"}}},
+    {GradientLayer::depth, {"depth", nullptr, {"depth"}}}};
 
 /// Small letters and digits alone, so that Gradient_X and gradientX are one.
 std::string simplified(const std::string &name) {
@@ -108,47 +111,76 @@ struct Found {
     std::vector<float> values; ///< one plane after the other
 };
 
-/// Takes the colours of a layer.
-Found take_colours(const Image &image, const std::vector<const Channel *> &layer, const std::string &where) {
-    std::map<std::string, const Channel *> colours;
-    for (const Channel *channel : layer) {
+/// The channels that stand for an image, in their order. Throws where they are not there.
+std::vector<std::string> channels_to_take(GradientLayer layer, const std::map<std::string, const Channel *> &there,
+                                          const std::string &where, const std::string &listed) {
+    if (layer != GradientLayer::normal && layer != GradientLayer::depth && there.count("Y") && there.size() == 1)
+        return {"Y"};
+    std::vector<std::string> wanted{"R", "G", "B"};
+    const char *text = "R, G and B, or Y alone";
+    if (layer == GradientLayer::normal) {
+        wanted = {"X", "Y", "Z"};
+        text = "X, Y and Z";
+    } else if (layer == GradientLayer::depth) {
+        wanted = {"Z"};
+        text = "Z";
+    }
+    for (const std::string &letter : wanted)
+        if (!there.count(letter))
+            fail_to_read(fmt::format("{} has the channels {}: there must be {}", where, listed, text));
+    return wanted;
+}
+
+Found take_channels(GradientLayer layer, const Image &image, const std::vector<const Channel *> &channels,
+                    const std::string &where) {
+    std::map<std::string, const Channel *> there;
+    for (const Channel *channel : channels) {
         std::string letter = last_part(channel->name);
         std::transform(letter.begin(), letter.end(), letter.begin(), [](unsigned char c) { return std::toupper(c); });
         if (letter != "A")
-            colours[letter] = channel;
+            there[letter] = channel;
     }
-    Found found{where, image.width, image.height, {}, {}};
-    if (colours.count("R") && colours.count("G") && colours.count("B"))
-        found.channels = {"R", "G", "B"};
-    else if (colours.count("Y") && colours.size() == 1)
-        found.channels = {"Y"};
-    else
-        fail_to_read(
-            fmt::format("{} has the channels {}: there must be R, G and B, or Y alone", where, letters_of(layer)));
+    Found found{where, image.width, image.height, channels_to_take(layer, there, where, letters_of(channels)), {}};
     for (const std::string &letter : found.channels) {
-        const std::vector<float> &values = colours.at(letter)->values;
+        const std::vector<float> &values = there.at(letter)->values;
         found.values.insert(found.values.end(), values.begin(), values.end());
     }
     return found;
+}
+
+bool is_primal_of_half(GradientLayer layer) {
+    return layer == GradientLayer::primal_even || layer == GradientLayer::primal_odd;
+}
+
+/// Whether images can be read without it.
+bool may_be_missing(GradientLayer layer, const GradientSources &sources) {
+    return layer == GradientLayer::direct || (sources.features && is_of_half(layer) && !is_primal_of_half(layer));
+}
+
+bool is_asked_for(GradientLayer layer, const GradientSources &sources) {
+    if (layer == GradientLayer::direct)
+        return true;
+    if (is_feature(layer))
+        return sources.features;
+    return is_of_half(layer) == sources.halves && (!is_variance(layer) || sources.halves || sources.variances);
 }
 
 /// Which images each file holds, so that every file is read once.
 std::map<std::string, std::vector<GradientLayer>> files_to_read(const GradientSources &sources) {
     std::map<std::string, std::vector<GradientLayer>> files;
     for (const GradientLayer layer : gradient_layers) {
-        if (layer != GradientLayer::direct && is_of_half(layer) != sources.halves)
-            continue;
-        if (is_variance(layer) && !sources.halves && !sources.variances)
+        if (!is_asked_for(layer, sources))
             continue;
         const auto own = sources.files.find(layer);
         if (own != sources.files.end())
             files[own->second].push_back(layer);
         else if (!sources.layered.empty())
             files[sources.layered].push_back(layer);
-        else if (is_of_half(layer))
-            throw Error(ExitCode::usage, fmt::format("there is no {}: give a file with layers, of `gradus render "
-                                                     "--layers --reconstruction weighted`",
-                                                     layer_name(layer)));
+        else if (sources.halves && layer != GradientLayer::direct)
+            throw Error(ExitCode::usage,
+                        fmt::format("there is no {}: give a file with layers, of `gradus render --layers "
+                                    "--reconstruction {}`",
+                                    layer_name(layer), sources.features ? "guided" : "weighted"));
         else if (layer != GradientLayer::direct)
             throw Error(ExitCode::usage, fmt::format("there is no {}: give {} FILE, or one file with layers",
                                                      layer_name(layer), all_names.at(layer).option));
@@ -169,26 +201,40 @@ void read_file(const std::string &path, const std::vector<GradientLayer> &wanted
     for (const GradientLayer layer : wanted) {
         const bool alone = sources.files.count(layer) > 0;
         const auto name = find_layer(image, layers, layer, sources, alone);
-        if (!name && layer == GradientLayer::direct && !alone && !sources.names.count(layer))
+        if (!name && may_be_missing(layer, sources) && !alone && !sources.names.count(layer))
             continue;
         if (!name)
             fail_to_read(fmt::format("'{}' has no layer for {}; it has: {}. Name it with --layer {}=NAME", path,
                                      layer_name(layer), list_of(layers), layer_name(layer)));
         const std::string where = name->empty() ? fmt::format("'{}'", path) : fmt::format("{} of '{}'", *name, path);
-        found[layer] = take_colours(image, layers.at(*name), where);
+        found[layer] = take_channels(layer, image, layers.at(*name), where);
         if (layer == main_layer(sources))
             images.metadata = image.metadata;
     }
 }
 
-/// Everything is measured by the primal.
-void check_equal(const Found &primal, const Found &other) {
+/// Everything is measured by the primal; features have channels of their own.
+void check_equal(const Found &primal, GradientLayer layer, const Found &other) {
     if (other.width != primal.width || other.height != primal.height)
         fail_to_read(fmt::format("sizes differ: {} is {}x{}, {} is {}x{}", primal.where, primal.width, primal.height,
                                  other.where, other.width, other.height));
-    if (other.channels != primal.channels)
+    if (other.channels != primal.channels && !is_feature(layer))
         fail_to_read(fmt::format("channels differ: {} has {}, {} has {}", primal.where,
                                  fmt::join(primal.channels, ", "), other.where, fmt::join(other.channels, ", ")));
+}
+
+/// Halves have no differences, or all of them with all variances.
+void check_halves_are_whole(const GradientSources &sources, const std::map<GradientLayer, Found> &found) {
+    const auto may_be = [&](GradientLayer layer) {
+        return layer != GradientLayer::direct && may_be_missing(layer, sources);
+    };
+    const auto is_there = [&](GradientLayer layer) { return may_be(layer) && found.count(layer) > 0; };
+    if (std::none_of(gradient_layers.begin(), gradient_layers.end(), is_there))
+        return;
+    for (const GradientLayer layer : gradient_layers)
+        if (may_be(layer) && !is_there(layer))
+            fail_to_read(fmt::format("there is no {} beside {}: halves have all differences and variances, or none",
+                                     layer_name(layer), found.at(main_layer(sources)).where));
 }
 
 } // namespace
@@ -198,6 +244,10 @@ bool is_variance(GradientLayer layer) { return std::string_view(layer_name(layer
 bool is_of_half(GradientLayer layer) {
     return std::any_of(half_layers.begin(), half_layers.end(),
                        [&](const auto &half) { return std::find(half.begin(), half.end(), layer) != half.end(); });
+}
+
+bool is_feature(GradientLayer layer) {
+    return layer == GradientLayer::albedo || layer == GradientLayer::normal || layer == GradientLayer::depth;
 }
 
 const char *layer_name(GradientLayer layer) { return all_names.at(layer).name; }
@@ -214,7 +264,8 @@ GradientImages read_gradient_images(const GradientSources &sources) {
         read_file(path, wanted, sources, found, images);
     const Found &primal = found.at(main_layer(sources));
     for (const auto &[layer, other] : found)
-        check_equal(primal, other);
+        check_equal(primal, layer, other);
+    check_halves_are_whole(sources, found);
     images.width = primal.width;
     images.height = primal.height;
     images.channels = primal.channels;

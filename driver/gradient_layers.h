@@ -29,7 +29,11 @@ enum class GradientLayer {
     dy_odd,
     primal_odd_variance,
     dx_odd_variance,
-    dy_odd_variance
+    dy_odd_variance,
+    // what the camera sees, for a guide
+    albedo,
+    normal,
+    depth
 };
 
 inline constexpr std::array gradient_layers = {GradientLayer::primal,
@@ -50,7 +54,10 @@ inline constexpr std::array gradient_layers = {GradientLayer::primal,
                                                GradientLayer::dy_odd,
                                                GradientLayer::primal_odd_variance,
                                                GradientLayer::dx_odd_variance,
-                                               GradientLayer::dy_odd_variance};
+                                               GradientLayer::dy_odd_variance,
+                                               GradientLayer::albedo,
+                                               GradientLayer::normal,
+                                               GradientLayer::depth};
 
 /// The layers of a half, 0 or 1: primal, dx, dy and their variances.
 inline constexpr std::array<std::array<GradientLayer, 6>, 2> half_layers = {
@@ -65,6 +72,8 @@ const char *layer_name(GradientLayer layer);
 bool is_variance(GradientLayer layer);
 /// Whether the layer is one of a half.
 bool is_of_half(GradientLayer layer);
+/// Whether it is albedo, normal or depth.
+bool is_feature(GradientLayer layer);
 
 /// Where the images are.
 struct GradientSources {
@@ -75,6 +84,7 @@ struct GradientSources {
     std::map<GradientLayer, std::string> names;
     bool variances = false;   ///< whether they are asked for; if not they are not read
     bool halves = false;      ///< both halves are, instead of primal, dx, dy and their variances
+    bool features = false;    ///< and albedo, normal and depth; halves may then have a primal alone, as path tracing's
     std::uint64_t limits = 1; ///< of read_image()
 };
 
@@ -90,7 +100,7 @@ struct GradientImages {
 };
 
 /// Reads primal, dx and dy, direct where there is one, and the variances where they are asked for; or both halves, and
-/// direct where there is one.
+/// direct where there is one, and features where they are asked for: albedo has colours, normal X, Y and Z, depth Z.
 ///
 /// In a file an image is the layer that the sources name, or else the first layer of one of its usual names in any
 /// case, or else, in a file of its own, the channels outside of any layer. Colours are the channels R, G and B, or Y

@@ -38,10 +38,13 @@ int main(int argc, char **argv) {
         prepared.description = device->description();
         prepared.solve = [solver](const gradus::HostImages &images, const gradus::PoissonOptions &options,
                                   float *result) { return solver->solve(images, options, result); };
-        prepared.solve_halves = [device, solver](const std::array<gradus::HostImages, 2> &images,
-                                                 const std::array<std::uint64_t, 2> &samples, gradus::Reconstruction,
+        prepared.solve_weighted = [device, solver](const gradus::HostHalves &halves, float *result) {
+            return gradus::solve_weighted(*device, *solver, halves, result);
+        };
+        prepared.solve_guided = [device, solver](const gradus::HostHalves &halves,
+                                                 const gradus::HostGuideInputs &inputs, gradus::Guide guide,
                                                  float *result) {
-            return gradus::solve_halves(*device, *solver, images, samples, result);
+            return gradus::solve_guided(*device, *solver, halves, inputs, guide, result);
         };
         return prepared;
     };

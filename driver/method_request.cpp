@@ -59,8 +59,8 @@ void add_method_options(CLI::App &command, const Services &services, MethodReque
     command.add_flag("--aov", request.options.aov, "Also write albedo, normal, depth and variance layers")
         ->group(group);
     const char *reconstruction = "Reconstruction (gpt, gpm, auto)";
-    add_reconstruction_option(
-        command, reconstruction, [&request](Reconstruction name) { request.options.reconstruction = name; }, true);
+    add_reconstruction_option(command, reconstruction,
+                              [&request](Reconstruction name) { request.options.reconstruction = name; });
     add_guide_option(command, reconstruction, [&request](Guide guide) { request.options.guide = guide; });
     add_alpha_option(command, reconstruction, "auto",
                      "Weight of the primal image against its differences; auto: from their variances",

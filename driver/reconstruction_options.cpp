@@ -20,25 +20,19 @@ std::optional<double> finite_number(const std::string &text) {
     return number;
 }
 
-void add_reconstruction_option(CLI::App &command, const char *group, std::function<void(Reconstruction)> set,
-                               bool guided) {
+void add_reconstruction_option(CLI::App &command, const char *group, std::function<void(Reconstruction)> set) {
     static const std::map<std::string, Reconstruction> reconstructions{{"l1", Reconstruction::l1},
                                                                        {"l2", Reconstruction::l2},
                                                                        {"weighted", Reconstruction::weighted},
                                                                        {"guided", Reconstruction::guided}};
-    std::vector<std::string> names{"l1", "l2", "weighted"};
-    if (guided)
-        names.push_back("guided");
     CLI::Option *reconstruction =
         command
             .add_option_function<std::string>(
                 "--reconstruction", [set](const std::string &name) { set(reconstructions.at(name)); },
                 "l1: robust; l2: linear, one weight for all pixels; weighted: linear, each pixel and each difference "
-                "weighted by its variance, and without bias: two halves of the samples judge each other" +
-                    std::string(guided ? "; guided: the same, and a filtered image where that has less error, by "
-                                         "place: consistent, the least error"
-                                       : ""))
-            ->check(CLI::IsMember(names))
+                "weighted by its variance, and without bias: two halves of the samples judge each other; guided: the "
+                "same, and a filtered image where that has less error, by place: consistent, the least error")
+            ->check(CLI::IsMember({"l1", "l2", "weighted", "guided"}))
             ->default_str("l1")
             ->group(group);
     command

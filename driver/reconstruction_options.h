@@ -16,9 +16,8 @@ namespace gradus {
 /// The number that the whole text is, or nothing; NaN and infinity are none.
 std::optional<double> finite_number(const std::string &text);
 
-/// --reconstruction l1|l2|weighted, with `guided` that too, and --norm, the old name of the first two.
-void add_reconstruction_option(CLI::App &command, const char *group, std::function<void(Reconstruction)> set,
-                               bool guided);
+/// --reconstruction l1|l2|weighted|guided, and --norm, the old name of the first two.
+void add_reconstruction_option(CLI::App &command, const char *group, std::function<void(Reconstruction)> set);
 
 /// --guide filter|denoiser.
 void add_guide_option(CLI::App &command, const char *group, std::function<void(Guide)> set);

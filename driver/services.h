@@ -5,9 +5,9 @@
 #include "planning/tuner.h"
 #include "runtime/device/device.h"
 #include "runtime/io/load_scene.h"
+#include "solver/guide/guided_reconstruction.h"
 #include "solver/poisson_solver.h"
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -29,10 +29,8 @@ struct PreparedSolver {
     std::shared_ptr<void> device; ///< outlives the solver
     DeviceDescription description;
     std::function<PoissonReport(const HostImages &, const PoissonOptions &, float *result)> solve;
-    /// From both halves, of so many samples each, where `reconstruction` needs them.
-    std::function<PoissonReport(const std::array<HostImages, 2> &, const std::array<std::uint64_t, 2> &samples,
-                                Reconstruction reconstruction, float *result)>
-        solve_halves;
+    std::function<PoissonReport(const HostHalves &, float *result)> solve_weighted;
+    std::function<PoissonReport(const HostHalves &, const HostGuideInputs &, Guide, float *result)> solve_guided;
 };
 
 /// What a tuner found, and for which device.

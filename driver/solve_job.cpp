@@ -41,6 +41,8 @@ void check_options(const SolveRequest &request) {
         refuse(fmt::format("--reconstruction {} chooses weights and method by itself: leave --weights, --method, "
                            "--tolerance and --iterations out",
                            reconstruction_name(request.reconstruction)));
+    if (request.guide && request.reconstruction != Reconstruction::guided)
+        refuse("--guide is of one reconstruction: add --reconstruction guided");
     if (request.damping && request.options.method != LinearMethod::jacobi)
         refuse("--damping is for one method: add --method jacobi");
 }
@@ -52,6 +54,7 @@ class SolveJob {
         options.damping = request_.damping.value_or(options.damping);
         request_.sources.variances = options.alpha_from_variances || options.weigh_by_variance;
         request_.sources.halves = needs_halves(request_.reconstruction);
+        request_.sources.features = request_.reconstruction == Reconstruction::guided;
     }
 
     void run() {
@@ -60,6 +63,8 @@ class SolveJob {
                 if (is_variance(layer))
                     warn(fmt::format("'{}' is not read: only --alpha auto and --weights variance use variances", path));
         images_ = read_gradient_images(request_.sources);
+        if (request_.sources.features && images_.channels.size() != 3)
+            throw Error(ExitCode::image, "--reconstruction guided is for images of R, G and B");
         solve();
         write_results();
     }
@@ -94,26 +99,39 @@ class SolveJob {
         planes.dy_variance = images_.find(GradientLayer::dy_variance);
         result_.resize(std::size_t(images_.width) * images_.height * channels);
         for (int i = 0; i < request_.repeats; ++i)
-            report_ = request_.sources.halves
-                          ? solver.solve_halves(halves(), samples_of_halves(), request_.reconstruction, result_.data())
-                          : solver.solve(planes, request_.options, result_.data());
+            report_ = solved(solver, planes);
         if (const float *direct = planes.direct; direct && request_.sources.halves)
             for (std::size_t i = 0; i < result_.size(); ++i)
                 result_[i] += direct[i];
         images_.planes.clear();
     }
 
-    std::array<HostImages, 2> halves() const {
-        std::array<HostImages, 2> halves;
+    PoissonReport solved(const PreparedSolver &solver, const HostImages &planes) {
+        if (request_.reconstruction == Reconstruction::weighted)
+            return solver.solve_weighted(halves(), result_.data());
+        if (request_.reconstruction != Reconstruction::guided)
+            return solver.solve(planes, request_.options, result_.data());
+        HostGuideInputs inputs;
+        inputs.albedo = images_.find(GradientLayer::albedo);
+        inputs.normal = images_.find(GradientLayer::normal);
+        inputs.depth = images_.find(GradientLayer::depth);
+        inputs.direct = planes.direct;
+        return solver.solve_guided(halves(), inputs, request_.guide.value_or(Guide::filter), result_.data());
+    }
+
+    HostHalves halves() const {
+        HostHalves halves;
         for (int i = 0; i < 2; ++i) {
             const auto [primal, dx, dy, primal_variance, dx_variance, dy_variance] = half_layers[i];
-            halves[i].primal = images_.find(primal);
-            halves[i].dx = images_.find(dx);
-            halves[i].dy = images_.find(dy);
-            halves[i].primal_variance = images_.find(primal_variance);
-            halves[i].dx_variance = images_.find(dx_variance);
-            halves[i].dy_variance = images_.find(dy_variance);
+            HostImages &images = halves.images[i];
+            images.primal = images_.find(primal);
+            images.dx = images_.find(dx);
+            images.dy = images_.find(dy);
+            images.primal_variance = images_.find(primal_variance);
+            images.dx_variance = images_.find(dx_variance);
+            images.dy_variance = images_.find(dy_variance);
         }
+        halves.samples = samples_of_halves();
         return halves;
     }
 
@@ -144,6 +162,8 @@ class SolveJob {
         image.metadata["version"] = version();
         image.metadata["method"] = report_.method;
         image.metadata["reconstruction"] = record_.reconstruction;
+        if (request_.sources.features)
+            image.metadata["guide"] = guide_name(request_.guide.value_or(Guide::filter));
         image.metadata["norm"] = record_.norm;
         image.metadata["weights"] = record_.weights;
         image.metadata["alpha"] = fmt::format("{}", report_.alpha);

@@ -2,9 +2,10 @@
 
 #include "kernels/shared/tables.h"
 #include "methods/gradient_image.h"
-#include "methods/guide_features.h"
 #include "methods/path_stages.h"
+#include "methods/reconstruction_inputs.h"
 #include "runtime/seconds_since.h"
+#include "solver/halves.h"
 
 #include <algorithm>
 #include <chrono>
@@ -16,6 +17,8 @@ using namespace lib_float;
 
 DifferenceFilm::DifferenceFilm(Session &session, Stages &stages, const RenderOptions &options, const char *counts)
     : session_(session), options_(options), counts_(counts),
+      film_names_(session.has("TRAIT_HALVES") ? std::vector<std::string>{"gradient_film", "odd_gradient_film"}
+                                              : std::vector<std::string>{"gradient_film"}),
       combine_(stages.add({.name = "gradient_combine", .strict = true})), film_(session, stages),
       accumulate_(stages.add({.name = "gradient_accumulate", .strict = true, .numbers = {"first_slot", "frames"}})),
       carry_(stages.add({.name = "gradient_carry", .numbers = {"first_slot"}})) {
@@ -24,18 +27,13 @@ DifferenceFilm::DifferenceFilm(Session &session, Stages &stages, const RenderOpt
         compilers_ = keep_compilers(session.device);
 }
 
-std::vector<std::string> DifferenceFilm::film_names() const {
-    return session_.has("TRAIT_HALVES") ? std::vector<std::string>{"gradient_film", "odd_gradient_film"}
-                                        : std::vector<std::string>{"gradient_film"};
-}
-
 TableList DifferenceFilm::tables() const {
     TableList list = joined(film_.tables(),
                             {{.name = "direct", .rows = RowsOf::slot, .columns = radiance_columns},
                              {.name = "prefix", .rows = RowsOf::slot, .columns = prefix_columns},
                              {.name = "difference", .rows = RowsOf::slot, .multiple = 4, .columns = difference_columns},
                              {.name = "carry", .rows = RowsOf::image_row, .columns = carry_columns}});
-    for (const std::string &name : film_names())
+    for (const std::string &name : film_names_)
         list.push_back({.name = name, .rows = RowsOf::pixel, .columns = gradient_film_columns, .is_cleared = true});
     return list;
 }
@@ -79,13 +77,12 @@ void DifferenceFilm::add(std::uint32_t first, std::uint32_t rows, std::uint32_t 
     const std::uint32_t width = session_.film.crop_width, pixels = rows * width;
     combine_.run(frames * pixels);
     film_.add(frames * pixels, first * width);
-    const std::vector<std::string> films = film_names();
-    const auto apart = std::uint32_t(films.size()); // frames of a film
+    const auto apart = std::uint32_t(film_names_.size()); // frames of a film
     for (std::uint32_t film = 0; film < apart; ++film) {
         // Of a half the first frame of its own, and every other one from there.
         const auto first_frame = std::uint32_t((film + apart - number % apart) % apart);
         if (apart > 1)
-            accumulate_.bind("gradient_film", (*tables_)[films[film]]);
+            accumulate_.bind("gradient_film", (*tables_)[film_names_[film]]);
         for (std::uint32_t frame = first_frame; frame < frames; frame += apart * accumulated_frames)
             accumulate_.run(pixels, {{"first_slot", frame * pixels},
                                      {"frames", std::min(accumulated_frames, (frames - frame + apart - 1) / apart)}});
@@ -95,16 +92,15 @@ void DifferenceFilm::add(std::uint32_t first, std::uint32_t rows, std::uint32_t 
 }
 
 Image DifferenceFilm::image(std::uint64_t samples, bool layers, bool last, std::uint64_t &non_finite) {
-    std::vector<std::string> kept = film_names();
-    kept.push_back(counts_);
-    if (last) { // what a pass needs and the films do not
-        std::vector<std::string> also = kept;
-        also.insert(also.end(), {"film", "feature_film"});
-        tables_->release_all_but(also);
-    }
+    const auto keep_films_and = [&](std::vector<std::string> kept) {
+        kept.insert(kept.end(), film_names_.begin(), film_names_.end());
+        tables_->release_all_but(kept);
+    };
+    if (last) // what a pass needs and the films do not
+        keep_films_and({counts_, "film", "feature_film"});
     Image whole = film_.image(samples, non_finite);
     if (last)
-        tables_->release_all_but(kept);
+        keep_films_and({counts_});
     if (solver_compiled_.valid())
         solver_compiled_.get();
     if (!solver_)
@@ -112,10 +108,9 @@ Image DifferenceFilm::image(std::uint64_t samples, bool layers, bool last, std::
             std::make_unique<PoissonSolver>(session_.device, session_.film.crop_width, session_.film.crop_height, 3);
     const std::uint64_t pixels = session_.pixels();
     GradientFilms films;
-    for (std::size_t i = 0; i < kept.size() - 1; ++i)
-        films.add(std::make_unique<GradientFilm>((*tables_)[kept[i]], session_.film.crop_width,
-                                                 session_.film.crop_height, options_.precision,
-                                                 kept.size() > 2 ? samples_of_half(samples, pixels, int(i)) : samples));
+    for (std::size_t i = 0; i < film_names_.size(); ++i)
+        films.add((*tables_)[film_names_[i]], session_.film.crop_width, session_.film.crop_height, options_.precision,
+                  film_names_.size() > 1 ? samples_of_half(samples, pixels, int(i)) : samples);
     used_ = reconstruction_used(options_, samples, pixels);
     Image image = reconstruct(session_.device, *solver_, std::move(whole), std::move(films), edges(samples, last),
                               options_, layers, [&] {
@@ -138,7 +133,7 @@ void DifferenceFilm::clear() {
     edge_rays_ = 0;
     edge_seconds_ = 0;
     film_.clear();
-    for (const std::string &name : film_names())
+    for (const std::string &name : film_names_)
         (*tables_)[name].clear();
 }
 

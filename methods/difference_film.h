@@ -48,12 +48,10 @@ class DifferenceFilm {
     /// last take what an earlier one of half as many had.
     const std::vector<DirectPixel> &edges(std::uint64_t samples, bool last);
 
-    /// The tables of the sums: one, or those of both halves.
-    std::vector<std::string> film_names() const;
-
     Session &session_;
     const RenderOptions &options_;
-    std::string counts_;
+    const std::string counts_;
+    const std::vector<std::string> film_names_; ///< the tables of the sums: one, or those of both halves
     Stage &combine_;
     Film film_;
     Stage &accumulate_, &carry_;

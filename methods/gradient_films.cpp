@@ -28,38 +28,49 @@ std::uint64_t GradientFilms::samples() const {
     return samples;
 }
 
-void GradientFilms::mean(GradientFilm::Layer layer, std::uint32_t color, float *plane) const {
-    for (std::size_t pixel = 0; pixel < pixels(); ++pixel) {
-        double sum = 0, count = 0;
-        for (const auto &film : films_) {
-            sum += film->sum(layer, color, pixel);
-            count += film->count(layer, pixel);
+GradientFilms GradientFilms::half(int number) const {
+    GradientFilms half;
+    half.films_.push_back(films_.at(number));
+    return half;
+}
+
+PlaneSource GradientFilms::mean(GradientFilm::Layer layer) const {
+    return [this, layer](std::uint32_t color, float *plane) {
+        for (std::size_t pixel = 0; pixel < pixels(); ++pixel) {
+            double sum = 0, count = 0;
+            for (const auto &film : films_) {
+                sum += film->sum(layer, color, pixel);
+                count += film->count(layer, pixel);
+            }
+            plane[pixel] = static_cast<float>(sum / std::max(count, 1.0));
         }
-        plane[pixel] = static_cast<float>(sum / std::max(count, 1.0));
-    }
+    };
 }
 
-void GradientFilms::variance(GradientFilm::Layer layer, std::uint32_t color, float *plane) const {
-    for (std::size_t pixel = 0; pixel < pixels(); ++pixel) {
-        double count = 0, variance = 0;
-        for (const auto &film : films_)
-            count += film->count(layer, pixel);
-        for (const auto &film : films_) {
-            const double share = film->count(layer, pixel) / std::max(count, 1.0);
-            variance += share * share * film->variance(layer, color, pixel);
+PlaneSource GradientFilms::variance(GradientFilm::Layer layer) const {
+    return [this, layer](std::uint32_t color, float *plane) {
+        for (std::size_t pixel = 0; pixel < pixels(); ++pixel) {
+            double count = 0, variance = 0;
+            for (const auto &film : films_)
+                count += film->count(layer, pixel);
+            for (const auto &film : films_) {
+                const double share = film->count(layer, pixel) / std::max(count, 1.0);
+                variance += share * share * film->variance(layer, color, pixel);
+            }
+            plane[pixel] = static_cast<float>(variance);
         }
-        plane[pixel] = static_cast<float>(variance);
-    }
+    };
 }
 
-void mean_of(const GradientFilm &film, GradientFilm::Layer layer, std::uint32_t color, float *plane) {
-    for (std::size_t pixel = 0; pixel < film.pixels(); ++pixel)
-        plane[pixel] = static_cast<float>(film.sum(layer, color, pixel) / std::max(film.count(layer, pixel), 1.0));
-}
-
-void variance_of(const GradientFilm &film, GradientFilm::Layer layer, std::uint32_t color, float *plane) {
-    for (std::size_t pixel = 0; pixel < film.pixels(); ++pixel)
-        plane[pixel] = static_cast<float>(film.variance(layer, color, pixel));
+ImageSources GradientFilms::images() const {
+    ImageSources images;
+    images.primal = mean(GradientFilm::primal);
+    images.dx = mean(GradientFilm::dx);
+    images.dy = mean(GradientFilm::dy);
+    images.primal_variance = variance(GradientFilm::primal);
+    images.dx_variance = variance(GradientFilm::dx);
+    images.dy_variance = variance(GradientFilm::dy);
+    return images;
 }
 
 } // namespace gradus

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/wavefront/host_table.h"
+#include "solver/poisson_solver.h"
 
 #include <cstdint>
 #include <memory>
@@ -40,25 +41,28 @@ class GradientFilm {
 /// The film of a render, or those of its halves.
 class GradientFilms {
   public:
-    void add(std::unique_ptr<const GradientFilm> film) { films_.push_back(std::move(film)); }
+    /// As GradientFilm has it.
+    void add(const Buffer &film, std::uint32_t width, std::uint32_t height, Precision precision,
+             std::uint64_t samples) {
+        films_.push_back(std::make_shared<const GradientFilm>(film, width, height, precision, samples));
+    }
 
     bool are_halves() const { return films_.size() == 2; }
-    const GradientFilm &half(int number) const { return *films_.at(number); }
+    /// One of them by itself, the same film.
+    GradientFilms half(int number) const;
     std::size_t pixels() const { return films_.front()->pixels(); }
     std::uint64_t samples() const;
     /// Of each pixel.
     std::uint64_t frames() const { return samples() / pixels(); }
 
-    /// Writes the mean of all samples, or the variance of that mean, by pixel for one of R, G and B.
-    void mean(GradientFilm::Layer layer, std::uint32_t color, float *plane) const;
-    void variance(GradientFilm::Layer layer, std::uint32_t color, float *plane) const;
+    /// The mean of all samples, or the variance of that mean, as they are read while this is there.
+    PlaneSource mean(GradientFilm::Layer layer) const;
+    PlaneSource variance(GradientFilm::Layer layer) const;
+    /// Those of all layers.
+    ImageSources images() const;
 
   private:
-    std::vector<std::unique_ptr<const GradientFilm>> films_;
+    std::vector<std::shared_ptr<const GradientFilm>> films_;
 };
-
-/// The same for one film.
-void mean_of(const GradientFilm &film, GradientFilm::Layer layer, std::uint32_t color, float *plane);
-void variance_of(const GradientFilm &film, GradientFilm::Layer layer, std::uint32_t color, float *plane);
 
 } // namespace gradus

@@ -1,6 +1,6 @@
 #include "methods/gradient_image.h"
 
-#include "methods/guide_features.h"
+#include "methods/reconstruction_inputs.h"
 #include "solver/guide/guided_reconstruction.h"
 #include "solver/weighted_reconstruction.h"
 
@@ -17,14 +17,15 @@ namespace {
 
 constexpr auto film_layers = {GradientFilm::primal, GradientFilm::dx, GradientFilm::dy};
 const char *const layer_names[] = {"primal", "dx", "dy"}, *const colors[] = {"R", "G", "B"};
-const char *const half_names[] = {"even", "odd"};
+const char *const half_suffixes[] = {"_even", "_odd"};
 
 /// Makes of the channels of `whole` what they have and the primal has not.
 void take_primal_off(Image &whole, const GradientFilms &films, const std::vector<DirectPixel> &edges) {
     std::vector<float> primal(films.pixels());
+    const PlaneSource mean = films.mean(GradientFilm::primal);
     for (std::uint32_t c = 0; c < 3; ++c) {
         std::vector<float> &direct = whole.channels[c].values;
-        films.mean(GradientFilm::primal, c, primal.data());
+        mean(c, primal.data());
         for (std::size_t i = 0; i < direct.size(); ++i) {
             const float seen = direct[i] - primal[i];
             // Where no light is seen, the difference is rounding.
@@ -41,53 +42,30 @@ std::vector<Channel> layers_of(const Image &direct, const GradientFilms &films, 
     std::vector<Channel> layers;
     for (std::uint32_t c = 0; c < 3; ++c)
         layers.push_back({std::string("direct.") + colors[c], direct.channels[c].values});
-    const auto add = [&](const std::string &name, const auto &write) {
-        for (std::uint32_t c = 0; c < 3; ++c) {
-            layers.push_back({fmt::format("{}.{}", name, colors[c]), std::vector<float>(films.pixels())});
-            write(c, layers.back().values.data());
+    const auto add = [&](const GradientFilms &read, const char *suffix, bool with_variances) {
+        const auto add_layer = [&](const std::string &name, const PlaneSource &source) {
+            for (std::uint32_t c = 0; c < 3; ++c) {
+                layers.push_back({fmt::format("{}.{}", name, colors[c]), std::vector<float>(read.pixels())});
+                source(c, layers.back().values.data());
+            }
+        };
+        for (const auto layer : film_layers) {
+            const std::string name = fmt::format("{}{}", layer_names[layer], suffix);
+            add_layer(name, read.mean(layer));
+            if (with_variances)
+                add_layer(name + "_variance", read.variance(layer));
         }
     };
-    for (const auto layer : film_layers)
-        add(layer_names[layer], [&](std::uint32_t c, float *plane) { films.mean(layer, c, plane); });
-    for (const auto layer : film_layers)
-        if (variances)
-            add(fmt::format("{}_variance", layer_names[layer]),
-                [&](std::uint32_t c, float *plane) { films.variance(layer, c, plane); });
+    add(films, "", variances);
     for (int half = 0; films.are_halves() && half < 2; ++half)
-        for (const auto layer : film_layers) {
-            const std::string name = fmt::format("{}_{}", layer_names[layer], half_names[half]);
-            add(name, [&](std::uint32_t c, float *plane) { mean_of(films.half(half), layer, c, plane); });
-            add(fmt::format("{}_variance", name),
-                [&](std::uint32_t c, float *plane) { variance_of(films.half(half), layer, c, plane); });
-        }
+        add(films.half(half), half_suffixes[half], true);
     return layers;
-}
-
-/// The images of a film in device memory.
-Buffer uploaded(Device &device, const char *name, std::size_t pixels, const PlaneSource &source) {
-    Buffer buffer(device, name, 3 * pixels * sizeof(float));
-    const auto mapping = buffer.map(Access::write);
-    for (std::uint32_t c = 0; c < 3; ++c)
-        source(c, mapping.as<float>() + c * pixels);
-    return buffer;
 }
 
 /// The result takes the place of the direct image, which is added to it.
 void reconstruct_from_film(PoissonSolver &solver, Image &whole, GradientFilms &films, const PoissonOptions &poisson,
                            const std::function<void()> &films_are_read) {
-    const auto mean = [&films](GradientFilm::Layer layer) {
-        return [&films, layer](std::uint32_t c, float *plane) { films.mean(layer, c, plane); };
-    };
-    const auto variance = [&films](GradientFilm::Layer layer) {
-        return [&films, layer](std::uint32_t c, float *plane) { films.variance(layer, c, plane); };
-    };
-    ImageSources images;
-    images.primal = mean(GradientFilm::primal);
-    images.dx = mean(GradientFilm::dx);
-    images.dy = mean(GradientFilm::dy);
-    images.primal_variance = variance(GradientFilm::primal);
-    images.dx_variance = variance(GradientFilm::dx);
-    images.dy_variance = variance(GradientFilm::dy);
+    ImageSources images = films.images();
     const auto plane_of = [&whole](std::uint32_t c) { return whole.channels[c].values.data(); };
     const std::size_t pixels = films.pixels();
     images.direct = [&](std::uint32_t c, float *plane) { std::copy_n(plane_of(c), pixels, plane); };
@@ -100,10 +78,25 @@ void reconstruct_from_film(PoissonSolver &solver, Image &whole, GradientFilms &f
         });
 }
 
+/// A half in device memory, with its variances.
+HalfImages uploaded_half(Device &device, const GradientFilms &film) {
+    const ImageSources images = film.images();
+    const std::size_t pixels = film.pixels();
+    HalfImages half;
+    half.primal = uploaded(device, "primal", pixels, images.primal);
+    half.dx = uploaded(device, "dx", pixels, images.dx);
+    half.dy = uploaded(device, "dy", pixels, images.dy);
+    half.primal_variance = uploaded(device, "primal_variance", pixels, images.primal_variance);
+    half.dx_variance = uploaded(device, "dx_variance", pixels, images.dx_variance);
+    half.dy_variance = uploaded(device, "dy_variance", pixels, images.dy_variance);
+    half.samples = film.samples();
+    return half;
+}
+
 void reconstruct_from_halves(Device &device, PoissonSolver &solver, Image &whole, GradientFilms &films,
                              const RenderOptions &options, const std::function<void()> &films_are_read) {
     const std::size_t pixels = films.pixels();
-    HalvedImages halves = half_images(device, films);
+    const HalvedImages halves{uploaded_half(device, films.half(0)), uploaded_half(device, films.half(1))};
     films = GradientFilms();
     if (films_are_read)
         films_are_read();
@@ -127,26 +120,6 @@ void reconstruct_from_halves(Device &device, PoissonSolver &solver, Image &whole
 }
 
 } // namespace
-
-HalvedImages half_images(Device &device, const GradientFilms &films) {
-    const auto image = [&](const char *name, const GradientFilm &film, GradientFilm::Layer layer, auto write) {
-        return uploaded(device, name, film.pixels(),
-                        [&](std::uint32_t c, float *plane) { write(film, layer, c, plane); });
-    };
-    HalvedImages halves;
-    for (int i = 0; i < 2; ++i) {
-        const GradientFilm &film = films.half(i);
-        HalfImages &half = halves[i];
-        half.primal = image("primal", film, GradientFilm::primal, mean_of);
-        half.dx = image("dx", film, GradientFilm::dx, mean_of);
-        half.dy = image("dy", film, GradientFilm::dy, mean_of);
-        half.primal_variance = image("primal_variance", film, GradientFilm::primal, variance_of);
-        half.dx_variance = image("dx_variance", film, GradientFilm::dx, variance_of);
-        half.dy_variance = image("dy_variance", film, GradientFilm::dy, variance_of);
-        half.samples = film.samples();
-    }
-    return halves;
-}
 
 PoissonOptions poisson_options(const RenderOptions &options, std::uint64_t frames) {
     PoissonOptions poisson;
@@ -194,7 +167,7 @@ Image reconstruct(Device &device, PoissonSolver &solver, Image whole, GradientFi
         reconstruct_from_halves(device, solver, whole, films, options, films_are_read);
     else
         reconstruct_from_film(solver, whole, films, poisson_options(options, films.frames()), films_are_read);
-    if (options.reconstruction == Reconstruction::guided && !options.aov) // features were there for the guide
+    if (!options.aov && !layers) // features, if any, were there for the guide
         whole.channels.resize(3);
     whole.channels.insert(whole.channels.begin() + 3, std::make_move_iterator(more.begin()),
                           std::make_move_iterator(more.end()));

@@ -5,7 +5,6 @@
 #include "methods/method.h"
 #include "runtime/direct_light/direct_light.h"
 #include "runtime/film/image.h"
-#include "solver/halves.h"
 #include "solver/poisson_solver.h"
 
 #include <functional>
@@ -31,8 +30,5 @@ PoissonOptions poisson_options(const RenderOptions &options, std::uint64_t frame
 /// How an image of so many samples is reconstructed, and what its mean tends to. Halves of one sample have no
 /// variances to judge each other by: l2 then.
 ReconstructionUsed reconstruction_used(const RenderOptions &options, std::uint64_t samples, std::uint64_t pixels);
-
-/// Both halves in device memory, with their variances.
-HalvedImages half_images(Device &device, const GradientFilms &films);
 
 } // namespace gradus

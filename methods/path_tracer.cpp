@@ -1,12 +1,16 @@
 #include "methods/path_tracer.h"
 
-#include "methods/guide_features.h"
 #include "methods/path_stages.h"
+#include "methods/reconstruction_inputs.h"
 #include "runtime/seconds_since.h"
 #include "solver/guide/guided_reconstruction.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
+#include <iterator>
+#include <vector>
 
 namespace gradus {
 
@@ -81,28 +85,32 @@ Image PathTracer::image() {
 
 void PathTracer::guide(Image &image) {
     const std::uint64_t pixels = session_.pixels();
+    std::vector<Channel> layers;
     if (has_halves()) {
         Device &device = session_.device;
-        const std::size_t bytes = 3 * pixels * sizeof(float);
         HalvedImages halves;
         for (int i = 0; i < 2; ++i) {
-            halves[i].primal = Buffer(device, "primal", bytes);
+            halves[i].primal = uploaded(device, "primal", pixels, [&](std::uint32_t c, float *plane) {
+                film_.half_mean(i, done_, int(c), plane);
+                if (options_.layers)
+                    layers.push_back({fmt::format("primal_{}.{}", i == 0 ? "even" : "odd", "RGB"[c]),
+                                      std::vector<float>(plane, plane + pixels)});
+            });
             halves[i].samples = samples_of_half(done_, pixels, i);
-            const auto mapping = halves[i].primal.map(Access::write);
-            for (int c = 0; c < 3; ++c)
-                film_.half_mean(i, done_, c, mapping.as<float>() + c * pixels);
         }
         GuideInputs inputs;
         inputs.features = uploaded_features(device, image);
-        Buffer result(device, "result", bytes);
+        Buffer result(device, "result", halves[0].primal.bytes());
         PoissonSolver none(device, image.width, image.height); // samples alone ask for no solve
         GuidedReconstruction(device, none, options_.guide).solve(halves, inputs, result);
         const auto mapping = result.map(Access::read);
         for (int c = 0; c < 3; ++c)
             std::copy_n(mapping.as<float>() + c * pixels, pixels, image.channels[c].values.begin());
     }
-    if (!options_.aov)
+    if (!options_.aov && !options_.layers)
         image.channels.resize(3);
+    image.channels.insert(image.channels.begin() + 3, std::make_move_iterator(layers.begin()),
+                          std::make_move_iterator(layers.end()));
 }
 
 Statistics PathTracer::statistics() const {

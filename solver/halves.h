@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/device/buffer.h"
+#include "solver/poisson_solver.h"
 
 #include <array>
 #include <cstdint>
@@ -19,6 +20,13 @@ struct HalfImages {
 
 /// That of the even samples of each pixel, and that of the odd ones. They have no random number in common.
 using HalvedImages = std::array<HalfImages, 2>;
+
+/// The same in memory of the host. What is null is not there.
+struct HostHalves {
+    std::array<HostImages, 2> images;
+    std::array<std::uint64_t, 2> samples{};
+};
+HalvedImages uploaded_halves(Device &device, const HostHalves &halves, std::size_t bytes_of_image);
 
 /// Of `samples` samples of `pixels` pixels, taken frame by frame, those of a half.
 constexpr std::uint64_t samples_of_half(std::uint64_t samples, std::uint64_t pixels, int half) {

@@ -1,6 +1,10 @@
 #include "solver/weighted_reconstruction.h"
 
+#include "runtime/seconds_since.h"
+
 #include <algorithm>
+#include <chrono>
+#include <initializer_list>
 #include <iterator>
 #include <map>
 #include <utility>
@@ -24,14 +28,15 @@ struct Smoothing {
 // Standard deviations of 0.4, 0.8, 1.6, 3.3 and 6.6 pixels in all.
 constexpr Smoothing smoothings[] = {{1, 0.07}, {1, 0.5}, {2, 0.5}, {4, 0.5}, {8, 0.5}};
 
-constexpr const char *kernel_names[] = {"mean_of_channels", "smooth_image", "add_logarithm", "geometric_mean",
-                                        "mix_images"};
+constexpr auto smoothing_kernels = {"mean_of_channels", "smooth_image", "add_logarithm", "geometric_mean"};
 
-std::vector<Kernel> build_smoothing(Device &device, std::uint32_t channels) {
+/// Kernels of one program: to build one of them is to compile all.
+std::vector<Kernel> weighted_kernels(Device &device, std::uint32_t channels,
+                                     std::initializer_list<const char *> names) {
     KernelLibrary library(
         device, {{"SOLVER_CHANNELS", static_cast<int>(channels)}, {"SOLVER_WEIGHTED", 0}, {"SOLVER_JOINT", 1}});
     std::vector<KernelRequest> requests;
-    for (const char *name : kernel_names)
+    for (const char *name : names)
         requests.push_back({name, "kernels/solver/smooth_variance.cl", name, {}});
     return library.build(requests);
 }
@@ -40,7 +45,7 @@ std::vector<Kernel> build_smoothing(Device &device, std::uint32_t channels) {
 
 VarianceSmoother::VarianceSmoother(Device &device, std::uint32_t width, std::uint32_t height, std::uint32_t channels)
     : device_(device), width_(width), height_(height), channels_(channels) {
-    std::vector<Kernel> kernels = build_smoothing(device, channels);
+    std::vector<Kernel> kernels = weighted_kernels(device, channels, smoothing_kernels);
     mean_ = std::move(kernels[0]);
     smooth_ = std::move(kernels[1]);
     add_ = std::move(kernels[2]);
@@ -108,7 +113,7 @@ const Buffer &VarianceSmoother::smoothed(const Buffer &variance, Differences dif
     return smoothed_;
 }
 
-ImageMixer::ImageMixer(Device &device) : mix_(std::move(build_smoothing(device, 3)[4])) {}
+ImageMixer::ImageMixer(Device &device) : mix_(std::move(weighted_kernels(device, 3, {"mix_images"}).front())) {}
 
 void ImageMixer::mix(const Buffer &first, double a, const Buffer &second, double b, Buffer &result) {
     const auto count = static_cast<std::uint32_t>(result.bytes() / sizeof(float));
@@ -135,7 +140,7 @@ PoissonOptions WeightedReconstruction::options() {
 }
 
 void WeightedReconstruction::compile(Device &device, std::uint32_t channels) {
-    build_smoothing(device, channels);
+    weighted_kernels(device, channels, smoothing_kernels);
     PoissonSolver::compile(device, options(), channels);
 }
 
@@ -188,22 +193,14 @@ PoissonReport WeightedReconstruction::solve_both(const HalvedImages &halves, std
     return report;
 }
 
-PoissonReport solve_halves(Device &device, PoissonSolver &solver, const std::array<HostImages, 2> &images,
-                           const std::array<std::uint64_t, 2> &samples, float *result) {
+PoissonReport solve_weighted(Device &device, PoissonSolver &solver, const HostHalves &halves, float *result) {
+    const auto start = std::chrono::steady_clock::now();
     const std::size_t bytes = std::size_t(solver.width()) * solver.height() * solver.channels() * sizeof(float);
-    HalvedImages halves;
-    for (int i = 0; i < 2; ++i) {
-        halves[i].primal = Buffer(device, "primal", images[i].primal, bytes);
-        halves[i].dx = Buffer(device, "dx", images[i].dx, bytes);
-        halves[i].dy = Buffer(device, "dy", images[i].dy, bytes);
-        halves[i].primal_variance = Buffer(device, "primal_variance", images[i].primal_variance, bytes);
-        halves[i].dx_variance = Buffer(device, "dx_variance", images[i].dx_variance, bytes);
-        halves[i].dy_variance = Buffer(device, "dy_variance", images[i].dy_variance, bytes);
-        halves[i].samples = samples[i];
-    }
     Buffer solution(device, "solution", bytes);
-    const PoissonReport report = WeightedReconstruction(device, solver).solve(halves, solution);
+    PoissonReport report =
+        WeightedReconstruction(device, solver).solve(uploaded_halves(device, halves, bytes), solution);
     solution.read(result, bytes);
+    report.seconds = seconds_since(start);
     return report;
 }
 

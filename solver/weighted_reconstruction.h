@@ -78,7 +78,6 @@ class WeightedReconstruction {
 };
 
 /// The same from images on the host: writes channels * height * width floats to `result`.
-PoissonReport solve_halves(Device &device, PoissonSolver &solver, const std::array<HostImages, 2> &images,
-                           const std::array<std::uint64_t, 2> &samples, float *result);
+PoissonReport solve_weighted(Device &device, PoissonSolver &solver, const HostHalves &halves, float *result);
 
 } // namespace gradus

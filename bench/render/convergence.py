@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Error against time: methods x scenes x budgets x seeds, with rivals where they are there.
 
-    python3 bench/render/convergence.py [SCENE ...] [--method pt gpt] [--spp 4 16 64] [--seconds 1 4] [--seeds 5]
+    python3 bench/render/convergence.py [SCENE ...] [--method pt gpt gpt:weighted pt:guided gpt:guided:denoiser]
+                                        [--spp 4 16 64] [--seconds 1 4] [--seeds 5]
     python3 bench/render/convergence.py --quick       # two scenes, few samples, two seeds
 
 SCENE is a name in tests/references, whose reference another renderer made; cornell-box-256 or torus-soft-256, of
@@ -10,8 +11,11 @@ SCENE is a name in tests/references, whose reference another renderer made; corn
 render/photons.py measures. A budget is a sample count
 (--spp) or a time (--seconds).
 
-Rivals: `denoised`, our path tracing (with albedo and normal) through Open Image Denoise, whose time counts; `mitsuba`,
-Mitsuba 3's path tracer. Where they are missing they are skipped with a note; how to get them is in
+A method may say its reconstruction and guide. pt and `denoised` are measured at four times the largest sample count,
+too, so that their curves reach the times of those that sample gradients. ratios.py makes tables of what was measured.
+
+Rivals: `denoised`, our path tracing (with albedo and normal, denoised before) through Open Image Denoise, whose time
+counts, that of denoising albedo and normal left out; `mitsuba`, Mitsuba 3's path tracer. Where they are missing they are skipped with a note; how to get them is in
 bench/peers/README.md.
 
 Seconds are those of rendering and of reconstructing or denoising. Left out in all: start, loading, compiling, writing.
@@ -59,28 +63,36 @@ class Measurement:
                             "non_finite": figures["non_finite"],
                             "reference_error": figures["reference_relative_mse"], "load": os.getloadavg()[0], **more})
 
-    def render(self, method, budget, seed, aov=False):
-        image = self.folder / f"{method}{'-aov' if aov else ''}-{seed}-{budget[0]}-{budget[1]}.exr"
-        record = renders.render(self.arguments.gradus, self.scene, method, seed, image, aov=aov, **dict([budget]))
+    def render(self, variant, budget, seed, aov=False):
+        name = variant.replace(":", "-")
+        image = self.folder / f"{name}{'-aov' if aov else ''}-{seed}-{budget[0]}-{budget[1]}.exr"
+        method, options = renders.split_variant(variant)
+        record = renders.render(self.arguments.gradus, self.scene, method, seed, image, aov=aov, options=options,
+                                **dict([budget]))
         self.device = record["device"]
         return image, record
 
     def warm_up(self, methods, denoised):
         """Fills the kernel caches."""
         for method in methods:
-            image, _ = self.render(method, ("samples", 2), 0)
-            renders.reconstruction_seconds(self.arguments.gradus, image)
+            image, _ = self.render(method, ("samples", 4), 0)
+            renders.reconstruction_seconds(self.arguments.gradus, image, renders.split_variant(method)[1])
         if denoised:
             self.render("pt", ("samples", 1), 0, aov=True)
 
     def measure(self, methods, budgets, denoised):
         reconstruction = {}
+        longer = [("samples", 4 * max(number for unit, number in budgets if unit == "samples"))
+                  ] if budgets[0][0] == "samples" else []
         for seed in range(1, self.arguments.seeds + 1):
-            for budget in budgets:
+            for budget in budgets + longer:
                 for method in methods:
+                    if budget in longer and method != "pt":
+                        continue
                     image, record = self.render(method, budget, seed)
                     if (method, budget) not in reconstruction:
-                        reconstruction[method, budget] = renders.reconstruction_seconds(self.arguments.gradus, image)
+                        reconstruction[method, budget] = renders.reconstruction_seconds(
+                            self.arguments.gradus, image, renders.split_variant(method)[1])
                     self.add(method, f"{budget[1]} {budget[0]}", record["spp"], seed,
                              record["render_seconds"] + reconstruction[method, budget], image,
                              render_seconds=record["render_seconds"],
@@ -93,7 +105,8 @@ class Measurement:
         files = []
         for image, *_ in self.to_denoise:
             files += [image, image.with_suffix(".denoised.exr")]
-        seconds = json.loads(renders.run(python, PEERS / "denoise.py", *files).splitlines()[-1])
+        seconds = json.loads(
+            renders.run(python, PEERS / "denoise.py", "--clean-features", *files).splitlines()[-1])
         for (image, record, budget, seed), denoising, target in zip(self.to_denoise, seconds, files[1::2]):
             self.add("denoised", f"{budget[1]} {budget[0]}", record["spp"], seed,
                      record["render_seconds"] + denoising, target, render_seconds=record["render_seconds"],
@@ -150,7 +163,8 @@ def main():
                         "SCENE.xml:WxH (default: all of the former but those for photons)")
     parser.add_argument("--quick", action="store_true", help="few scenes, samples and seeds unless given")
     parser.add_argument("--gradus", type=pathlib.Path, default=renders.ROOT / "build" / "gradus")
-    parser.add_argument("--method", nargs="+", default=["pt", "gpt"], help="as gradus render takes it (pt gpt)")
+    parser.add_argument("--method", nargs="+", default=["pt", "gpt"], metavar="METHOD[:RECONSTRUCTION[:GUIDE]]",
+                        help="as gradus render takes them (pt gpt)")
     parser.add_argument("--spp", type=int, nargs="*", help=f"samples a pixel ({FULL_SPP}; quick: {QUICK_SPP})")
     parser.add_argument("--seconds", type=float, nargs="*", default=[], help="times of rendering")
     parser.add_argument("--seeds", type=int, help="seeds of each (5; quick: 2)")
@@ -173,6 +187,8 @@ def main():
     denoiser, mitsuba, notes = find_rivals(arguments, arguments.spp)
     for note in notes:
         print(note, flush=True)
+    if denoiser:
+        os.environ.setdefault("GRADUS_DENOISER", str(denoiser_setup.library_of(denoiser)))
 
     results = {"machine": renders.machine(), "command": ["bench/render/convergence.py", *sys.argv[1:]],
                "seeds": arguments.seeds, "notes": notes, "scenes": [], "points": []}

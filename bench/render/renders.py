@@ -141,6 +141,15 @@ def compare(gradus, image, reference, *options):
     return {**compared["images"][0], "reference_relative_mse": compared["reference_relative_mse"]}
 
 
+def split_variant(text):
+    """METHOD, METHOD:RECONSTRUCTION or METHOD:guided:GUIDE as the method and the options that say the rest."""
+    method, *more = text.split(":")
+    options = ["--reconstruction", "--guide"]
+    if len(more) > len(options):
+        sys.exit(f"'{text}' is not METHOD, METHOD:RECONSTRUCTION or METHOD:guided:GUIDE")
+    return method, [word for pair in zip(options, more) for word in pair]
+
+
 def known_methods(gradus):
     """The methods that this program has, as its help lists them."""
     listed = re.search(r"--method\s+TEXT:\{([^}]*)\}", run(gradus, "render", "--help"))
@@ -149,14 +158,15 @@ def known_methods(gradus):
     return listed.group(1).split(",")
 
 
-def reconstruction_seconds(gradus, image):
+def reconstruction_seconds(gradus, image, options=()):
     """Seconds in which the image is reconstructed from its gradients, all kernels compiled; 0 where it has none.
+    options: those of its render that say how.
 
     A render reconstructs once, after the time that its statistics call render_seconds, and loads kernels meanwhile;
     here the third of three is timed."""
     record, output = pathlib.Path(image).with_suffix(".solved.json"), pathlib.Path(image).with_suffix(".solved.exr")
     result = finished(gradus, "solve", image, "-o", output, "--stats", record, "--repeats", 3, "--quiet",
-                      accepted=(0, NO_GRADIENTS))
+                      *options, accepted=(0, NO_GRADIENTS))
     if result.returncode == NO_GRADIENTS:
         return 0.0
     return json.loads(record.read_text())["seconds"]

@@ -1,34 +1,26 @@
 /* The number that a sample's random numbers go by, from its place among the samples of a pixel: low and high words.
  *
- * TRAIT_HALVES: the samples are two halves, even ones and odd ones, and nothing may be common to both. What the pixels
- * of a sample share (their place within the pixel, their point of the lens) follows a sequence whose start goes by the
- * high word. So even samples are numbered one after the other, and odd ones likewise from 2^63 on, where no other
- * sample is. */
+ * TRAIT_HALVES: the samples are two halves, even ones and odd ones, and no path of one has a random number of the
+ * other: even samples are numbered one after the other, and odd ones likewise from 2^63 on, where no other sample is.
+ * What all pixels of a sample share (their place within the pixel, their point of the lens, their side of a blend) goes
+ * by the place among all samples: one sequence fills the pixel more evenly than two. */
 #ifndef GRADUS_LIB_SAMPLE_NUMBER_H
 #define GRADUS_LIB_SAMPLE_NUMBER_H
 //! traits: TRAIT_HALVES
 
-#include "kernels/shared/compat.h"
+#include "kernels/lib/sample_place.h"
 
 GRADUS_LIB_BEGIN
 
-typedef struct {
-    uint low, high;
-    GRADUS_NOT_IN_REGISTERS
-} sample_number;
-
-/* Of the sample `more` samples of its pixel after the one at the place (first_low, first_high). */
-GRADUS_FN sample_number sample_number_of(uint first_low, uint first_high, uint more) {
-    const uint low = first_low + more, high = first_high + (low < first_low ? 1u : 0u);
-    sample_number number;
+GRADUS_FN sample_place sample_number_at(sample_place place) {
 #if TRAIT_HALVES
-    number.low = low >> 1 | high << 31;
-    number.high = high >> 1 | low << 31;
-#else
-    number.low = low;
-    number.high = high;
-#endif
+    sample_place number;
+    number.low = place.low >> 1 | place.high << 31;
+    number.high = place.high >> 1 | place.low << 31;
     return number;
+#else
+    return place;
+#endif
 }
 
 GRADUS_LIB_END

@@ -59,7 +59,8 @@ STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ra
 #endif
     const uint more_samples = divide(number, pixels_multiplier, pixels_shift);
     const uint pixel = number - more_samples * pixels;
-    const sample_number sample = sample_number_of(first_sample_low, first_sample_high, more_samples);
+    const sample_place place = sample_place_after(first_sample_low, first_sample_high, more_samples);
+    const sample_place sample = sample_number_at(place);
     const uint line = divide(pixel, width_multiplier, width_shift);
     const uint y = line + crop_y;
     const uint x = pixel - line * crop_width + crop_x;
@@ -73,14 +74,14 @@ STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ra
 #if TRAIT_SHARED_JITTER
     /* All pixels of a sample share their place within the pixel. Places follow each other in a sequence that fills the
      * pixel evenly: what all pixels share does not average out over the image. */
-    const random_bits start = random_key(seed_low, seed_high, 0xFFFFFFFFu, 0u, sample.high);
-    const point2 place = additive_sequence(start.x, start.y, sample.low);
+    const random_bits start = random_key(seed_low, seed_high, 0xFFFFFFFFu, 0u, place.high);
+    const point2 jitter = additive_sequence(start.x, start.y, place.low);
     random4 u;
-    u.a = place.x;
-    u.b = place.y;
+    u.a = jitter.x;
+    u.b = jitter.y;
 #if TRAIT_THIN_LENS
     /* And their point of the lens: so base and offset paths are each other's first segments. */
-    const random4 lens = stratified_draw(start.z, sample.low, random_dimension_camera);
+    const random4 lens = stratified_draw(start.z, place.low, random_dimension_camera);
     u.c = lens.a;
     u.d = lens.b;
 #else

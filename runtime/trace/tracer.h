@@ -1,4 +1,4 @@
-// Intersecting rays in batches. The only place that knows Embree.
+// Intersecting rays in batches. Embree is known in this folder alone, and not from this file.
 #pragma once
 
 #include "runtime/scene/scene.h"
@@ -25,9 +25,6 @@ struct ShadowColumns : SegmentColumns {
 struct TraceCounts {
     std::uint64_t extension = 0, shadow = 0;
 };
-
-/// Rays of traced batches, packed as they were traced, so that tracing alone can be timed again.
-struct RecordedRays;
 
 /// How recorded rays go to Embree again: in the packets and with the flags of the render; in the same packets, but
 /// never as beams; one by one.

@@ -11,6 +11,15 @@ namespace gradus {
 
 using namespace lib_float;
 
+namespace {
+
+/// What a table of samples or of splats has of a pixel, for one of R, G and B.
+double film_sum(const HostTable &table, int color, std::size_t pixel) {
+    return table.real(film_sum_r + color, pixel) + table.real(film_correction_r + color, pixel);
+}
+
+} // namespace
+
 Film::Film(Session &session, Stages &stages, bool halves)
     : session_(session),
       accumulate_(stages.add({.name = "accumulate", .strict = true, .numbers = {"first_slot", "first_pixel"}})),
@@ -79,18 +88,15 @@ Image Film::image(std::uint64_t samples, std::uint64_t &non_finite, std::uint64_
             channel.values[pixel] = static_cast<float>(mean(pixel));
         image.channels.push_back(std::move(channel));
     };
-    const auto sum_of = [](const HostTable &table, int channel, std::size_t pixel) {
-        return table.real(film_sum_r + channel, pixel) + table.real(film_correction_r + channel, pixel);
-    };
     const auto over_taken = [&](double sum, std::size_t pixel) { return taken(pixel) > 0 ? sum / taken(pixel) : 0.0; };
     const auto mean_color = [&](int channel, std::size_t pixel) {
-        return over_taken(sum_of(film, channel, pixel) + (odd ? sum_of(*odd, channel, pixel) : 0.0), pixel);
+        return over_taken(film_sum(film, channel, pixel) + (odd ? film_sum(*odd, channel, pixel) : 0.0), pixel);
     };
     const char *const colors[3] = {"R", "G", "B"};
     for (int c = 0; c < 3; ++c)
         add(colors[c], [&](std::size_t pixel) {
             const double mean = mean_color(c, pixel);
-            return splats ? mean + sum_of(*splats, c, pixel) / double(light_paths) : mean;
+            return splats ? mean + film_sum(*splats, c, pixel) / double(light_paths) : mean;
         });
     if (!session_.has("TRAIT_AOV"))
         return image;
@@ -125,8 +131,7 @@ void Film::half_mean(int half, std::uint64_t samples, int color, float *plane) c
     for (std::size_t pixel = 0; pixel < count; ++pixel) {
         const std::uint64_t all = samples / count + (pixel < samples % count ? 1 : 0);
         const double taken = double((all + (half == 0 ? 1 : 0)) / 2) - film.uint(film_rejected, pixel);
-        const double sum = film.real(film_sum_r + color, pixel) + film.real(film_correction_r + color, pixel);
-        plane[pixel] = static_cast<float>(taken > 0 ? sum / taken : 0.0);
+        plane[pixel] = static_cast<float>(taken > 0 ? film_sum(film, color, pixel) / taken : 0.0);
     }
 }
 

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <map>
 #include <vector>
 
 namespace gradus {
@@ -80,6 +81,32 @@ struct Denoiser::Library {
         if (get_device_error(device, &message) != 0)
             throw Error(ExitCode::device, fmt::format("the denoiser failed {}: {}", what, message ? message : ""));
     }
+
+    /// By the filter's names of images, pixel by pixel.
+    using Inputs = std::map<std::string, const std::vector<float> *>;
+
+    /// The denoised color; where there is none, the one image that there is.
+    std::vector<float> filtered(const Inputs &inputs, std::size_t width, std::size_t height) {
+        struct Filter {
+            Library &library;
+            Handle handle;
+            ~Filter() { library.release_filter(handle); }
+        } filter{*this, new_filter(device, "RT")};
+        std::vector<float> output(3 * width * height);
+        for (const auto &[name, values] : inputs) // which the library only reads
+            set_image(filter.handle, name.c_str(), const_cast<float *>(values->data()), format_float3, width, height, 0,
+                      0, 0);
+        set_image(filter.handle, "output", output.data(), format_float3, width, height, 0, 0, 0);
+        set_int(filter.handle, "quality", quality_high);
+        if (inputs.contains("color")) {
+            set_bool(filter.handle, "hdr", true);
+            set_bool(filter.handle, "cleanAux", inputs.size() > 1);
+        }
+        commit_filter(filter.handle);
+        execute_filter(filter.handle);
+        check("to denoise");
+        return output;
+    }
 };
 
 namespace {
@@ -134,43 +161,22 @@ std::string Denoiser::version() const {
     return fmt::format("{}.{}.{}", part("versionMajor"), part("versionMinor"), part("versionPatch"));
 }
 
-void Denoiser::run(const Images &images, std::uint32_t width, std::uint32_t height, float *result) {
+Denoiser::Features Denoiser::cleaned(const float *albedo, const float *normal, std::uint32_t width,
+                                     std::uint32_t height) {
     const std::size_t pixels = std::size_t(width) * height;
-    const auto filter_of = [&](std::initializer_list<std::pair<const char *, std::vector<float> *>> inputs,
-                               std::vector<float> &output, bool is_image) {
-        struct Filter {
-            Library &library;
-            Handle handle;
-            ~Filter() { library.release_filter(handle); }
-        } filter{*library_, library_->new_filter(library_->device, "RT")};
-        const auto set = [&](const char *name, std::vector<float> &values) {
-            library_->set_image(filter.handle, name, values.data(), format_float3, width, height, 0, 0, 0);
-        };
-        for (const auto &[name, values] : inputs)
-            if (!values->empty())
-                set(name, *values);
-        set("output", output);
-        library_->set_int(filter.handle, "quality", quality_high);
-        if (is_image) {
-            library_->set_bool(filter.handle, "hdr", true);
-            library_->set_bool(filter.handle, "cleanAux", inputs.size() > 1);
-        }
-        library_->commit_filter(filter.handle);
-        library_->execute_filter(filter.handle);
-        library_->check("to denoise");
-    };
+    const std::vector<float> given_albedo = interleaved(albedo, pixels), given_normal = interleaved(normal, pixels);
+    return {library_->filtered({{"albedo", &given_albedo}}, width, height),
+            library_->filtered({{"normal", &given_normal}}, width, height)};
+}
 
-    std::vector<float> color = interleaved(images.color, pixels), albedo, normal, denoised(3 * pixels);
-    if (images.albedo && images.normal) {
-        albedo = interleaved(images.albedo, pixels);
-        normal = interleaved(images.normal, pixels);
-        filter_of({{"albedo", &albedo}}, denoised, false);
-        std::swap(albedo, denoised);
-        filter_of({{"normal", &normal}}, denoised, false);
-        std::swap(normal, denoised);
-        filter_of({{"color", &color}, {"albedo", &albedo}, {"normal", &normal}}, denoised, true);
-    } else
-        filter_of({{"color", &color}}, denoised, true);
+void Denoiser::run(const float *color, const Features &features, std::uint32_t width, std::uint32_t height,
+                   float *result) {
+    const std::size_t pixels = std::size_t(width) * height;
+    const std::vector<float> given = interleaved(color, pixels);
+    Library::Inputs inputs{{"color", &given}};
+    if (!features.albedo.empty())
+        inputs = {{"color", &given}, {"albedo", &features.albedo}, {"normal", &features.normal}};
+    const std::vector<float> denoised = library_->filtered(inputs, width, height);
     for (std::size_t i = 0; i < pixels; ++i)
         for (std::size_t c = 0; c < 3; ++c)
             result[c * pixels + i] = denoised[3 * i + c];

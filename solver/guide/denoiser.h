@@ -5,14 +5,15 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace gradus {
 
 class Denoiser {
   public:
-    /// Planes of an image as PoissonImages has them; albedo and normal both or neither.
-    struct Images {
-        const float *color = nullptr, *albedo = nullptr, *normal = nullptr;
+    /// Albedo and normal as run() takes them, of any number of images; empty: none.
+    struct Features {
+        std::vector<float> albedo, normal; ///< pixel by pixel
     };
 
     /// `library`: the file to load; empty: what the environment variable GRADUS_DENOISER names, or else the system's
@@ -23,10 +24,11 @@ class Denoiser {
     Denoiser(const Denoiser &) = delete;
     Denoiser &operator=(const Denoiser &) = delete;
 
-    /// Writes the denoised image of three channels, of values from 0 on without a bound, to `result`, which may be
-    /// that of `color`. Albedo and normal are denoised first, so that they may be noisy. What is not finite counts as
-    /// 0. Throws Error(ExitCode::device) where the library fails.
-    void run(const Images &images, std::uint32_t width, std::uint32_t height, float *result);
+    /// Denoises albedo and normal by themselves. All images are planes of three channels, as PoissonImages has them;
+    /// what is not finite counts as 0. Throws Error(ExitCode::device) where the library fails, as run() does.
+    Features cleaned(const float *albedo, const float *normal, std::uint32_t width, std::uint32_t height);
+    /// Writes the denoised image, of values from 0 on without a bound, to `result`, which may be `color`.
+    void run(const float *color, const Features &features, std::uint32_t width, std::uint32_t height, float *result);
     /// "2.5.1"
     std::string version() const;
 

@@ -2,7 +2,6 @@
 
 #include "kernels/shared/guide_shared.h"
 #include "kernels/shared/solver_shared.h"
-#include "runtime/error.h"
 
 #include <algorithm>
 #include <vector>
@@ -28,16 +27,10 @@ std::vector<double> shares_inside(std::uint32_t size, std::uint32_t stride) {
     return shares;
 }
 
-solver::Grid checked_grid(std::uint32_t width, std::uint32_t height) {
-    if (width == 0 || height == 0)
-        throw Error(ExitCode::usage, "a guide image needs a width and a height");
-    return {width, height};
-}
-
 } // namespace
 
 FeatureFilter::FeatureFilter(Device &device, std::uint32_t width, std::uint32_t height, Precision precision)
-    : make_(device, precision), grid_(checked_grid(width, height)),
+    : make_(device, precision), grid_(solver::guide_grid(width, height)),
       import_(solver::guide_kernel(device, precision, "guide_input", "guide_import")),
       prepare_(solver::guide_kernel(device, precision, "guide_input", "guide_prepare")),
       import_features_(solver::guide_kernel(device, precision, "guide_input", "guide_import_features")),

@@ -2,7 +2,6 @@
 
 #include "kernels/shared/guide_shared.h"
 #include "kernels/shared/solver_shared.h"
-#include "runtime/error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,16 +14,10 @@ namespace {
 /// Darker pixels count as this share of the squared mean brightness of the image.
 constexpr double least_brightness = 0.01;
 
-solver::Grid judged_grid(std::uint32_t width, std::uint32_t height) {
-    if (width == 0 || height == 0)
-        throw Error(ExitCode::usage, "a guided image needs a width and a height");
-    return {width, height};
-}
-
 } // namespace
 
 GuideJudge::GuideJudge(Device &device, std::uint32_t width, std::uint32_t height, Precision precision)
-    : make_(device, precision), grid_(judged_grid(width, height)),
+    : make_(device, precision), grid_(solver::guide_grid(width, height)),
       moments_(solver::guide_kernel(device, precision, "guide_judge", "guide_moments")),
       share_(solver::guide_kernel(device, precision, "guide_judge", "guide_share")),
       blend_(solver::guide_kernel(device, precision, "guide_judge", "guide_blend")), wide_(make_, grid_, 9, 3.0),

@@ -1,5 +1,7 @@
 #include "solver/guide/guide_smoother.h"
 
+#include "runtime/error.h"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -35,6 +37,12 @@ KernelRequest guide_request(const GuideKernel &kernel) {
 }
 
 } // namespace
+
+Grid guide_grid(std::uint32_t width, std::uint32_t height) {
+    if (width == 0 || height == 0)
+        throw Error(ExitCode::usage, "a guided image needs a width and a height");
+    return {width, height};
+}
 
 Kernel guide_kernel(Device &device, Precision precision, const char *file, const char *entry, int taps) {
     return std::move(guide_library(device, precision).build({guide_request({file, entry, taps})}).front());

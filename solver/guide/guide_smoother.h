@@ -22,6 +22,9 @@ class GuideSmoother {
     Buffer taps_, across_;
 };
 
+/// The planes of images that have guides. Throws Error(ExitCode::usage) for a size of 0.
+Grid guide_grid(std::uint32_t width, std::uint32_t height);
+
 /// Compiles all kernels of guides, several at a time; uses no queue.
 void compile_guide_kernels(Device &device);
 

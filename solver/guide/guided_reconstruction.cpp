@@ -1,8 +1,22 @@
 #include "solver/guide/guided_reconstruction.h"
 
+#include "runtime/seconds_since.h"
+
+#include <algorithm>
+#include <chrono>
 #include <vector>
 
 namespace gradus {
+
+namespace {
+
+Denoiser::Features cleaned(Denoiser &denoiser, const Buffer &features, std::uint32_t width, std::uint32_t height) {
+    const auto planes = features.map(Access::read);
+    const float *albedo = planes.as<float>(), *normal = albedo + 3 * std::size_t(width) * height;
+    return denoiser.cleaned(albedo, normal, width, height);
+}
+
+} // namespace
 
 GuidedReconstruction::GuidedReconstruction(Device &device, PoissonSolver &solver, Guide guide)
     : device_(device), solver_(solver), judge_(device, solver.width(), solver.height()) {
@@ -17,24 +31,19 @@ void GuidedReconstruction::compile(Device &device) {
     solver::compile_guide_kernels(device);
 }
 
-void GuidedReconstruction::denoise(const Buffer &primal, const Buffer *solution, const GuideInputs &inputs,
-                                   Buffer &guide) {
+void GuidedReconstruction::denoise(const Buffer &primal, const Buffer *solution, const Buffer &direct,
+                                   const Denoiser::Features &features, Buffer &guide) {
     const std::size_t values = primal.bytes() / sizeof(float);
-    const auto features = inputs.features.map(Access::read);
-    std::vector<float> direct(values), color(values), sum(values);
-    if (inputs.direct.valid())
-        inputs.direct.read(direct.data(), primal.bytes());
-    Denoiser::Images images;
-    images.color = color.data();
-    images.albedo = features.as<float>();
-    images.normal = features.as<float>() + values;
+    std::vector<float> seen(values), color(values), sum(values);
+    if (direct.valid())
+        direct.read(seen.data(), primal.bytes());
     for (int turn = 0; turn < (solution ? 2 : 1); ++turn) {
         (turn == 0 ? primal : *solution).read(color.data(), primal.bytes());
         for (std::size_t i = 0; i < values; ++i)
-            color[i] += direct[i];
-        denoiser_->run(images, solver_.width(), solver_.height(), color.data());
+            color[i] += seen[i];
+        denoiser_->run(color.data(), features, solver_.width(), solver_.height(), color.data());
         for (std::size_t i = 0; i < values; ++i)
-            sum[i] += (color[i] - direct[i]) * (solution ? 0.5f : 1.0f);
+            sum[i] += (color[i] - seen[i]) * (solution ? 0.5f : 1.0f);
     }
     const auto written = guide.map(Access::write);
     std::copy(sum.begin(), sum.end(), written.as<float>());
@@ -61,8 +70,9 @@ PoissonReport GuidedReconstruction::solve(const HalvedImages &halves, const Guid
         judge_.run(images, share, of_halves, result);
         return report;
     }
+    const Denoiser::Features features = cleaned(*denoiser_, inputs.features, solver_.width(), solver_.height());
     for (int i = 0; i < 2; ++i)
-        denoise(halves[i].primal, is_solved ? &solutions[i] : nullptr, inputs, guides[i]);
+        denoise(halves[i].primal, is_solved ? &solutions[i] : nullptr, inputs.direct, features, guides[i]);
     // Halves tell how good a denoised image is. One of all samples is a little better.
     ImageMixer mixer(device_);
     Buffer primal(device_, "primal", result.bytes()), solution, guide(device_, "guide", result.bytes());
@@ -71,8 +81,31 @@ PoissonReport GuidedReconstruction::solve(const HalvedImages &halves, const Guid
         solution = Buffer(device_, "solution", result.bytes());
         mixer.mix(solutions[0], share, solutions[1], 1 - share, solution);
     }
-    denoise(primal, is_solved ? &solution : nullptr, inputs, guide);
+    denoise(primal, is_solved ? &solution : nullptr, inputs.direct, features, guide);
     judge_.run(images, share, of_halves, result, &guide);
+    return report;
+}
+
+PoissonReport solve_guided(Device &device, PoissonSolver &solver, const HostHalves &halves,
+                           const HostGuideInputs &inputs, Guide guide, float *result) {
+    const auto start = std::chrono::steady_clock::now();
+    const std::size_t plane = std::size_t(solver.width()) * solver.height();
+    GuideInputs uploaded;
+    uploaded.features = Buffer(device, "guide_features", FeatureFilter::features * plane * sizeof(float));
+    {
+        const auto features = uploaded.features.map(Access::write);
+        float *to = std::copy_n(inputs.albedo, 3 * plane, features.as<float>());
+        to = std::copy_n(inputs.normal, 3 * plane, to);
+        std::copy_n(inputs.depth, plane, to);
+    }
+    const std::size_t bytes = 3 * plane * sizeof(float);
+    if (inputs.direct)
+        uploaded.direct = Buffer(device, "direct", inputs.direct, bytes);
+    Buffer solution(device, "solution", bytes);
+    PoissonReport report =
+        GuidedReconstruction(device, solver, guide).solve(uploaded_halves(device, halves, bytes), uploaded, solution);
+    solution.read(result, bytes);
+    report.seconds = seconds_since(start);
     return report;
 }
 

@@ -7,7 +7,6 @@
 #include "solver/reconstruction.h"
 #include "solver/weighted_reconstruction.h"
 
-#include <functional>
 #include <memory>
 
 namespace gradus {
@@ -39,7 +38,8 @@ class GuidedReconstruction {
   private:
     /// The mean of the denoised primal, whose noise is of each pixel alone, and of the denoised solution, which has
     /// less of it: what is wrong with either differs. Without a solution it is that of the primal.
-    void denoise(const Buffer &primal, const Buffer *solution, const GuideInputs &inputs, Buffer &guide);
+    void denoise(const Buffer &primal, const Buffer *solution, const Buffer &direct, const Denoiser::Features &features,
+                 Buffer &guide);
 
     Device &device_;
     PoissonSolver &solver_;
@@ -47,5 +47,15 @@ class GuidedReconstruction {
     std::unique_ptr<FeatureFilter> filter_;
     GuideJudge judge_;
 };
+
+/// GuideInputs in memory of the host: planes of width * height floats, three of albedo and of the normal, one of depth,
+/// three of `direct`, which may be null.
+struct HostGuideInputs {
+    const float *albedo = nullptr, *normal = nullptr, *depth = nullptr, *direct = nullptr;
+};
+
+/// The same from images on the host: writes 3 * height * width floats to `result`, without `direct`.
+PoissonReport solve_guided(Device &device, PoissonSolver &solver, const HostHalves &halves,
+                           const HostGuideInputs &inputs, Guide guide, float *result);
 
 } // namespace gradus

@@ -126,6 +126,27 @@ TEST_P(EndToEndLayers, HaveBothHalvesForTheWeightedReconstruction) {
 INSTANTIATE_TEST_SUITE_P(Methods, EndToEndLayers, ::testing::Values("gpt", "gpm"),
                          [](const auto &info) { return std::string(info.param); });
 
+class EndToEndGuided : public EndToEndLayers {};
+
+TEST_P(EndToEndGuided, LayersMakeTheImageAgain) {
+    ASSERT_EQ(render_with("halves.exr", {"--reconstruction", "guided", "--layers"}).exit_code, 0);
+    const Image image = read_image(at("halves.exr"));
+    // albedo, normal, depth and variance, halves of the primal; of gradients also both halves' rest, and what all of
+    // the samples and lights that are seen have
+    EXPECT_EQ(image.channels.size(), 3u + 10 + (std::string(GetParam()) == "pt" ? 6 : 12 + 36));
+    ASSERT_EQ(run({"solve", "halves.exr", "-o", "again.exr", "--reconstruction", "guided", "-q"}).exit_code, 0);
+    const Image again = read_image(at("again.exr"));
+    for (const char *color : {"R", "G", "B"})
+        EXPECT_EQ(image.find(color)->values, again.find(color)->values);
+    EXPECT_EQ(again.metadata.at("guide"), "filter");
+    const Outcome unguided = run({"solve", "halves.exr", "-o", "x.exr", "--guide", "filter"});
+    EXPECT_EQ(unguided.exit_code, 2);
+    EXPECT_THAT(unguided.err, ::testing::HasSubstr("--reconstruction guided"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, EndToEndGuided, ::testing::Values("pt", "gpt", "gpm"),
+                         [](const auto &info) { return std::string(info.param); });
+
 TEST_F(EndToEnd, TheImageDependsOnTheSeedAndNotOnThreadsOrBatches) {
     ASSERT_EQ(run(render("first.exr", {"--spp", "4", "--seed", "3"})).exit_code, 0);
     ASSERT_EQ(

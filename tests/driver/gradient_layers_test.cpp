@@ -37,11 +37,11 @@ class GradientLayers : public GradientImagesTest {
                 expected.push_back(start + float(i));
         EXPECT_EQ(images.planes.at(layer), expected) << layer_name(layer);
     }
-    /// Each layer's red begins at a hundred more than that of the layer before. Those of halves are not there.
+    /// Each layer's red begins at a hundred more than that of the layer before. Halves and features are not there.
     void expect_all_layers(const GradientImages &images) const {
         float first = 100;
         for (const GradientLayer layer : gradient_layers) {
-            if (is_of_half(layer))
+            if (is_of_half(layer) || is_feature(layer))
                 continue;
             expect_colours(images, layer, first);
             first += 100;
@@ -290,6 +290,45 @@ TEST_F(GradientLayers, FilesThatAreNoImages) {
         sources.files[GradientLayer::dx] = path;
         expect_error(sources, ExitCode::image, HasSubstr("cannot read the image '" + path));
     }
+}
+
+/// Layers of a guided render: halves with so much of each, and features.
+std::vector<std::pair<std::string, float>> guided_layers(const std::vector<std::string> &of_each_half) {
+    std::vector<std::pair<std::string, float>> names{{"albedo", 1}};
+    for (const std::string &layer : of_each_half)
+        for (const char *half : {"_even", "_odd"}) {
+            const std::size_t end = std::min(layer.find("_variance"), layer.size());
+            names.emplace_back(layer.substr(0, end) + half + layer.substr(end), float(10 * names.size()));
+        }
+    std::vector<std::pair<std::string, float>> channels = layers(names);
+    for (const char *name : {"normal.X", "normal.Y", "normal.Z", "depth.Z"})
+        channels.emplace_back(name, float(channels.size()));
+    return channels;
+}
+
+TEST_F(GradientLayers, HalvesForAGuideHaveFeaturesAndAllDifferencesOrNone) {
+    GradientSources sources;
+    sources.layered = "layers.exr";
+    sources.halves = sources.features = true;
+    sources.layered = write("path-traced.exr", counting_image(3, 2, guided_layers({"primal"})));
+    GradientImages images = read_gradient_images(sources);
+    EXPECT_EQ(images.find(GradientLayer::dx_even), nullptr);
+    EXPECT_EQ(images.planes.at(GradientLayer::normal).size(), 18u);
+    EXPECT_EQ(images.planes.at(GradientLayer::depth).size(), 6u);
+    EXPECT_EQ(images.find(GradientLayer::normal)[6], images.find(GradientLayer::normal)[0] + 1) << "X, then Y";
+    const std::vector<std::string> all{"primal", "dx", "dy", "primal_variance", "dx_variance", "dy_variance"};
+    sources.layered = write("all.exr", counting_image(3, 2, guided_layers(all)));
+    images = read_gradient_images(sources);
+    EXPECT_NE(images.find(GradientLayer::dy_odd_variance), nullptr);
+    sources.layered = write("some.exr", counting_image(3, 2, guided_layers({all.begin(), all.end() - 1})));
+    expect_error(sources, ExitCode::image, HasSubstr("there is no dy_even_variance"));
+    auto without = guided_layers({"primal"});
+    without.pop_back();
+    sources.layered = write("flat.exr", counting_image(3, 2, without));
+    expect_error(sources, ExitCode::image, HasSubstr("no layer for depth"));
+    without.emplace_back("depth.Y", 1.0f);
+    sources.layered = write("y.exr", counting_image(3, 2, without));
+    expect_error(sources, ExitCode::image, HasSubstr("there must be Z"));
 }
 
 } // namespace

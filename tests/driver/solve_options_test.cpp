@@ -256,7 +256,7 @@ TEST_F(SolveOptions, MistakesOfTheCall) {
         {{"--weights", "other"}, "--weights"},
         {{"--weights", "variance"}, "--weights variance is for the norm L2: add --norm L2"},
         {{"--layer", "dx"}, "'dx' names no layer: write IMAGE=NAME"},
-        {{"--layer", "depth=Z"}, "'depth' is none of primal, dx"},
+        {{"--layer", "shadow=Z"}, "'shadow' is none of primal, dx"},
         {{"--nthreads", "-1"}, "--nthreads"},
         {{"--repeats", "0"}, "--repeats"},
         {{"--unknown"}, "--unknown"},

@@ -37,8 +37,10 @@ TEST_P(GuidedImages, DoNotDependOnTheBatchSize) {
 TEST_P(GuidedImages, KeepFeaturesForThemselves) {
     const Scene scene = scene_of(4);
     RenderOptions options = guided();
-    options.layers = false;
-    const Image image = render(scene, options, GetParam()).image;
+    const std::unique_ptr<Method> method = make_method(GetParam(), shared_device(), scene, options);
+    while (method->render_batch()) { // without layers, of which features are some
+    }
+    const Image image = method->image();
     for (const Channel &channel : image.channels)
         EXPECT_THAT(channel.name, ::testing::Not(::testing::ContainsRegex("albedo|normal|depth|^variance")));
     options.aov = true;

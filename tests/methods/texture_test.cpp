@@ -310,6 +310,17 @@ TEST(Blends, TakeTheirWeightFromATexture) {
     }
 }
 
+/// For scenes of 16 x 16 pixels and 64 samples that differ by their textures.
+void expect_photons_see_what_paths_see(const Scene &scene) {
+    RenderOptions options;
+    const Spread paths = spread_of(render(scene, options, "pt").image);
+    const Spread photons = spread_of(render(scene, options, "sppm").image);
+    std::printf("mean by paths %.5f, by photons %.5f\n", paths.mean, photons.mean);
+    // 16 x 16 x 64 samples, each with a relative deviation of about 1.5: half a percent each; and the photons' bias.
+    EXPECT_NEAR(photons.mean / paths.mean, 1, 0.03);
+    EXPECT_THROW(render(scene, options, "gpm"), Error);
+}
+
 /// Gathered photons are scattered by the texture of the gather point, and by those that they met before.
 TEST(Textures, PhotonsMeetThem) {
     SceneMaker maker(16, 64);
@@ -317,13 +328,7 @@ TEST(Textures, PhotonsMeetThem) {
     maker.cube(maker.material(textured_diffuse(maker, random_texture())), -1, true);
     maker.lamp({0, 0.9f, 0}, 0.5f, 0.5f, 5, maker.material(diffuse(0)));
     maker.scene.settings.max_depth = 4;
-    RenderOptions options;
-    const Spread paths = spread_of(render(maker.scene, options, "pt").image);
-    const Spread photons = spread_of(render(maker.scene, options, "sppm").image);
-    std::printf("mean by paths %.5f, by photons %.5f\n", paths.mean, photons.mean);
-    // 16 x 16 x 64 samples, each with a relative deviation of about 1.5: half a percent each; and the photons' bias.
-    EXPECT_NEAR(photons.mean / paths.mean, 1, 0.03);
-    EXPECT_THROW(render(maker.scene, options, "gpm"), Error);
+    expect_photons_see_what_paths_see(maker.scene);
 }
 
 /// Their kernels take longer to compile than ./check can afford; tests/scene has what maps make of normals.
@@ -483,12 +488,7 @@ TEST_P(NormalMaps, PhotonsMeetThem) {
     maker.cube(maker.material(bsdf), -1, true);
     maker.lamp({0, 0.9f, 0}, 0.5f, 0.5f, 5, maker.material(diffuse(0)));
     maker.scene.settings.max_depth = 6;
-    RenderOptions options;
-    const Spread paths = spread_of(render(maker.scene, options, "pt").image);
-    const Spread photons = spread_of(render(maker.scene, options, "sppm").image);
-    std::printf("mean by paths %.5f, by photons %.5f\n", paths.mean, photons.mean);
-    EXPECT_NEAR(photons.mean / paths.mean, 1, 0.03); // as of textures
-    EXPECT_THROW(render(maker.scene, options, "gpm"), Error);
+    expect_photons_see_what_paths_see(maker.scene);
 }
 
 } // namespace

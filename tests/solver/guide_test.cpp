@@ -281,13 +281,14 @@ TEST(GuideDenoiser, HandsImagesOverAndBack) {
         normal.values[i] = 0.01f * float(i);
     }
     color.values[4] = missing_value;
-    denoiser.run({color.values.data(), albedo.values.data(), normal.values.data()}, 3, 2, result.values.data());
+    const Denoiser::Features features = denoiser.cleaned(albedo.values.data(), normal.values.data(), 3, 2);
+    denoiser.run(color.values.data(), features, 3, 2, result.values.data());
     for (int c = 0; c < 3; ++c)
         for (int i = 0; i < 6; ++i) {
             const float given = c == 0 && i == 4 ? 0 : color.values[6 * c + i];
             EXPECT_FLOAT_EQ(result.values[6 * c + i], given * (2 * albedo.values[i]) + 2 * normal.values[12 + i]);
         }
-    denoiser.run({color.values.data()}, 3, 2, result.values.data());
+    denoiser.run(color.values.data(), {}, 3, 2, result.values.data());
     EXPECT_FLOAT_EQ(result.values[5], 5);
 }
 

@@ -304,7 +304,7 @@ TEST(Weighted, WhatIsMissingStaysInItsPlace) {
     std::vector<float> clean(problem.primal.size()), result(problem.primal.size());
     const std::array<std::uint64_t, 2> samples = {4 * problem.pixels(), 4 * problem.pixels()};
     const auto solve = [&](const HostHalf &a, const HostHalf &b, std::vector<float> &to) {
-        return solve_halves(test_device(), solver_for(problem), {a.images(), b.images()}, samples, to.data());
+        return solve_weighted(test_device(), solver_for(problem), {{a.images(), b.images()}, samples}, to.data());
     };
     solve(half_of(problem), half_of(other), clean);
     for (const auto plane : planes)
@@ -332,7 +332,7 @@ TEST(Weighted, SmallAndFlatImagesComeBack) {
             const HostHalf half = {flat, none, none, none, none, none};
             PoissonSolver solver(test_device(), width, height, 3);
             std::vector<float> result(count, -1.0f);
-            solve_halves(test_device(), solver, {half.images(), half.images()}, {4, 4}, result.data());
+            solve_weighted(test_device(), solver, {{half.images(), half.images()}, {4, 4}}, result.data());
             for (const float found : result)
                 EXPECT_NEAR(found, value, 4 * rounding * value) << width << " x " << height;
         }

@@ -1,11 +1,17 @@
-// What a guide image is made of beside samples: the camera features of an image.
+// What reconstructions take from the host: images in device memory, and the guide that options ask for.
 #pragma once
 
 #include "methods/method.h"
 #include "runtime/device/buffer.h"
 #include "runtime/film/image.h"
+#include "solver/poisson_solver.h"
+
+#include <cstddef>
 
 namespace gradus {
+
+/// The three channels of an image in device memory, as PoissonImages has them.
+Buffer uploaded(Device &device, const char *name, std::size_t pixels, const PlaneSource &source);
 
 /// Albedo, normal and depth of an image in device memory, as FeatureFilter has them.
 Buffer uploaded_features(Device &device, const Image &image);

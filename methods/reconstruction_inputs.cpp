@@ -1,4 +1,4 @@
-#include "methods/guide_features.h"
+#include "methods/reconstruction_inputs.h"
 
 #include "solver/guide/denoiser.h"
 #include "solver/guide/feature_filter.h"
@@ -6,6 +6,14 @@
 #include <algorithm>
 
 namespace gradus {
+
+Buffer uploaded(Device &device, const char *name, std::size_t pixels, const PlaneSource &source) {
+    Buffer buffer(device, name, 3 * pixels * sizeof(float));
+    const auto mapping = buffer.map(Access::write);
+    for (std::uint32_t c = 0; c < 3; ++c)
+        source(c, mapping.as<float>() + c * pixels);
+    return buffer;
+}
 
 Buffer uploaded_features(Device &device, const Image &image) {
     const std::size_t pixels = std::size_t(image.width) * image.height;

@@ -1,0 +1,182 @@
+#include "runtime/trace/embree_scene.h"
+
+#include "runtime/error.h"
+
+#include <fmt/format.h>
+#include <pmmintrin.h>
+#include <xmmintrin.h>
+
+#include <algorithm>
+
+// After all others: its short macro names are not for library headers.
+#include "kernels/shared/tables.h"
+
+namespace gradus {
+
+namespace {
+
+/// Embree's filter of hits with what rays may pass.
+void drop_passed(const RTCFilterFunctionNArguments *hits) {
+    const auto &opacity = *static_cast<const Opacity *>(hits->geometryUserPtr);
+    RTCRayN *rays = hits->ray;
+    for (unsigned lane = 0; lane < hits->N; ++lane) {
+        if (hits->valid[lane] == 0)
+            continue;
+        const Vector3 origin{RTCRayN_org_x(rays, hits->N, lane), RTCRayN_org_y(rays, hits->N, lane),
+                             RTCRayN_org_z(rays, hits->N, lane)};
+        const Vector3 direction{RTCRayN_dir_x(rays, hits->N, lane), RTCRayN_dir_y(rays, hits->N, lane),
+                                RTCRayN_dir_z(rays, hits->N, lane)};
+        if (!opacity.is_met(RTCHitN_primID(hits->hit, hits->N, lane), origin, direction))
+            hits->valid[lane] = 0;
+    }
+}
+
+/// Calls visit(shape, number of its first primitive) for the shapes of that kind that are passable, or those that
+/// aren't.
+template <class Visit>
+void for_each_shape(const Scene &s, Shape::Kind kind, std::uint32_t first, bool are_passable, Visit visit) {
+    for (const Shape &shape : s.shapes) {
+        if (shape.kind != kind)
+            continue;
+        if (is_passable(s, shape) == are_passable)
+            visit(shape, first);
+        first += kind == Shape::Kind::sphere ? 1u : std::uint32_t(s.meshes[shape.geometry].triangles.size());
+    }
+}
+
+} // namespace
+
+void EmbreeScene::prepare_thread() {
+    _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
+    _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
+}
+
+EmbreeScene::EmbreeScene(const Scene &s, int threads, tbb::task_arena &arena) {
+    prepare_thread();
+    device_.reset(rtcNewDevice(threads > 0 ? fmt::format("threads={},set_affinity=0", threads).c_str() : nullptr));
+    if (!device_)
+        throw rtcGetDeviceError(nullptr) == RTC_ERROR_UNSUPPORTED_CPU
+            ? Error(ExitCode::failure, "Embree does not start on this processor")
+            : Error(ExitCode::device,
+                    "Embree does not start: there is not enough memory, or there are too many threads");
+    rtcSetDeviceMemoryMonitorFunction(
+        device_.get(),
+        [](void *user, ssize_t bytes, bool) {
+            static_cast<std::atomic<long long> *>(user)->fetch_add(bytes);
+            return true;
+        },
+        &bytes_);
+    scene_.reset(rtcNewScene(device_.get()));
+    rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_HIGH);
+    add_geometry(s);
+    arena.execute([&] { rtcCommitScene(scene_.get()); });
+    check("building the acceleration structure");
+    RTCBounds bounds;
+    rtcGetSceneBounds(scene_.get(), &bounds);
+    low_ = {bounds.lower_x, bounds.lower_y, bounds.lower_z};
+    high_ = {bounds.upper_x, bounds.upper_y, bounds.upper_z};
+}
+
+void EmbreeScene::check(const char *doing) {
+    const RTCError error = rtcGetDeviceError(device_.get());
+    if (error == RTC_ERROR_OUT_OF_MEMORY)
+        throw Error(ExitCode::device, fmt::format("{}: out of memory", doing));
+    if (error != RTC_ERROR_NONE)
+        throw Error(ExitCode::failure, fmt::format("{}: Embree error {}", doing, static_cast<int>(error)));
+}
+
+template <class Element>
+Element *EmbreeScene::new_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::size_t count) {
+    // Embree reads 16 bytes at each vertex, so it wants padding after the last.
+    void *data = rtcSetNewGeometryBuffer(geometry, type, 0, format, sizeof(Element), count);
+    check("allocating geometry");
+    return static_cast<Element *>(data);
+}
+
+void EmbreeScene::attach(RTCGeometry geometry, Geometry place) {
+    rtcSetGeometryMask(geometry, 0xFFFFFFFFu);
+    if (place >= passable_triangles) {
+        rtcSetGeometryUserData(geometry, &passable_[place - passable_triangles]);
+        rtcSetGeometryIntersectFilterFunction(geometry, drop_passed);
+        rtcSetGeometryOccludedFilterFunction(geometry, drop_passed);
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene_.get(), geometry, place);
+    rtcReleaseGeometry(geometry);
+    check("building geometry");
+}
+
+void EmbreeScene::name(const Scene &s, const Shape &shape, std::size_t triangle, std::uint32_t number, Geometry place) {
+    if (place >= passable_triangles)
+        passable_[place - passable_triangles].add(s, shape, triangle, number);
+    else if (some_are_passable_)
+        numbers_[place].push_back(number);
+}
+
+void EmbreeScene::add_triangles(const Scene &s, Geometry place) {
+    const auto for_each_mesh = [&](auto visit) {
+        for_each_shape(s, Shape::Kind::mesh, 0, place == passable_triangles,
+                       [&](const Shape &shape, std::uint32_t first) { visit(shape, s.meshes[shape.geometry], first); });
+    };
+    std::size_t vertex_count = 0, triangle_count = 0;
+    for_each_mesh([&](const Shape &, const Mesh &mesh, std::uint32_t) {
+        vertex_count += mesh.positions.size();
+        triangle_count += mesh.triangles.size();
+    });
+    if (triangle_count == 0)
+        return;
+    RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto *vertices = new_buffer<Vector3>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, vertex_count);
+    auto *indices =
+        new_buffer<std::array<std::uint32_t, 3>>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangle_count);
+    std::uint32_t first_vertex = 0;
+    for_each_mesh([&](const Shape &shape, const Mesh &mesh, std::uint32_t number) {
+        vertices = std::copy(mesh.positions.begin(), mesh.positions.end(), vertices);
+        for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+            const auto &t = mesh.triangles[i];
+            *indices++ = {first_vertex + t[0], first_vertex + t[1], first_vertex + t[2]};
+            name(s, shape, i, number + std::uint32_t(i), place);
+        }
+        first_vertex += static_cast<std::uint32_t>(mesh.positions.size());
+    });
+    attach(geometry, place);
+}
+
+void EmbreeScene::add_spheres(const Scene &s, Geometry place) {
+    const auto for_each_sphere = [&](auto visit) {
+        for_each_shape(s, Shape::Kind::sphere, triangles_, place == passable_spheres, visit);
+    };
+    std::size_t count = 0;
+    for_each_sphere([&](const Shape &, std::uint32_t) { ++count; });
+    if (count == 0)
+        return;
+    RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_SPHERE_POINT);
+    auto *vertices = new_buffer<std::array<float, 4>>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, count);
+    for_each_sphere([&](const Shape &shape, std::uint32_t number) {
+        const Sphere &sphere = s.spheres[shape.geometry];
+        *vertices++ = {sphere.center.x, sphere.center.y, sphere.center.z, sphere.radius};
+        name(s, shape, 0, number, place);
+    });
+    attach(geometry, place);
+}
+
+void EmbreeScene::add_geometry(const Scene &s) {
+    std::size_t vertex_count = 0, triangle_count = 0;
+    for (const Shape &shape : s.shapes) {
+        some_are_passable_ |= is_passable(s, shape);
+        if (shape.kind == Shape::Kind::mesh) {
+            vertex_count += s.meshes[shape.geometry].positions.size();
+            triangle_count += s.meshes[shape.geometry].triangles.size();
+        }
+    }
+    if (triangle_count + s.spheres.size() >= ray_first_special || vertex_count >= 0xFFFFFFFFu)
+        throw Error(ExitCode::scene, "the scene has more primitives than 32-bit indices can name");
+    triangles_ = static_cast<std::uint32_t>(triangle_count);
+    spheres_ = static_cast<std::uint32_t>(s.spheres.size());
+    add_triangles(s, opaque_triangles);
+    add_spheres(s, opaque_spheres);
+    add_triangles(s, passable_triangles);
+    add_spheres(s, passable_spheres);
+}
+
+} // namespace gradus

@@ -1,0 +1,72 @@
+// The primitives of a scene in Embree's acceleration structure.
+#pragma once
+
+#include "runtime/scene/scene.h"
+#include "runtime/trace/opacity.h"
+
+#include <embree3/rtcore.h>
+#include <tbb/task_arena.h>
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace gradus {
+
+class EmbreeScene {
+  public:
+    /// As Tracer's. Builds on the threads of `arena`.
+    EmbreeScene(const Scene &scene, int threads, tbb::task_arena &arena);
+
+    /// To be called on every thread that builds or traces, as Embree asks: denormals cost a hundred times a normal
+    /// number, and count as 0.
+    static void prepare_thread();
+
+    RTCScene handle() const { return scene_.get(); }
+    /// Which primitive of the scene was hit, by the geometry and the number that Embree knows it by.
+    std::uint32_t primitive_of(unsigned geometry, unsigned number) const {
+        if (geometry >= passable_triangles)
+            return passable_[geometry - passable_triangles].primitive(number);
+        const std::vector<std::uint32_t> &named = numbers_[geometry];
+        return !named.empty() ? named[number] : geometry == opaque_triangles ? number : triangles_ + number;
+    }
+    std::size_t primitives() const { return triangles_ + spheres_; }
+    /// Whether rays may pass any of them.
+    bool some_are_passable() const { return some_are_passable_; }
+    /// Opposite corners of a box around all.
+    const std::array<float, 3> &low() const { return low_; }
+    const std::array<float, 3> &high() const { return high_; }
+    std::size_t memory_bytes() const { return static_cast<std::size_t>(bytes_.load()); }
+
+  private:
+    /// Those that rays may pass have geometries of their own, so that hits with all others are not asked about.
+    enum Geometry : unsigned { opaque_triangles, opaque_spheres, passable_triangles, passable_spheres };
+    struct Release {
+        void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+        void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+    };
+
+    void check(const char *doing);
+    template <class Element>
+    Element *new_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::size_t count);
+    void add_geometry(const Scene &s);
+    void add_triangles(const Scene &s, Geometry place);
+    void add_spheres(const Scene &s, Geometry place);
+    /// Says which primitive of the scene comes next in a geometry.
+    void name(const Scene &s, const Shape &shape, std::size_t triangle, std::uint32_t number, Geometry place);
+    void attach(RTCGeometry geometry, Geometry place);
+
+    std::atomic<long long> bytes_{0}; ///< which Embree counts until it is released
+    std::unique_ptr<RTCDeviceTy, Release> device_;
+    std::unique_ptr<RTCSceneTy, Release> scene_;
+    std::uint32_t triangles_ = 0, spheres_ = 0;
+    std::array<std::vector<std::uint32_t>, 2> numbers_; ///< of the opaque ones; empty: in the scene's order
+    std::array<Opacity, 2> passable_;
+    bool some_are_passable_ = false;
+    std::array<float, 3> low_{}, high_{};
+};
+
+} // namespace gradus

@@ -1,0 +1,85 @@
+// Rays of tables in Embree's packets.
+#pragma once
+
+#include "runtime/trace/ray_order.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace gradus {
+
+constexpr int packet_width = 16; ///< rays
+
+/// Which lanes of a packet are rays.
+struct alignas(64) ValidLanes {
+    int lane[packet_width];
+};
+
+inline ValidLanes first_lanes(int lanes) {
+    ValidLanes valid;
+    for (int lane = 0; lane < packet_width; ++lane)
+        valid.lane[lane] = lane < lanes ? -1 : 0;
+    return valid;
+}
+
+/// Sets what never changes from packet to packet.
+template <class Ray>
+void prepare_packet(Ray &ray) {
+    for (int lane = 0; lane < packet_width; ++lane) {
+        ray.tnear[lane] = 0;
+        ray.time[lane] = 0;
+        ray.mask[lane] = 0xFFFFFFFFu;
+        ray.id[lane] = 0;
+        ray.flags[lane] = 0;
+    }
+}
+
+/// Where the columns of a packet's origins and directions are.
+struct SegmentLanes {
+    float *origin[3], *direction[3];
+};
+
+/// Takes sixteen of the rays.
+void gather_segments(const SegmentColumns &rays, const std::uint32_t *rows, const SegmentLanes &lanes);
+
+/// Puts those rays into the packet, which end at parameter `far`.
+template <class Ray>
+void fill_packet(Ray &ray, const SegmentColumns &rays, const std::uint32_t *rows, float far) {
+    gather_segments(rays, rows, {{ray.org_x, ray.org_y, ray.org_z}, {ray.dir_x, ray.dir_y, ray.dir_z}});
+    for (int lane = 0; lane < packet_width; ++lane)
+        ray.tfar[lane] = far;
+}
+
+/// `beams`: packets of rays that go the same way are tested as one beam.
+inline RTCIntersectContext new_context(bool beams) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = beams ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    return context;
+}
+
+/// Calls visit(rows, lanes) for packet after packet of the sorted rows. `rows` has 16 elements, the last repeated past
+/// `lanes`. Where packets are traced as beams none spans two octants.
+template <class Visit>
+void for_each_packet(const std::vector<std::uint32_t> &rows, const std::vector<std::uint32_t> &groups, bool beams,
+                     Visit visit) {
+    const std::size_t parts = beams ? groups.size() - 1 : 1;
+    for (std::size_t part = 0; part < parts; ++part) {
+        const std::size_t begin = beams ? groups[part] : 0, end = beams ? groups[part + 1] : rows.size();
+        std::size_t i = begin;
+        for (; i + packet_width <= end; i += packet_width)
+            visit(&rows[i], packet_width);
+        if (i < end) {
+            std::uint32_t last[packet_width];
+            for (std::size_t lane = 0; lane < packet_width; ++lane)
+                last[lane] = rows[std::min(i + lane, end - 1)];
+            visit(last, static_cast<int>(end - i));
+        }
+    }
+}
+
+} // namespace gradus
