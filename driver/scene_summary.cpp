@@ -57,6 +57,20 @@ const char *name_of(Emitter::Kind kind) {
         return "envmap";
     case Emitter::Kind::spot:
         return "spot";
+    case Emitter::Kind::projector:
+        return "projector";
+    }
+    return "unknown";
+}
+
+const char *name_of(Texture::Kind kind) {
+    switch (kind) {
+    case Texture::Kind::bitmap:
+        return "bitmap";
+    case Texture::Kind::checkerboard:
+        return "checkerboard";
+    case Texture::Kind::mesh_attribute:
+        return "mesh_attribute";
     }
     return "unknown";
 }
@@ -127,7 +141,7 @@ SceneSummary summarize(const Scene &scene) {
     for (const Material &material : scene.materials)
         ++summary.materials[material_name(material)];
     for (const Texture &texture : scene.textures)
-        ++summary.textures[texture.kind == Texture::Kind::bitmap ? "bitmap" : "checkerboard"];
+        ++summary.textures[name_of(texture.kind)];
     summary.texture_bytes = picture_bytes(scene);
     for (const Emitter &emitter : scene.emitters)
         ++summary.emitters[name_of(emitter.kind)];

@@ -24,6 +24,7 @@ struct SceneSummary {
 
 /// The names that Mitsuba files have for them.
 const char *name_of(Emitter::Kind kind);
+const char *name_of(Texture::Kind kind);
 const char *name_of(FilmSettings::Filter filter);
 const char *name_of(Camera::Kind kind);
 const char *name_of(Camera::FovAxis axis);

@@ -2,6 +2,7 @@
 
 #include "kernels/shared/material.h"
 #include "kernels/shared/tables.h"
+#include "kernels/shared/texture.h"
 #include "methods/path_stages.h"
 #include "runtime/seconds_since.h"
 #include "runtime/wavefront/segments.h"
@@ -74,6 +75,11 @@ StageDeclaration weigh_stage(const char *name, const char *at_first, bool is_wan
             .is_wanted = is_wanted,
             .numbers = {"first", "stride", "at_first", "own_rows"},
             .tables = {{"own_vertex", "primary_vertex"}}};
+}
+
+/// Whether lights throw pictures.
+bool has_pictures(const Session &session) {
+    return (session.traits.at("TRAIT_TEXTURED_LIGHTS") & textured_lights_pictures) != 0;
 }
 
 StageDeclaration gradient_emission_stage(const char *name, const char *escaped, bool is_wanted) {
@@ -175,6 +181,7 @@ TableList GradientPathTracer::tables() const {
         {.name = "event", .columns = event_columns},
         {.name = "offset", .multiple = 4, .columns = offset_columns_used, .alternates = true, .is_cleared = true},
         {.name = "shift", .multiple = 4, .columns = shift_columns, .is_cleared = true},
+        {.name = "shown", .multiple = 4, .columns = has_pictures(session_) ? std::uint32_t(shown_columns) : 0u},
         {.name = "evaluation", .multiple = 8, .columns = evaluation_columns, .is_cleared = true},
         {.name = "link", .multiple = 8, .columns = link_columns},
         {.name = "offset_vertex",

@@ -81,7 +81,7 @@ const std::vector<std::string> chain_numbers = {"first", "pairs", "chain_rows", 
 std::string reason_against_gpm(const Scene &scene) {
     // Shifted photons leave vertices again whose textures nobody has kept.
     if (needs_material_stage(scene))
-        return "gpm knows no textures, no blends and no normal maps yet; pt, gpt and sppm do";
+        return "gpm knows no textures of BSDFs, no blends and no normal maps yet; pt, gpt and sppm do";
     // They must leave by the lobe that their light path sampled there, which no record tells.
     std::string mixed;
     for_each_bsdf(scene, [&](const Bsdf &bsdf) {

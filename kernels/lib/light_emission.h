@@ -101,6 +101,26 @@ GRADUS_FN light_emission emission_from_spot(rgb intensity, vec3 point, vec3 axis
     return e;
 }
 
+#if LIGHTS_HAVE_PROJECTORS || !defined(__OPENCL_VERSION__)
+/* A projector, uniform over its picture: what arrives there on a plane at distance 1, which is what the value says,
+ * times the picture's size. */
+GRADUS_FN light_emission emission_from_projector(rgb irradiance, vec3 point, vec3 axis, vec3 along_u, vec3 along_v,
+                                                 point2 place) {
+    /* One axis after the other (kernels/lib/ordered.h). */
+    const real u_squared = r_max(v3_dot(along_u, along_u), R(1e-30));
+    const vec3 across = v3_mad(axis, (place.x - R(0.5)) / u_squared, along_u);
+    const vec3 v = v3_after(along_v, across.x);
+    const real v_squared = r_max(v3_dot(v, v), R(1e-30));
+    light_emission e;
+    e.direction = v3_normalize(v3_mad(across, (place.y - R(0.5)) / v_squared, v));
+    e.origin = point;
+    e.power = rgb_scale(irradiance, R(1) / r_sqrt(r_max(u_squared * v_squared, R(1e-30))));
+    e.normal = v3(R(0), R(0), R(0));
+    e.is_far = 1;
+    return e;
+}
+#endif
+
 GRADUS_FN light_emission light_emission_select(int first, light_emission a, light_emission b) {
     light_emission e;
     e.origin = v3_select(first, a.origin, b.origin);
@@ -120,7 +140,7 @@ GRADUS_FN light_emission emission_sampling(GRADUS_GLOBAL const real *lights, GRA
                                            GRADUS_GLOBAL const real *emissions,
                                            GRADUS_GLOBAL const uint *emission_alias, uint light_count, vec3 center,
                                            real radius, uint unit, random4 choice,
-                                           random4 leaving ENVIRONMENT_PARAMETERS) {
+                                           random4 leaving ENVIRONMENT_PARAMETERS LIGHT_TEXTURE_PARAMETERS) {
     (void)light_kinds, (void)center, (void)radius;
     const light_drawn drawn = light_draw(choice.a, choice.b, light_count);
     const uint column = drawn.column;
@@ -130,7 +150,7 @@ GRADUS_FN light_emission emission_sampling(GRADUS_GLOBAL const real *lights, GRA
         rgb_scale(rgb3(LIGHT_FIELD(light, value_r), LIGHT_FIELD(light, value_g), LIGHT_FIELD(light, value_b)),
                   R(1) / EMISSION_FIELD(light, probability));
     const vec3 p = LIGHT_V3(light, p);
-#if TRAIT_LIGHT_TRIANGLE || TRAIT_LIGHT_SPHERE || TRAIT_LIGHT_ENVIRONMENT || TRAIT_LIGHT_SPOT
+#if TRAIT_LIGHT_TRIANGLE || TRAIT_LIGHT_SPHERE || TRAIT_LIGHT_ENVIRONMENT || TRAIT_LIGHT_SPOT || LIGHTS_HAVE_PROJECTORS
     const vec3 e1 = LIGHT_V3(light, e1);
 #endif
 #if TRAIT_LIGHT_TRIANGLE || TRAIT_LIGHT_SPHERE
@@ -182,6 +202,33 @@ GRADUS_FN light_emission emission_sampling(GRADUS_GLOBAL const real *lights, GRA
     e = light_emission_select(
         IS_LIGHT_KIND(environment),
         emission_from_environment(value, p, e1, LIGHT_V3(light, e2), center, radius, on_light, direction), e);
+#endif
+#if LIGHTS_HAVE_PROJECTORS
+    e = light_emission_select(
+        IS_LIGHT_KIND(projector),
+        emission_from_projector(value, p, e1, PICTURE_V3(light, along_u), PICTURE_V3(light, along_v), on_light), e);
+#endif
+#if TRAIT_TEXTURED_LIGHTS
+    texture_point place = point_of_sphere(v3(R(0), R(0), R(1)));
+#if LIGHTS_HAVE_PICTURES
+    place =
+        point_of_picture(PICTURE_V3(light, along_u), PICTURE_V3(light, along_v), e.direction, v3_dot(e1, e.direction));
+#endif
+#if LIGHTS_HAVE_SURFACE_TEXTURES && TRAIT_LIGHT_SPHERE
+    /* After what a spot computes alike (kernels/lib/ordered.h). */
+    const vec3 outward = v3_scale(v3_after(e.normal, e.power.r), e1.y);
+    place = texture_point_select(
+        IS_LIGHT_KIND(sphere),
+        point_of_sphere(sphere_place(sphere_axes, unit, LIGHT_TEXTURE_FIELD(light, sphere), outward)), place);
+#endif
+#if LIGHTS_HAVE_SURFACE_TEXTURES && TRAIT_LIGHT_TRIANGLE
+    const point2 weights = warp_uniform_triangle(on_light.x, on_light.y);
+    place = texture_point_select(
+        IS_LIGHT_KIND(triangle),
+        point_of_triangle(triangle_texcoords, unit, LIGHT_TEXTURE_FIELD(light, triangle), weights.x, weights.y), place);
+#endif
+    e.power = rgb_mul(
+        e.power, light_texture_at(textures, texture_reals, texels, unit, LIGHT_TEXTURE_FIELD(light, texture), place));
 #endif
     return e;
 }

@@ -6,11 +6,12 @@
 #include "kernels/lib/environment.h"
 #include "kernels/lib/light.h"
 #include "kernels/lib/light_draw.h"
+#include "kernels/lib/light_texture.h"
 #include "kernels/lib/random.h"
 
 #define LIGHT_KINDS                                                                                                    \
     (TRAIT_LIGHT_TRIANGLE + TRAIT_LIGHT_SPHERE + TRAIT_LIGHT_POINT + TRAIT_LIGHT_DIRECTIONAL + TRAIT_LIGHT_CONSTANT +  \
-     TRAIT_LIGHT_ENVIRONMENT + TRAIT_LIGHT_SPOT)
+     TRAIT_LIGHT_ENVIRONMENT + TRAIT_LIGHT_SPOT + LIGHTS_HAVE_PROJECTORS)
 #if LIGHT_KINDS > 1
 #define IS_LIGHT_KIND(name) (kind == light_kind_##name)
 #define IS_LIGHT(chosen, name, trait) ((trait) && (chosen).kind == light_kind_##name)
@@ -50,7 +51,24 @@
     | LIGHT_BITS(n, alias_threshold) | LIGHT_BITS(n, probability) | LIGHT_BITS(n, value_r) | LIGHT_BITS(n, value_g) |  \
         LIGHT_BITS(n, value_b) | LIGHT_V3_BITS(n, p) | LIGHT_V3_BITS(n, e1) | LIGHT_V3_BITS(n, e2) |                   \
         LIGHT_BITS(n, inverse_area) | LIGHT_BITS(n, offset) | LIGHT_AT(light_kinds, n, 1u, 0u) |                       \
-        LIGHT_AT(light_alias, n, 1u, 0u)
+        LIGHT_AT(light_alias, n, 1u, 0u) LIGHT_TEXTURE_BITS(n)
+#if LIGHTS_HAVE_PICTURES
+#define PICTURE_BITS(n, field)                                                                                         \
+    as_uint((float)LIGHT_AT(light_pictures, n, picture_stride, picture_##field *(size_t)unit))
+#define PICTURES_BITS(n)                                                                                               \
+    | PICTURE_BITS(n, along_u_x) | PICTURE_BITS(n, along_u_y) | PICTURE_BITS(n, along_u_z) |                           \
+        PICTURE_BITS(n, along_v_x) | PICTURE_BITS(n, along_v_y) | PICTURE_BITS(n, along_v_z)
+#else
+#define PICTURES_BITS(n)
+#endif
+#if TRAIT_TEXTURED_LIGHTS
+#define NUMBER_OF_TEXTURE(n, field)                                                                                    \
+    LIGHT_AT(light_textures, n, light_texture_stride, light_texture_##field *(size_t)unit)
+#define LIGHT_TEXTURE_BITS(n)                                                                                          \
+    | NUMBER_OF_TEXTURE(n, texture) | NUMBER_OF_TEXTURE(n, triangle) | NUMBER_OF_TEXTURE(n, sphere) PICTURES_BITS(n)
+#else
+#define LIGHT_TEXTURE_BITS(n)
+#endif
 #if FEW_LIGHTS == 0
 #define BITS_OF_LIGHTS 0u
 #elif FEW_LIGHTS == 1
@@ -62,9 +80,20 @@
 #else
 #define BITS_OF_LIGHTS 0u BITS_OF_LIGHT(0u) BITS_OF_LIGHT(1u) BITS_OF_LIGHT(2u) BITS_OF_LIGHT(3u)
 #endif
+#if TRAIT_TEXTURED_LIGHTS
+#define BITS_OF_LIGHT_TEXTURES | texture_bits(TRAIT_LIGHT_TEXTURES, textures, texture_reals, unit)
+#else
+#define BITS_OF_LIGHT_TEXTURES
+#endif
 #define LIGHT_FIELD(index, field) OF_LIGHT(lights, index, light_stride, light_##field *(size_t)unit)
 #define LIGHT_V3(index, field)                                                                                         \
     v3(LIGHT_FIELD(index, field##_x), LIGHT_FIELD(index, field##_y), LIGHT_FIELD(index, field##_z))
+
+#define LIGHT_TEXTURE_FIELD(index, field)                                                                              \
+    OF_LIGHT(light_textures, index, light_texture_stride, light_texture_##field *(size_t)unit)
+#define PICTURE_FIELD(index, field) OF_LIGHT(light_pictures, index, picture_stride, picture_##field *(size_t)unit)
+#define PICTURE_V3(index, field)                                                                                       \
+    v3(PICTURE_FIELD(index, field##_x), PICTURE_FIELD(index, field##_y), PICTURE_FIELD(index, field##_z))
 
 GRADUS_LIB_BEGIN
 
@@ -72,6 +101,9 @@ typedef struct {
     light_choice choice;
     uint light, kind;
     real probability; /* of choosing the light */
+#if TRAIT_TEXTURED_LIGHTS
+    rgb untextured; /* choice.value without its texture */
+#endif
 } chosen_light;
 
 /* The environment's map, whose axes are x, y and z in world space. */
@@ -94,7 +126,8 @@ GRADUS_FN light_choice light_from_environment(rgb value, vec3 x, vec3 y, vec3 z,
 
 GRADUS_FN chosen_light light_sampling(GRADUS_GLOBAL const real *lights, GRADUS_GLOBAL const uint *light_kinds,
                                       GRADUS_GLOBAL const uint *light_alias, uint light_count, real scene_diameter,
-                                      uint unit, vec3 position, random4 u ENVIRONMENT_PARAMETERS) {
+                                      uint unit, vec3 position,
+                                      random4 u ENVIRONMENT_PARAMETERS LIGHT_TEXTURE_PARAMETERS) {
     (void)light_kinds, (void)scene_diameter;
     const light_drawn drawn = light_draw(u.a, u.b, light_count);
     const uint column = drawn.column;
@@ -103,7 +136,7 @@ GRADUS_FN chosen_light light_sampling(GRADUS_GLOBAL const real *lights, GRADUS_G
     const real probability = LIGHT_FIELD(light, probability);
     const rgb value = rgb3(LIGHT_FIELD(light, value_r), LIGHT_FIELD(light, value_g), LIGHT_FIELD(light, value_b));
     const vec3 p = LIGHT_V3(light, p);
-#if TRAIT_LIGHT_TRIANGLE || TRAIT_LIGHT_SPHERE || TRAIT_LIGHT_ENVIRONMENT || TRAIT_LIGHT_SPOT
+#if TRAIT_LIGHT_TRIANGLE || TRAIT_LIGHT_SPHERE || TRAIT_LIGHT_ENVIRONMENT || TRAIT_LIGHT_SPOT || LIGHTS_HAVE_PROJECTORS
     const vec3 e1 = LIGHT_V3(light, e1);
 #endif
     uint kind = 0u;
@@ -149,6 +182,37 @@ GRADUS_FN chosen_light light_sampling(GRADUS_GLOBAL const real *lights, GRADUS_G
 #endif
 
     chosen_light chosen;
+#if TRAIT_TEXTURED_LIGHTS
+    texture_point place = point_of_sphere(v3(R(0), R(0), R(1)));
+#if LIGHTS_HAVE_PROJECTORS
+    s = light_choice_select(IS_LIGHT_KIND(projector), light_from_point(value, p, position), s);
+#endif
+#if LIGHTS_HAVE_PICTURES
+    const vec3 away = v3_neg(s.direction);
+    const real ahead = v3_dot(e1, away);
+    place = point_of_picture(PICTURE_V3(light, along_u), PICTURE_V3(light, along_v), away, ahead);
+#endif
+#if LIGHTS_HAVE_PROJECTORS
+    s.value = rgb_scale(s.value, IS_LIGHT_KIND(projector) ? light_projector_profile(place, ahead) : R(1));
+#endif
+#if LIGHTS_HAVE_SURFACE_TEXTURES && TRAIT_LIGHT_SPHERE
+    /* After what a spot computes alike (kernels/lib/ordered.h). */
+    const vec3 outward = v3_scale(v3_after(s.normal, s.value.r), e1.y);
+    place = texture_point_select(
+        IS_LIGHT_KIND(sphere),
+        point_of_sphere(sphere_place(sphere_axes, unit, LIGHT_TEXTURE_FIELD(light, sphere), outward)), place);
+#endif
+#if LIGHTS_HAVE_SURFACE_TEXTURES && TRAIT_LIGHT_TRIANGLE
+    const point2 on_light = warp_uniform_triangle(u.c, u.d);
+    place = texture_point_select(
+        IS_LIGHT_KIND(triangle),
+        point_of_triangle(triangle_texcoords, unit, LIGHT_TEXTURE_FIELD(light, triangle), on_light.x, on_light.y),
+        place);
+#endif
+    chosen.untextured = s.value;
+    s.value = rgb_mul(
+        s.value, light_texture_at(textures, texture_reals, texels, unit, LIGHT_TEXTURE_FIELD(light, texture), place));
+#endif
     chosen.choice = s;
     chosen.light = light;
     chosen.kind = kind;

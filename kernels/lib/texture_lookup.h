@@ -5,13 +5,19 @@
  * formats, so that these differ in arithmetic alone. */
 #ifndef GRADUS_LIB_TEXTURE_LOOKUP_H
 #define GRADUS_LIB_TEXTURE_LOOKUP_H
-//! traits: FEW_TEXTURES
 #include "kernels/lib/ordered.h"
 #include "kernels/lib/vector.h"
 #include "kernels/shared/scene_records.h"
 #include "kernels/shared/texture.h"
 
+#if HAS_TEXTURES || !defined(__OPENCL_VERSION__)
 GRADUS_LIB_BEGIN
+
+#ifdef __OPENCL_VERSION__
+#define TEXTURES_UNROLLED _Pragma("unroll")
+#else
+#define TEXTURES_UNROLLED
+#endif
 
 #define TEXTURES_HAVE(feature) ((features & (feature)) != 0)
 
@@ -135,29 +141,32 @@ GRADUS_FN rgb texture_between(int features, rgb a, rgb b, real share) {
     return rgb3(r, g, blue);
 }
 
-/* A field of a texture's record. Where the scene has few textures, FEW_TEXTURES of them, all are loaded once for all
+/* A field of a texture's record. Where the scene has few textures, which `features` says, all are loaded once for all
  * work-items and chosen from, in a sum of which all terms but one are 0. */
-#if FEW_TEXTURES > 0
-GRADUS_FN uint texture_number_of(GRADUS_GLOBAL const uint *textures, uint texture, size_t field) {
+GRADUS_FN uint texture_number_of(int features, GRADUS_GLOBAL const uint *textures, uint texture, size_t field) {
+    if (textures_counted(features) == 0u)
+        return (textures + field)[(int)(texture * (uint)texture_stride)];
     uint number = 0u;
-#pragma unroll
-    for (uint n = 0; n < FEW_TEXTURES; ++n)
+    TEXTURES_UNROLLED
+    for (uint n = 0; n < textures_counted(features); ++n)
         number |= (0u - (uint)(texture == n)) & textures[(size_t)n * texture_stride + field];
     return number;
 }
-GRADUS_FN real texture_real_of(GRADUS_GLOBAL const real *texture_reals, uint texture, size_t field) {
+GRADUS_FN real texture_real_of(int features, GRADUS_GLOBAL const real *texture_reals, uint texture, size_t field) {
+    if (textures_counted(features) == 0u)
+        return (texture_reals + field)[(int)(texture * (uint)texture_real_stride)];
     real number = R(0);
-#pragma unroll
-    for (uint n = 0; n < FEW_TEXTURES; ++n)
+    TEXTURES_UNROLLED
+    for (uint n = 0; n < textures_counted(features); ++n)
         number += (texture == n ? R(1) : R(0)) * texture_reals[(size_t)n * texture_real_stride + field];
     return number;
 }
-/* Something made of all fields of these that are read, for HAS_ROW (kernels/shared/stage.h). */
+/* Something made of all fields of few textures that are read, for HAS_ROW (kernels/shared/stage.h). */
 GRADUS_FN uint texture_bits(int features, GRADUS_GLOBAL const uint *textures, GRADUS_GLOBAL const real *texture_reals,
                             uint unit) {
     uint bits = 0u;
-#pragma unroll
-    for (uint n = 0; n < FEW_TEXTURES; ++n) {
+    TEXTURES_UNROLLED
+    for (uint n = 0; n < textures_counted(features); ++n) {
 #define NUMBER_BITS(field) bits |= textures[(size_t)n * texture_stride + texture_##field * (size_t)unit];
 #define REAL_BITS(field)                                                                                               \
     bits |= as_uint((float)texture_reals[(size_t)n * texture_real_stride + texture_real_##field * (size_t)unit]);
@@ -178,6 +187,10 @@ GRADUS_FN uint texture_bits(int features, GRADUS_GLOBAL const uint *textures, GR
             NUMBER_BITS(width)
             NUMBER_BITS(height)
         }
+        if (TEXTURES_HAVE(textures_of_meshes)) {
+            NUMBER_BITS(first)
+            NUMBER_BITS(count)
+        }
         if (TEXTURES_HAVE(textures_checkerboards)) {
             RGB_BITS(color_0)
             RGB_BITS(color_1)
@@ -195,25 +208,52 @@ GRADUS_FN uint texture_bits(int features, GRADUS_GLOBAL const uint *textures, GR
     }
     return bits;
 }
-#else
-GRADUS_FN uint texture_bits(int features, GRADUS_GLOBAL const uint *textures, GRADUS_GLOBAL const real *texture_reals,
-                            uint unit) {
-    (void)features, (void)textures, (void)texture_reals, (void)unit;
-    return 0u;
-}
-GRADUS_FN uint texture_number_of(GRADUS_GLOBAL const uint *textures, uint texture, size_t field) {
-    return (textures + field)[(int)(texture * (uint)texture_stride)];
-}
-GRADUS_FN real texture_real_of(GRADUS_GLOBAL const real *texture_reals, uint texture, size_t field) {
-    return (texture_reals + field)[(int)(texture * (uint)texture_real_stride)];
-}
-#endif
-#define TEXTURE_NUMBER(field) texture_number_of(textures, texture, texture_##field *(size_t)unit)
-#define TEXTURE_REAL(field) texture_real_of(texture_reals, texture, texture_real_##field *(size_t)unit)
+#define TEXTURE_NUMBER(field) texture_number_of(features, textures, texture, texture_##field *(size_t)unit)
+#define TEXTURE_REAL(field) texture_real_of(features, texture_reals, texture, texture_real_##field *(size_t)unit)
 #define TEXTURE_RGB(field) rgb3(TEXTURE_REAL(field##_r), TEXTURE_REAL(field##_g), TEXTURE_REAL(field##_b))
 
+/* Where a texture is looked up. What `features` do not ask for costs nothing. */
+typedef struct {
+    real u, v;
+    uint triangle;      /* of the scene; 0 on spheres */
+    real second, third; /* barycentric weights of its second and third vertex */
+    GRADUS_NOT_IN_REGISTERS
+} texture_point;
+
+/* A channel of a mesh attribute, whose number at the first corner is at `at`. The gathers come one after the other
+ * (kernels/lib/ordered.h), after `before`. */
+GRADUS_FN real texture_of_corners(GRADUS_GLOBAL const uint *texels, int is_this, uint at, uint corner,
+                                  texture_point point, real before) {
+    /* Words that are none of an attribute may be no number, which must not come into an index. */
+    const uint first = uint_after(at, before);
+    const real word_a = as_float(texels[first]);
+    const real a = is_this ? word_a : R(0);
+    const real word_b = as_float(texels[uint_after(first + corner, a)]);
+    const real b = is_this ? word_b : R(0);
+    const real word_c = as_float(texels[uint_after(first + 2u * corner, b)]);
+    const real c = is_this ? word_c : R(0);
+    const real rest = R(1) - point.second - point.third;
+    return rest * a + r_after(point.second, c) * b + point.third * c;
+}
+
+/* A mesh attribute; of other textures any value. */
+GRADUS_FN rgb texture_of_mesh(GRADUS_GLOBAL const uint *texels, uint flags, uint offset, uint first, uint count,
+                              texture_point point) {
+    const int is_this = (flags & texture_flag_attribute) != 0u, is_by_face = (flags & texture_flag_by_face) != 0u;
+    const uint channels = (flags & texture_flag_color) != 0u ? 3u : 1u;
+    const uint corner = (is_this & !is_by_face) ? channels : 0u, step = (is_this & (channels > 1u)) ? 1u : 0u;
+    /* Who asks for what is not there, and then takes a constant, may be anywhere. */
+    const uint triangle = r_min(point.triangle - first, count - 1u);
+    const uint at = is_this ? offset + triangle * (is_by_face ? channels : 3u * channels) : 0u;
+    const real r = texture_of_corners(texels, is_this, at, corner, point, R(0));
+    const real g = texture_of_corners(texels, is_this, at + step, corner, point, r);
+    const real b = texture_of_corners(texels, is_this, at + 2u * step, corner, point, g);
+    return rgb3(r, g, b);
+}
+
 GRADUS_FN rgb texture_lookup(int features, GRADUS_GLOBAL const uint *textures, GRADUS_GLOBAL const real *texture_reals,
-                             GRADUS_GLOBAL const uint *texels, uint unit, uint texture, real u, real v) {
+                             GRADUS_GLOBAL const uint *texels, uint unit, uint texture, texture_point point) {
+    const real u = point.u, v = point.v;
     texture_place place;
     place.flags = TEXTURE_NUMBER(flags);
     place.offset = TEXTURE_NUMBER(offset);
@@ -257,6 +297,11 @@ GRADUS_FN rgb texture_lookup(int features, GRADUS_GLOBAL const uint *textures, G
         const rgb field = rgb_select(is_across == is_down, TEXTURE_RGB(color_0), TEXTURE_RGB(color_1));
         value = rgb_select((place.flags & texture_flag_checkerboard) != 0u, field, value);
     }
+    if (TEXTURES_HAVE(textures_of_meshes)) {
+        const rgb of_mesh =
+            texture_of_mesh(texels, place.flags, place.offset, TEXTURE_NUMBER(first), TEXTURE_NUMBER(count), point);
+        value = rgb_select((place.flags & texture_flag_attribute) != 0u, of_mesh, value);
+    }
     if (TEXTURES_HAVE(textures_scaled))
         value = rgb_mul(value, TEXTURE_RGB(scale));
     const real lowest = TEXTURES_HAVE(textures_bounded) ? TEXTURE_REAL(lowest) : R(0);
@@ -270,4 +315,5 @@ GRADUS_FN rgb texture_lookup(int features, GRADUS_GLOBAL const uint *textures, G
 }
 
 GRADUS_LIB_END
+#endif
 #endif

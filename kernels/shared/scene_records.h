@@ -49,8 +49,8 @@
 /* A light is one emitting triangle or sphere, a point, a spot, a direction or the environment, constant or a map. Which
  * members of p and the edges mean what is said by kind: triangle: p0, e1, e2; sphere: center, radius in e1_x, facing in
  * e1_y; point: position; directional: the unit vector towards the light; spot: position, unit axis, and in e2_x to e2_z
- * the cutoff in turns, one over the turns from the beam to it, and 1 - its cosine; environment map: its x, y and z axes
- * in world space. */
+ * the cutoff in turns, one over the turns from the beam to it, and 1 - its cosine; projector: position, unit axis;
+ * environment map: its x, y and z axes in world space. */
 #define GRADUS_LIGHT_FIELDS(FIELD)                                                                                     \
     FIELD(light, alias_threshold, "a draw below it keeps this light, above it takes its alias")                        \
     FIELD(light, probability, "with which the light is chosen, by power")                                              \
@@ -127,7 +127,8 @@ enum light_kind {
     light_kind_directional,
     light_kind_constant,
     light_kind_environment,
-    light_kind_spot
+    light_kind_spot,
+    light_kind_projector
 };
 
 /* primitive_light of a primitive that does not emit. */

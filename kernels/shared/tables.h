@@ -312,6 +312,13 @@
     REAL(shift, jacobian, "of the step to the next vertex; 0 where it cannot be made")                                 \
     UINT(shift, outcome, "one of GRADUS_SHIFT_OUTCOMES: which step it is, or why there is none")
 
+/* What a light with a picture sends towards offset vertices, which is not of the base path's colour: beside `shift`,
+ * row by row. */
+#define GRADUS_SHOWN_COLUMNS(REAL, UINT)                                                                               \
+    REAL(shown, arriving_r, "in the place of event_arriving, before the Jacobian")                                     \
+    REAL(shown, arriving_g, "")                                                                                        \
+    REAL(shown, arriving_b, "")
+
 /* Requests to the BSDF service `evaluate`, and its answers in their place. Row line * capacity + r: lines 0 to 3 are
  * the light connections of offset paths, 4 to 7 their steps. */
 #define GRADUS_EVALUATION_COLUMNS(REAL, UINT)                                                                          \
@@ -416,6 +423,7 @@
     TABLE(offset_ray, GRADUS_OFFSET_RAY_COLUMNS)                                                                       \
     TABLE(offset, GRADUS_OFFSET_COLUMNS)                                                                               \
     TABLE(shift, GRADUS_SHIFT_COLUMNS)                                                                                 \
+    TABLE(shown, GRADUS_SHOWN_COLUMNS)                                                                                 \
     TABLE(evaluation, GRADUS_EVALUATION_COLUMNS)                                                                       \
     TABLE(link, GRADUS_LINK_COLUMNS)                                                                                   \
     TABLE(prefix, GRADUS_PREFIX_COLUMNS)                                                                               \
@@ -546,6 +554,7 @@ GRADUS_LIB_END
 #define ROWS_OF_offset_ray (4u * capacity)
 #define ROWS_OF_offset (4u * capacity)
 #define ROWS_OF_shift (4u * capacity)
+#define ROWS_OF_shown (4u * capacity)
 #define ROWS_OF_evaluation (8u * capacity)
 #define ROWS_OF_link (8u * capacity)
 #define ROWS_OF_prefix slots

@@ -11,17 +11,28 @@
  * nesting at which a weight is a texture, TRAIT_TEXTURED_NORMALS one for each of textured_normals_.... */
 #ifndef GRADUS_SHARED_TEXTURE_H
 #define GRADUS_SHARED_TEXTURE_H
-//! traits: TRAIT_MATERIAL
+//! traits: TRAIT_MATERIAL TRAIT_TEXTURED_LIGHTS
 #include "kernels/shared/bsdf_list.h"
 #include "kernels/shared/compat.h"
 
-#if TRAIT_MATERIAL || !defined(__OPENCL_VERSION__)
+/* Whether there are textures at all; kernels/lib/texture_lookup.h is for those. */
+#define HAS_TEXTURES (TRAIT_MATERIAL || TRAIT_TEXTURED_LIGHTS)
+
+/* TRAIT_TEXTURED_LIGHTS: what lights have textures. A projector counts though its picture be one colour. */
+#define textured_lights_of_surfaces 1
+#define textured_lights_spots 2
+#define textured_lights_projectors 4
+#define textured_lights_pictures 6 /* spots or projectors */
+
+#if TRAIT_MATERIAL || TRAIT_TEXTURED_LIGHTS || !defined(__OPENCL_VERSION__)
 
 #define GRADUS_TEXTURE_FIELDS(FIELD)                                                                                   \
     FIELD(texture, flags, "bits of texture_flag_...")                                                                  \
     FIELD(texture, offset, "its first word of `texels`")                                                               \
-    FIELD(texture, width, "in texels")                                                                                 \
-    FIELD(texture, height, "")
+    FIELD(texture, width, "in texels; 1 by 1 where it is no picture")                                                  \
+    FIELD(texture, height, "")                                                                                         \
+    FIELD(texture, first, "of a mesh attribute the first triangle of the scene that has it")                           \
+    FIELD(texture, count, "and how many follow, up to the last")
 
 #define GRADUS_TEXTURE_REAL_FIELDS(FIELD)                                                                              \
     FIELD(texture_real, u_of_u, "the map of the surface's (u, v) to the texture's")                                    \
@@ -42,11 +53,26 @@
     FIELD(texture_real, color_1_g, "")                                                                                 \
     FIELD(texture_real, color_1_b, "")
 
+/* By light, and one for the black light behind them. */
+#define GRADUS_LIGHT_TEXTURE_FIELDS(FIELD)                                                                             \
+    FIELD(light_texture, texture, "what its value is times, or texture_absent")                                        \
+    FIELD(light_texture, triangle, "of the scene, of a light that is one; else 0")                                     \
+    FIELD(light_texture, sphere, "the same")
+/* Also by light: what in a direction d adds to u and v of a picture, after division by the cosine to the light's axis
+ * and before 1/2: unit vectors over the picture's width and height at distance 1. */
+#define GRADUS_PICTURE_FIELDS(FIELD)                                                                                   \
+    FIELD(picture, along_u_x, "")                                                                                      \
+    FIELD(picture, along_u_y, "")                                                                                      \
+    FIELD(picture, along_u_z, "")                                                                                      \
+    FIELD(picture, along_v_x, "")                                                                                      \
+    FIELD(picture, along_v_y, "")                                                                                      \
+    FIELD(picture, along_v_z, "")
+
 /* By material record: of which others it is a blend. The weight is in `blend_weights`, by record. */
 #define GRADUS_BLEND_FIELDS(FIELD)                                                                                     \
     FIELD(blend, first, "record of the first; blend_none where this is no blend")                                      \
     FIELD(blend, second, "")                                                                                           \
-    FIELD(blend, weight_texture, "or texture_none")
+    FIELD(blend, weight_texture, "or texture_absent")
 
 /* By material record: where its normal comes from, bits of normal_map_... and the texture. What a bump map's texture is
  * times, in lengths, is in `bump_scales`, by record. */
@@ -88,6 +114,8 @@
 #define texture_wrap_mirror 1u
 #define texture_flag_checkerboard 64u
 #define texture_flag_srgb 128u
+#define texture_flag_attribute 1024u /* of a mesh: below */
+#define texture_flag_by_face 2048u
 
 /* The lowest three go with a vertex (kernels/lib/mapped_normal.h). */
 #define normal_map_there 1u   /* a texture turns the normal */
@@ -102,6 +130,11 @@
 #define textured_normals_bump 2
 
 #define texture_none 0xFFFFFFFFu
+/* A bit beside the number of another texture of the same features: where there is none that one is looked up, since all
+ * rows look up one, and what it is worth is not taken. */
+#define texture_absent 0x80000000u
+#define texture_is_absent(number) (((number)&texture_absent) != 0u)
+#define texture_present(number) ((number) & ~texture_absent)
 #define blend_none 0xFFFFFFFFu
 
 /* Bits of TRAIT_TEXTURES. */
@@ -117,15 +150,23 @@
 #define textures_mapped 512            /* by to_uv */
 #define textures_scaled 1024
 #define textures_checkerboards 2048
-#define textures_turned 4096   /* to_uv mixes u and v */
-#define textures_bounded 8192  /* what is looked up may be brought into bounds, or these are not 0 and 1 */
-#define textures_of_srgb 16384 /* bytes that are sRGB */
+#define textures_turned 4096     /* to_uv mixes u and v */
+#define textures_bounded 8192    /* what is looked up may be brought into bounds, or these are not 0 and 1 */
+#define textures_of_srgb 16384   /* bytes that are sRGB */
+#define textures_of_meshes 32768 /* mesh attributes */
+/* Above these bits how many textures the scene has, where these are few, else 0 (kernels/lib/texture_lookup.h). */
+#define textures_with_count(features, count) ((features) | (count) << 24)
+#define textures_counted(features) ((uint)(features) >> 24)
+
+/* A mesh attribute is three records of one or three reals for each triangle, or one by face, in `texels` too. */
 
 GRADUS_LIB_BEGIN
 
 #define GRADUS_TEXTURE_INDEX(record, field, text) record##_##field,
 enum texture_field { GRADUS_TEXTURE_FIELDS(GRADUS_TEXTURE_INDEX) texture_stride };
 enum texture_real_field { GRADUS_TEXTURE_REAL_FIELDS(GRADUS_TEXTURE_INDEX) texture_real_stride };
+enum light_texture_field { GRADUS_LIGHT_TEXTURE_FIELDS(GRADUS_TEXTURE_INDEX) light_texture_stride };
+enum picture_field { GRADUS_PICTURE_FIELDS(GRADUS_TEXTURE_INDEX) picture_stride };
 enum blend_field { GRADUS_BLEND_FIELDS(GRADUS_TEXTURE_INDEX) blend_stride };
 enum normal_map_field { GRADUS_NORMAL_MAP_FIELDS(GRADUS_TEXTURE_INDEX) normal_map_stride };
 enum texcoords_field { GRADUS_TRIANGLE_TEXCOORDS_FIELDS(GRADUS_TEXTURE_INDEX) texcoords_stride };

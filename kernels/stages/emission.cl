@@ -10,14 +10,19 @@
 STAGE emission(uint count, uint unit, uint first, uint capacity, uint slots, __global const uint *index,
                __global const real *ray, __global const real *path, __global real *radiance,
                __global const real *triangles, __global const real *spheres, uint triangle_count,
-               __global const uint *primitive_light, __global const real *lights, uint light_count
+               __global const uint *primitive_light, __global const real *lights,
+               uint light_count LIGHT_TEXTURE_PARAMETERS
 #if DIRECT_APART
                ,
                __global real *direct
 #endif
 ) {
     const size_t i = work_item();
+#if LIGHTS_HAVE_SURFACE_TEXTURES
+    if (!HAS_ROW(i, count, texture_bits(TRAIT_LIGHT_TEXTURES, textures, texture_reals, unit)))
+#else
     if (i >= count)
+#endif
         return;
     const uint row = index[first + i];
     const uint slot = AT_UINT(path, slot, row);
@@ -25,8 +30,8 @@ STAGE emission(uint count, uint unit, uint first, uint capacity, uint slots, __g
     const vec3 origin = AT_V3(ray, origin, row);
     const vec3 direction = AT_V3(ray, direction, row);
     const primitive_hit hit = primitive_hit_of(triangles, spheres, unit, triangle_count, primitive, origin, direction);
-    const light_found found =
-        light_found_at(primitive_light, lights, light_count, unit, triangle_count, primitive, hit, origin, direction);
+    const light_found found = light_found_at(primitive_light, lights, light_count, unit, triangle_count, primitive, hit,
+                                             origin, direction LIGHT_TEXTURE_ARGUMENTS);
     real weight = mis_weight_bsdf(AT(path, pdf, row), found.pdf);
 #if TRAIT_HIDE_EMITTERS
     weight = AT_UINT(path, depth, row) > 0u ? weight : R(0);

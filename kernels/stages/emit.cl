@@ -11,14 +11,18 @@ STAGE emit(uint count, uint unit, uint capacity, uint first_row, uint first_slot
            uint first_path_high, uint seed_low, uint seed_high, __global real *ray, __global real *light_path,
            __global uint *photon_place, __global const real *lights, __global const uint *light_kinds,
            __global const real *emissions, __global const uint *emission_alias, uint light_count, real scene_center_x,
-           real scene_center_y, real scene_center_z, real scene_diameter ENVIRONMENT_PARAMETERS
+           real scene_center_y, real scene_center_z, real scene_diameter ENVIRONMENT_PARAMETERS LIGHT_TEXTURE_PARAMETERS
 #if TRAIT_LIGHT_STARTS
            ,
            __global real *light_vertices, __global uint *light_vertex_marks, uint to_vertex
 #endif
 ) {
     const size_t i = work_item();
+#if TRAIT_TEXTURED_LIGHTS
+    if (!HAS_ROW(i, count, texture_bits(TRAIT_LIGHT_TEXTURES, textures, texture_reals, unit)))
+#else
     if (i >= count)
+#endif
         return;
     const size_t row = first_row + i;
     const uint slot = first_slot + (uint)i;
@@ -29,7 +33,7 @@ STAGE emit(uint count, uint unit, uint capacity, uint first_row, uint first_slot
     const random4 leaving = random_draw(key.x, key.y, random_dimension_leaving);
     const light_emission emitted = emission_sampling(
         lights, light_kinds, emissions, emission_alias, light_count, v3(scene_center_x, scene_center_y, scene_center_z),
-        R(0.5) * scene_diameter, unit, choice, leaving ENVIRONMENT_ARGUMENTS);
+        R(0.5) * scene_diameter, unit, choice, leaving ENVIRONMENT_ARGUMENTS LIGHT_TEXTURE_ARGUMENTS);
     SET_V3(ray, origin, row, emitted.origin);
     SET_V3(ray, direction, row, emitted.direction);
     AT_UINT(ray, primitive, row) = ray_pending;

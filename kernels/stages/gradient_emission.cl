@@ -24,7 +24,8 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint stride, uint cap
 #else
                         ,
                         __global const real *ray, __global const real *triangles, __global const real *spheres,
-                        uint triangle_count, __global const uint *primitive_light, uint light_count
+                        uint triangle_count, __global const uint *primitive_light,
+                        uint light_count LIGHT_TEXTURE_PARAMETERS
 #endif
 #if TRAIT_APART
                         ,
@@ -35,6 +36,8 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint stride, uint cap
     uint kept = 0u;
 #if ESCAPED && TRAIT_LIGHT_ENVIRONMENT
     kept = ESCAPED_BITS(environment_light);
+#elif !ESCAPED && LIGHTS_HAVE_SURFACE_TEXTURES
+    kept = texture_bits(TRAIT_LIGHT_TEXTURES, textures, texture_reals, unit);
 #endif
     if (!HAS_ROW(i, count, kept))
         return;
@@ -52,8 +55,8 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint stride, uint cap
     const uint primitive = AT_UINT(ray, primitive, row);
     const vec3 origin = AT_V3(ray, origin, row), direction = AT_V3(ray, direction, row);
     const primitive_hit hit = primitive_hit_of(triangles, spheres, unit, triangle_count, primitive, origin, direction);
-    const light_found found =
-        light_found_at(primitive_light, lights, light_count, unit, triangle_count, primitive, hit, origin, direction);
+    const light_found found = light_found_at(primitive_light, lights, light_count, unit, triangle_count, primitive, hit,
+                                             origin, direction LIGHT_TEXTURE_ARGUMENTS);
 #endif
     /* Densities over that of BSDF sampling; a Dirac direction cannot be found by light sampling. */
     real base_light = bsdf_pdf > R(0) ? found.pdf / bsdf_pdf : R(0);
@@ -89,7 +92,7 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint stride, uint cap
         const real cosine = -v3_dot(hit.normal, connection) / r_sqrt(distance_squared);
         const light_found from_offset =
             light_found_at(primitive_light, lights, light_count, unit, triangle_count, primitive, hit, from,
-                           v3_scale(connection, R(1) / r_sqrt(distance_squared)));
+                           v3_scale(connection, R(1) / r_sqrt(distance_squared)) LIGHT_TEXTURE_ARGUMENTS);
         const real jacobian =
             base_cosine > R(0) ? r_max(cosine, R(0)) / base_cosine * base_distance_squared / distance_squared : R(0);
         offset_light = base_light > R(0) ? jacobian * from_offset.pdf / bsdf_pdf : R(0);
@@ -127,7 +130,7 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint stride, uint cap
         const light_found own = light_found_at(
             primitive_light, lights, light_count, unit, triangle_count, present,
             primitive_hit_of(triangles, spheres, unit, triangle_count, present, own_origin, own_direction), own_origin,
-            own_direction);
+            own_direction LIGHT_TEXTURE_ARGUMENTS);
 #endif
         real own_light = own_pdf > R(0) ? own.pdf / own_pdf : R(0);
         real own_share = R(1);

@@ -13,8 +13,8 @@
 //! traits: TRAIT_TEXTURED TRAIT_TWO_FACED TRAIT_SPHERES TRAIT_TRIANGLES TRAIT_BLENDS TRAIT_SHARED_JITTER TRAIT_LOOKUPS
 //! traits: TRAIT_TEXTURES TRAIT_BLEND_TEXTURES TRAIT_BLEND_LEVELS
 //! traits: TRAIT_TEXTURED_NORMALS TRAIT_NORMAL_TEXTURES TRAIT_TWO_SIDED
-#include "kernels/lib/approximation.h"
 #include "kernels/lib/division.h"
+#include "kernels/lib/hit_uv.h"
 #include "kernels/lib/mapped_normal.h"
 #include "kernels/lib/material_side.h"
 #include "kernels/lib/normal_map.h"
@@ -22,14 +22,13 @@
 #include "kernels/lib/sample_place.h"
 #include "kernels/lib/surface_side.h"
 #include "kernels/lib/texture_gradient.h"
-#include "kernels/lib/texture_lookup.h"
 #include "kernels/lib/textured_material.h"
 #include "kernels/shared/stage.h"
 
 /* What texture number n of the material is worth here. */
 #define LOOKED_UP(n)                                                                                                   \
     texture_lookup(TRAIT_TEXTURES, textures, texture_reals, texels, unit,                                              \
-                   (material_lookups + (n) * (size_t)unit)[(int)(record * (uint)TRAIT_LOOKUPS)], u, v)
+                   (material_lookups + (n) * (size_t)unit)[(int)(record * (uint)TRAIT_LOOKUPS)], point)
 #define LOOK_UP(name)                                                                                                  \
     const uint number =                                                                                                \
         (material_textures + parameter_##name * (size_t)unit)[(int)(record * (uint)textured_parameters)];              \
@@ -118,31 +117,13 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
     const int behind = is_met_from_behind(triangle_normals, unit, triangle_count, primitive, hit, direction);
     record = material_on_side(material_back, primitive_material[primitive], behind);
 #endif
-    real u = R(0), v = R(0);
-#if TRAIT_TRIANGLES
-    const uint triangle = TRIANGLE_OF(primitive);
-    const real rest = R(1) - hit.u - hit.v;
-    u = rest * FIELD_OF(texcoords, triangle_texcoords, triangle, u_0) +
-        hit.u * FIELD_OF(texcoords, triangle_texcoords, triangle, u_1) +
-        hit.v * FIELD_OF(texcoords, triangle_texcoords, triangle, u_2);
-    v = rest * FIELD_OF(texcoords, triangle_texcoords, triangle, v_0) +
-        hit.u * FIELD_OF(texcoords, triangle_texcoords, triangle, v_1) +
-        hit.v * FIELD_OF(texcoords, triangle_texcoords, triangle, v_2);
-#endif
+    vec3 on_sphere = v3(R(0), R(0), R(1));
 #if TRAIT_SPHERES
     const uint sphere = SPHERE_OF(primitive);
-    /* Component after component, axis after axis (kernels/lib/ordered.h). */
-    const vec3 normal = v3_ordered(hit.normal);
-    const real facing = FIELD_OF(sphere, spheres, sphere, facing);
-    const real x = facing * v3_dot(normal, FIELD_V3(sphere_axes, sphere_axes, sphere, first));
-    const real y = facing * v3_dot(v3_after(normal, x), FIELD_V3(sphere_axes, sphere_axes, sphere, second));
-    const real z = facing * v3_dot(v3_after(normal, y), FIELD_V3(sphere_axes, sphere_axes, sphere, third));
-    const real around = approx_turn(y, x);
-    const real down = R(2) * approx_turn(r_sqrt(x * x + y * y), r_after(z, around));
-    const int is_sphere = !TRAIT_TRIANGLES || primitive >= triangle_count;
-    u = is_sphere ? around : u;
-    v = is_sphere ? down : v;
+    on_sphere =
+        sphere_place(sphere_axes, unit, sphere, v3_scale(hit.normal, FIELD_OF(sphere, spheres, sphere, facing)));
 #endif
+    const texture_point point = hit_texture_point(triangle_texcoords, unit, triangle_count, primitive, hit, on_sphere);
 #if TRAIT_BLENDS
 #if OF_LIGHT_PATHS
     const uint key_0 = AT_UINT(light_path, key_0, i), key_1 = AT_UINT(light_path, key_1, i);
@@ -168,10 +149,9 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
         real weight = blend_weights[record];
         if ((TRAIT_BLEND_LEVELS >> min(level, 30u)) & 1) {
             const uint number = FIELD_OF(blend, blends, record, weight_texture);
-            const int is_constant = number == texture_none;
             const real looked_up = rgb_luminance(texture_lookup(TRAIT_BLEND_TEXTURES, textures, texture_reals, texels,
-                                                                unit, is_constant ? 0u : number, u, v));
-            weight = is_constant ? weight : looked_up;
+                                                                unit, texture_present(number), point));
+            weight = texture_is_absent(number) ? weight : looked_up;
         }
         /* What is left of the number decides on the next level. */
         const int takes_second = choice < weight;
@@ -196,6 +176,7 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
 #if TRAIT_TEXTURED_NORMALS
     vec3 along_u = v3(R(0), R(0), R(0)), along_v = along_u;
 #if TRAIT_TRIANGLES
+    const uint triangle = TRIANGLE_OF(primitive);
     const real u_0 = FIELD_OF(texcoords, triangle_texcoords, triangle, u_0);
     const real v_0 = FIELD_OF(texcoords, triangle_texcoords, triangle, v_0);
     const real u_1 = FIELD_OF(texcoords, triangle_texcoords, triangle, u_1) - u_0;
@@ -209,6 +190,8 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
     along_v = v3_scale(v3_mad(v3_scale(e2, u_1), -u_2, e1), inverse);
 #endif
 #if TRAIT_SPHERES
+    const real x = on_sphere.x, y = on_sphere.y, z = on_sphere.z;
+    const int is_sphere = !TRAIT_TRIANGLES || primitive >= triangle_count;
     const vec3 first_axis = FIELD_V3(sphere_axes, sphere_axes, sphere, first);
     const vec3 second_axis = FIELD_V3(sphere_axes, sphere_axes, sphere, second);
     const vec3 third_axis = FIELD_V3(sphere_axes, sphere_axes, sphere, third);
@@ -227,12 +210,12 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
     vec3 mapped = place.shading;
 #if TRAIT_TEXTURED_NORMALS & textured_normals_given
     const rgb map_color =
-        texture_lookup(TRAIT_NORMAL_TEXTURES, textures, texture_reals, texels, unit, map_texture, u, v);
+        texture_lookup(TRAIT_NORMAL_TEXTURES, textures, texture_reals, texels, unit, map_texture, point);
     mapped = normal_of_color(place, map_color);
 #endif
 #if TRAIT_TEXTURED_NORMALS & textured_normals_bump
     const texture_slope slope =
-        texture_gradient(TRAIT_NORMAL_TEXTURES, textures, texture_reals, texels, unit, map_texture, u, v);
+        texture_gradient(TRAIT_NORMAL_TEXTURES, textures, texture_reals, texels, unit, map_texture, point.u, point.v);
     const real bump_scale = bump_scales[record];
     const vec3 bumped = normal_of_height(place, bump_scale * slope.u, bump_scale * slope.v);
     mapped = v3_select((map_flags & normal_map_is_bump) != 0u, bumped, mapped);

@@ -27,7 +27,7 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
             uint triangle_count, __global const uint *primitive_material, __global const uint *material_back,
             __global const real *materials, __global const real *lights, __global const uint *light_kinds,
             __global const uint *light_alias, uint light_count,
-            real scene_diameter ENVIRONMENT_PARAMETERS SURFACE_ARGUMENT
+            real scene_diameter ENVIRONMENT_PARAMETERS LIGHT_TEXTURE_PARAMETERS SURFACE_ARGUMENT
 #if TRAIT_AOV
             ,
             __global real *feature, uint slots
@@ -39,7 +39,7 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
 ) {
     const size_t i = work_item();
 #if SAMPLES_LIGHTS && !BSDF_IS_DIRAC
-    const uint kept = BITS_OF_LIGHTS;
+    const uint kept = BITS_OF_LIGHTS BITS_OF_LIGHT_TEXTURES;
 #else
     const uint kept = 0u;
 #endif
@@ -81,7 +81,7 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
 #if SAMPLES_LIGHTS && !BSDF_IS_DIRAC
     const random4 l = PATH_DRAW(key_0, key_1, random_dimension_light(depth));
     const chosen_light chosen = light_sampling(lights, light_kinds, light_alias, light_count, scene_diameter, unit,
-                                               point.position, l ENVIRONMENT_ARGUMENTS);
+                                               point.position, l ENVIRONMENT_ARGUMENTS LIGHT_TEXTURE_ARGUMENTS);
     const light_choice light = chosen.choice;
     const vec3 to_light = frame_to_local(axes, light.direction);
     const bsdf_value f = MAPPED_VALUE(place, PASTE(BSDF, _evaluate)(m, wi, to_light, transport_radiance), to_light);

@@ -54,7 +54,11 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
 #if SAMPLES_LIGHTS
             ,
             __global const real *lights, __global const uint *light_kinds, __global const uint *light_alias,
-            uint light_count ENVIRONMENT_PARAMETERS
+            uint light_count ENVIRONMENT_PARAMETERS LIGHT_TEXTURE_PARAMETERS
+#if LIGHTS_HAVE_PICTURES
+            ,
+            __global real *shown
+#endif
 #endif
 #if TRAIT_APART
             ,
@@ -71,7 +75,7 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
 ) {
     const size_t i = work_item();
 #if MEETS_LIGHTS
-    const uint kept = BITS_OF_LIGHTS;
+    const uint kept = BITS_OF_LIGHTS BITS_OF_LIGHT_TEXTURES;
 #else
     const uint kept = 0u;
 #endif
@@ -126,12 +130,17 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
     const random4 u = PATH_DRAW(AT_UINT(path, key_0, row), AT_UINT(path, key_1, row),
                                 random_dimension_light(AT_UINT(path, depth, row) - 1u));
     const chosen_light chosen = light_sampling(lights, light_kinds, light_alias, light_count, scene_diameter, unit,
-                                               base, u ENVIRONMENT_ARGUMENTS);
+                                               base, u ENVIRONMENT_ARGUMENTS LIGHT_TEXTURE_ARGUMENTS);
     const light_choice s = chosen.choice;
     const int is_surface =
         IS_LIGHT(chosen, triangle, TRAIT_LIGHT_TRIANGLE) | IS_LIGHT(chosen, sphere, TRAIT_LIGHT_SPHERE);
     const int is_spot = IS_LIGHT(chosen, spot, TRAIT_LIGHT_SPOT);
+#if LIGHTS_HAVE_PICTURES
+    const int is_projector = IS_LIGHT(chosen, projector, LIGHTS_HAVE_PROJECTORS);
+    const int is_point = IS_LIGHT(chosen, point, TRAIT_LIGHT_POINT) | is_spot | is_projector;
+#else
     const int is_point = IS_LIGHT(chosen, point, TRAIT_LIGHT_POINT) | is_spot;
+#endif
     const int is_finite_light = is_surface | is_point;
     const real base_distance_squared = v3_dot(s.connection, s.connection);
     const real base_cosine = -v3_dot(s.normal, s.direction);
@@ -143,6 +152,15 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
     const vec3 spot_axis = LIGHT_V3(chosen.light, e1);
     const real spot_cutoff = LIGHT_FIELD(chosen.light, e2_x), spot_steepness = LIGHT_FIELD(chosen.light, e2_y);
     const real base_falloff = light_spot_falloff(spot_axis, v3_neg(s.direction), spot_cutoff, spot_steepness);
+#endif
+#if LIGHTS_HAVE_PICTURES
+    const vec3 picture_axis = LIGHT_V3(chosen.light, e1);
+    const vec3 along_u = PICTURE_V3(chosen.light, along_u), along_v = PICTURE_V3(chosen.light, along_v);
+    const uint picture = LIGHT_TEXTURE_FIELD(chosen.light, texture);
+    const real base_ahead = -v3_dot(picture_axis, s.direction);
+    const real base_profile =
+        light_projector_profile(point_of_picture(along_u, along_v, v3_neg(s.direction), base_ahead), base_ahead);
+    const rgb arriving_untextured = rgb_scale(chosen.untextured, R(1) / chosen.probability);
 #endif
 #endif
 #pragma unroll
@@ -184,6 +202,21 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
                 ? light_spot_falloff(spot_axis, v3_neg(to_point_unit), spot_cutoff, spot_steepness) / base_falloff
                 : R(0);
         light_jacobian *= is_spot ? spot_change : R(1);
+#endif
+#if LIGHTS_HAVE_PICTURES
+        /* Each vertex has its own place of the picture; where that is black it has no light sample either. */
+        const vec3 to_own = v3_neg(to_point_unit);
+        const real own_ahead = v3_dot(picture_axis, to_own);
+        const texture_point own_place = point_of_picture(along_u, along_v, to_own, own_ahead);
+        const rgb of_picture = light_texture_at(textures, texture_reals, texels, unit, picture, own_place);
+        const real profile_change =
+            base_profile > R(0) ? light_projector_profile(own_place, own_ahead) / base_profile : R(0);
+        light_jacobian *= is_projector ? profile_change : R(1);
+        const int has_picture = is_spot | is_projector;
+        light_jacobian = has_picture && rgb_max(of_picture) == R(0) ? R(0) : light_jacobian;
+        const rgb base_arriving = AT_RGB(event, arriving, row);
+        const rgb shown_here = rgb_select(has_picture, rgb_mul(arriving_untextured, of_picture), base_arriving);
+        SET_RGB(shown, arriving, at, shown_here);
 #endif
         light_jacobian =
             is_surface ? (cosine > R(0) && base_cosine > R(0) ? nearer * cosine / base_cosine : R(0)) : light_jacobian;

@@ -34,10 +34,21 @@
 #define GATHER(table, at, sum) SET_RGB(table, value, at, sum);
 #endif
 
+/* What the light sends to the offset vertex. */
+#if TRAIT_TEXTURED_LIGHTS & textured_lights_pictures
+#define OWN_ARRIVING AT_RGB(shown, arriving, at)
+#else
+#define OWN_ARRIVING arriving
+#endif
+
 STAGE weigh(uint count, uint unit, uint first, uint stride, uint capacity, uint slots, __global const real *path,
             __global const real *shadow, __global const real *event, __global const real *vertex, OWN_VERTEX,
             STRIP_PLACE, __global real *offset, __global real *shift, __global const real *evaluation,
             __global const real *link, __global real *prefix, __global real *difference
+#if TRAIT_TEXTURED_LIGHTS & textured_lights_pictures
+            ,
+            __global const real *shown
+#endif
 #if TRAIT_APART
             ,
             __global const real *ray, __global const real *offset_ray, __global uint *offsets_state,
@@ -120,7 +131,7 @@ STAGE weigh(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         const real share = both_rough ? R(1) : R(1) / (R(1) + (density > R(0) ? own_bsdf / density : R(0)));
         const int own_sees = is_lit & scatters & (AT_UINT(link, open, (size_t)j * stride + row) != 0u);
         const rgb own_value =
-            rgb_select(own_sees, rgb_scale(rgb_mul(rgb_mul(own.value, arriving), f_light), jacobian_light * share),
+            rgb_select(own_sees, rgb_scale(rgb_mul(rgb_mul(own.value, OWN_ARRIVING), f_light), jacobian_light * share),
                        rgb_gray(R(0)));
         const int own_is_split = own.is_own & !both_rough;
         rgb value = own_value;

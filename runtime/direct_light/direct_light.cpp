@@ -6,9 +6,11 @@
 #define TRAIT_LIGHT_SPHERE 1
 #define TRAIT_LIGHT_CONSTANT 1
 #define TRAIT_LIGHT_ENVIRONMENT 1
+#define TRAIT_LIGHT_TEXTURES (2 * textures_of_meshes - 1)
 #include "kernels/lib/additive_sequence.h"
 #include "kernels/lib/escaped_light.h"
 #include "kernels/lib/filter_table.h"
+#include "kernels/lib/light_texture.h"
 #include "kernels/lib/stratified.h"
 #include "kernels/shared/tables.h"
 #include "runtime/direct_light/lit_rectangle.h"
@@ -70,9 +72,25 @@ class DirectRays {
         const vec3 origin = camera_rays_.origin(i), direction = camera_rays_.direction(i);
         const primitive_hit hit = primitive_hit_of(tables_.triangles.data(), tables_.spheres.data(), unit,
                                                    tables_.triangle_count, primitive, origin, direction);
-        return light_found_at(tables_.primitive_light.data(), lights, tables_.light_count, unit, tables_.triangle_count,
-                              primitive, hit, origin, direction)
-            .radiance;
+        const rgb found = light_found_at(tables_.primitive_light.data(), lights, tables_.light_count, unit,
+                                         tables_.triangle_count, primitive, hit, origin, direction)
+                              .radiance;
+        return tables_.light_textures.empty() ? found : textured(found, primitive, hit, as_one);
+    }
+
+    /// The light of a surface that may have a texture; `as_one`: as if it were its mean.
+    rgb textured(rgb found, std::uint32_t primitive, const primitive_hit &hit, bool as_one) const {
+        const std::uint32_t light = tables_.primitive_light[primitive];
+        if (texture_is_absent(FIELD_OF(light_texture, tables_.light_textures.data(), light, texture)))
+            return found;
+        const float *mean = &tables_.light_means[std::size_t(light) * 3];
+        if (as_one)
+            return rgb_max(found) > 0 ? rgb3(mean[0], mean[1], mean[2]) : found;
+        return rgb_mul(found, light_texture_on(tables_.light_textures.data(), tables_.triangle_texcoords.data(),
+                                               tables_.sphere_axes.data(), tables_.textures.data(),
+                                               tables_.texture_reals.data(), tables_.texels.data(), unit,
+                                               tables_.triangle_count, light, primitive, hit,
+                                               FIELD_OF(light, tables_.lights.data(), light, e1_y)));
     }
 
     const SceneTables &tables_;

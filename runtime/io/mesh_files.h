@@ -1,5 +1,6 @@
 // Readers of mesh files. Each gives the mesh in the file's own coordinates: every index in range, normals and
-// texcoords empty or one a vertex. Throws SceneError, which names the file and where it can the line.
+// texcoords empty or one a vertex, attributes one a vertex or a triangle. Throws SceneError, which names the file and
+// where it can the line.
 #pragma once
 
 #include "runtime/io/limits.h"
@@ -7,6 +8,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace gradus {
 
@@ -16,8 +18,9 @@ namespace gradus {
 Mesh parse_obj(const std::string &text, const std::string &file_name);
 
 /// PLY, ASCII or binary of either byte order. Takes x y z, nx ny nz, u v (or s t) of "vertex" and the index list of
-/// "face"; skips every other element and property. Polygons become fans.
-Mesh parse_ply(const std::string &data, const std::string &file_name);
+/// "face", and what makes the attributes that are wanted (ply_attributes.h); skips every other element and property.
+/// Polygons become fans.
+Mesh parse_ply(const std::string &data, const std::string &file_name, const std::vector<std::string> &attributes = {});
 
 struct SerializedMesh {
     Mesh mesh;
@@ -25,8 +28,8 @@ struct SerializedMesh {
     std::uint64_t unfolded_bytes = 0; ///< of the stream that it was read from
 };
 /// Mesh `index` (from 0) of a file in Mitsuba's serialized format, versions 3 and 4. Of the limits those of what a
-/// stream may unfold to count.
+/// stream may unfold to count. Its colours become the attribute "vertex_color" where that is wanted.
 SerializedMesh parse_serialized(const std::string &data, const std::string &file_name, std::uint64_t index,
-                                const LoadLimits &limits = {});
+                                const LoadLimits &limits = {}, const std::vector<std::string> &attributes = {});
 
 } // namespace gradus

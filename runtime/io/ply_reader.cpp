@@ -1,6 +1,7 @@
 // PLY, the Stanford polygon format: a text header that lists elements and their properties, then their values.
 #include "runtime/io/diagnostics.h"
 #include "runtime/io/mesh_files.h"
+#include "runtime/io/ply_attributes.h"
 #include "runtime/io/text.h"
 
 #include <tbb/blocked_range.h>
@@ -106,8 +107,8 @@ bool is_index(const std::string &property) { return property == "vertex_indices"
 
 class PlyReader {
   public:
-    PlyReader(const std::string &data, const std::string &file_name)
-        : at_(data.data()), end_(data.data() + data.size()), file_name_(file_name) {}
+    PlyReader(const std::string &data, const std::string &file_name, const std::vector<std::string> &wanted)
+        : at_(data.data()), end_(data.data() + data.size()), file_name_(file_name), wanted_(wanted) {}
 
     Mesh read() {
         read_header();
@@ -146,10 +147,12 @@ class PlyReader {
     void read_vertices(const ElementDeclaration &element);
     void read_faces(const ElementDeclaration &element);
     bool read_triangles(const ElementDeclaration &element);
+    std::vector<PlyAttribute> attributes_of(const ElementDeclaration &element, const char *prefix);
 
     const char *at_, *const end_;
     const std::string &file_name_;
-    std::size_t line_ = 0; // counted in the header alone; 0 after it
+    const std::vector<std::string> &wanted_; // attributes
+    std::size_t line_ = 0;                   // counted in the header alone; 0 after it
     bool ascii_ = false, swap_ = false;
     std::vector<ElementDeclaration> elements_;
     Mesh mesh_;
@@ -260,10 +263,27 @@ void PlyReader::skip(const Property &property) {
         at_ += length * size_of(property.type);
 }
 
+/// Those that are wanted, of which the mesh has got room for what they are.
+std::vector<PlyAttribute> PlyReader::attributes_of(const ElementDeclaration &element, const char *prefix) {
+    std::vector<PlyPropertyName> names;
+    for (const Property &property : element.properties) {
+        const float largest = property.type == Scalar::uint8 ? 255 : property.type == Scalar::uint16 ? 65535 : 0;
+        names.push_back({property.name, property.count_type.has_value(), largest});
+    }
+    std::optional<std::string> error;
+    const std::vector<PlyAttribute> found = find_ply_attributes(prefix, names, wanted_, error);
+    if (error)
+        fail(*error);
+    for (const PlyAttribute &attribute : found)
+        mesh_.attributes.push_back({attribute.name, std::uint32_t(attribute.properties.size()), {}});
+    return found;
+}
+
 void PlyReader::read_vertices(const ElementDeclaration &element) {
     if (element.count > std::numeric_limits<std::int32_t>::max())
         fail("more vertices than 32-bit indices hold");
-    // Where each property goes: 0 to 2 position, 3 to 5 normal, 6 and 7 texture coordinates, 8 nowhere.
+    // Where each property goes: 0 to 2 position, 3 to 5 normal, 6 and 7 texture coordinates, 8 nowhere, then
+    // attributes.
     constexpr std::size_t nowhere = 8;
     std::vector<std::size_t> targets;
     bool present[nowhere + 1] = {};
@@ -281,6 +301,25 @@ void PlyReader::read_vertices(const ElementDeclaration &element) {
     if (!present[0] || !present[1] || !present[2])
         fail("the vertices have no x, y and z");
     const bool has_normals = present[3] && present[4] && present[5], has_texcoords = present[6] && present[7];
+    const std::size_t first_attribute = mesh_.attributes.size();
+    std::size_t targets_used = nowhere + 1;
+    const std::vector<PlyAttribute> attributes = attributes_of(element, "vertex_");
+    for (const PlyAttribute &attribute : attributes)
+        for (const std::size_t property : attribute.properties)
+            targets[property] = targets_used++;
+    // What vertex i has of them.
+    const auto keep_attributes = [&](const std::vector<float> &values, std::size_t i) {
+        std::size_t from = nowhere + 1;
+        for (std::size_t a = 0; a < attributes.size(); ++a) {
+            const std::size_t channels = attributes[a].properties.size();
+            for (std::size_t c = 0; c < channels; ++c)
+                mesh_.attributes[first_attribute + a].values[i * channels + c] = values[from++] / attributes[a].unit;
+        }
+    };
+    const auto make_room = [&](std::size_t count) {
+        for (std::size_t a = 0; a < attributes.size(); ++a)
+            mesh_.attributes[first_attribute + a].values.resize(count * attributes[a].properties.size());
+    };
     const bool is_fixed = !ascii_ && std::ranges::none_of(element.properties, [](const Property &property) {
         return property.count_type.has_value();
     });
@@ -293,10 +332,11 @@ void PlyReader::read_vertices(const ElementDeclaration &element) {
         mesh_.positions.resize(element.count);
         mesh_.normals.resize(has_normals ? element.count : 0);
         mesh_.texcoords.resize(has_texcoords ? element.count : 0);
+        make_room(element.count);
         tbb::parallel_for(Tasks(0, element.count, vertices_a_task), [&](const Tasks &range) {
             const char *from = at_ + range.begin() * stride;
+            std::vector<float> values(targets_used);
             for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                float values[nowhere + 1] = {};
                 for (std::size_t p = 0; p < targets.size(); ++p) {
                     const Scalar type = element.properties[p].type;
                     values[targets[p]] = float(load_scalar(from, type, swap_));
@@ -307,14 +347,15 @@ void PlyReader::read_vertices(const ElementDeclaration &element) {
                     mesh_.normals[i] = {values[3], values[4], values[5]};
                 if (has_texcoords)
                     mesh_.texcoords[i] = {values[6], values[7]};
+                keep_attributes(values, i);
             }
         });
         at_ += element.count * stride;
         return;
     }
     mesh_.positions.reserve(element.count);
+    std::vector<float> values(targets_used);
     for (std::uint64_t i = 0; i < element.count; ++i) {
-        float values[nowhere + 1] = {};
         for (std::size_t p = 0; p < targets.size(); ++p) {
             const Property &property = element.properties[p];
             if (property.count_type)
@@ -327,6 +368,8 @@ void PlyReader::read_vertices(const ElementDeclaration &element) {
             mesh_.normals.push_back({values[3], values[4], values[5]});
         if (has_texcoords)
             mesh_.texcoords.push_back({values[6], values[7]});
+        make_room(i + 1);
+        keep_attributes(values, i);
     }
 }
 
@@ -363,10 +406,23 @@ bool PlyReader::read_triangles(const ElementDeclaration &element) {
 void PlyReader::read_faces(const ElementDeclaration &element) {
     if (!element.properties.empty() && read_triangles(element))
         return;
+    const std::size_t first_attribute = mesh_.attributes.size();
+    const std::vector<PlyAttribute> attributes = attributes_of(element, "face_");
+    std::vector<char> is_kept(element.properties.size(), 0);
+    for (const PlyAttribute &attribute : attributes)
+        for (const std::size_t property : attribute.properties)
+            is_kept[property] = 1;
+    std::vector<float> values(element.properties.size());
     std::vector<std::uint32_t> polygon;
-    for (std::uint64_t i = 0; i < element.count; ++i)
-        for (const Property &property : element.properties) {
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+        const std::size_t first_triangle = mesh_.triangles.size();
+        for (std::size_t p = 0; p < element.properties.size(); ++p) {
+            const Property &property = element.properties[p];
             const bool is_indices = property.count_type && is_index(property.name);
+            if (is_kept[p]) {
+                values[p] = float(value(property.type));
+                continue;
+            }
             if (!is_indices) {
                 skip(property);
                 continue;
@@ -382,10 +438,17 @@ void PlyReader::read_faces(const ElementDeclaration &element) {
             for (std::size_t corner = 2; corner < polygon.size(); ++corner)
                 mesh_.triangles.push_back({polygon[0], polygon[corner - 1], polygon[corner]});
         }
+        for (std::size_t triangle = first_triangle; triangle < mesh_.triangles.size(); ++triangle)
+            for (std::size_t a = 0; a < attributes.size(); ++a)
+                for (const std::size_t property : attributes[a].properties)
+                    mesh_.attributes[first_attribute + a].values.push_back(values[property] / attributes[a].unit);
+    }
 }
 
 } // namespace
 
-Mesh parse_ply(const std::string &data, const std::string &file_name) { return PlyReader(data, file_name).read(); }
+Mesh parse_ply(const std::string &data, const std::string &file_name, const std::vector<std::string> &attributes) {
+    return PlyReader(data, file_name, attributes).read();
+}
 
 } // namespace gradus

@@ -55,6 +55,8 @@ class Properties {
     Matrix4 transform(const std::string &name);
     /// A reflectance may be a texture where those are accepted.
     Color color(const std::string &name, const Color &otherwise, ColorUse use);
+    /// As color() of an emission, but it may be a texture where those are accepted.
+    Color textured_emission(const std::string &name, const Color &otherwise);
     /// As number(), but it may be a texture where those are accepted. Both are clamped to `least` at least, and a
     /// texture to the range.
     Number textured_number(const std::string &name, const Number &otherwise, double lowest, double highest,

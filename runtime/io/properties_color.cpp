@@ -116,6 +116,17 @@ Rgb Properties::read_color(const Element &property, const std::string &name, Col
     return to_rgb(color);
 }
 
+Color Properties::textured_emission(const std::string &name, const Color &otherwise) {
+    const Element *property = find(name);
+    const Element *texture = property ? texture_of(*property) : nullptr;
+    if (!texture)
+        return color(name, otherwise, ColorUse::emission);
+    const FoundTexture found = (*read_texture_)(*texture, 0, std::numeric_limits<float>::max());
+    Color color(float(found.range.mean[0]), float(found.range.mean[1]), float(found.range.mean[2]));
+    color.texture = found.index;
+    return color;
+}
+
 Color Properties::color(const std::string &name, const Color &otherwise, ColorUse use) {
     const Element *property = find(name);
     if (!property)

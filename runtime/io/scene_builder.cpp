@@ -98,6 +98,8 @@ void SceneBuilder::index(const Element &element, int depth) {
         else
             aliases_[*as] = *id;
     }
+    if (element.tag == "texture")
+        want_attribute(element);
     if (is_object_tag(element.tag) || depth == 0) {
         check_children(element);
         for (const Element &child : element.children)
@@ -144,7 +146,7 @@ Result SceneBuilder::build_object(const Element &element) {
             return std::get<Material>(known->second);
         }
     Properties properties(element, resolve_, diagnostics_);
-    if constexpr (std::is_same_v<Result, Material>)
+    if constexpr (std::is_same_v<Result, Material> || std::is_same_v<Result, Emitter>)
         properties.accept_textures(&read_texture_);
     const std::string type = properties.type();
     const PluginFunction<Result> plugin = find_plugin<Result>(type);
@@ -306,8 +308,6 @@ void refuse_emitter(const std::string &type, const Location &location) {
             throw SceneError(location, "the sky model \"" + type +
                                            "\" is not supported: bake it into an image in latitude and longitude, "
                                            "and give that to an emitter \"envmap\"");
-    if (type == "projector")
-        throw SceneError(location, "a projector is not supported; a spot lights the same cone without its image");
     if (type == "directionalarea" || type == "collimated")
         throw SceneError(location, "the emitter \"" + type +
                                        "\" is not supported; of what shines one way there are \"directional\" and "

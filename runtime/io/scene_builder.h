@@ -56,12 +56,15 @@ class SceneBuilder {
     /// Counts what a shape reads. Throws SceneError where all of them read more than the limit.
     void count_mesh_bytes(std::uint64_t bytes, const Location &location);
     const LoadLimits &limits() const { return limits_; }
+    /// Names of mesh attributes that textures of the file ask for; meshes keep no others.
+    const std::vector<std::string> &wanted_attributes() const { return wanted_attributes_; }
     /// A picture that a texture names, decoded once. `is_srgb` becomes whether what is stored is sRGB. Throws
     /// SceneError.
     std::shared_ptr<const Bitmap> bitmap(const std::filesystem::path &path, bool is_linear, const std::string &channel,
                                          const Location &location, bool &is_srgb);
     /// The texture that an element describes, with its values clamped to the range: one of the scene's.
     FoundTexture texture(const Element &element, double lowest, double highest);
+    /// What texture() or a parameter has given an index of.
     const Texture &texture_at(std::int32_t index) const { return scene_.textures[std::size_t(index)]; }
     /// A mixture of two sides of surfaces (Blend in runtime/scene/scene.h).
     Bsdf blend(const Bsdf &first, const Bsdf &second, const Number &weight);
@@ -78,6 +81,9 @@ class SceneBuilder {
   private:
     Bsdf with_map(const Bsdf &bsdf, const NormalTexture &map, const Location &location);
     void index(const Element &element, int depth);
+    void want_attribute(const Element &texture);
+    void settle_attributes(Mesh &mesh, const std::string &name, const Location &location);
+    void check_attributes(const Shape &shape, const Mesh *mesh, const Location &location) const;
     void check_children(const Element &element);
     const Element &resolve(const Element &reference);
     void build_sensor(const Element &element);
@@ -117,6 +123,7 @@ class SceneBuilder {
     std::map<const Element *, std::uint32_t> materials_;
     /// Each is built once, however many refer to it, and fails once.
     std::map<const Element *, std::variant<Material, SceneError>> built_materials_;
+    std::vector<std::string> wanted_attributes_;
     std::map<const Element *, Emitter> area_emitters_;
     std::map<const Element *, std::variant<Texture, SceneError>> built_textures_;
     std::map<std::tuple<const Element *, double, double>, FoundTexture> textures_;

@@ -190,7 +190,8 @@ void SceneBuilder::add_shape(const Element &element, std::variant<BuiltMesh, Sph
     Properties attachments(element, resolve_, diagnostics_);
     Shape shape;
     shape.name = element.attribute_or("id", element.attribute_or("type", "") + " at " + element.location.text());
-    if (const auto *built = std::get_if<BuiltMesh>(&geometry)) {
+    if (auto *built = std::get_if<BuiltMesh>(&geometry)) {
+        settle_attributes(built->mesh, shape.name, element.location);
         if (built->degenerate > 0)
             diagnostics_.warn(element.location, std::to_string(built->degenerate) +
                                                     " degenerate triangles of shape \"" + shape.name +
@@ -212,6 +213,8 @@ void SceneBuilder::add_shape(const Element &element, std::variant<BuiltMesh, Sph
     if (shape.emitter < 0 && material.opacity.texture != no_texture && std::holds_alternative<Sphere>(geometry))
         throw SceneError(element.location,
                          "the opacity of a sphere cannot be a texture; give it as a number, or use a mesh");
+    const auto *with_mesh = std::get_if<BuiltMesh>(&geometry);
+    check_attributes(shape, with_mesh ? &with_mesh->mesh : nullptr, element.location);
     if (shape.emitter >= 0 && material.opacity < 1)
         diagnostics_.warn(element.location, "shape \"" + shape.name + "\" emits: its opacity is taken as 1");
     if (const auto *sphere = std::get_if<Sphere>(&geometry)) {

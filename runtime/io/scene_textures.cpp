@@ -3,11 +3,13 @@
 #include "runtime/error.h"
 #include "runtime/io/bitmap_reader.h"
 #include "runtime/io/scene_builder.h"
+#include "runtime/io/text.h"
 #include "runtime/scene/traits.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace gradus {
@@ -65,7 +67,8 @@ FoundTexture SceneBuilder::texture(const Element &element, double lowest, double
     texture.highest = float(highest);
     constexpr double not_worth_a_word = 1e-3;
     if (least < lowest || most > highest) {
-        if (least < lowest - not_worth_a_word || most > highest + not_worth_a_word)
+        const bool is_known = texture.kind != Texture::Kind::mesh_attribute;
+        if (is_known && (least < lowest - not_worth_a_word || most > highest + not_worth_a_word))
             diagnostics_.warn(element.location,
                               fmt::format("the texture has values from {:.4g} to {:.4g}; they are clamped to {:.4g} to "
                                           "{:.4g}",
@@ -76,6 +79,42 @@ FoundTexture SceneBuilder::texture(const Element &element, double lowest, double
     scene_.textures.push_back(std::move(texture));
     textures_.emplace(key, found);
     return found;
+}
+
+/// Before shapes are read: of a texture that names a mesh attribute, the name.
+void SceneBuilder::want_attribute(const Element &texture) {
+    const std::string type(trimmed(texture.attribute_or("type", "")));
+    std::string name = type == "vertexcolors" ? "vertex_color" : "";
+    for (const Element &child : texture.children)
+        if (type == "mesh_attribute" && trimmed(child.attribute_or("name", "")) == "name")
+            name = std::string(trimmed(child.attribute_or("value", "")));
+    if (!name.empty() && std::ranges::count(wanted_attributes_, name) == 0)
+        wanted_attributes_.push_back(name);
+}
+
+/// Numbers that are none become 0.
+void SceneBuilder::settle_attributes(Mesh &mesh, const std::string &name, const Location &location) {
+    std::size_t changed = 0;
+    for (MeshAttribute &attribute : mesh.attributes)
+        for (float &value : attribute.values)
+            if (!std::isfinite(value)) {
+                value = 0;
+                ++changed;
+            }
+    if (changed > 0)
+        diagnostics_.warn(
+            location,
+            fmt::format("shape \"{}\": {} values of attributes that are no finite numbers become 0", name, changed));
+}
+
+/// mesh: that of the shape, nullptr of a sphere.
+void SceneBuilder::check_attributes(const Shape &shape, const Mesh *mesh, const Location &location) const {
+    for_each_texture(scene_, shape, [&](std::int32_t number) {
+        const Texture &texture = scene_.textures[std::size_t(number)];
+        if (texture.kind == Texture::Kind::mesh_attribute && (!mesh || !find_attribute(*mesh, texture.attribute)))
+            throw SceneError(location, "shape \"" + shape.name + "\" has no attribute \"" + texture.attribute +
+                                           "\", which its texture \"" + texture.name + "\" reads");
+    });
 }
 
 Bsdf SceneBuilder::blend(const Bsdf &first, const Bsdf &second, const Number &weight) {

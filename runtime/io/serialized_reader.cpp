@@ -15,6 +15,7 @@ namespace gradus {
 namespace {
 
 constexpr std::uint16_t format_mark = 0x041c;
+const std::string vertex_color = "vertex_color";
 enum Flags : std::uint32_t {
     has_normals = 0x0001,
     has_texcoords = 0x0002,
@@ -71,8 +72,8 @@ class Inflater {
 class SerializedReader {
   public:
     SerializedReader(const std::string &data, const std::string &file_name, std::uint64_t index,
-                     const LoadLimits &limits)
-        : data_(data), file_name_(file_name), index_(index), limits_(limits) {}
+                     const LoadLimits &limits, bool keeps_colors)
+        : data_(data), file_name_(file_name), index_(index), limits_(limits), keeps_colors_(keeps_colors) {}
 
     SerializedMesh read();
 
@@ -95,6 +96,7 @@ class SerializedReader {
     const std::string &file_name_;
     std::uint64_t index_;
     const LoadLimits limits_;
+    const bool keeps_colors_;
 };
 
 /// Where the mesh begins and ends. The end is the next offset or the table.
@@ -210,8 +212,11 @@ SerializedMesh SerializedReader::read() {
         for (std::size_t i = 0; i < vertices; ++i)
             mesh.texcoords.push_back({values[2 * i], values[2 * i + 1]});
     }
-    if (flags & has_colors)
-        read_floats(inflater, vertices * 3, doubles);
+    if (flags & has_colors) {
+        std::vector<float> colors = read_floats(inflater, vertices * 3, doubles);
+        if (keeps_colors_)
+            mesh.attributes.push_back({vertex_color, 3, std::move(colors)});
+    }
     for (std::uint64_t i = 0; i < triangles; ++i) {
         unsigned char corners[12];
         read_bytes(inflater, corners, sizeof corners);
@@ -230,8 +235,9 @@ SerializedMesh SerializedReader::read() {
 } // namespace
 
 SerializedMesh parse_serialized(const std::string &data, const std::string &file_name, std::uint64_t index,
-                                const LoadLimits &limits) {
-    return SerializedReader(data, file_name, index, limits).read();
+                                const LoadLimits &limits, const std::vector<std::string> &attributes) {
+    const bool keeps_colors = std::ranges::count(attributes, vertex_color) > 0;
+    return SerializedReader(data, file_name, index, limits, keeps_colors).read();
 }
 
 } // namespace gradus

@@ -19,8 +19,9 @@ Vec normalized(Vec v) {
     return length > 0 ? Vec{v[0] / length, v[1] / length, v[2] / length} : v;
 }
 
-/// Half the film's width at distance 1.
-double tangent_x(const Camera &camera, double width, double height) {
+} // namespace
+
+double film_tangent(const Camera &camera, double width, double height) {
     const double tangent = std::tan(camera.fov * 3.14159265358979323846 / 360);
     const double aspect = width / height;
     switch (camera.fov_axis) {
@@ -38,13 +39,11 @@ double tangent_x(const Camera &camera, double width, double height) {
     return tangent;
 }
 
-} // namespace
-
 std::vector<float> make_camera_record(const Camera &camera, const FilmSettings &film, const CameraClips &clips) {
     using namespace lib_float;
     const double width = film.width, height = film.height;
     const bool is_orthographic = camera.kind == Camera::Kind::orthographic;
-    const double half_width = is_orthographic ? 1 : tangent_x(camera, width, height);
+    const double half_width = is_orthographic ? 1 : film_tangent(camera, width, height);
     const double half_height = half_width * height / width;
     // The camera's +x points to the left of the image and its +y up.
     const Vec along_x = column(camera.to_world, 0), along_y = column(camera.to_world, 1);

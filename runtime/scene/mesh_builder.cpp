@@ -71,6 +71,15 @@ std::size_t drop_degenerate(Mesh &mesh) {
         if (!drops[i])
             mesh.triangles[kept++] = mesh.triangles[i];
     mesh.triangles.resize(kept);
+    for (MeshAttribute &attribute : mesh.attributes) {
+        if (!is_by_face(attribute.name))
+            continue;
+        std::size_t to = 0;
+        for (std::size_t i = 0; i < drops.size(); ++i)
+            for (std::size_t c = 0; c < attribute.channels && !drops[i]; ++c)
+                attribute.values[to++] = attribute.values[i * attribute.channels + c];
+        attribute.values.resize(to);
+    }
     return drops.size() - kept;
 }
 
@@ -157,8 +166,12 @@ double surface_area(const Mesh &mesh) {
 }
 
 std::uint64_t mesh_bytes(const Mesh &mesh) {
-    return mesh.positions.size() * sizeof mesh.positions[0] + mesh.normals.size() * sizeof mesh.normals[0] +
-           mesh.texcoords.size() * sizeof mesh.texcoords[0] + mesh.triangles.size() * sizeof mesh.triangles[0];
+    std::uint64_t of_attributes = 0;
+    for (const MeshAttribute &attribute : mesh.attributes)
+        of_attributes += attribute.values.size() * sizeof attribute.values[0];
+    return of_attributes + mesh.positions.size() * sizeof mesh.positions[0] +
+           mesh.normals.size() * sizeof mesh.normals[0] + mesh.texcoords.size() * sizeof mesh.texcoords[0] +
+           mesh.triangles.size() * sizeof mesh.triangles[0];
 }
 
 BuiltMesh build_mesh(Mesh mesh, const Matrix4 &to_world, const MeshOptions &options) {

@@ -23,7 +23,7 @@ struct BuiltMesh {
 
 /// Transforms, drops degenerate triangles, computes vertex normals where they are wanted and absent, and orders each
 /// triangle so that (p1 - p0) x (p2 - p0) points to the front side. `mesh` is in local space; every index is in
-/// range; normals and texcoords are empty or one a vertex.
+/// range; normals and texcoords are empty or one a vertex; attributes have as many values as they say.
 BuiltMesh build_mesh(Mesh mesh, const Matrix4 &to_world, const MeshOptions &options);
 
 /// Adds up the normals of the triangles at each vertex, weighted by the angle there (Thuermer and Wuethrich 1998,

@@ -66,7 +66,8 @@ double bring_to_own_scale(Scene &scene) {
         bsdf.map.scale *= float(factor);
     for (Emitter &emitter : scene.emitters) {
         multiply(emitter.position, float(factor));
-        if (emitter.kind == Emitter::Kind::point || emitter.kind == Emitter::Kind::spot)
+        if (emitter.kind == Emitter::Kind::point || emitter.kind == Emitter::Kind::spot ||
+            emitter.kind == Emitter::Kind::projector)
             for (float Rgb::*channel : {&Rgb::r, &Rgb::g, &Rgb::b})
                 emitter.value.*channel = float(emitter.value.*channel * factor * factor);
     }

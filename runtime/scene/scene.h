@@ -58,6 +58,13 @@ struct Matrix4 {
     std::array<double, 16> m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 };
 
+/// Numbers of a mesh beside its geometry, which textures of kind mesh_attribute read.
+struct MeshAttribute {
+    std::string name;           ///< vertex_... or face_...: one for each vertex, or for each triangle
+    std::uint32_t channels = 3; ///< one or three numbers
+    std::vector<float> values;
+};
+
 /// A triangle mesh in world space. The geometric normal of a triangle is (p1 - p0) x (p2 - p0), normalised; a loader
 /// that mirrors or flips a mesh reorders its indices so that this holds.
 struct Mesh {
@@ -65,7 +72,18 @@ struct Mesh {
     std::vector<Vector3> normals; ///< shading normals by vertex, unit length; empty: use the geometric normal
     std::vector<std::array<float, 2>> texcoords; ///< by vertex; may be empty
     std::vector<std::array<std::uint32_t, 3>> triangles;
+    std::vector<MeshAttribute> attributes = {}; ///< those that textures of the scene name
 };
+
+/// Whether an attribute of that name is by triangle; it is by vertex else.
+inline bool is_by_face(const std::string &attribute) { return attribute.starts_with("face_"); }
+/// nullptr where the mesh has none of that name.
+inline const MeshAttribute *find_attribute(const Mesh &mesh, const std::string &name) {
+    for (const MeshAttribute &attribute : mesh.attributes)
+        if (attribute.name == name)
+            return &attribute;
+    return nullptr;
+}
 
 struct Sphere {
     Vector3 center;
@@ -148,18 +166,23 @@ struct Emitter {
         point,       ///< at position
         directional, ///< travels along direction
         environment, ///< from every direction what its map says
-        spot         ///< from position around direction
+        spot,        ///< from position around direction
+        projector    ///< from position, a picture
     };
     Kind kind = Kind::area;
     Rgb value; ///< area, constant: radiance (W sr^-1 m^-2); point: intensity (W sr^-1); directional: irradiance on a
                ///< plane across the direction (W m^-2); spot: intensity within the beam; environment: what the map's
-               ///< radiance is times
-    Vector3 position;  ///< point, spot
-    Vector3 direction; ///< directional, spot: unit vector, the way that light travels
+               ///< radiance is times; projector: irradiance on a plane across its axis, at distance 1 (W m^-2)
+    /// What value is times, at each place of a surface or of the picture that a spot or a projector throws.
+    std::int32_t texture = no_texture;
+    Vector3 position;  ///< point, spot, projector
+    Vector3 direction; ///< directional, spot, projector: unit vector, the way that light travels
     float cutoff = 0;  ///< spot: the angle from the direction beyond which nothing goes, in radians, at most pi
     float beam = 0;    ///< spot: the angle up to which all does; in between intensity is linear in the angle
-    std::array<Vector3, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}; ///< environment: the map's, in world space
-    std::shared_ptr<const EnvironmentMap> map;                      ///< environment
+    /// In world space; environment: the map's; spot with a texture, projector: along u and v of the picture, and ahead.
+    std::array<Vector3, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    std::array<float, 2> picture{1, 1};        ///< how wide and high the picture is at distance 1
+    std::shared_ptr<const EnvironmentMap> map; ///< environment
 };
 
 /// A camera that looks along its local +z with +y up and +x to the left of the image, as Mitsuba has it.

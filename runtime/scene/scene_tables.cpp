@@ -2,6 +2,7 @@
 
 #include "kernels/shared/material.h"
 #include "kernels/shared/scene_records.h"
+#include "kernels/shared/texture.h"
 #include "runtime/scene/camera_record.h"
 #include "runtime/scene/environment_map.h"
 #include "runtime/scene/light_table.h"
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace gradus {
 
@@ -68,10 +70,40 @@ Bounds scene_bounds(const Scene &scene) {
 
 /// Grows the lights and, with them, the weights by which they are chosen.
 struct LightBuilder {
+    const Scene &scene;
     SceneTables &tables;
+    bool has_textures; ///< lights have
     std::vector<LightPower> powers;
     std::vector<LightPower> emitted; ///< what light paths begin with, which is known of lights at infinity too
     bool has_environment = false;
+    std::map<std::int32_t, Rgb> means = {}; ///< by texture
+    std::uint32_t stand_in = 0;             ///< a texture of lights, which those without one look up
+
+    /// What an emitter's value is in the mean over its texture.
+    Rgb mean_of(const Emitter &emitter) {
+        if (emitter.texture == no_texture)
+            return emitter.value;
+        auto known = means.find(emitter.texture);
+        if (known == means.end()) {
+            const auto mean = texture_range(scene.textures[std::size_t(emitter.texture)]).mean;
+            known = means.emplace(emitter.texture, Rgb{float(mean[0]), float(mean[1]), float(mean[2])}).first;
+        }
+        const Rgb &mean = known->second;
+        return {emitter.value.r * mean.r, emitter.value.g * mean.g, emitter.value.b * mean.b};
+    }
+
+    void add_texture(const Emitter &emitter) {
+        const auto width = [](const Vector3 &axis, float size) { return (1 / size) * axis; };
+        const bool has_picture = emitter.kind == Emitter::Kind::spot || emitter.kind == Emitter::Kind::projector;
+        const Vector3 u = has_picture ? width(emitter.axes[0], emitter.picture[0]) : Vector3{};
+        const Vector3 v = has_picture ? width(emitter.axes[1], emitter.picture[1]) : Vector3{};
+        const Rgb mean = mean_of(emitter);
+        const std::uint32_t texture =
+            emitter.texture == no_texture ? texture_absent | stand_in : std::uint32_t(emitter.texture);
+        tables.light_textures.insert(tables.light_textures.end(), {texture, 0, 0});
+        tables.light_pictures.insert(tables.light_pictures.end(), {u.x, u.y, u.z, v.x, v.y, v.z});
+        tables.light_means.insert(tables.light_means.end(), {mean.r, mean.g, mean.b});
+    }
 
     /// A new light; returns its number and its record.
     std::uint32_t add(light_kind kind, Rgb value, LightPower power, float *&record) {
@@ -84,6 +116,8 @@ struct LightBuilder {
         record[light_value_r] = value.r;
         record[light_value_g] = value.g;
         record[light_value_b] = value.b;
+        if (has_textures)
+            add_texture(scene.emitters[power.emitter]);
         return static_cast<std::uint32_t>(number);
     }
 
@@ -91,6 +125,8 @@ struct LightBuilder {
         tables.light_count = static_cast<std::uint32_t>(powers.size());
         // A black light follows the last: what the environment is where there is none.
         tables.lights.resize((powers.size() + 1) * light_stride, 0.0f);
+        if (has_textures)
+            add_texture(Emitter());
         if (!has_environment)
             tables.environment_light = tables.light_count;
         if (powers.empty())
@@ -142,7 +178,7 @@ void add_mesh(const Scene &scene, const Shape &shape, const TraitMap &traits, Sc
     const Mesh &mesh = scene.meshes[shape.geometry];
     const SurfaceOfShape surface(scene, shape, tables);
     const bool has_normals = traits.at("TRAIT_SHADING_NORMALS"), has_tangents = traits.at("TRAIT_ANISOTROPIC"),
-               has_material_stage = traits.at("TRAIT_MATERIAL");
+               has_textures = traits.at("TRAIT_MATERIAL") || traits.at("TRAIT_TEXTURED_LIGHTS");
     for (const auto &t : mesh.triangles) {
         const Vector3 p0 = mesh.positions[t[0]];
         const Vector3 e1 = mesh.positions[t[1]] - p0, e2 = mesh.positions[t[2]] - p0;
@@ -164,7 +200,7 @@ void add_mesh(const Scene &scene, const Shape &shape, const TraitMap &traits, Sc
                 tables.triangle_normals.insert(tables.triangle_normals.end(), {n.x, n.y, n.z});
             }
         }
-        if (has_material_stage)
+        if (has_textures)
             add_triangle_texcoords(mesh, t, tables);
         if (has_tangents) {
             Vector3 along{};
@@ -180,8 +216,9 @@ void add_mesh(const Scene &scene, const Shape &shape, const TraitMap &traits, Sc
 
         std::uint32_t light = no_light;
         if (shape.emitter >= 0) {
-            const Rgb radiance = scene.emitters[shape.emitter].value;
-            const double power = pi * area * luminance(radiance);
+            const Emitter &emitter = scene.emitters[shape.emitter];
+            const Rgb radiance = emitter.value;
+            const double power = pi * area * luminance(lights.mean_of(emitter));
             if (power > 0) {
                 float *light_record;
                 light = lights.add(light_kind_triangle, radiance, {power, std::uint32_t(shape.emitter), false},
@@ -191,6 +228,9 @@ void add_mesh(const Scene &scene, const Shape &shape, const TraitMap &traits, Sc
                 put(light_record, light_e2_x, e2);
                 light_record[light_inverse_area] = static_cast<float>(std::min(1 / area, 3e38));
                 light_record[light_offset] = offset;
+                if (lights.has_textures)
+                    tables.light_textures[std::size_t(light) * light_texture_stride + light_texture_triangle] =
+                        std::uint32_t(tables.primitive_material.size());
             }
         }
         add_primitive(surface, light, tables);
@@ -210,9 +250,10 @@ void add_sphere(const Scene &scene, const Shape &shape, SceneTables &tables, Lig
 
     std::uint32_t light = no_light;
     if (shape.emitter >= 0) {
-        const Rgb radiance = scene.emitters[shape.emitter].value;
+        const Emitter &emitter = scene.emitters[shape.emitter];
+        const Rgb radiance = emitter.value;
         const double area = 4 * pi * double(sphere.radius) * sphere.radius;
-        const double power = pi * area * luminance(radiance);
+        const double power = pi * area * luminance(lights.mean_of(emitter));
         if (power > 0) {
             float *light_record;
             light = lights.add(light_kind_sphere, radiance, {power, std::uint32_t(shape.emitter), false}, light_record);
@@ -221,6 +262,9 @@ void add_sphere(const Scene &scene, const Shape &shape, SceneTables &tables, Lig
             light_record[light_e1_y] = facing;
             light_record[light_inverse_area] = static_cast<float>(std::min(1 / area, 3e38));
             light_record[light_offset] = offset;
+            if (lights.has_textures)
+                tables.light_textures[std::size_t(light) * light_texture_stride + light_texture_sphere] =
+                    std::uint32_t(tables.spheres.size() / sphere_stride - 1);
         }
     }
     add_primitive(SurfaceOfShape(scene, shape, tables), light, tables);
@@ -231,7 +275,7 @@ void add_other_lights(const Scene &scene, double radius, SceneTables &tables, Li
     const double disk = pi * radius * radius;
     for (std::uint32_t number = 0; number < scene.emitters.size(); ++number) {
         const Emitter &emitter = scene.emitters[number];
-        const double value = luminance(emitter.value);
+        const double value = luminance(lights.mean_of(emitter));
         if (emitter.kind == Emitter::Kind::area || !(value > 0))
             continue;
         float *record;
@@ -268,6 +312,11 @@ void add_other_lights(const Scene &scene, double radius, SceneTables &tables, Li
             put(record, light_e2_x,
                 {float(cutoff / (2 * pi)), float(std::min(ramp > 0 ? 2 * pi / ramp : 1e30, 1e30)),
                  float(2 * half_sine * half_sine)});
+        } else if (emitter.kind == Emitter::Kind::projector) {
+            const double area = double(emitter.picture[0]) * emitter.picture[1];
+            lights.add(light_kind_projector, emitter.value, {value * area, number, false}, record);
+            put(record, light_p_x, emitter.position);
+            put(record, light_e1_x, emitter.direction);
         } else if (emitter.kind == Emitter::Kind::point) {
             lights.add(light_kind_point, emitter.value, {4 * pi * value, number, false}, record);
             put(record, light_p_x, emitter.position);
@@ -340,7 +389,11 @@ SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits) {
     SceneTables tables;
     reserve_tables(scene, traits, tables);
     tables.kinds = bsdf_kinds(scene);
-    LightBuilder lights{tables, {}, {}, false};
+    LightBuilder lights{scene, tables, traits.at("TRAIT_TEXTURED_LIGHTS") != 0, {}, {}, false};
+    for_each_light_texture(scene, [&](const Emitter &emitter, int) {
+        if (emitter.texture != no_texture)
+            lights.stand_in = std::uint32_t(emitter.texture);
+    });
     for (const Shape &shape : scene.shapes)
         if (shape.kind == Shape::Kind::mesh)
             add_mesh(scene, shape, traits, tables, lights);
@@ -357,7 +410,7 @@ SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits) {
     if (!tables.environment && traits.at("TRAIT_LIGHT_ENVIRONMENT"))
         tables.environment = std::make_shared<const EnvironmentMap>(no_environment_map());
     add_materials(scene, tables);
-    if (traits.at("TRAIT_MATERIAL")) {
+    if (traits.at("TRAIT_MATERIAL") || traits.at("TRAIT_TEXTURED_LIGHTS")) {
         add_textures(scene, tables);
         add_blends(scene, tables);
     }
@@ -382,7 +435,7 @@ std::size_t table_bytes(const SceneTables &t) {
                 t.emission_alias.size() + t.triangle_texcoords.size() + t.sphere_axes.size() + t.texture_reals.size() +
                 t.material_lookups.size() + t.textures.size() + t.texels.size() + t.material_textures.size() +
                 t.blends.size() + t.record_kind.size() + t.blend_weights.size() + t.normal_maps.size() +
-                t.bump_scales.size());
+                t.bump_scales.size() + t.light_textures.size() + t.light_pictures.size());
 }
 
 } // namespace gradus

@@ -20,6 +20,9 @@ struct SceneTables {
     std::vector<float> triangle_texcoords, sphere_axes, texture_reals;
     std::vector<std::uint32_t> textures, texels, material_textures, material_lookups, normal_maps;
     std::vector<float> bump_scales;
+    /// By light, only where lights have textures; of the last, three numbers, what the value is times in the mean.
+    std::vector<std::uint32_t> light_textures;
+    std::vector<float> light_pictures, light_means;
     /// By material record, where materials are blended: records of kernels/shared/texture.h, and the place in `kinds`.
     std::vector<std::uint32_t> blends, record_kind;
     std::vector<float> blend_weights;

@@ -40,14 +40,6 @@ Value texel(const Texture &texture, std::uint32_t x, std::uint32_t y) {
     return color;
 }
 
-Value finished(const Texture &texture, Value color) {
-    for (int c = 0; c < 3; ++c) {
-        const double value = color[c] * texture.scale[c];
-        color[c] = value > texture.lowest ? std::min(value, double(texture.highest)) : double(texture.lowest);
-    }
-    return color;
-}
-
 Value checkerboard(const Texture &texture, double s, double t) {
     const bool across = s - std::floor(s) > 0.5, down = t - std::floor(t) > 0.5;
     const std::array<float, 3> &color = across == down ? texture.color_0 : texture.color_1;
@@ -55,6 +47,14 @@ Value checkerboard(const Texture &texture, double s, double t) {
 }
 
 } // namespace
+
+std::array<double, 3> texture_finished(const Texture &texture, std::array<double, 3> color) {
+    for (int c = 0; c < 3; ++c) {
+        const double value = color[c] * texture.scale[c];
+        color[c] = value > texture.lowest ? std::min(value, double(texture.highest)) : double(texture.lowest);
+    }
+    return color;
+}
 
 double half_value(std::uint32_t bits) {
     const int exponent = int(bits >> 10 & 31), mantissa = int(bits & 1023);
@@ -128,12 +128,12 @@ std::array<double, 3> texture_value(const Texture &texture, double u, double v) 
     s = std::isfinite(s) ? s : 0;
     t = std::isfinite(t) ? t : 0;
     if (texture.kind == Texture::Kind::checkerboard)
-        return finished(texture, checkerboard(texture, s, t));
+        return texture_finished(texture, checkerboard(texture, s, t));
     const Bitmap &bitmap = *texture.bitmap;
     const double x = wrapped(s, texture.wrap) * bitmap.width, y = wrapped(t, texture.wrap_along_v()) * bitmap.height;
     if (texture.is_nearest)
-        return finished(texture, texel(texture, std::min(std::uint32_t(x), bitmap.width - 1),
-                                       std::min(std::uint32_t(y), bitmap.height - 1)));
+        return texture_finished(texture, texel(texture, std::min(std::uint32_t(x), bitmap.width - 1),
+                                               std::min(std::uint32_t(y), bitmap.height - 1)));
     const auto left = std::int64_t(std::floor(x - 0.5)), top = std::int64_t(std::floor(y - 0.5));
     const double right_share = x - 0.5 - double(left), bottom_share = y - 0.5 - double(top);
     const auto row = [&](std::int64_t at) {
@@ -141,7 +141,7 @@ std::array<double, 3> texture_value(const Texture &texture, double u, double v) 
         return plus(times(1 - right_share, texel(texture, texel_at(left, bitmap.width, texture.wrap), line)),
                     times(right_share, texel(texture, texel_at(left + 1, bitmap.width, texture.wrap), line)));
     };
-    return finished(texture, plus(times(1 - bottom_share, row(top)), times(bottom_share, row(top + 1))));
+    return texture_finished(texture, plus(times(1 - bottom_share, row(top)), times(bottom_share, row(top + 1))));
 }
 
 TextureRange texture_range(const Texture &texture) {
@@ -159,9 +159,12 @@ TextureRange texture_range(const Texture &texture) {
             add(color, c, 1);
         ++count;
     };
-    if (texture.kind == Texture::Kind::checkerboard) {
-        add_all(finished(texture, checkerboard(texture, 0.25, 0.25)));
-        add_all(finished(texture, checkerboard(texture, 0.25, 0.75)));
+    if (texture.kind == Texture::Kind::mesh_attribute) {
+        add_all(texture_finished(texture, {0, 0, 0}));
+        add_all(texture_finished(texture, {1, 1, 1}));
+    } else if (texture.kind == Texture::Kind::checkerboard) {
+        add_all(texture_finished(texture, checkerboard(texture, 0.25, 0.25)));
+        add_all(texture_finished(texture, checkerboard(texture, 0.25, 0.75)));
     } else if (texture.bitmap->format == Bitmap::Format::byte) {
         // Large pictures are of this format: each of its 256 values is decoded once.
         const Bitmap &bitmap = *texture.bitmap;
@@ -174,7 +177,7 @@ TextureRange texture_range(const Texture &texture) {
             }
         for (int value = 0; value < 256; ++value) {
             const double stored = value / 255.0, linear = texture.is_srgb ? srgb_to_linear_value(stored) : stored;
-            const Value color = finished(texture, {linear, linear, linear});
+            const Value color = texture_finished(texture, {linear, linear, linear});
             for (int c = 0; c < 3; ++c)
                 if (found[c][value] > 0)
                     add(color, c, double(found[c][value]));
@@ -183,7 +186,7 @@ TextureRange texture_range(const Texture &texture) {
     } else {
         for (std::uint32_t y = 0; y < texture.bitmap->height; ++y)
             for (std::uint32_t x = 0; x < texture.bitmap->width; ++x)
-                add_all(finished(texture, texel(texture, x, y)));
+                add_all(texture_finished(texture, texel(texture, x, y)));
     }
     range.mean = times(1 / count, range.mean);
     return range;

@@ -32,7 +32,7 @@ struct Bitmap {
 };
 
 struct Texture {
-    enum class Kind { bitmap, checkerboard };
+    enum class Kind { bitmap, checkerboard, mesh_attribute };
     enum class Wrap : std::uint32_t { repeat, mirror, clamp };
     Kind kind = Kind::bitmap;
     std::shared_ptr<const Bitmap> bitmap; ///< bitmaps only
@@ -45,14 +45,18 @@ struct Texture {
     std::array<float, 6> to_uv{1, 0, 0, 0, 1, 0};
     std::array<float, 3> color_0{0.4f, 0.4f, 0.4f}, color_1{0.2f, 0.2f, 0.2f}; ///< of a checkerboard
     std::array<float, 3> scale{1, 1, 1};                                       ///< what is looked up, times this
+    std::string attribute;         ///< of a mesh: the name of MeshAttribute; its value at (u, v) depends on the mesh
     float lowest = 0, highest = 1; ///< what a parameter may be: the result is clamped
     std::string name;
 };
 
-/// Linear RGB, all alike where the texture is gray. Coordinates that are not finite read as 0.
+/// Linear RGB, all alike where the texture is gray. Coordinates that are not finite read as 0. Of no mesh attribute.
 std::array<double, 3> texture_value(const Texture &texture, double u, double v);
+/// What has been looked up, scaled and clamped as the texture says.
+std::array<double, 3> texture_finished(const Texture &texture, std::array<double, 3> value);
 
-/// Of all texels, or of both colours of a checkerboard, as texture_value() has them.
+/// Of all texels, or of both colours of a checkerboard, as texture_value() has them. Of a mesh attribute all that it
+/// may be within [0, 1] and its own range.
 struct TextureRange {
     std::array<double, 3> mean{}, least{}, most{};
 };

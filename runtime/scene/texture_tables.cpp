@@ -5,6 +5,7 @@
 #include "runtime/scene/traits.h"
 
 #include <algorithm>
+#include <bit>
 #include <map>
 
 namespace gradus {
@@ -13,6 +14,11 @@ using namespace lib_float;
 
 namespace {
 
+void check_words(std::uint64_t words) {
+    if (words >= 0xFFFFFFFFu)
+        throw Error(ExitCode::device, "the scene's textures and mesh attributes have more than 16 GiB");
+}
+
 /// The pictures one after the other, each once. By picture: its first word.
 std::map<const Bitmap *, std::uint32_t> add_bitmaps(const Scene &scene, SceneTables &tables) {
     std::map<const Bitmap *, std::uint32_t> offsets;
@@ -20,12 +26,79 @@ std::map<const Bitmap *, std::uint32_t> add_bitmaps(const Scene &scene, SceneTab
     for (const Texture &texture : scene.textures)
         if (texture.bitmap && offsets.emplace(texture.bitmap.get(), std::uint32_t(words)).second)
             words += texture.bitmap->words.size();
-    if (words >= 0xFFFFFFFFu)
-        throw Error(ExitCode::device, "the scene's textures have more than 16 GiB of pixels");
+    check_words(words);
     tables.texels.resize(std::size_t(words) + 1); // one at least
     for (const auto &[bitmap, offset] : offsets)
         std::copy(bitmap->words.begin(), bitmap->words.end(), tables.texels.begin() + offset);
     return offsets;
+}
+
+/// How a mesh attribute lies in the words.
+struct AttributePlace {
+    std::uint32_t offset = 0, channels = 1;
+    std::uint32_t first = 0, count = 1; ///< the triangles that are there
+    /// Of one triangle.
+    std::size_t words(const std::string &name) const { return std::size_t(channels) * (is_by_face(name) ? 1 : 3); }
+};
+
+/// Calls visit(attribute or nullptr, mesh, number of its first triangle) for each mesh of the scene, in the order of
+/// the tables.
+template <class Visit>
+void for_each_mesh(const Scene &scene, const std::string &name, const Visit &visit) {
+    std::size_t first = 0;
+    for (const Shape &shape : scene.shapes)
+        if (shape.kind == Shape::Kind::mesh) {
+            const Mesh &mesh = scene.meshes[shape.geometry];
+            visit(find_attribute(mesh, name), mesh, first);
+            first += mesh.triangles.size();
+        }
+}
+
+void put_attribute(const MeshAttribute &attribute, const Mesh &mesh, const AttributePlace &place, std::uint32_t *to) {
+    const bool by_face = is_by_face(attribute.name);
+    for (std::size_t triangle = 0; triangle < mesh.triangles.size(); ++triangle)
+        for (std::size_t corner = 0; corner < (by_face ? 1u : 3u); ++corner) {
+            const std::size_t element = by_face ? triangle : mesh.triangles[triangle][corner];
+            for (std::size_t c = 0; c < place.channels; ++c)
+                *to++ = std::bit_cast<std::uint32_t>(
+                    attribute.values[element * attribute.channels + (attribute.channels > 1 ? c : 0)]);
+        }
+}
+
+/// The mesh attributes that textures name, each from the first triangle that has it to the last.
+std::map<std::string, AttributePlace> add_attributes(const Scene &scene, SceneTables &tables) {
+    std::map<std::string, AttributePlace> places;
+    for (const Texture &texture : scene.textures) {
+        const std::string &name = texture.attribute;
+        if (texture.kind != Texture::Kind::mesh_attribute || places.contains(name))
+            continue;
+        AttributePlace &place = places[name];
+        std::size_t begin = SIZE_MAX, end = 0;
+        for_each_mesh(scene, name, [&](const MeshAttribute *attribute, const Mesh &mesh, std::size_t first) {
+            if (!attribute)
+                return;
+            place.channels = std::max(place.channels, attribute->channels);
+            begin = std::min(begin, first);
+            end = std::max(end, first + mesh.triangles.size());
+        });
+        if (begin >= end) { // no shape has it: none takes what is there
+            begin = 0;
+            end = 1;
+        }
+        const std::size_t words = place.words(name), base = tables.texels.size();
+        check_words(base + (end - begin) * words);
+        tables.texels.resize(base + (end - begin) * words);
+        place.offset = std::uint32_t(base);
+        place.first = std::uint32_t(begin);
+        place.count = std::uint32_t(end - begin);
+        for_each_mesh(scene, name, [&](const MeshAttribute *attribute, const Mesh &mesh, std::size_t first) {
+            if (attribute)
+                put_attribute(*attribute, mesh, place, &tables.texels[base + (first - begin) * words]);
+        });
+    }
+    if (!places.empty())
+        tables.texels.resize(tables.texels.size() + 2); // who takes the last for a picture reads three words
+    return places;
 }
 
 std::uint32_t flags_of(const Texture &texture) {
@@ -33,17 +106,42 @@ std::uint32_t flags_of(const Texture &texture) {
     flags |= texture.is_nearest ? texture_flag_nearest : 0;
     if (texture.kind == Texture::Kind::checkerboard)
         return flags | texture_flag_checkerboard;
+    if (texture.kind == Texture::Kind::mesh_attribute)
+        return texture_format_real | texture_flag_attribute |
+               (is_by_face(texture.attribute) ? texture_flag_by_face : 0);
     flags |= texture.is_srgb && texture.bitmap->format == Bitmap::Format::byte ? texture_flag_srgb : 0;
     return flags | std::uint32_t(texture.bitmap->format) | (texture.bitmap->is_color ? texture_flag_color : 0);
 }
 
-void add_normal_map(const NormalTexture &map, SceneTables &tables) {
+/// Textures that stand where a material or a light has none: kernels are compiled for what textures of a use have, and
+/// look up one for all rows, so it must be one of that use.
+struct StandIns {
+    std::uint32_t parameter = 0, normal_map = 0, blend = 0;
+};
+
+StandIns stand_ins(const Scene &scene) {
+    StandIns found;
+    for_each_bsdf(scene, [&](const Bsdf &bsdf) {
+        for_each_textured_parameter(bsdf, [&](int, std::int32_t texture) { found.parameter = std::uint32_t(texture); });
+        if (bsdf.map.kind != NormalTexture::Kind::none)
+            found.normal_map = std::uint32_t(bsdf.map.texture);
+    });
+    for (const Shape &shape : scene.shapes)
+        for (const Bsdf *side : {&scene.materials[shape.material].front, &scene.materials[shape.material].back})
+            for_each_blend(scene, *side, [&](const Blend &blend, int) {
+                if (blend.weight.texture != no_texture)
+                    found.blend = std::uint32_t(blend.weight.texture);
+            });
+    return found;
+}
+
+void add_normal_map(const NormalTexture &map, std::uint32_t stand_in, SceneTables &tables) {
     std::uint32_t flags = 0;
     if (map.kind != NormalTexture::Kind::none)
         flags = normal_map_there | (map.turns_over ? normal_map_turns : 0) | (map.shadows ? normal_map_shadows : 0) |
                 (map.kind == NormalTexture::Kind::bump ? normal_map_is_bump : 0) |
                 (map.is_outside ? normal_map_is_outside : 0);
-    tables.normal_maps.insert(tables.normal_maps.end(), {flags, flags == 0 ? 0 : std::uint32_t(map.texture)});
+    tables.normal_maps.insert(tables.normal_maps.end(), {flags, flags == 0 ? stand_in : std::uint32_t(map.texture)});
     tables.bump_scales.push_back(map.scale);
 }
 
@@ -67,11 +165,16 @@ void add_textures(const Scene &scene, SceneTables &tables) {
     tables.triangle_texcoords.resize(std::max<std::size_t>(tables.triangle_texcoords.size(), texcoords_stride));
 
     const std::map<const Bitmap *, std::uint32_t> offsets = add_bitmaps(scene, tables);
+    const std::map<std::string, AttributePlace> attributes = add_attributes(scene, tables);
     for (const Texture &texture : scene.textures) {
         const bool has_bitmap = texture.bitmap != nullptr;
+        const bool is_attribute = texture.kind == Texture::Kind::mesh_attribute;
+        const AttributePlace attribute = is_attribute ? attributes.at(texture.attribute) : AttributePlace();
+        const std::uint32_t flags = flags_of(texture) | (attribute.channels > 1 ? texture_flag_color : 0);
         tables.textures.insert(tables.textures.end(),
-                               {flags_of(texture), has_bitmap ? offsets.at(texture.bitmap.get()) : 0,
-                                has_bitmap ? texture.bitmap->width : 1, has_bitmap ? texture.bitmap->height : 1});
+                               {flags, has_bitmap ? offsets.at(texture.bitmap.get()) : attribute.offset,
+                                has_bitmap ? texture.bitmap->width : 1, has_bitmap ? texture.bitmap->height : 1,
+                                attribute.first, attribute.count});
         auto &reals = tables.texture_reals;
         reals.insert(reals.end(), texture.to_uv.begin(), texture.to_uv.end());
         reals.insert(reals.end(), {texture.lowest, texture.highest});
@@ -79,6 +182,7 @@ void add_textures(const Scene &scene, SceneTables &tables) {
             reals.insert(reals.end(), color->begin(), color->end());
     }
     const auto lookups = std::size_t(std::max(1, most_lookups(scene)));
+    const StandIns instead = stand_ins(scene);
     for (const Bsdf &bsdf : material_records(scene)) {
         const std::size_t first = tables.material_textures.size();
         tables.material_textures.resize(first + textured_parameters, texture_none);
@@ -87,9 +191,9 @@ void add_textures(const Scene &scene, SceneTables &tables) {
             tables.material_textures[first + std::size_t(number)] =
                 std::uint32_t(std::ranges::find(distinct, texture) - distinct.begin());
         });
-        distinct.resize(lookups, 0);
+        distinct.resize(lookups, std::int32_t(instead.parameter));
         tables.material_lookups.insert(tables.material_lookups.end(), distinct.begin(), distinct.end());
-        add_normal_map(bsdf.map, tables);
+        add_normal_map(bsdf.map, instead.normal_map, tables);
     }
     if (scene.textures.empty()) { // kernels may ask for one, whatever they then take
         tables.textures.assign(texture_stride, 0);
@@ -100,14 +204,16 @@ void add_textures(const Scene &scene, SceneTables &tables) {
 void add_blends(const Scene &scene, SceneTables &tables) {
     const std::vector<Bsdf> records = material_records(scene);
     const auto parts = std::uint32_t(records.size() - scene.blended.size());
+    const std::uint32_t absent = texture_absent | stand_ins(scene).blend;
     for (const Bsdf &bsdf : records) {
         const auto kind = std::ranges::find(tables.kinds, bsdf_kind_name(bsdf));
         const bool is_blend = bsdf.blend != no_blend;
         tables.record_kind.push_back(
             is_blend || kind == tables.kinds.end() ? 0 : std::uint32_t(kind - tables.kinds.begin()));
         const Blend blend = is_blend ? scene.blends[std::size_t(bsdf.blend)] : Blend();
-        tables.blends.insert(tables.blends.end(), {is_blend ? parts + blend.first : blend_none, parts + blend.second,
-                                                   std::uint32_t(blend.weight.texture)});
+        tables.blends.insert(tables.blends.end(),
+                             {is_blend ? parts + blend.first : blend_none, parts + blend.second,
+                              blend.weight.texture == no_texture ? absent : std::uint32_t(blend.weight.texture)});
         tables.blend_weights.push_back(blend.weight.value);
     }
 }

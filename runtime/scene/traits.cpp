@@ -34,6 +34,8 @@ constexpr TraitText descriptions[] = {
     {"TRAIT_LIGHT_CONSTANT", "sampling of a constant environment"},
     {"TRAIT_LIGHT_ENVIRONMENT", "an environment map"},
     {"TRAIT_LIGHT_SPOT", "spots"},
+    {"TRAIT_TEXTURED_LIGHTS", "lights with textures, a bit each for surfaces, spots and projectors"},
+    {"TRAIT_LIGHT_TEXTURES", "what these textures have, a bit each"},
     {"TRAIT_HIDE_EMITTERS", "emitters that the camera does not see"},
     {"TRAIT_MATERIAL", "materials that differ from place to place or from path to path"},
     {"TRAIT_BLENDS", "mixtures of BSDFs, how deeply nested"},
@@ -114,7 +116,8 @@ namespace {
 
 /// Whether what a texture is worth may leave its bounds, or these are not 0 and 1.
 bool may_need_bounds(const Texture &texture) {
-    if (texture.lowest > 0 || texture.highest < 1 || texture.scale != Texture().scale)
+    if (texture.lowest > 0 || texture.highest < 1 || texture.scale != Texture().scale ||
+        texture.kind == Texture::Kind::mesh_attribute)
         return true;
     const auto is_unit = [](float value) { return value >= 0 && value <= 1; };
     if (texture.kind == Texture::Kind::checkerboard)
@@ -135,6 +138,8 @@ int texture_features(const Texture &texture) {
         features |= textures_scaled;
     if (texture.kind == Texture::Kind::checkerboard)
         return features | textures_checkerboards;
+    if (texture.kind == Texture::Kind::mesh_attribute)
+        return features | textures_of_meshes | textures_in_color; // which it has the mesh knows
     const int formats[] = {textures_of_bytes, textures_of_words, textures_of_halves, textures_of_reals};
     features |= formats[int(texture.bitmap->format)];
     if (texture.is_srgb && texture.bitmap->format == Bitmap::Format::byte)
@@ -199,6 +204,37 @@ void for_each_blend(const Scene &scene, const Bsdf &bsdf, const std::function<vo
     for_each_blend(scene, scene.blended[blend.second], visit, level + 1);
 }
 
+void for_each_texture(const Scene &scene, const Shape &shape, const std::function<void(std::int32_t)> &visit) {
+    const auto visit_if = [&](std::int32_t texture) {
+        if (texture != no_texture)
+            visit(texture);
+    };
+    const Material &material = scene.materials[shape.material];
+    visit_if(material.opacity.texture);
+    if (shape.emitter >= 0)
+        visit_if(scene.emitters[std::size_t(shape.emitter)].texture);
+    for (const Bsdf *side : {&material.front, &material.back}) {
+        if (side == &material.back && !material.two_sided)
+            continue;
+        for_each_blend(scene, *side, [&](const Blend &blend, int) { visit_if(blend.weight.texture); });
+        for_each_part(scene, *side, [&](const Bsdf &part) {
+            for_each_textured_parameter(part, [&](int, std::int32_t texture) { visit_if(texture); });
+            visit_if(part.map.texture);
+        });
+    }
+}
+
+void for_each_light_texture(const Scene &scene, const std::function<void(const Emitter &, int what)> &visit) {
+    for (const Shape &shape : scene.shapes)
+        if (shape.emitter >= 0 && scene.emitters[std::size_t(shape.emitter)].texture != no_texture)
+            visit(scene.emitters[std::size_t(shape.emitter)], textured_lights_of_surfaces);
+    for (const Emitter &emitter : scene.emitters)
+        if (emitter.kind == Emitter::Kind::projector && !(emitter.value == Rgb{}))
+            visit(emitter, textured_lights_projectors);
+        else if (emitter.kind == Emitter::Kind::spot && emitter.texture != no_texture && !(emitter.value == Rgb{}))
+            visit(emitter, textured_lights_spots);
+}
+
 bool bsdf_kind_is_mixed(const std::string &name) {
     const std::size_t place = place_of(name);
     return place < kinds().size() && kinds()[place].is_mixed;
@@ -234,6 +270,15 @@ void add_material_traits(const Scene &scene, TraitMap &traits) {
     traits["TRAIT_LOOKUPS"] = most_lookups(scene);
     traits["TRAIT_MATERIAL"] =
         traits["TRAIT_TEXTURED"] != 0 || traits["TRAIT_TEXTURED_NORMALS"] != 0 || traits["TRAIT_BLENDS"] > 0;
+}
+
+/// Of lights with textures.
+void add_light_texture_traits(const Scene &scene, TraitMap &traits) {
+    for_each_light_texture(scene, [&](const Emitter &emitter, int what) {
+        traits["TRAIT_TEXTURED_LIGHTS"] |= what;
+        if (emitter.texture != no_texture)
+            traits["TRAIT_LIGHT_TEXTURES"] |= texture_features(scene.textures[std::size_t(emitter.texture)]);
+    });
 }
 
 } // namespace
@@ -272,12 +317,15 @@ TraitMap scene_traits(const Scene &scene) {
             traits["TRAIT_ANISOTROPIC"] = 1;
     });
     add_material_traits(scene, traits);
+    add_light_texture_traits(scene, traits);
     for (const Emitter &emitter : scene.emitters) {
         if (emitter.value == Rgb{})
             continue; // black: no light
         switch (emitter.kind) {
         case Emitter::Kind::area:
             break; // by the shape that bears it
+        case Emitter::Kind::projector:
+            break; // by TRAIT_TEXTURED_LIGHTS
         case Emitter::Kind::constant:
             traits["TRAIT_ENVIRONMENT"] = 1;
             traits["TRAIT_LIGHT_CONSTANT"] = 1;
@@ -330,7 +378,8 @@ TraitMap with_all_traits(TraitMap traits) {
         // The filter and hidden emitters change the picture; the rest only makes room for what is not there.
         const bool setting = name.starts_with("TRAIT_FILTER") || name == "TRAIT_HIDE_EMITTERS" ||
                              name.starts_with("TRAIT_TEXTURE") || name == "TRAIT_MATERIAL" || name == "TRAIT_LOOKUPS" ||
-                             name == "TRAIT_NORMAL_TEXTURES" || name.starts_with("TRAIT_BLEND");
+                             name == "TRAIT_NORMAL_TEXTURES" || name == "TRAIT_LIGHT_TEXTURES" ||
+                             name.starts_with("TRAIT_BLEND");
         if (!setting)
             value = 1;
     }

@@ -91,6 +91,12 @@ void for_each_bsdf(const Scene &scene, Visit visit) {
     }
 }
 
+/// Calls visit(texture) for each texture, by index, that a shape's material or emitter has.
+void for_each_texture(const Scene &scene, const Shape &shape, const std::function<void(std::int32_t)> &visit);
+
+/// Calls visit(emitter, one of textured_lights_...) for each light that has a texture, and for each projector.
+void for_each_light_texture(const Scene &scene, const std::function<void(const Emitter &, int what)> &visit);
+
 /// Blends within blends that a BSDF has, itself counted in.
 int blend_depth(const Scene &scene, const Bsdf &bsdf);
 /// Calls visit(blend) for each blend within a BSDF.

@@ -29,12 +29,19 @@ void Opacity::add(const Scene &scene, const Shape &shape, std::size_t triangle, 
         textures_.push_back(scene.textures[std::size_t(opacity.texture)]);
     const Mesh &mesh = scene.meshes[shape.geometry];
     const auto &corners = mesh.triangles[triangle];
-    TexturedTriangle textured{known->second, mesh.positions[corners[0]], {}, {}, {{{0, 0}, {1, 0}, {0, 1}}}};
+    TexturedTriangle textured{known->second, mesh.positions[corners[0]], {}, {}, {{{0, 0}, {1, 0}, {0, 1}}}, {}};
     textured.e1 = mesh.positions[corners[1]] - textured.p0;
     textured.e2 = mesh.positions[corners[2]] - textured.p0;
     if (!mesh.texcoords.empty())
         for (std::size_t corner = 0; corner < 3; ++corner)
             textured.texcoords[corner] = mesh.texcoords[corners[corner]];
+    if (const MeshAttribute *attribute = find_attribute(mesh, textures_[known->second].attribute))
+        for (std::size_t corner = 0; corner < 3; ++corner)
+            for (std::size_t c = 0; c < 3; ++c) {
+                const std::size_t element = is_by_face(attribute->name) ? triangle : corners[corner];
+                textured.attribute[corner][c] =
+                    attribute->values[element * attribute->channels + (attribute->channels > 1 ? c : 0)];
+            }
     primitives_.back().textured = std::int64_t(triangles_.size());
     triangles_.push_back(textured);
 }
@@ -48,7 +55,16 @@ float Opacity::opacity_of(const TexturedTriangle &triangle, const Vector3 &origi
     for (std::size_t corner = 0; corner < 3; ++corner)
         for (std::size_t axis = 0; axis < 2; ++axis)
             at[axis] += double(weights[corner]) * triangle.texcoords[corner][axis];
-    const std::array<double, 3> value = texture_value(textures_[triangle.texture], at[0], at[1]);
+    const Texture &texture = textures_[triangle.texture];
+    std::array<double, 3> value{};
+    if (texture.kind == Texture::Kind::mesh_attribute) {
+        for (std::size_t corner = 0; corner < 3; ++corner)
+            for (std::size_t c = 0; c < 3; ++c)
+                value[c] += double(weights[corner]) * triangle.attribute[corner][c];
+        value = texture_finished(texture, value);
+    } else {
+        value = texture_value(texture, at[0], at[1]);
+    }
     return float(0.2126 * value[0] + 0.7152 * value[1] + 0.0722 * value[2]);
 }
 

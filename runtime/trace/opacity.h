@@ -36,6 +36,7 @@ class Opacity {
         std::uint32_t texture;
         Vector3 p0, e1, e2;
         std::array<std::array<float, 2>, 3> texcoords;
+        std::array<std::array<float, 3>, 3> attribute; ///< colours at the corners, of a mesh attribute
     };
     struct Primitive {
         std::uint32_t number;

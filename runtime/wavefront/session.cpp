@@ -1,5 +1,6 @@
 #include "runtime/wavefront/session.h"
 
+#include "kernels/shared/texture.h"
 #include "runtime/error.h"
 #include "runtime/scene/environment_map.h"
 #include "runtime/wavefront/invariant_division.h"
@@ -106,6 +107,10 @@ std::vector<Buffer> make_scene_buffers(Device &device, const SceneTables &t, Pre
         numbers("record_kind", t.record_kind);
         reals("blend_weights", t.blend_weights);
     }
+    if (!t.light_textures.empty()) {
+        numbers("light_textures", t.light_textures);
+        reals("light_pictures", t.light_pictures);
+    }
     return buffers;
 }
 
@@ -121,7 +126,10 @@ Session::Session(Device &session_device, const Scene &s, const SessionOptions &s
     traits["FEW_LIGHTS"] =
         scene.light_count <= most_few_lights && !options.all_traits ? static_cast<int>(scene.light_count) : 0;
     const std::size_t textures = s.textures.size();
-    traits["FEW_TEXTURES"] = textures <= most_few_textures && !options.all_traits ? static_cast<int>(textures) : 0;
+    const int few_textures = textures <= most_few_textures && !options.all_traits ? static_cast<int>(textures) : 0;
+    for (const char *name : {"TRAIT_TEXTURES", "TRAIT_BLEND_TEXTURES", "TRAIT_NORMAL_TEXTURES", "TRAIT_LIGHT_TEXTURES"})
+        if (traits[name] != 0)
+            traits[name] = textures_with_count(traits[name], few_textures);
     traits["MANY_LIGHTS"] = scene.light_count >= least_many_lights;
     numbers = {{"unit", 1},
                {"triangle_count", scene.triangle_count},

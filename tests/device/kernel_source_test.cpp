@@ -43,7 +43,7 @@ std::string code_of(const std::string &text) {
 
 std::set<std::string> traits_used_in(const std::string &text) {
     static const std::regex name(
-        R"(\b(TRAIT_\w+|STRATEGY|SAMPLES_LIGHTS|FEW_LIGHTS|MANY_LIGHTS|FEW_TEXTURES|SOLVER_(?:CHANNELS|WEIGHTED|JOINT))\b)");
+        R"(\b(TRAIT_\w+|STRATEGY|SAMPLES_LIGHTS|FEW_LIGHTS|MANY_LIGHTS|SOLVER_(?:CHANNELS|WEIGHTED|JOINT))\b)");
     const std::string code = code_of(text);
     std::set<std::string> names;
     for (std::sregex_iterator i(code.begin(), code.end(), name), end; i != end; ++i)
@@ -95,8 +95,7 @@ TEST(KernelTraits, AreThoseThatAMethodKnows) {
                                    "SAMPLES_LIGHTS",     "FEW_LIGHTS",
                                    "MANY_LIGHTS",        "STRATEGY",
                                    "SOLVER_CHANNELS",    "SOLVER_WEIGHTED",
-                                   "SOLVER_JOINT",       "TRAIT_HALVES",
-                                   "FEW_TEXTURES"};
+                                   "SOLVER_JOINT",       "TRAIT_HALVES"};
     for (const auto &[name, value] : scene_traits(Scene{}))
         known.insert(name);
     known.erase("TRAIT_FAR_CLIP"); // a stage of its own, there or not

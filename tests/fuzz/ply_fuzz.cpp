@@ -4,7 +4,8 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const unsigned char *data, std::size_t size) {
     try {
-        gradus::check_mesh(gradus::parse_ply(std::string(reinterpret_cast<const char *>(data), size), "m.ply"));
+        gradus::check_mesh(gradus::parse_ply(std::string(reinterpret_cast<const char *>(data), size), "m.ply",
+                                             gradus::wanted_attributes));
     } catch (const gradus::SceneError &) {
     }
     return 0;

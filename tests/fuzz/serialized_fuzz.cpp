@@ -18,7 +18,7 @@ extern "C" int LLVMFuzzerTestOneInput(const unsigned char *data, std::size_t siz
     }
     try {
         for (std::uint64_t index : {0, 1})
-            gradus::check_mesh(gradus::parse_serialized(file, "m", index).mesh);
+            gradus::check_mesh(gradus::parse_serialized(file, "m", index, {}, gradus::wanted_attributes).mesh);
     } catch (const gradus::SceneError &) {
     }
     return 0;

@@ -63,6 +63,9 @@ void check_indices(const Mesh &mesh) {
     for (const auto &triangle : mesh.triangles)
         for (std::uint32_t index : triangle)
             ASSERT_LT(index, mesh.positions.size());
+    for (const MeshAttribute &attribute : mesh.attributes)
+        ASSERT_EQ(attribute.values.size(),
+                  attribute.channels * (is_by_face(attribute.name) ? mesh.triangles.size() : mesh.positions.size()));
 }
 
 TEST(Fuzz, Obj) {
@@ -79,9 +82,15 @@ TEST(Fuzz, Ply) {
         "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty "
         "float z\nproperty list uchar int extra\nelement face 2\nproperty list uchar int "
         "vertex_indices\nend_header\n0 0 0 1 7\n1 0 0 0\n1 1 0 0\n0 1 1 2 3 4\n3 0 1 2\n4 0 1 2 3\n";
-    for (const std::string &valid : {ascii, binary_ply(folded_square(), false), binary_ply(folded_square(), true)}) {
-        const int accepted =
-            accepted_mutations(valid, 20000, [](const std::string &data) { check_indices(parse_ply(data, "m.ply")); });
+    const std::string attributes =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty uchar "
+        "r\nproperty uchar g\nproperty uchar b\nelement face 2\nproperty float a_0\nproperty list uchar int "
+        "vertex_indices\nend_header\n0 0 0 1 2 3\n1 0 0 4 5 6\n1 1 0 7 8 9\n0.5 3 0 1 2\n0.25 4 0 1 2 0\n";
+    for (const std::string &valid :
+         {ascii, attributes, binary_ply(folded_square(), false), binary_ply(folded_square(), true)}) {
+        const int accepted = accepted_mutations(valid, 20000, [](const std::string &data) {
+            check_indices(parse_ply(data, "m.ply", {"vertex_color", "face_a"}));
+        });
         EXPECT_GT(accepted, 0);
         EXPECT_LT(accepted, 20000);
     }
@@ -91,9 +100,10 @@ TEST(Fuzz, Serialized) {
     for (std::uint16_t version : {3, 4}) {
         SerializedOptions options;
         options.version = version;
+        options.colors = true;
         const std::string valid = serialized_file({folded_square(), folded_square()}, options);
         accepted_mutations(valid, 5000, [](const std::string &data) {
-            check_indices(parse_serialized(data, "m", 0).mesh);
+            check_indices(parse_serialized(data, "m", 0, {}, {"vertex_color"}).mesh);
             check_indices(parse_serialized(data, "m", 1).mesh);
         });
         // What the zlib stream holds, too: wrong there and right in its checksum.
@@ -107,7 +117,7 @@ TEST(Fuzz, Serialized) {
                 else
                     append_bytes<std::uint64_t>(file, 0);
                 append_bytes<std::uint32_t>(file, 1);
-                check_indices(parse_serialized(file, "m", 0).mesh);
+                check_indices(parse_serialized(file, "m", 0, {}, {"vertex_color"}).mesh);
             });
         EXPECT_GT(accepted, 0);
         EXPECT_LT(accepted, 5000);

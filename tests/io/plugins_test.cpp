@@ -413,9 +413,93 @@ TEST(EmitterPlugin, Spot) {
     EXPECT_THAT(
         error_of_text(scene_around("<emitter type=\"spot\"><float name=\"beam_width\" value=\"30\"/></emitter>")),
         HasSubstr("wider than its cutoff_angle"));
-    EXPECT_THAT(
-        error_of_text(scene_around("<emitter type=\"spot\"><texture type=\"bitmap\" name=\"texture\"/></emitter>")),
-        HasSubstr("a spot with a texture is not supported"));
+}
+
+TEST(EmitterPlugin, SpotWithAPicture) {
+    for (const char *version : {"3.0.0", "0.6.0"}) {
+        const std::string name = std::string(version) == "0.6.0" ? "" : " name=\"texture\"";
+        const LoadedScene loaded = load_text(scene_around(
+            "<emitter type=\"spot\"><float name=\"cutoff_angle\" value=\"45\"/><texture type=\"checkerboard\"" + name +
+                "/><transform name=\"to_world\"><scale value=\"3\"/><rotate y=\"1\" "
+                "angle=\"90\"/></transform></emitter>",
+            version));
+        EXPECT_THAT(loaded.warnings, IsEmpty());
+        const Emitter &emitter = loaded.scene.emitters.at(0);
+        EXPECT_EQ(emitter.kind, Emitter::Kind::spot);
+        EXPECT_EQ(emitter.texture, 0);
+        EXPECT_EQ(loaded.scene.textures.at(0).kind, Texture::Kind::checkerboard);
+        expect_vector(emitter.axes[0], 0, 0, -1);
+        expect_vector(emitter.axes[1], 0, 1, 0);
+        expect_vector(emitter.direction, 1, 0, 0);
+        EXPECT_NEAR(emitter.picture[0], 2, 1e-6);
+        EXPECT_NEAR(emitter.picture[1], 2, 1e-6);
+    }
+    const auto error = [](const std::string &inside) {
+        return error_of_text(scene_around("<emitter type=\"spot\">\n" + inside + "</emitter>"));
+    };
+    const std::string board = "<texture type=\"checkerboard\"/>";
+    EXPECT_THAT(error(board + "<float name=\"cutoff_angle\" value=\"90\"/>"), HasSubstr("below 90 degrees"));
+    EXPECT_THAT(error(board + board), HasSubstr("scene.xml:4: a spot has one texture"));
+    EXPECT_THAT(error(board + "<transform name=\"to_world\"><scale x=\"2\"/></transform>"), HasSubstr("not stretched"));
+    EXPECT_THAT(error("<texture type=\"checkerboard\" name=\"intensity\"/>"), HasSubstr("cannot be a texture"));
+}
+
+TEST(EmitterPlugin, Projector) {
+    const LoadedScene loaded = load_text(scene_around(
+        "<emitter type=\"projector\"><texture type=\"checkerboard\" name=\"irradiance\"/><float name=\"scale\" "
+        "value=\"2\"/><float name=\"fov\" value=\"90\"/><transform name=\"to_world\"><translate y=\"5\"/></transform>"
+        "</emitter>"));
+    EXPECT_THAT(loaded.warnings, IsEmpty());
+    const Emitter &emitter = loaded.scene.emitters.at(0);
+    EXPECT_EQ(emitter.kind, Emitter::Kind::projector);
+    EXPECT_EQ(emitter.texture, 0);
+    expect_rgb(emitter.value, 6.2831853, 6.2831853, 6.2831853);
+    expect_vector(emitter.position, 0, 5, 0);
+    expect_vector(emitter.axes[0], -1, 0, 0);
+    expect_vector(emitter.axes[1], 0, -1, 0);
+    expect_vector(emitter.direction, 0, 0, 1);
+    EXPECT_NEAR(emitter.picture[0], 2, 1e-6);
+    EXPECT_NEAR(emitter.picture[1], 2, 1e-6);
+    // Of one colour, and by focal length: half a diagonal of 35 mm film over 100 mm, of a square.
+    const Emitter plain = emitter_of("<emitter type=\"projector\"><rgb name=\"irradiance\" value=\"1 2 3\"/><string "
+                                     "name=\"focal_length\" value=\"100mm\"/></emitter>");
+    expect_rgb(plain.value, 3.14159265, 6.2831853, 9.42477796);
+    EXPECT_EQ(plain.texture, no_texture);
+    EXPECT_NEAR(plain.picture[0], 2 * std::hypot(18, 12) / 100 / std::sqrt(2.0), 1e-6);
+    const auto error = [](const std::string &inside) {
+        return error_of_text(scene_around("<emitter type=\"projector\">\n" + inside + "</emitter>"));
+    };
+    const std::string white = "<rgb name=\"irradiance\" value=\"1\"/>";
+    EXPECT_THAT(error(""), HasSubstr("scene.xml:3: a projector needs an irradiance"));
+    EXPECT_THAT(error(white + "<transform name=\"to_world\"><scale value=\"2\"/></transform>"),
+                HasSubstr("not stretched"));
+    EXPECT_THAT(error(white + "<float name=\"fov\" value=\"180\"/>"), HasSubstr("between 0 and 180"));
+    EXPECT_THAT(error(white + "<float name=\"scale\" value=\"-1\"/>"), HasSubstr("at least 0"));
+}
+
+TEST(EmitterPlugin, AreaOfATexture) {
+    for (const char *version : {"3.0.0", "0.6.0"}) {
+        const LoadedScene loaded = load_text(scene_around(
+            "<texture type=\"checkerboard\" id=\"t\"><rgb name=\"color0\" value=\"7 8 9\"/></texture><shape "
+            "type=\"rectangle\"><emitter type=\"area\"><ref id=\"t\" name=\"radiance\"/></emitter></shape>",
+            version));
+        EXPECT_THAT(loaded.warnings, IsEmpty());
+        const Emitter &emitter = loaded.scene.emitters.at(0);
+        expect_rgb(emitter.value, 1, 1, 1);
+        EXPECT_EQ(emitter.texture, 0);
+        EXPECT_EQ(texture_range(loaded.scene.textures.at(0)).most[2], 9); // not clamped
+    }
+    const LoadedScene black = load_text(scene_around(
+        "<shape type=\"rectangle\"><emitter type=\"area\"><texture type=\"checkerboard\" name=\"radiance\"><rgb "
+        "name=\"color0\" value=\"0\"/><rgb name=\"color1\" value=\"0\"/></texture></emitter></shape>"));
+    EXPECT_TRUE(black.scene.emitters.empty());
+    EXPECT_THAT(error_of_text(scene_around("<emitter type=\"point\"><texture type=\"checkerboard\" "
+                                           "name=\"intensity\"/></emitter>")),
+                HasSubstr("cannot be a texture"));
+    EXPECT_THAT(error_of_text(scene_around("<shape type=\"sphere\"><emitter type=\"area\"><texture "
+                                           "type=\"mesh_attribute\" name=\"radiance\"><string name=\"name\" "
+                                           "value=\"face_a\"/></texture></emitter></shape>")),
+                HasSubstr("has no attribute \"face_a\""));
 }
 
 /// An image of 3 x 2 texels beside the scene: of the colour (1, 2, 3), but the first texel, which is `first`.
@@ -480,8 +564,6 @@ TEST(EmitterPlugin, EnvironmentMapsThatCannotBe) {
     for (const char *type : {"sky", "sun", "sunsky"})
         EXPECT_THAT(error_of_text(scene_around("<emitter type=\"" + std::string(type) + "\"/>")),
                     HasSubstr("bake it into an image"));
-    EXPECT_THAT(error_of_text(scene_around("<emitter type=\"projector\"/>")),
-                HasSubstr("a projector is not supported"));
 }
 
 TEST(EmitterPlugin, EnvironmentMapsWithBadTexels) {

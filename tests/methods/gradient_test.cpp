@@ -116,9 +116,9 @@ INSTANTIATE_TEST_SUITE_P(Image, GradientReference,
                                            ReferenceCase{"thin-lens"}, ReferenceCase{"textures"}),
                          name_of_reference);
 INSTANTIATE_TEST_SUITE_P(Full, GradientReference,
-                         ::testing::Values(ReferenceCase{"torus-rough-glass"}, ReferenceCase{"sundial"},
-                                           ReferenceCase{"door-ajar"}, ReferenceCase{"orthographic"},
-                                           ReferenceCase{"clipped"}),
+                         ::testing::Values(ReferenceCase{"lamps"}, ReferenceCase{"torus-rough-glass"},
+                                           ReferenceCase{"sundial"}, ReferenceCase{"door-ajar"},
+                                           ReferenceCase{"orthographic"}, ReferenceCase{"clipped"}),
                          name_of_reference);
 #endif
 

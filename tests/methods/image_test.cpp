@@ -43,7 +43,7 @@ TEST_P(OwnReference, IsMet) { EXPECT_TRUE(renders_as_referenced(own_reference(Ge
 INSTANTIATE_TEST_SUITE_P(Image, OwnReference,
                          ::testing::Values("cornell-box", "torus-rough-glass", "plates", "materials", "plastics",
                                            "torus-smooth-glass-soft", "sundial", "thin-lens", "orthographic", "clipped",
-                                           "clipped-mitchell", "textures"),
+                                           "clipped-mitchell", "textures", "lamps"),
                          name_of_scene);
 INSTANTIATE_TEST_SUITE_P(Full, OwnReference,
                          ::testing::Values("metal-ring-soft", "holes-7", "holes-14", "holes-28", "door-ajar",

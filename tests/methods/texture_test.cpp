@@ -139,6 +139,45 @@ TEST(Textures, DifferencesInATexturedMirrorAreThoseOfBothTextures) {
     });
 }
 
+/// The wall with a mesh attribute, its triangles not the first of the scene.
+SceneMaker wall_with_attribute(const MeshAttribute &attribute) {
+    Texture texture;
+    texture.kind = Texture::Kind::mesh_attribute;
+    texture.attribute = attribute.name;
+    texture.scale = {0.75f, 1, 1};
+    SceneMaker maker = wall(texture);
+    maker.parallelogram({50, 50, 50}, {1, 0, 0}, {0, 1, 0}, maker.material(diffuse(0.5)));
+    std::swap(maker.scene.shapes[0], maker.scene.shapes[1]);
+    maker.scene.meshes[0].attributes = {attribute};
+    return maker;
+}
+
+/// Numbers at the corners of a wall are interpolated.
+TEST(Textures, VertexAttributesAreInterpolated) {
+    // At the corners as SceneMaker::parallelogram has them.
+    const SceneMaker maker = wall_with_attribute(
+        {"vertex_color", 3, {0.1f, 0.8f, 0.4f, 0.9f, 0.8f, 0.4f, 0.9f, 0.3f, 0.8f, 0.1f, 0.3f, 0.8f}});
+    const RenderOptions options = exact_options();
+    expect_layers(render(maker.scene, options, "gpt").image, [&](int c, std::uint32_t x, std::uint32_t y) {
+        const auto [u, v] = seen_place(maker.scene, x, y, std::uint32_t(options.seed));
+        const double value[] = {0.75 * (0.1 + 0.8 * u), 0.8 - 0.5 * v, 0.4 + 0.4 * v};
+        return value[c];
+    });
+}
+
+/// One number for each triangle, which is gray.
+TEST(Textures, FaceAttributesAreConstantOnATriangle) {
+    const SceneMaker maker = wall_with_attribute({"face_shade", 1, {0.2f, 0.7f}});
+    const RenderOptions options = exact_options();
+    const auto &triangle = maker.scene.meshes[0].triangles[0];
+    const bool first_is_below = triangle[0] + triangle[1] + triangle[2] == 3; // corners 0, 1, 2: where u > v
+    ASSERT_TRUE(first_is_below);
+    expect_layers(render(maker.scene, options, "gpt").image, [&](int c, std::uint32_t x, std::uint32_t y) {
+        const auto [u, v] = seen_place(maker.scene, x, y, std::uint32_t(options.seed));
+        return (u > v ? 0.2 : 0.7) * (c == 0 ? 0.75 : 1);
+    });
+}
+
 /// Two sides of two textures, and a third material without one, whose record lies between them.
 TEST(Textures, SidesHaveTheirOwn) {
     for (const bool from_behind : {false, true}) {

@@ -51,6 +51,7 @@ REFERENCES = {
     "relief": ("../tests/scenes/relief.xml", 48, {}, 16384),
     "clipped": ("../tests/scenes/clipped.xml", 48, {}, 16384),
     "clipped-mitchell": ("../tests/scenes/clipped.xml", 48, {"rfilter": "mitchell"}, 65536),
+    "lamps": ("../tests/scenes/lamps.xml", 48, {}, 16384),
     "plastics": ("plastics.xml", 48, {}, 32768),
 }
 

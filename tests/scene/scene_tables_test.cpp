@@ -2,6 +2,7 @@
 #include "runtime/scene/scene_tables.h"
 
 #include "tests/support/small_scenes.h"
+#include "tests/support/textures.h"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +11,7 @@
 // After GoogleTest, which has template parameters of the names of its macros.
 #include "kernels/shared/material.h"
 #include "kernels/shared/scene_records.h"
+#include "kernels/shared/texture.h"
 
 namespace gradus::testing {
 namespace {
@@ -179,6 +181,52 @@ TEST(Primitives, HaveTangentsAlongU) {
     EXPECT_NEAR(along({0, 0}, {0, 1}, {1, 1})[1], 1, 1e-6) << "u along y";
     // u = x / 2 + y / 3, v = y / 3: u grows at a constant v only along x.
     EXPECT_NEAR(along({0, 0}, {1, 0}, {2, 1})[0], 1, 1e-6) << "sheared";
+}
+
+// Kernels look up a texture for every row, compiled for what those of its use have: another might be read beyond its
+// end.
+TEST(Textures, WhoHasNoneLooksUpOneOfTheSameUse) {
+    SceneMaker maker(4, 1);
+    const Bitmap::Format formats[] = {Bitmap::Format::byte, Bitmap::Format::word, Bitmap::Format::half,
+                                      Bitmap::Format::real};
+    for (const Bitmap::Format format : formats)
+        maker.scene.textures.push_back(random_texture(8, 8, format, format != Bitmap::Format::byte));
+    Texture attribute;
+    attribute.kind = Texture::Kind::mesh_attribute;
+    attribute.attribute = "face_a";
+    maker.scene.textures.insert(maker.scene.textures.begin(), attribute);
+    const std::int32_t of_nobody = 0, of_parameter = 1, of_map = 2, of_blend = 3, of_light = 4;
+    const std::int32_t lamp = maker.emitter(Emitter::Kind::area, {1, 1, 1});
+    maker.scene.emitters[std::size_t(lamp)].texture = of_light;
+    Bsdf plain = diffuse(0.5), textured = plain, mapped = plain, blend = plain;
+    textured.reflectance.texture = of_parameter;
+    mapped.map.kind = NormalTexture::Kind::normal;
+    mapped.map.texture = of_map;
+    maker.scene.blends.push_back({0, 1, 0.5f});
+    maker.scene.blends.back().weight.texture = of_blend;
+    maker.scene.blended = {plain, plain};
+    blend.blend = 0;
+    for (const Bsdf &bsdf : {plain, textured, mapped, blend})
+        maker.parallelogram({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, maker.material(bsdf), lamp);
+    maker.point_light({1, 1, 1}, {});
+    const SceneTables tables = tables_of(maker.scene);
+    for (const std::uint32_t looked_up : tables.material_lookups)
+        EXPECT_EQ(looked_up, std::uint32_t(of_parameter));
+    std::size_t maps = 0, blends = 0, lights = 0;
+    for (std::size_t i = normal_map_texture; i < tables.normal_maps.size(); i += normal_map_stride, ++maps)
+        EXPECT_EQ(tables.normal_maps[i], std::uint32_t(of_map));
+    for (std::size_t i = blend_weight_texture; i < tables.blends.size(); i += blend_stride, ++blends)
+        EXPECT_EQ(texture_present(tables.blends[i]), std::uint32_t(of_blend));
+    for (std::size_t i = light_texture_texture; i < tables.light_textures.size(); i += light_texture_stride, ++lights)
+        EXPECT_EQ(texture_present(tables.light_textures[i]), std::uint32_t(of_light));
+    EXPECT_GE(maps, 4u);
+    EXPECT_GE(blends, 4u);
+    EXPECT_EQ(lights, 8u + 1 + 1);
+    EXPECT_TRUE(texture_is_absent(tables.light_textures[8 * light_texture_stride]));
+    EXPECT_FALSE(texture_is_absent(tables.light_textures[0]));
+    // Whoever takes it for a picture finds one texel.
+    EXPECT_EQ(tables.textures[of_nobody * texture_stride + texture_width], 1u);
+    EXPECT_LT(tables.textures[of_nobody * texture_stride + texture_offset] + 2, tables.texels.size());
 }
 
 } // namespace

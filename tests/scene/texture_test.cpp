@@ -1,6 +1,5 @@
 // Textures on the host, and the kernels' lookups against them.
 #define TRAIT_TEXTURED 1
-#define FEW_TEXTURES 0
 #include "kernels/lib/mapped_normal.h"
 #include "kernels/lib/normal_map.h"
 #include "kernels/lib/texture_gradient.h"
@@ -19,7 +18,7 @@
 namespace gradus::testing {
 namespace {
 
-constexpr int all_features = 2 * textures_of_srgb - 1;
+constexpr int all_features = 2 * textures_of_meshes - 1;
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
@@ -167,7 +166,7 @@ TEST(TextureLookup, IsTheHostsToRounding) {
                 const std::array<double, 3> expected = texture_value(texture, u, v);
                 const lib_float::rgb actual =
                     lib_float::texture_lookup(all_features, tables.textures.data(), tables.texture_reals.data(),
-                                              tables.texels.data(), 1, std::uint32_t(i), u, v);
+                                              tables.texels.data(), 1, std::uint32_t(i), {u, v, 0, 0, 0});
                 const double scale = std::max({texture.scale[0], texture.scale[1], texture.scale[2]});
                 const double tolerance = (2 * rounding + 4 * 0x1p-24) * scale;
                 const float values[] = {actual.r, actual.g, actual.b};
@@ -335,8 +334,9 @@ TEST(TextureLookup, StaysWithinThePicture) {
         for (int i = 0; i < 100000; ++i) {
             const float u = std::bit_cast<float>(std::uint32_t(random()));
             const float v = std::bit_cast<float>(std::uint32_t(random()));
-            const lib_float::rgb value = lib_float::texture_lookup(
-                all_features, tables.textures.data(), tables.texture_reals.data(), tables.texels.data(), 1, 1, u, v);
+            const lib_float::rgb value =
+                lib_float::texture_lookup(all_features, tables.textures.data(), tables.texture_reals.data(),
+                                          tables.texels.data(), 1, 1, {u, v, 0, 0, 0});
             ASSERT_EQ(value.g, 0.25f) << u << ", " << v;
         }
     }

@@ -24,6 +24,9 @@ Material read_mapped(Properties &properties, SceneBuilder &builder, NormalTextur
                                                std::numeric_limits<float>::max());
     map.texture = found.index;
     const Texture &texture = builder.texture_at(found.index);
+    if (kind == NormalTexture::Kind::bump && texture.kind == Texture::Kind::mesh_attribute)
+        throw SceneError(textures.front().location,
+                         "a bump map cannot be a mesh attribute, which has no slope in (u, v)");
     if (kind == NormalTexture::Kind::bump && (texture.kind != Texture::Kind::bitmap || texture.is_nearest))
         properties.diagnostics().warn(textures.front().location,
                                       "a texture in steps has no slope: as a bump map it turns no normals");

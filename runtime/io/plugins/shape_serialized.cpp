@@ -11,8 +11,9 @@ ShapeGeometry shape_serialized(Properties &properties, SceneBuilder &builder) {
     const std::shared_ptr<MeshFile> file = builder.shared_mesh_file(path, properties.location());
     // The flag in the file counts in 0.x; Mitsuba 3 goes by the parameter alone.
     const bool is_legacy = properties.element().is_legacy();
-    return pending_shape_mesh(properties, [file, index, is_legacy, limits = builder.limits()] {
-        SerializedMesh serialized = parse_serialized(file->bytes(), file->path().string(), index, limits);
+    return pending_shape_mesh(properties, [file, index, is_legacy, limits = builder.limits(),
+                                           attributes = builder.wanted_attributes()] {
+        SerializedMesh serialized = parse_serialized(file->bytes(), file->path().string(), index, limits, attributes);
         serialized.face_normals &= is_legacy;
         return serialized;
     });

@@ -1,0 +1,13 @@
+// <texture type="vertexcolors"> (0.x): the colours that a mesh bears at its vertices, interpolated.
+#include "runtime/io/plugins/plugin.h"
+
+namespace gradus {
+
+Texture texture_vertexcolors(Properties &, SceneBuilder &) {
+    Texture texture;
+    texture.kind = Texture::Kind::mesh_attribute;
+    texture.attribute = "vertex_color";
+    return texture;
+}
+
+} // namespace gradus
