@@ -13,11 +13,12 @@ namespace gradus {
 
 std::map<std::string, std::string> definitions_of_kind(const std::string &kind, bool is_dirac) {
     std::map<std::string, std::string> definitions;
-    definitions.emplace("BSDF_IS_DIRAC", std::string(1, is_dirac ? '1' : '0'));
+    // Emplaced, not assigned: GCC 12 warns of the assignment of a short text (its bug 105651).
+    definitions.emplace("BSDF_IS_DIRAC", is_dirac ? "1" : "0");
     if (!kind.empty())
-        definitions["BSDF"] = kind;
+        definitions.emplace("BSDF", kind);
     if (bsdf_kind_is_mixed(kind))
-        definitions["BSDF_IS_MIXED"] = "1";
+        definitions.emplace("BSDF_IS_MIXED", "1");
     return definitions;
 }
 

@@ -67,7 +67,9 @@ GradientBias gradient_bias(const Scene &scene, const Scene &path_traced, const G
     with_gradients.settings.samples_per_pixel = samples.gradient_domain;
     without.settings.samples_per_pixel = samples.path_tracing;
     std::vector<std::vector<double>> primal, change, true_primal, true_change;
-    for (const Image &image : render_seeds(with_gradients, samples.seeds, {}, 1, "gpt")) {
+    RenderOptions unweighted; // of all samples; the reconstruction is not looked at
+    unweighted.reconstruction = Reconstruction::l1;
+    for (const Image &image : render_seeds(with_gradients, samples.seeds, unweighted, 1, "gpt")) {
         primal.push_back(values_of(whole(image)));
         change.push_back(values_of_both(whole_differences(image, true), whole_differences(image, false)));
     }

@@ -139,14 +139,14 @@ TEST(GradientHalves, OfOneSampleAreNone) {
     for (const std::uint64_t samples : {1u, 3u, 4u}) {
         const Rendered rendered = render(small_scene("cornell-box", 24, 24, samples), weighted_options(), "gpt");
         const ReconstructionUsed &used = rendered.statistics.reconstruction;
-        EXPECT_EQ(used.name, samples < 4 ? "l2" : "weighted");
-        EXPECT_EQ(used.accuracy, samples == 3 ? "consistent" : "unbiased");
+        EXPECT_EQ(used.name, samples < 4 ? "l1" : "weighted");
+        EXPECT_EQ(used.accuracy, samples < 4 ? "consistent" : "unbiased");
         EXPECT_EQ(used.note.empty(), samples == 4) << used.note;
         if (samples > 1)
             continue;
-        RenderOptions l2;
-        l2.reconstruction = Reconstruction::l2;
-        const Image image = render(small_scene("cornell-box", 24, 24, samples), l2, "gpt").image;
+        RenderOptions l1;
+        l1.reconstruction = Reconstruction::l1;
+        const Image image = render(small_scene("cornell-box", 24, 24, samples), l1, "gpt").image;
         for (const char *color : colors)
             EXPECT_EQ(image.find(color)->values, rendered.image.find(color)->values) << "the first sample is the same";
     }

@@ -76,6 +76,7 @@ TEST_P(GradientMeanOf, L1BlocksIsThePrimals) {
     for (std::uint64_t seed = 1; seed <= std::uint64_t(count); ++seed) {
         RenderOptions options;
         options.seed = seed;
+        options.reconstruction = Reconstruction::l1;
         const Image image = render(scene, options, "gpt").image, plain = whole(image);
         std::vector<double> change(values, 0.0);
         for (int c = 0; c < 3; ++c)
