@@ -5,12 +5,11 @@
 #include "kernels/shared/texture.h"
 #include "runtime/scene/camera_record.h"
 #include "runtime/scene/environment_map.h"
-#include "runtime/scene/light_table.h"
+#include "runtime/scene/light_builder.h"
 #include "runtime/scene/texture_tables.h"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace gradus {
 
@@ -67,85 +66,6 @@ Bounds scene_bounds(const Scene &scene) {
     }
     return bounds;
 }
-
-/// Grows the lights and, with them, the weights by which they are chosen.
-struct LightBuilder {
-    const Scene &scene;
-    SceneTables &tables;
-    bool has_textures; ///< lights have
-    std::vector<LightPower> powers;
-    std::vector<LightPower> emitted; ///< what light paths begin with, which is known of lights at infinity too
-    bool has_environment = false;
-    std::map<std::int32_t, Rgb> means = {}; ///< by texture
-    std::uint32_t stand_in = 0;             ///< a texture of lights, which those without one look up
-
-    /// What an emitter's value is in the mean over its texture.
-    Rgb mean_of(const Emitter &emitter) {
-        if (emitter.texture == no_texture)
-            return emitter.value;
-        auto known = means.find(emitter.texture);
-        if (known == means.end()) {
-            const auto mean = texture_range(scene.textures[std::size_t(emitter.texture)]).mean;
-            known = means.emplace(emitter.texture, Rgb{float(mean[0]), float(mean[1]), float(mean[2])}).first;
-        }
-        const Rgb &mean = known->second;
-        return {emitter.value.r * mean.r, emitter.value.g * mean.g, emitter.value.b * mean.b};
-    }
-
-    void add_texture(const Emitter &emitter) {
-        const auto width = [](const Vector3 &axis, float size) { return (1 / size) * axis; };
-        const bool has_picture = emitter.kind == Emitter::Kind::spot || emitter.kind == Emitter::Kind::projector;
-        const Vector3 u = has_picture ? width(emitter.axes[0], emitter.picture[0]) : Vector3{};
-        const Vector3 v = has_picture ? width(emitter.axes[1], emitter.picture[1]) : Vector3{};
-        const Rgb mean = mean_of(emitter);
-        const std::uint32_t texture =
-            emitter.texture == no_texture ? texture_absent | stand_in : std::uint32_t(emitter.texture);
-        tables.light_textures.insert(tables.light_textures.end(), {texture, 0, 0});
-        tables.light_pictures.insert(tables.light_pictures.end(), {u.x, u.y, u.z, v.x, v.y, v.z});
-        tables.light_means.insert(tables.light_means.end(), {mean.r, mean.g, mean.b});
-    }
-
-    /// A new light; returns its number and its record.
-    std::uint32_t add(light_kind kind, Rgb value, LightPower power, float *&record) {
-        const std::size_t number = powers.size();
-        powers.push_back(power);
-        emitted.push_back({power.power, power.emitter, false});
-        tables.light_kinds.push_back(kind);
-        tables.lights.resize((number + 1) * light_stride, 0.0f);
-        record = &tables.lights[number * light_stride];
-        record[light_value_r] = value.r;
-        record[light_value_g] = value.g;
-        record[light_value_b] = value.b;
-        if (has_textures)
-            add_texture(scene.emitters[power.emitter]);
-        return static_cast<std::uint32_t>(number);
-    }
-
-    void finish() {
-        tables.light_count = static_cast<std::uint32_t>(powers.size());
-        // A black light follows the last: what the environment is where there is none.
-        tables.lights.resize((powers.size() + 1) * light_stride, 0.0f);
-        if (has_textures)
-            add_texture(Emitter());
-        if (!has_environment)
-            tables.environment_light = tables.light_count;
-        if (powers.empty())
-            return;
-        const AliasTable alias = make_alias_table(light_weights(powers));
-        for (std::size_t i = 0; i < powers.size(); ++i) {
-            tables.lights[i * light_stride + light_probability] = alias.probability[i];
-            tables.lights[i * light_stride + light_alias_threshold] = alias.threshold[i];
-        }
-        tables.light_alias = alias.alias;
-        const AliasTable emission = make_alias_table(light_weights(emitted));
-        tables.emissions.resize(emitted.size() * emission_stride);
-        for (std::size_t i = 0; i < emitted.size(); ++i) {
-            tables.emissions[i * emission_stride + emission_probability] = emission.probability[i];
-            tables.emissions[i * emission_stride + emission_alias_threshold] = emission.threshold[i];
-        }
-        tables.emission_alias = emission.alias;
-    }
-};
 
 /// The bin of a side of a surface that does not emit; that of one that does follows.
 std::uint32_t bin_of(const Bsdf &bsdf, const SceneTables &tables) {
@@ -228,9 +148,7 @@ void add_mesh(const Scene &scene, const Shape &shape, const TraitMap &traits, Sc
                 put(light_record, light_e2_x, e2);
                 light_record[light_inverse_area] = static_cast<float>(std::min(1 / area, 3e38));
                 light_record[light_offset] = offset;
-                if (lights.has_textures)
-                    tables.light_textures[std::size_t(light) * light_texture_stride + light_texture_triangle] =
-                        std::uint32_t(tables.primitive_material.size());
+                lights.set_triangle(light, std::uint32_t(tables.primitive_material.size()));
             }
         }
         add_primitive(surface, light, tables);
@@ -262,9 +180,7 @@ void add_sphere(const Scene &scene, const Shape &shape, SceneTables &tables, Lig
             light_record[light_e1_y] = facing;
             light_record[light_inverse_area] = static_cast<float>(std::min(1 / area, 3e38));
             light_record[light_offset] = offset;
-            if (lights.has_textures)
-                tables.light_textures[std::size_t(light) * light_texture_stride + light_texture_sphere] =
-                    std::uint32_t(tables.spheres.size() / sphere_stride - 1);
+            lights.set_sphere(light, std::uint32_t(tables.spheres.size() / sphere_stride - 1));
         }
     }
     add_primitive(SurfaceOfShape(scene, shape, tables), light, tables);
@@ -280,10 +196,8 @@ void add_other_lights(const Scene &scene, double radius, SceneTables &tables, Li
             continue;
         float *record;
         if (emitter.kind == Emitter::Kind::constant) {
-            tables.environment_light =
-                lights.add(light_kind_constant, emitter.value, {pi * value * disk, number, true}, record);
-            lights.emitted.back().power = 4 * pi * value * disk; // from all directions
-            lights.has_environment = true;
+            lights.add(light_kind_constant, emitter.value, {pi * value * disk, number, true}, record);
+            lights.set_environment(4 * pi * value * disk); // from all directions
         } else if (emitter.kind == Emitter::Kind::environment) {
             // A plane of any direction gets a quarter of what comes from all of them, in the mean.
             const Rgb sent = emitter.map->integral;
@@ -293,10 +207,8 @@ void add_other_lights(const Scene &scene, double radius, SceneTables &tables, Li
                 continue;
             const float unit = emitter.map->unit;
             const Rgb scaled{emitter.value.r * unit, emitter.value.g * unit, emitter.value.b * unit};
-            tables.environment_light =
-                lights.add(light_kind_environment, scaled, {all / 4 * disk, number, true}, record);
-            lights.emitted.back().power = all * disk;
-            lights.has_environment = true;
+            lights.add(light_kind_environment, scaled, {all / 4 * disk, number, true}, record);
+            lights.set_environment(all * disk);
             put(record, light_p_x, emitter.axes[0]);
             put(record, light_e1_x, emitter.axes[1]);
             put(record, light_e2_x, emitter.axes[2]);
@@ -389,11 +301,7 @@ SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits) {
     SceneTables tables;
     reserve_tables(scene, traits, tables);
     tables.kinds = bsdf_kinds(scene);
-    LightBuilder lights{scene, tables, traits.at("TRAIT_TEXTURED_LIGHTS") != 0, {}, {}, false};
-    for_each_light_texture(scene, [&](const Emitter &emitter, int) {
-        if (emitter.texture != no_texture)
-            lights.stand_in = std::uint32_t(emitter.texture);
-    });
+    LightBuilder lights(scene, tables, traits.at("TRAIT_TEXTURED_LIGHTS") != 0);
     for (const Shape &shape : scene.shapes)
         if (shape.kind == Shape::Kind::mesh)
             add_mesh(scene, shape, traits, tables, lights);

@@ -371,6 +371,10 @@ TEST_F(MapPlugin, WhatIsWrong) {
     }
     EXPECT_THAT(load_bsdf("<bsdf type=\"bumpmap\"><texture type=\"checkerboard\"/>" + wood + "</bsdf>").warnings,
                 ElementsAre(HasSubstr("has no slope")));
+    EXPECT_THAT(error_of_bsdf("<bsdf type=\"bumpmap\"><texture type=\"mesh_attribute\"><string name=\"name\" "
+                              "value=\"vertex_a\"/></texture>" +
+                              wood + "</bsdf>"),
+                HasSubstr("a bump map cannot be a mesh attribute"));
     write<std::uint8_t>("n.png", 3, OIIO::TypeDesc::UINT8, 255);
     EXPECT_THAT(load_bsdf("<bsdf type=\"normalmap\">" + bitmap_text("n.png") + wood + "</bsdf>").warnings,
                 ElementsAre(HasSubstr("decoded from sRGB")));

@@ -21,12 +21,14 @@ std::int32_t textured_emitter(SceneMaker &maker, const Texture &texture, float f
     return number;
 }
 
-/// Half of it bright, half dark, so that a place read wrongly is seen.
+/// Half of it bright, half dark, so that a place read wrongly is seen: on a ball what lies opposite has the other
+/// colour.
 Texture stripes() {
     Texture texture;
     texture.kind = Texture::Kind::checkerboard;
     texture.color_0 = {4, 2, 1};
     texture.color_1 = {0.1f, 0.2f, 0.4f};
+    texture.to_uv = {1, 0, 0, 0, 1, 0.25f};
     return texture;
 }
 
