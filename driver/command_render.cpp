@@ -1,7 +1,9 @@
 #include "driver/commands.h"
+#include "driver/reconstruction_options.h"
 #include "driver/render_job.h"
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include <memory>
 
@@ -11,6 +13,7 @@ namespace {
 constexpr const char *notes_of_render = R"(Examples:
   gradus render scene.xml -o out.exr --spp 64 --png
   gradus render scene.xml -o out.exr --time 60 --write-partial 10
+  gradus render scene.xml -o out.exr --until-error 0.01 --reconstruction guided
   gradus render scene.xml -o out.exr --size 1280x720 --crop 600,300,128,128 --aov
   gradus render scene.xml -o out.exr -D spp=16 -D light=2.5 --stats out.json
 
@@ -53,6 +56,24 @@ void add_render_command(CLI::App &app, const Services &services, std::function<i
                     "Render for so many seconds, kernels compiled; the file's sample count is then no limit, --spp is")
         ->type_name("SECONDS")
         ->check(CLI::PositiveNumber)
+        ->group(samples);
+    command
+        .add_option_function<std::string>(
+            "--until-error",
+            [request](const std::string &value) {
+                request->until_error = *finite_number(value);
+                request->method.options.error = true;
+            },
+            "Render until relMSE, the mean over pixels and channels of (error)^2 / (value^2 + 0.001), is estimated at "
+            "this or less (pt, gpt): 0.01 is noise of a tenth. Looked at after 16, 32, 64 ... samples a pixel; the "
+            "file's sample count is then no limit, --spp and --time are. Implies --error")
+        ->type_name("RELMSE")
+        ->check(CLI::Validator(
+            [](std::string &value) {
+                const std::optional<double> number = finite_number(value);
+                return number && *number > 0 ? std::string() : fmt::format("'{}' is not a number above 0", value);
+            },
+            ""))
         ->group(samples);
     command.add_option("--seed", request->method.options.seed, "Images of different seeds are independent")
         ->check(CLI::Validator(

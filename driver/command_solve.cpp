@@ -152,10 +152,11 @@ void add_output_options(CLI::App &command, SolveRequest &request) {
 void add_problem_options(CLI::App &command, SolveRequest &request) {
     const char *group = "What is solved";
     PoissonOptions &options = request.options;
-    add_reconstruction_option(command, group, [&request, &options](Reconstruction reconstruction) {
-        request.reconstruction = reconstruction;
-        options.norm = reconstruction == Reconstruction::l1 ? PoissonNorm::l1 : PoissonNorm::l2;
-    });
+    add_reconstruction_option(
+        command, group, request.reconstruction, [&request, &options](Reconstruction reconstruction) {
+            request.reconstruction = reconstruction;
+            options.norm = reconstruction == Reconstruction::l1 ? PoissonNorm::l1 : PoissonNorm::l2;
+        });
     add_guide_option(command, group, [&request](Guide guide) { request.guide = guide; });
     add_alpha_option(command, group, "0.2",
                      "Weight of the primal, from 0 (its mean alone) on; auto: from the variances",

@@ -124,11 +124,18 @@ void run_tests(const CompareRequest &request, const std::vector<Image> &images, 
 
 std::string figures_line(const Comparison::Figures &figures) {
     return fmt::format(
-        "{}\n  relMSE {:.4e}   trimmed {:.4e}   PSNR {:.2f} dB   mean ratio {:.6f}   bias {:+.3e}{}\n", figures.name,
-        figures.relative_mse, figures.trimmed_relative_mse, figures.psnr, figures.mean.ratio, figures.mean.bias,
-        figures.non_finite > 0
-            ? fmt::format("\n  {} values are NaN or infinite; their pixels are left out", figures.non_finite)
-            : "");
+               "{}\n  relMSE {:.4e}   trimmed {:.4e}   PSNR {:.2f} dB   mean ratio {:.6f}   bias {:+.3e}{}\n",
+               figures.name, figures.relative_mse, figures.trimmed_relative_mse, figures.psnr, figures.mean.ratio,
+               figures.mean.bias,
+               figures.non_finite > 0
+                   ? fmt::format("\n  {} values are NaN or infinite; their pixels are left out", figures.non_finite)
+                   : "") +
+           (figures.error_layer
+                ? fmt::format("  error layer: {:.1f} % of the errors within it, {:.1f} % within twice that; estimated "
+                              "relMSE {:.4e}\n",
+                              100 * figures.error_layer->within, 100 * figures.error_layer->within_twice,
+                              figures.error_layer->relative_mse)
+                : "");
 }
 
 std::string test_line(const char *name, const BlockTest &test) {
@@ -145,15 +152,20 @@ std::string test_line(const char *name, const BlockTest &test) {
 }
 
 nlohmann::json figures_json(const Comparison::Figures &figures) {
-    return {{"name", figures.name},
-            {"relative_mse", figures.relative_mse},
-            {"trimmed_relative_mse", figures.trimmed_relative_mse},
-            {"psnr", figures.psnr},
-            {"mean", figures.mean.image},
-            {"reference_mean", figures.mean.reference},
-            {"mean_ratio", figures.mean.ratio},
-            {"bias", figures.mean.bias},
-            {"non_finite", figures.non_finite}};
+    nlohmann::json json{{"name", figures.name},
+                        {"relative_mse", figures.relative_mse},
+                        {"trimmed_relative_mse", figures.trimmed_relative_mse},
+                        {"psnr", figures.psnr},
+                        {"mean", figures.mean.image},
+                        {"reference_mean", figures.mean.reference},
+                        {"mean_ratio", figures.mean.ratio},
+                        {"bias", figures.mean.bias},
+                        {"non_finite", figures.non_finite}};
+    if (figures.error_layer)
+        json["error_layer"] = {{"within", figures.error_layer->within},
+                               {"within_twice", figures.error_layer->within_twice},
+                               {"relative_mse", figures.error_layer->relative_mse}};
+    return json;
 }
 
 nlohmann::json test_json(const BlockTest &test, bool with_scores) {
@@ -190,6 +202,8 @@ Comparison compare_images(const CompareRequest &request) {
     for (const std::string &path : request.images) {
         images.push_back(read_selected(path, request));
         result.images.push_back(figures_of(path, images.back(), reference));
+        if (request.layer.empty())
+            result.images.back().error_layer = error_calibration(images.back(), reference, variance);
         if (result.images.back().non_finite > 0)
             result.failures.push_back(
                 fmt::format("'{}' holds {} values that are not finite", path, result.images.back().non_finite));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/film/block_test.h"
+#include "runtime/film/error_calibration.h"
 #include "runtime/film/image.h"
 #include "runtime/film/metrics.h"
 
@@ -33,6 +34,7 @@ struct Comparison {
         double relative_mse = 0, trimmed_relative_mse = 0, psnr = 0;
         MeanComparison mean;
         std::uint64_t non_finite = 0;
+        std::optional<ErrorCalibration> error_layer; ///< where the image has one
     };
     std::vector<Figures> images;
     std::optional<Figures> mean; ///< of the mean image, where there are several

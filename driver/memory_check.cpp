@@ -63,9 +63,11 @@ std::uint64_t least_render_bytes(const Scene &scene, const RenderOptions &option
     std::uint64_t channels = 3;
     if (needs_features(options))
         channels += 3 + 3 + 1 + 3; // albedo, normal, depth, variance
+    if (options.error)
+        channels += 3;
     if (options.layers)
         channels += 4 * 3; // primal, dx, dy, direct
-    if (options.layers && needs_halves(options.reconstruction))
+    if (options.layers && keeps_halves(options))
         channels += 12 * 3; // primal, dx, dy of both halves, and their variances
     const auto [width, height] = image_size(scene.film);
     const SceneSummary summary = summarize(scene);

@@ -58,8 +58,14 @@ void add_method_options(CLI::App &command, const Services &services, MethodReque
         ->group(group);
     command.add_flag("--aov", request.options.aov, "Also write albedo, normal, depth and variance layers")
         ->group(group);
+    command
+        .add_flag("--error", request.options.error,
+                  "Also the layer error: the estimated root mean square error by pixel and channel (pt, gpt), from two "
+                  "halves of the samples, which have random numbers of their own for it. weighted and guided have such "
+                  "halves, and the layer with --aov")
+        ->group(group);
     const char *reconstruction = "Reconstruction (gpt, gpm, auto)";
-    add_reconstruction_option(command, reconstruction,
+    add_reconstruction_option(command, reconstruction, request.options.reconstruction,
                               [&request](Reconstruction name) { request.options.reconstruction = name; });
     add_guide_option(command, reconstruction, [&request](Guide guide) { request.options.guide = guide; });
     add_alpha_option(command, reconstruction, "auto",

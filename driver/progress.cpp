@@ -41,6 +41,10 @@ double progress_fraction(const ProgressState &state) {
     double fraction = 0;
     if (state.sample_limit && state.total > 0)
         fraction = double(state.done) / double(state.total);
+    if (state.error_limit > 0 && state.error && *state.error > 0) {
+        const double doublings = std::max(0.0, std::ceil(std::log2(*state.error / state.error_limit)));
+        fraction = std::max(fraction, double(state.done) / (double(state.samples_of_error) * std::exp2(doublings)));
+    }
     if (state.time_limit > 0)
         fraction = std::max(fraction, state.elapsed / state.time_limit);
     return std::clamp(fraction, 0.0, 1.0);
@@ -58,6 +62,8 @@ std::string progress_line(const ProgressState &state, int bar_width) {
                         format_count(rate), format_duration(std::floor(state.elapsed)));
     if (fraction > 0 && fraction < 1)
         line += fmt::format("  {} left", format_duration(state.elapsed * (1 - fraction) / fraction));
+    if (state.error_limit > 0 && state.error)
+        line += fmt::format("  relMSE {:.2g} of {:.2g}", *state.error, state.error_limit);
     return line;
 }
 

@@ -5,25 +5,31 @@
 #include <cstdint>
 #include <cstdio>
 #include <mutex>
+#include <optional>
 #include <string>
 
 namespace gradus {
 
 /// Where a render stands. A limit of 0 is none.
 struct ProgressState {
-    std::uint64_t done = 0, total = 0; ///< samples
-    double elapsed = 0;                ///< seconds
-    double time_limit = 0;             ///< seconds
-    bool sample_limit = true;          ///< false: `total` is no aim, only the time limit ends the render
+    std::uint64_t done = 0, total = 0;  ///< samples
+    double elapsed = 0;                 ///< seconds
+    double time_limit = 0;              ///< seconds
+    bool sample_limit = true;           ///< false: `total` is no aim, the other limits end the render
+    double error_limit = 0;             ///< estimated relMSE
+    std::optional<double> error{};      ///< where it is known
+    std::uint64_t samples_of_error = 0; ///< at which it was
 };
 
 /// "0:07", "12:34" or "1:02:03".
 std::string format_duration(double seconds);
 /// Four characters or so with a unit: "950", "12.3 k", "4.56 M", "1.20 G".
 std::string format_count(double count);
-/// The part of the render that is done, 0 to 1: of the samples or of the time, whichever is nearer its end.
+/// The part of the render that is done, 0 to 1: of the samples, of the time or of the samples that the error may take,
+/// whichever is nearer its end. Errors are taken to fall as one over the samples, and looked at as these double.
 double progress_fraction(const ProgressState &state);
-/// Percent, samples, rate, time elapsed and time left. With `bar_width` > 0 it begins with a bar of that many columns.
+/// Percent, samples, rate, time elapsed, time left and error. With `bar_width` > 0 it begins with a bar of that many
+/// columns.
 std::string progress_line(const ProgressState &state, int bar_width);
 
 /// Safe to call from several threads.

@@ -20,7 +20,8 @@ std::optional<double> finite_number(const std::string &text) {
     return number;
 }
 
-void add_reconstruction_option(CLI::App &command, const char *group, std::function<void(Reconstruction)> set) {
+void add_reconstruction_option(CLI::App &command, const char *group, Reconstruction standard,
+                               std::function<void(Reconstruction)> set) {
     static const std::map<std::string, Reconstruction> reconstructions{{"l1", Reconstruction::l1},
                                                                        {"l2", Reconstruction::l2},
                                                                        {"weighted", Reconstruction::weighted},
@@ -33,7 +34,7 @@ void add_reconstruction_option(CLI::App &command, const char *group, std::functi
                 "weighted by its variance, and without bias: two halves of the samples judge each other; guided: the "
                 "same, and a filtered image where that has less error, by place: consistent, the least error")
             ->check(CLI::IsMember({"l1", "l2", "weighted", "guided"}))
-            ->default_str("l1")
+            ->default_str(reconstruction_name(standard))
             ->group(group);
     command
         .add_option_function<std::string>(
@@ -61,9 +62,11 @@ void add_guide_option(CLI::App &command, const char *group, std::function<void(G
 
 void check_alpha(Reconstruction reconstruction, bool given) {
     if (given && needs_halves(reconstruction))
-        throw Error(ExitCode::usage,
-                    fmt::format("--alpha is one weight of the primal; --reconstruction {} gives each pixel its own",
-                                reconstruction_name(reconstruction)));
+        throw Error(
+            ExitCode::usage,
+            fmt::format("--alpha is one weight of the primal; --reconstruction {} gives each pixel its own: add "
+                        "--reconstruction l1 or l2",
+                        reconstruction_name(reconstruction)));
 }
 
 void add_alpha_option(CLI::App &command, const char *group, const char *standard, const char *text,

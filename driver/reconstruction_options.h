@@ -16,8 +16,10 @@ namespace gradus {
 /// The number that the whole text is, or nothing; NaN and infinity are none.
 std::optional<double> finite_number(const std::string &text);
 
-/// --reconstruction l1|l2|weighted|guided, and --norm, the old name of the first two.
-void add_reconstruction_option(CLI::App &command, const char *group, std::function<void(Reconstruction)> set);
+/// --reconstruction l1|l2|weighted|guided, and --norm, the old name of the first two. `standard` is the default to
+/// print.
+void add_reconstruction_option(CLI::App &command, const char *group, Reconstruction standard,
+                               std::function<void(Reconstruction)> set);
 
 /// --guide filter|denoiser.
 void add_guide_option(CLI::App &command, const char *group, std::function<void(Guide)> set);

@@ -1,5 +1,6 @@
 #include "driver/render_job.h"
 
+#include "driver/error_watch.h"
 #include "driver/interrupt.h"
 #include "driver/memory_check.h"
 #include "driver/program.h"
@@ -50,6 +51,8 @@ class RenderJob {
             throw;
         }
         record_.interrupted = watch_->requested();
+        if (record_.interrupted)
+            record_.stopped_by = "interrupt";
         write_results();
         if (black_pixels_ > 0)
             return static_cast<int>(ExitCode::failure);
@@ -65,8 +68,9 @@ class RenderJob {
         check_counts(scene);
         check_alpha(request_.method.options.reconstruction, request_.method.options.alpha.has_value());
         check_memory(scene, request_.method.options);
-        if (request_.time_limit > 0 && !request_.scene.samples_per_pixel)
-            scene.settings.samples_per_pixel = endless_samples_per_pixel;
+        if (!is_limited_by_samples())
+            scene.settings.samples_per_pixel =
+                request_.until_error > 0 ? ErrorWatch::most_samples : endless_samples_per_pixel;
         own_scale_ = bring_to_own_scale(scene);
         crop_ = scene.film.crop_width > 0 ? fmt::format("{},{},{},{}", scene.film.crop_x, scene.film.crop_y,
                                                         scene.film.crop_width, scene.film.crop_height)
@@ -97,11 +101,18 @@ class RenderJob {
             pilot_seconds_ = choice->pilot_seconds;
             progress_.message(fmt::format("method {}: {}", choice->method, choice->reason));
         }
-        const std::string aim = request_.time_limit > 0 && !request_.scene.samples_per_pixel
-                                    ? fmt::format("{} s", request_.time_limit)
-                                    : fmt::format("{} samples a pixel", scene.settings.samples_per_pixel);
+        std::string aim = is_limited_by_samples() ? fmt::format("{} samples a pixel", scene.settings.samples_per_pixel)
+                          : request_.time_limit > 0 ? fmt::format("{} s", request_.time_limit)
+                                                    : "";
+        if (request_.until_error > 0)
+            aim += fmt::format("{}until the estimated relMSE is {}", aim.empty() ? "" : " or ", request_.until_error);
         progress_.message(fmt::format("rendering {} at {}x{}, {}, on {}", request_.scene.path, width, height, aim,
                                       record_.device.name));
+    }
+
+    /// Whether the number of samples is an aim: not the file's where time or error is one.
+    bool is_limited_by_samples() const {
+        return (request_.time_limit <= 0 && request_.until_error <= 0) || request_.scene.samples_per_pixel;
     }
 
     /// Samples are counted in 64 bits, with room for sums and for what methods add to each.
@@ -121,7 +132,12 @@ class RenderJob {
         state.total = prepared_.method->total_samples();
         state.elapsed = seconds_since(render_start_);
         state.time_limit = request_.time_limit;
-        state.sample_limit = request_.time_limit <= 0 || request_.scene.samples_per_pixel.has_value();
+        state.sample_limit = is_limited_by_samples();
+        if (error_watch_) {
+            state.error_limit = error_watch_->aim();
+            state.error = error_watch_->estimate();
+            state.samples_of_error = error_watch_->samples() * record_.width * record_.height;
+        }
         return state;
     }
 
@@ -148,13 +164,24 @@ class RenderJob {
             Clock::now() - std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(pilot_seconds_));
         auto last_partial = Clock::now();
         progress_.update(state());
+        if (request_.until_error > 0)
+            error_watch_.emplace(*prepared_.method, request_.until_error,
+                                 std::uint64_t(record_.width) * record_.height);
         bool more = true;
         while (more) {
             more = render_batch();
+            if (watch_->requested())
+                break;
+            if (error_watch_ && error_watch_->is_reached())
+                record_.stopped_by = "error";
             const ProgressState now = state();
             progress_.update(now);
-            if (watch_->requested() || (request_.time_limit > 0 && now.elapsed >= request_.time_limit))
+            if (record_.stopped_by == "error")
                 break;
+            if (request_.time_limit > 0 && now.elapsed >= request_.time_limit) {
+                record_.stopped_by = "time";
+                break;
+            }
             if (more && request_.partial_interval > 0 && seconds_since(last_partial) >= request_.partial_interval) {
                 write_partial();
                 last_partial = Clock::now();
@@ -227,6 +254,8 @@ class RenderJob {
         image.metadata["spp"] = fmt::format("{}", record_.samples_per_pixel);
         image.metadata["device"] = record_.device.name;
         image.metadata["seconds"] = fmt::format("{:.3f}", seconds_since(render_start_));
+        if (const std::optional<double> error = prepared_.method->statistics().estimated_error)
+            image.metadata["estimated_error"] = fmt::format("{:.6g}", *error);
         image.metadata["partial"] = partial ? "true" : "false";
         if (!crop_.empty())
             image.metadata["crop"] = crop_;
@@ -253,8 +282,12 @@ class RenderJob {
             print_message(fmt::format("gradus: error: {} pixels have a value that is NaN or infinite, which the image "
                                       "holds as 0: the scene's numbers are too large or too small\n",
                                       black_pixels_));
-        progress_.message(fmt::format("{}wrote {}: {:.6g} samples a pixel", record_.interrupted ? "interrupted; " : "",
-                                      request_.outputs.image, record_.samples_per_pixel));
+        const std::optional<double> error = statistics.estimated_error;
+        progress_.message(fmt::format(
+            "{}wrote {}: {:.6g} samples a pixel{}", record_.interrupted ? "interrupted; " : "", request_.outputs.image,
+            record_.samples_per_pixel, error ? fmt::format(", estimated relMSE {:.3g}", *error) : ""));
+        if (request_.until_error > 0 && record_.stopped_by == "samples" && !(error && *error <= request_.until_error))
+            progress_.message("gradus: warning: the samples were at their end before the error was small enough");
     }
 
     const RenderRequest &request_;
@@ -265,6 +298,7 @@ class RenderJob {
     std::optional<InterruptWatch> watch_; ///< once there is something to lose
     PreparedMethod prepared_;
     RenderRecord record_;
+    std::optional<ErrorWatch> error_watch_;
     std::string crop_;
     std::vector<std::string> files_read_;
     std::uint64_t black_pixels_ = 0; ///< of the last image

@@ -14,6 +14,7 @@ struct RenderRequest {
     MethodRequest method;
     OutputFiles outputs;
     double time_limit = 0;       ///< seconds of rendering; 0: none
+    double until_error = 0;      ///< estimated relMSE to end by; 0: none
     double partial_interval = 0; ///< seconds between images so far; 0: none
     bool quiet = false;
 };

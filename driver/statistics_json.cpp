@@ -39,15 +39,16 @@ nlohmann::json reconstruction_json(const ReconstructionUsed &used) {
     return {{"name", used.name}, {"guide", used.guide}, {"accuracy", used.accuracy}, {"note", used.note}};
 }
 
+static nlohmann::json number_or_null(const std::optional<double> &number) {
+    return number ? nlohmann::json(*number) : nlohmann::json();
+}
+
 nlohmann::json gathering_json(const Statistics &statistics) {
     const double points = double(statistics.gather_points);
     const auto mean_radius = [](const GatherRadii &radii) {
         return radii.points > 0 ? radii.sum / double(radii.points) : 0.0;
     };
     const auto by_point = [points](double sum) { return points > 0 ? sum / points : 0.0; };
-    const auto number_or_null = [](const std::optional<double> &number) {
-        return number ? nlohmann::json(*number) : nlohmann::json();
-    };
     return {{"gather_points", statistics.gather_points},
             {"pairs", statistics.photon_pairs},
             {"photons_a_gather_point", by_point(double(statistics.photon_pairs))},
@@ -94,6 +95,8 @@ nlohmann::json statistics_to_json(const RenderRecord &record, const Statistics &
                    {"spp", record.samples_per_pixel},
                    {"reconstruction", reconstruction_json(statistics.reconstruction)},
                    {"interrupted", record.interrupted},
+                   {"stopped_by", record.stopped_by},
+                   {"estimated_error", number_or_null(statistics.estimated_error)},
                    {"samples", statistics.samples},
                    {"samples_per_second", rate(double(statistics.samples))},
                    {"light_paths", statistics.light_paths},

@@ -18,8 +18,9 @@ struct RenderRecord {
     std::uint32_t width = 0, height = 0;
     double samples_per_pixel = 0; ///< done, on average
     bool interrupted = false;
-    double prepare_seconds = 0; ///< kernels, tables and the ray tracer's tree
-    double wall_seconds = 0;    ///< the whole command until the image was written
+    std::string stopped_by = "samples"; ///< or "time", "error", "interrupt"
+    double prepare_seconds = 0;         ///< kernels, tables and the ray tracer's tree
+    double wall_seconds = 0;            ///< the whole command until the image was written
 };
 
 /// Keys are sorted but for the list of stages, which is in the order of the method. Every rate is over the seconds

@@ -1,6 +1,7 @@
 #include "methods/difference_film.h"
 
 #include "kernels/shared/tables.h"
+#include "methods/error_layer.h"
 #include "methods/gradient_image.h"
 #include "methods/path_stages.h"
 #include "methods/reconstruction_inputs.h"
@@ -8,6 +9,7 @@
 #include "solver/halves.h"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <utility>
 
@@ -55,9 +57,10 @@ void DifferenceFilm::begin() {
 
 const std::vector<DirectPixel> &DifferenceFilm::edges(std::uint64_t samples, bool last) {
     constexpr std::uint64_t most = 0xFFFFFFFFu; // far more than have an effect
-    const auto a_pixel = std::uint32_t(std::min((samples + session_.pixels() - 1) / session_.pixels(), most));
-    const bool is_old = last ? a_pixel != edge_samples_ : a_pixel > std::uint64_t(2) * edge_samples_;
-    if (is_old && session_.max_depth() != 0 && !session_.settings.hide_emitters) {
+    const auto all = std::uint32_t(std::min((samples + session_.pixels() - 1) / session_.pixels(), most));
+    const bool is_whole = last || all == session_.settings.samples_per_pixel;
+    const std::uint32_t a_pixel = is_whole ? all : std::bit_floor(all);
+    if (a_pixel != edge_samples_ && session_.max_depth() != 0 && !session_.settings.hide_emitters) {
         const auto start = std::chrono::steady_clock::now();
         edges_ =
             sample_direct_edges(session_.scene, session_.film, session_.tracer, options_.seed, a_pixel, edge_rays_);
@@ -112,11 +115,14 @@ Image DifferenceFilm::image(std::uint64_t samples, bool layers, bool last, std::
         films.add((*tables_)[film_names_[i]], session_.film.crop_width, session_.film.crop_height, options_.precision,
                   film_names_.size() > 1 ? samples_of_half(samples, pixels, int(i)) : samples);
     used_ = reconstruction_used(options_, samples, pixels);
-    Image image = reconstruct(session_.device, *solver_, std::move(whole), std::move(films), edges(samples, last),
-                              options_, layers, [&] {
-                                  if (last)
-                                      tables_->release_all_but({counts_});
-                              });
+    relative_error_.reset();
+    Image image = reconstruct(
+        session_.device, *solver_, std::move(whole), std::move(films), edges(samples, last), options_, layers,
+        [&] {
+            if (last)
+                tables_->release_all_but({counts_});
+        },
+        tells_error_ && has_error_layer(options_, keeps_halves(options_)) ? &relative_error_ : nullptr);
     if (last)
         solver_.reset();
     return image;
@@ -124,6 +130,7 @@ Image DifferenceFilm::image(std::uint64_t samples, bool layers, bool last, std::
 
 void DifferenceFilm::add_to(Statistics &statistics) const {
     statistics.reconstruction = used_;
+    statistics.estimated_error = relative_error_;
     statistics.rays["edge"] = edge_rays_;
     statistics.render_seconds += edge_seconds_;
     statistics.stages.push_back({"edges of lights", edge_seconds_, 0, 0});

@@ -9,6 +9,7 @@
 
 #include <future>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,8 @@ class DifferenceFilm {
     TableList tables() const;
     /// For strips that are whole frames: no differences are carried from one to the next. Before stages are built.
     void carry_nothing() { carry_.leave_out(); }
+    /// For methods whose error is more than halves know.
+    void tell_no_error() { tells_error_ = false; }
     /// To be called once the tables are allocated; all is zero.
     void attach(Tables &tables);
 
@@ -44,8 +47,8 @@ class DifferenceFilm {
     void add_to(Statistics &statistics) const;
 
   private:
-    /// What the camera sees of lights at their edges, for an image of so many samples. Images between the first and the
-    /// last take what an earlier one of half as many had.
+    /// What the camera sees of lights at their edges, for an image of so many samples. Images under way take that of a
+    /// power of two, whichever were asked for before.
     const std::vector<DirectPixel> &edges(std::uint64_t samples, bool last);
 
     Session &session_;
@@ -61,6 +64,8 @@ class DifferenceFilm {
     std::uint64_t edge_rays_ = 0;
     double edge_seconds_ = 0;
     ReconstructionUsed used_;
+    bool tells_error_ = true;
+    std::optional<double> relative_error_; ///< estimated, of the last image
     std::unique_ptr<PoissonSolver> solver_;
     std::shared_ptr<void> compilers_;   ///< from before the stages' kernels are compiled until the solver's are
     std::future<void> solver_compiled_; ///< while the first samples render

@@ -1,5 +1,7 @@
 #include "methods/gradient_image.h"
 
+#include "methods/error_layer.h"
+#include "methods/gradient_error.h"
 #include "methods/reconstruction_inputs.h"
 #include "solver/guide/guided_reconstruction.h"
 #include "solver/weighted_reconstruction.h"
@@ -94,7 +96,8 @@ HalfImages uploaded_half(Device &device, const GradientFilms &film) {
 }
 
 void reconstruct_from_halves(Device &device, PoissonSolver &solver, Image &whole, GradientFilms &films,
-                             const RenderOptions &options, const std::function<void()> &films_are_read) {
+                             const RenderOptions &options, SquaredErrors *errors,
+                             const std::function<void()> &films_are_read) {
     const std::size_t pixels = films.pixels();
     const HalvedImages halves{uploaded_half(device, films.half(0)), uploaded_half(device, films.half(1))};
     films = GradientFilms();
@@ -107,9 +110,9 @@ void reconstruct_from_halves(Device &device, PoissonSolver &solver, Image &whole
         inputs.direct = uploaded(device, "direct", pixels, [&](std::uint32_t c, float *plane) {
             std::copy_n(whole.channels[c].values.data(), pixels, plane);
         });
-        GuidedReconstruction(device, solver, options.guide).solve(halves, inputs, result);
+        GuidedReconstruction(device, solver, options.guide).solve(halves, inputs, result, errors);
     } else
-        WeightedReconstruction(device, solver).solve(halves, result);
+        WeightedReconstruction(device, solver).solve(halves, result, errors);
     const auto mapping = result.map(Access::read);
     for (std::uint32_t c = 0; c < 3; ++c) {
         const float *plane = mapping.as<float>() + c * pixels;
@@ -123,7 +126,7 @@ void reconstruct_from_halves(Device &device, PoissonSolver &solver, Image &whole
 
 PoissonOptions poisson_options(const RenderOptions &options, std::uint64_t frames) {
     PoissonOptions poisson;
-    poisson.norm = options.reconstruction == Reconstruction::l1 ? PoissonNorm::l1 : PoissonNorm::l2;
+    poisson.norm = options.reconstruction == Reconstruction::l2 ? PoissonNorm::l2 : PoissonNorm::l1;
     poisson.alpha_from_variances = !options.alpha && frames > 1;
     poisson.alpha = options.alpha.value_or(poisson.alpha);
     return poisson;
@@ -141,9 +144,9 @@ ReconstructionUsed reconstruction_used(const RenderOptions &options, std::uint64
     Reconstruction reconstruction = options.reconstruction;
     ReconstructionUsed used;
     if (needs_halves(reconstruction) && !halves_have_variances(samples, pixels)) {
-        used.note = fmt::format("{} needs {} samples of each pixel, two in each half; with less it is l2",
+        used.note = fmt::format("{} needs {} samples of each pixel, two in each half; with less it is l1",
                                 reconstruction_name(reconstruction), 2 * least_half_samples);
-        reconstruction = Reconstruction::l2;
+        reconstruction = Reconstruction::l1;
     }
     used.name = reconstruction_name(reconstruction);
     if (reconstruction == Reconstruction::guided)
@@ -158,19 +161,27 @@ ReconstructionUsed reconstruction_used(const RenderOptions &options, std::uint64
 
 Image reconstruct(Device &device, PoissonSolver &solver, Image whole, GradientFilms films,
                   const std::vector<DirectPixel> &edges, const RenderOptions &options, bool layers,
-                  const std::function<void()> &films_are_read) {
+                  const std::function<void()> &films_are_read, std::optional<double> *relative_error) {
     take_primal_off(whole, films, edges);
     std::vector<Channel> more;
     if (layers)
         more = layers_of(whole, films, options.aov);
-    if (films.are_halves() && halves_have_variances(films.samples(), films.pixels()))
-        reconstruct_from_halves(device, solver, whole, films, options, films_are_read);
-    else
-        reconstruct_from_film(solver, whole, films, poisson_options(options, films.frames()), films_are_read);
+    SquaredErrors errors;
+    const bool tells_error = relative_error && films.are_halves() && films.frames() >= 2;
+    if (needs_halves(options.reconstruction) && halves_have_variances(films.samples(), films.pixels()))
+        reconstruct_from_halves(device, solver, whole, films, options, tells_error ? &errors : nullptr, films_are_read);
+    else {
+        const PoissonOptions poisson = poisson_options(options, films.frames());
+        if (tells_error)
+            errors = errors_of_solves(solver, films, poisson);
+        reconstruct_from_film(solver, whole, films, poisson, films_are_read);
+    }
     if (!options.aov && !layers) // features, if any, were there for the guide
         whole.channels.resize(3);
     whole.channels.insert(whole.channels.begin() + 3, std::make_move_iterator(more.begin()),
                           std::make_move_iterator(more.end()));
+    if (tells_error)
+        *relative_error = add_error_layer(whole, errors);
     return whole;
 }
 

@@ -30,7 +30,7 @@ TraitMap gradient_traits(const Scene &scene, const RenderOptions &options) {
             {"TRAIT_APART", apart},
             {"TRAIT_SHIFT_DISTANCE", distance},
             {"TRAIT_AOV", options.all_traits || needs_features(options)},
-            {"TRAIT_HALVES", needs_halves(options.reconstruction)}};
+            {"TRAIT_HALVES", keeps_halves(options)}};
 }
 
 /// Where the scene has one BSDF kind, `shift` evaluates it itself.
@@ -224,7 +224,7 @@ void GradientPathTracer::allocate() {
 
 GradientPathTracer::Strip GradientPathTracer::next_strip() const {
     const std::uint32_t width = session_.film.crop_width, height = session_.film.crop_height;
-    const std::uint64_t left = total_ - done_;
+    const std::uint64_t left = samples_ahead();
     Strip strip;
     strip.first = static_cast<std::uint32_t>(done_ % session_.pixels() / width);
     strip.rows = std::min(strip_rows_, height - strip.first);

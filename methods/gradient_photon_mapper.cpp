@@ -1,6 +1,7 @@
 #include "methods/gradient_photon_mapper.h"
 
 #include "kernels/shared/tables.h"
+#include "methods/error_layer.h"
 #include "methods/path_stages.h"
 #include "runtime/error.h"
 #include "runtime/seconds_since.h"
@@ -127,6 +128,8 @@ GradientPhotonMapper::GradientPhotonMapper(Device &device, const Scene &scene, c
           stages_.add({.name = "photon_arrive", .by_kind = true, .dirac = DiracKinds::left_out, .numbers = {"pairs"}})),
       sum_(stages_.add(pairs_.sum_stage("pair_difference_sum"))),
       gradient_gather_(stages_.add({.name = "gradient_gather"})), film_(session_, stages_, options_, "photon_found") {
+    check_error(options, "gpm");
+    film_.tell_no_error();
     if (has_specular(session_))
         manifold_walk_.emplace(session_, stages_, RowsOf::path, 1, WalkSettings{.most_vertices = most_inner});
     const std::vector<std::uint32_t> bins = material_bins(scene, session_);

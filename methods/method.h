@@ -8,6 +8,7 @@
 #include "runtime/wavefront/statistics.h"
 #include "solver/reconstruction.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -23,8 +24,10 @@ class Tracer; // runtime/trace/tracer.h
 /// What methods that reconstruct ask beside that.
 struct RenderOptions : SessionOptions {
     bool layers = false; ///< also what the image was reconstructed from, gradient-domain methods
-    Reconstruction reconstruction = Reconstruction::l1; ///< gradient-domain methods
-    Guide guide = Guide::filter;                        ///< of Reconstruction::guided
+    /// The error of the image is estimated: samples are kept as two halves, with random numbers of their own.
+    bool error = false;
+    Reconstruction reconstruction = Reconstruction::weighted; ///< gradient-domain methods
+    Guide guide = Guide::filter;                              ///< of Reconstruction::guided
     /// Of l1 and l2, the weight of the primal; none: from the variances.
     std::optional<double> alpha;
     double shift_threshold = 0.01; ///< offset paths reconnect at surfaces of this roughness (alpha) or more
@@ -57,6 +60,9 @@ inline bool needs_features(const RenderOptions &options) {
     return options.aov || options.reconstruction == Reconstruction::guided;
 }
 
+/// Whether gradient-domain methods keep samples as two halves.
+inline bool keeps_halves(const RenderOptions &options) { return options.error || needs_halves(options.reconstruction); }
+
 class Method {
   public:
     virtual ~Method() = default;
@@ -67,6 +73,8 @@ class Method {
     /// Renders the next batch. Returns false once all samples are done. The image depends neither on the batch
     /// size nor on the number of threads.
     virtual bool render_batch() = 0;
+    /// The batch that reaches so many samples ends there, so that an image may be asked for.
+    virtual void pause_at(std::uint64_t samples) { pause_ = samples; }
     /// The image of the samples done so far: R, G, B and, with aov, albedo, normal, depth and variance layers; with
     /// layers, those that a reconstruction is made from. Each pixel is divided by its own count; a pixel without a
     /// sample is 0. Metadata is the driver's.
@@ -77,6 +85,16 @@ class Method {
     virtual Statistics statistics() const = 0;
     /// For measuring: records and replays the rays of a render. Null where there is none.
     virtual Tracer *tracer() { return nullptr; }
+
+  protected:
+    /// Samples to the end of the next batch at most.
+    std::uint64_t samples_ahead() const {
+        const std::uint64_t done = done_samples(), total = total_samples();
+        return (done < pause_ ? std::min(pause_, total) : total) - done;
+    }
+
+  private:
+    std::uint64_t pause_ = 0;
 };
 
 } // namespace gradus

@@ -1,5 +1,6 @@
 #include "methods/path_tracer.h"
 
+#include "methods/error_layer.h"
 #include "methods/path_stages.h"
 #include "methods/reconstruction_inputs.h"
 #include "runtime/seconds_since.h"
@@ -8,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <iterator>
 #include <vector>
@@ -17,12 +19,12 @@ namespace gradus {
 PathTracer::PathTracer(Device &device, const Scene &scene, const RenderOptions &options)
     : options_(options),
       session_(device, scene, options,
-               {{"TRAIT_AOV", options.all_traits || needs_features(options)}, {"TRAIT_HALVES", is_guided()}}),
+               {{"TRAIT_AOV", options.all_traits || needs_features(options)}, {"TRAIT_HALVES", keeps_halves()}}),
       camera_(stages_.add(camera_stage())), far_clip_(stages_.add(far_clip_stage(session_))),
       connect_(stages_.add(connect_stage())),
       paths_(session_, stages_, {.kinds = std::uint32_t(session_.scene.kinds.size())}),
       escape_(stages_.add(escape_stage(session_))), emission_(stages_.add(emission_stage(session_))),
-      shade_(stages_.add(shade_stage(false))), film_(session_, stages_, is_guided()) {
+      shade_(stages_.add(shade_stage(false))), film_(session_, stages_, keeps_halves()) {
     check_guide(options);
     total_ = session_.pixels() * session_.settings.samples_per_pixel;
     const TableList list = joined(paths_.tables(), film_.tables());
@@ -42,7 +44,7 @@ bool PathTracer::render_batch() {
     if (done_ >= total_)
         return false;
     const auto start = std::chrono::steady_clock::now();
-    const std::uint32_t paths = static_cast<std::uint32_t>(std::min<std::uint64_t>(pass_, total_ - done_));
+    const std::uint32_t paths = static_cast<std::uint32_t>(std::min<std::uint64_t>(pass_, samples_ahead()));
     const std::uint32_t first_pixel = static_cast<std::uint32_t>(done_ % session_.pixels());
     const std::uint64_t first_sample = done_ / session_.pixels();
 
@@ -77,13 +79,29 @@ bool PathTracer::render_batch() {
 
 Image PathTracer::image() {
     statistics_.non_finite = 0;
+    statistics_.estimated_error.reset();
     Image image = film_.image(done_, statistics_.non_finite);
+    const bool tells_error = has_error_layer(options_, keeps_halves()) && has_halves();
+    SquaredErrors errors;
     if (is_guided())
-        guide(image);
+        guide(image, tells_error ? &errors : nullptr);
+    else if (tells_error)
+        errors = errors_of_mean();
+    if (tells_error)
+        statistics_.estimated_error = add_error_layer(image, errors);
     return image;
 }
 
-void PathTracer::guide(Image &image) {
+SquaredErrors PathTracer::errors_of_mean() const {
+    const std::size_t pixels = session_.pixels();
+    std::array<std::vector<float>, 2> halves{std::vector<float>(3 * pixels), std::vector<float>(3 * pixels)};
+    for (int i = 0; i < 2; ++i)
+        for (int c = 0; c < 3; ++c)
+            film_.half_mean(i, done_, c, halves[i].data() + c * pixels);
+    return errors_of_halves(halves[0], halves[1], double(samples_of_half(done_, pixels, 0)) / double(done_));
+}
+
+void PathTracer::guide(Image &image, SquaredErrors *errors) {
     const std::uint64_t pixels = session_.pixels();
     std::vector<Channel> layers;
     if (has_halves()) {
@@ -102,7 +120,7 @@ void PathTracer::guide(Image &image) {
         inputs.features = uploaded_features(device, image);
         Buffer result(device, "result", halves[0].primal.bytes());
         PoissonSolver none(device, image.width, image.height); // samples alone ask for no solve
-        GuidedReconstruction(device, none, options_.guide).solve(halves, inputs, result);
+        GuidedReconstruction(device, none, options_.guide).solve(halves, inputs, result, errors);
         const auto mapping = result.map(Access::read);
         for (int c = 0; c < 3; ++c)
             std::copy_n(mapping.as<float>() + c * pixels, pixels, image.channels[c].values.begin());

@@ -5,6 +5,7 @@
 #include "methods/method.h"
 #include "runtime/wavefront/film.h"
 #include "runtime/wavefront/wavefront.h"
+#include "solver/squared_errors.h"
 
 #include <memory>
 #include <optional>
@@ -25,10 +26,13 @@ class PathTracer final : public Method {
 
   private:
     bool is_guided() const { return options_.reconstruction == Reconstruction::guided; }
+    bool keeps_halves() const { return is_guided() || options_.error; }
     /// Whether both halves have a sample of each pixel.
     bool has_halves() const { return done_ >= 2 * session_.pixels(); }
     /// Makes of the mean of all samples one that follows a guide, and leaves its features out if they are not wanted.
-    void guide(Image &image);
+    void guide(Image &image, SquaredErrors *errors);
+    /// Of the mean of all samples, from both halves.
+    SquaredErrors errors_of_mean() const;
 
     const RenderOptions options_;
     Session session_;

@@ -1,6 +1,7 @@
 #include "methods/photon_mapper.h"
 
 #include "kernels/shared/tables.h"
+#include "methods/error_layer.h"
 #include "methods/path_stages.h"
 #include "runtime/error.h"
 #include "runtime/seconds_since.h"
@@ -23,6 +24,7 @@ PhotonMapper::PhotonMapper(Device &device, const Scene &scene, const RenderOptio
       evaluate_(stages_.add({.name = "photon_evaluate", .by_kind = true, .dirac = DiracKinds::left_out})),
       add_(stages_.add({.name = "gather_add", .numbers = {"first"}})), bias_(session_, stages_, pairs_, options, false),
       film_(session_, stages_) {
+    check_error(options, "sppm");
     if (options.only_chains)
         throw Error(ExitCode::usage, "--only-chains is of gpm");
     statistics_.surfaces = gathering_surfaces(scene, options.gather_roughness);

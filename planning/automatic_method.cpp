@@ -21,6 +21,7 @@ class ChosenMethod final : public Method {
     std::uint64_t total_samples() const override { return method_->total_samples(); }
     std::uint64_t done_samples() const override { return method_->done_samples(); }
     bool render_batch() override { return method_->render_batch(); }
+    void pause_at(std::uint64_t samples) override { method_->pause_at(samples); }
     Image image() override { return method_->image(); }
     Image last_image() override { return method_->last_image(); }
     Statistics statistics() const override {
@@ -126,7 +127,7 @@ std::unique_ptr<Method> make_automatic_method(Device &device, const Scene &scene
         options.on_pilot(pilot_samples);
     const Pilot pilot = run_pilot(*method);
     PhotonChoice found{choose_by_pilot(pilot), samples, 0};
-    if (may_ask_for_photons(scene, options))
+    if (!options.error && may_ask_for_photons(scene, options)) // gpm does not tell its error
         found = choose_by_photons(found.choice, run_photon_pilot(device, scene, options, pilot), samples, options);
     if (found.choice.method == "gpt") {
         method->restart(0, samples);

@@ -1,6 +1,7 @@
 #include "planning/pilot.h"
 
 #include "runtime/film/metrics.h"
+#include "runtime/film/outliers.h"
 
 #include <fmt/format.h>
 
@@ -32,20 +33,6 @@ constexpr std::uint64_t largest_part = 10; ///< one in so many samples of the re
 /// times of bench/render/gradient.py: 1.2 to 1.7 by scene.
 constexpr double offset_ray_cost = 1.5;
 
-/// The value of (x, y), but no more than the second largest and no less than the second smallest of those around it.
-double without_outlier(const std::vector<double> &values, std::ptrdiff_t width, std::ptrdiff_t height, std::ptrdiff_t x,
-                       std::ptrdiff_t y) {
-    std::array<double, 8> around;
-    std::size_t count = 0;
-    for (std::ptrdiff_t dy = -1; dy <= 1; ++dy)
-        for (std::ptrdiff_t dx = -1; dx <= 1; ++dx)
-            if (dx != 0 || dy != 0)
-                around[count++] = values[std::size_t(std::clamp<std::ptrdiff_t>(y + dy, 0, height - 1) * width +
-                                                     std::clamp<std::ptrdiff_t>(x + dx, 0, width - 1))];
-    std::sort(around.begin(), around.end());
-    return std::clamp(values[std::size_t(y * width + x)], around[1], around[6]);
-}
-
 } // namespace
 
 std::vector<double> relative_weights(const ReferencePairs &references, const char *color) {
@@ -56,10 +43,9 @@ std::vector<double> relative_weights(const ReferencePairs &references, const cha
         largest.resize(a.size(), 0.0);
         for (std::size_t i = 0; i < a.size(); ++i)
             means[i] = 0.5 * (double(a[i]) + b[i]);
+        const std::vector<double> usual = without_outliers(means, first->width, first->height);
         for (std::size_t i = 0; i < a.size(); ++i)
-            largest[i] = std::max(largest[i], std::fabs(without_outlier(means, first->width, first->height,
-                                                                        std::ptrdiff_t(i % first->width),
-                                                                        std::ptrdiff_t(i / first->width))));
+            largest[i] = std::max(largest[i], std::fabs(usual[i]));
     }
     for (double &value : largest)
         value = 1 / (value * value + relative_mse_epsilon);

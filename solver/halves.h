@@ -18,7 +18,8 @@ struct HalfImages {
     std::uint64_t samples = 0;
 };
 
-/// That of the even samples of each pixel, and that of the odd ones. They have no random number in common.
+/// That of the even samples of each pixel, and that of the odd ones. They have no random number in common but
+/// what all pixels of a sample share.
 using HalvedImages = std::array<HalfImages, 2>;
 
 /// The same in memory of the host. What is null is not there.

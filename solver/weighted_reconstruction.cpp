@@ -41,6 +41,12 @@ std::vector<Kernel> weighted_kernels(Device &device, std::uint32_t channels,
     return library.build(requests);
 }
 
+std::vector<float> values_of(const Buffer &image) {
+    std::vector<float> values(image.bytes() / sizeof(float));
+    image.read(values.data(), image.bytes());
+    return values;
+}
+
 } // namespace
 
 VarianceSmoother::VarianceSmoother(Device &device, std::uint32_t width, std::uint32_t height, std::uint32_t channels)
@@ -160,10 +166,12 @@ PoissonReport WeightedReconstruction::solve_half(const HalfImages &half, const H
     return solver_.solve(images, options(), result);
 }
 
-PoissonReport WeightedReconstruction::solve(const HalvedImages &halves, Buffer &result) {
+PoissonReport WeightedReconstruction::solve(const HalvedImages &halves, Buffer &result, SquaredErrors *errors) {
     const double first = double(halves[0].samples), second = double(halves[1].samples);
     std::array<Buffer, 2> solutions = {Buffer(device_, "half_solution", result.bytes()), result};
     const PoissonReport report = solve_both(halves, solutions);
+    if (errors)
+        *errors = errors_of_halves(values_of(solutions[0]), values_of(result), first / (first + second));
     mixer_.mix(solutions[0], first / (first + second), result, second / (first + second), result);
     return report;
 }

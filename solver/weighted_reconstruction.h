@@ -3,13 +3,16 @@
 // Least squares with weights by inverse variance have the least error, but variances of the same samples bias them: of
 // skewed noise what is too dark also looks too sure. So each half of the samples is solved for with the other's
 // variances, which know nothing of its noise. Whatever the weights, the solution is linear in the half's images, so its
-// mean is right, and so is that of both halves. (Rousselle et al. 2016 weigh by the variances of the samples
+// mean is right, and so is that of both halves. The halves may share what all pixels of a sample share, the places
+// within pixels: given these, a half's images agree on average with one image, which any weights leave as it is.
+// (Rousselle et al. 2016 weigh by the variances of the samples
 // themselves.)
 #pragma once
 
 #include "runtime/device/program.h"
 #include "solver/halves.h"
 #include "solver/poisson_solver.h"
+#include "solver/squared_errors.h"
 
 namespace gradus {
 
@@ -60,7 +63,8 @@ class WeightedReconstruction {
     PoissonReport solve_half(const HalfImages &half, const HalfImages &judge, Buffer &result);
     /// Writes the mean of both halves' solutions, by their samples, to `result`, which has as many values as their
     /// primal. The report is that of both solves.
-    PoissonReport solve(const HalvedImages &halves, Buffer &result);
+    /// `errors`: gets what the halves tell of the image's error.
+    PoissonReport solve(const HalvedImages &halves, Buffer &result, SquaredErrors *errors = nullptr);
 
     /// The same without the mean: the solution of each half.
     PoissonReport solve_both(const HalvedImages &halves, std::array<Buffer, 2> &results);

@@ -68,6 +68,7 @@ struct Statistics {
     double render_seconds = 0;                     ///< spent in render_batch()
     std::uint64_t device_bytes = 0;                ///< allocated on the device
     std::uint64_t peak_host_bytes = 0;             ///< the process at its peak
+    std::optional<double> estimated_error;         ///< relMSE of the last image, as its halves tell, where asked for
     std::optional<MethodChoice> choice;            ///< of the method `auto`
     ReconstructionUsed reconstruction;             ///< of the last image
 };

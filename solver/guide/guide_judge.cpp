@@ -67,6 +67,9 @@ void GuideJudge::run(const std::array<const Buffer *, 2> &halves, double share,
     wide_.release();
     narrow_.release();
 
+    if (kept_)
+        *kept_ = make_.precision() == Precision::double_ ? quotients_inside<double>(moments)
+                                                         : quotients_inside<float>(moments);
     mean_share_ = make_.precision() == Precision::double_ ? mean_inside<double>(shares) : mean_inside<float>(shares);
 }
 
@@ -79,6 +82,21 @@ double GuideJudge::mean_inside(const Buffer &plane) const {
         sum += std::accumulate(line, line + grid_.width, 0.0);
     }
     return sum / (double(grid_.width) * grid_.height);
+}
+
+/// The smoothed shares as guide_blend follows them.
+template <class Real>
+std::vector<float> GuideJudge::quotients_inside(const Buffer &planes) const {
+    const Buffer::Mapping mapping(planes, Access::read, Wait::now);
+    std::vector<float> quotients;
+    quotients.reserve(std::size_t(grid_.width) * grid_.height);
+    for (std::size_t y = 0; y < grid_.height; ++y) {
+        const Real *share = mapping.as<Real>() + (y + 1) * grid_.row + SOLVER_MARGIN;
+        const Real *area = share + (GUIDE_COUNTS - GUIDE_SHARE) * grid_.plane;
+        for (std::size_t x = 0; x < grid_.width; ++x)
+            quotients.push_back(area[x] > 0 ? std::min(float(share[x] / area[x]), 1.0f) : 0.0f);
+    }
+    return quotients;
 }
 
 } // namespace gradus

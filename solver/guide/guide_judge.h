@@ -20,6 +20,7 @@
 #include "solver/guide/guide_smoother.h"
 
 #include <array>
+#include <vector>
 
 namespace gradus {
 
@@ -34,6 +35,9 @@ class GuideJudge {
     /// `followed`: the guide that is followed instead of the mean of both, made of all samples as they are of halves.
     void run(const std::array<const Buffer *, 2> &halves, double share, const std::array<const Buffer *, 2> &guides,
              Buffer &result, const Buffer *followed = nullptr);
+    /// What becomes of the share of the guide by pixel in each run() from now on, where both images are there; null:
+    /// nothing.
+    void keep_shares(std::vector<float> *kept) { kept_ = kept; }
     /// The mean over the pixels of the share of the guide in the last image.
     double mean_share() const { return mean_share_; }
 
@@ -41,12 +45,15 @@ class GuideJudge {
     double squared_brightness(const Buffer &image) const;
     template <class Real>
     double mean_inside(const Buffer &plane) const;
+    template <class Real>
+    std::vector<float> quotients_inside(const Buffer &planes) const;
 
     const solver::PlaneMaker make_;
     const solver::Grid grid_;
     Kernel moments_, share_, blend_;
     solver::GuideSmoother wide_, narrow_;
     double mean_share_ = 0;
+    std::vector<float> *kept_ = nullptr;
 };
 
 } // namespace gradus

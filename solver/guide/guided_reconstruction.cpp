@@ -1,6 +1,7 @@
 #include "solver/guide/guided_reconstruction.h"
 
 #include "runtime/seconds_since.h"
+#include "solver/guide/guided_errors.h"
 
 #include <algorithm>
 #include <chrono>
@@ -49,7 +50,8 @@ void GuidedReconstruction::denoise(const Buffer &primal, const Buffer *solution,
     std::copy(sum.begin(), sum.end(), written.as<float>());
 }
 
-PoissonReport GuidedReconstruction::solve(const HalvedImages &halves, const GuideInputs &inputs, Buffer &result) {
+PoissonReport GuidedReconstruction::solve(const HalvedImages &halves, const GuideInputs &inputs, Buffer &result,
+                                          SquaredErrors *errors) {
     const bool is_solved = halves[0].dx.valid();
     PoissonReport report;
     std::array<Buffer, 2> solutions;
@@ -65,9 +67,16 @@ PoissonReport GuidedReconstruction::solve(const HalvedImages &halves, const Guid
         guide = Buffer(device_, "guide", result.bytes());
     const double share = double(halves[0].samples) / double(halves[0].samples + halves[1].samples);
     const std::array<const Buffer *, 2> images{&solutions[0], &solutions[1]}, of_halves{&guides[0], &guides[1]};
+    std::vector<float> shares;
+    judge_.keep_shares(errors ? &shares : nullptr);
+    const auto finish_errors = [&] {
+        if (errors)
+            *errors = errors_of_guided(images, share, of_halves, shares);
+    };
     if (filter_) {
         filter_->run(images, share, inputs.features, {&guides[0], &guides[1]});
         judge_.run(images, share, of_halves, result);
+        finish_errors();
         return report;
     }
     const Denoiser::Features features = cleaned(*denoiser_, inputs.features, solver_.width(), solver_.height());
@@ -83,6 +92,7 @@ PoissonReport GuidedReconstruction::solve(const HalvedImages &halves, const Guid
     }
     denoise(primal, is_solved ? &solution : nullptr, inputs.direct, features, guide);
     judge_.run(images, share, of_halves, result, &guide);
+    finish_errors();
     return report;
 }
 

@@ -5,6 +5,7 @@
 #include "solver/guide/feature_filter.h"
 #include "solver/guide/guide_judge.h"
 #include "solver/reconstruction.h"
+#include "solver/squared_errors.h"
 #include "solver/weighted_reconstruction.h"
 
 #include <memory>
@@ -28,7 +29,9 @@ class GuidedReconstruction {
 
     /// Writes the image, without `direct`, to `result`, which has as many values as the halves' primal. Halves without
     /// differences are their primal, and no solver is asked. The report is that of the solves.
-    PoissonReport solve(const HalvedImages &halves, const GuideInputs &inputs, Buffer &result);
+    /// `errors`: gets what the halves tell of the image's error.
+    PoissonReport solve(const HalvedImages &halves, const GuideInputs &inputs, Buffer &result,
+                        SquaredErrors *errors = nullptr);
     /// The mean over the pixels of the share of the guide in the last image.
     double mean_share() const { return judge_.mean_share(); }
 

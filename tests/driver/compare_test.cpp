@@ -49,6 +49,32 @@ class Compare : public ProgramTest {
     }
 };
 
+/// Of 64 x 64 values with normal errors; 3 standard errors of a share of so many are 0.022.
+TEST_F(Compare, SaysHowRightAnErrorLayerIs) {
+    write_noise("image.exr", 1, 0.1, 0, "64");
+    write_image(make_gray(side, side, std::vector<float>(side * side, 1)), at("reference.exr"));
+    const auto compare = [&](float error, std::vector<std::string> more) {
+        Image image = read_image(at("image.exr"));
+        for (const char *color : {"R", "G", "B"})
+            image.channels.push_back({std::string("error.") + color, std::vector<float>(side * side, error)});
+        image.metadata["estimated_error"] = "0.0125";
+        write_image(image, at("layered.exr"));
+        more.insert(more.begin(), {"compare", "layered.exr", "reference.exr", "--json", "out.json"});
+        const std::string text = run(more).out + run({"compare", "layered.exr", "reference.exr"}).out;
+        EXPECT_THAT(text, HasSubstr("error layer: "));
+        return nlohmann::json::parse(text_of("out.json")).at("images").at(0).at("error_layer");
+    };
+    const nlohmann::json right = compare(0.1f, {});
+    EXPECT_NEAR(right.at("within").get<double>(), 0.683, 0.022);
+    EXPECT_NEAR(right.at("within_twice").get<double>(), 0.954, 0.022);
+    EXPECT_EQ(right.at("relative_mse"), 0.0125);
+    EXPECT_NEAR(compare(0.05f, {}).at("within_twice").get<double>(), 0.683, 0.022);
+    // A reference's own error counts beside the image's.
+    write_image(make_gray(side, side, std::vector<float>(side * side, 0.0064f)), at("variance.exr"));
+    EXPECT_NEAR(compare(0.06f, {"--variance", "variance.exr"}).at("within").get<double>(), 0.683, 0.022);
+    EXPECT_THAT(run({"compare", "image.exr", "reference.exr"}).out, ::testing::Not(HasSubstr("error layer")));
+}
+
 TEST_F(Compare, PrintsFiguresOfOneImage) {
     write_image(make_gray(2, 1, {1.5f, 2}), at("image.exr"));
     write_image(make_gray(2, 1, {1, 2}), at("reference.exr"));

@@ -51,6 +51,31 @@ TEST_F(EndToEnd, RendersWithLayersPictureAndStatistics) {
     EXPECT_EQ(statistics.at("non_finite"), 0);
 }
 
+/// The image is that of so many samples, layers and all, and of any batch.
+TEST_F(EndToEnd, GoesOnUntilTheErrorIsSmallEnough) {
+    for (const char *reconstruction : {"l1", "guided"}) {
+        const Outcome outcome = run(render("until.exr", {"--until-error", "0.01", "--reconstruction", reconstruction,
+                                                         "--stats", "until.json", "--write-partial", "1e-9"}));
+        ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+        const nlohmann::json statistics = nlohmann::json::parse(text_of("until.json"));
+        const int samples = statistics.at("spp");
+        const double error = statistics.at("estimated_error");
+        EXPECT_EQ(statistics.at("stopped_by"), "error");
+        EXPECT_TRUE(samples == 16 || samples == 32 || samples == 64) << samples;
+        EXPECT_GT(error, 0);
+        EXPECT_LE(error, 0.01);
+        ASSERT_EQ(run(render("spp.exr", {"--error", "--spp", std::to_string(samples), "--batch-size", "700",
+                                         "--nthreads", "1", "--reconstruction", reconstruction}))
+                      .exit_code,
+                  0);
+        expect_equal_pixels("until.exr", "spp.exr");
+        EXPECT_NE(read_image(at("until.exr")).find("error.G"), nullptr);
+    }
+    const Outcome photons = run(render("x.exr", {"--until-error", "0.1", "--method", "sppm"}));
+    EXPECT_EQ(photons.exit_code, 2);
+    EXPECT_THAT(photons.err, HasSubstr("of pt and gpt"));
+}
+
 /// The channels of an image in the order of their names.
 std::vector<std::string> names_of(const Image &image) {
     std::vector<std::string> names;

@@ -7,6 +7,7 @@
 //   nan=1        one value of the image is NaN
 //   warn=TEXT    the loader warns
 //   pilot_ms=N   what the pilot of method auto takes (0)
+//   error=X      with --error, the estimated error of the image of one sample a pixel; it falls as 1 over the samples
 // The image is R = seed, G = samples a pixel so far, B = 0.5; the film is 8x6 with 4 samples a pixel.
 // A solve gives the primal; the device named "too small" has no room for it.
 #include "driver/program.h"
@@ -50,7 +51,7 @@ LoadedScene load_fake_scene(const std::string &path, const LoadOptions &options)
 class FakeMethod : public Method {
   public:
     FakeMethod(const std::string &method, const Scene &scene, const RenderOptions &options)
-        : automatic_(method == "auto"), seed_(options.seed), aov_(options.aov),
+        : automatic_(method == "auto"), seed_(options.seed), aov_(options.aov), error_(options.error),
           samples_per_pixel_(scene.settings.samples_per_pixel) {
         width_ = scene.film.crop_width > 0 ? scene.film.crop_width : scene.film.width;
         height_ = scene.film.crop_height > 0 ? scene.film.crop_height : scene.film.height;
@@ -80,6 +81,7 @@ class FakeMethod : public Method {
     Image image() override {
         if (parameter("fail") == "memory-image" || (parameter("fail") == "memory-partial" && done_ == 1))
             throw std::bad_alloc();
+        imaged_ = done_;
         Image image;
         image.width = width_;
         image.height = height_;
@@ -101,6 +103,8 @@ class FakeMethod : public Method {
         statistics.rays = {{"extension", 1000}};
         statistics.samples = done_samples();
         statistics.render_seconds = 1;
+        if (error_ && !parameter("error").empty())
+            statistics.estimated_error = std::stod(parameter("error")) / double(imaged_);
         if (automatic_)
             statistics.choice = MethodChoice{"gpt", "it was told to", 6, 0.5, {{"pt", {2, 3}}, {"gpt", {0.25, 6}}}, 4};
         return statistics;
@@ -111,8 +115,8 @@ class FakeMethod : public Method {
 
     bool automatic_;
     std::uint64_t seed_;
-    bool aov_;
-    std::uint64_t samples_per_pixel_, done_ = 0;
+    bool aov_, error_;
+    std::uint64_t samples_per_pixel_, done_ = 0, imaged_ = 0;
     std::uint32_t width_ = 0, height_ = 0;
 };
 

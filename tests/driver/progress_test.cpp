@@ -57,6 +57,21 @@ TEST(Progress, LineHasShareRateAndTimeLeft) {
     EXPECT_THAT(progress_line(state(0, 0), 0), Not(HasSubstr("left")));
 }
 
+TEST(Progress, LineHasTheErrorAndWhatItTakes) {
+    ProgressState now = state(1500000, 3);
+    now.sample_limit = false;
+    now.error_limit = 0.01;
+    EXPECT_EQ(progress_line(now, 0), "  0 %  1.50 M samples  500 k/s  0:03 elapsed");
+    now.error = 0.03; // three times the aim takes two doublings
+    now.samples_of_error = 1000000;
+    EXPECT_DOUBLE_EQ(progress_fraction(now), 0.375);
+    EXPECT_EQ(progress_line(now, 0), " 37 %  1.50 M samples  500 k/s  0:03 elapsed  0:05 left  relMSE 0.03 of 0.01");
+    now.error = 0.005;
+    EXPECT_DOUBLE_EQ(progress_fraction(now), 1);
+    now.error = 0;
+    EXPECT_DOUBLE_EQ(progress_fraction(now), 0);
+}
+
 TEST(Progress, TheNearerLimitCounts) {
     ProgressState timed = state(1000000, 3);
     timed.time_limit = 4;

@@ -3,6 +3,7 @@
 #include "runtime/io/image_io.h"
 #include "tests/driver/child_process.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
@@ -133,6 +134,48 @@ TEST_F(Render, TimeEndsTheRender) {
 TEST_F(Render, SamplesEndATimedRenderWhereBothAreGiven) {
     ASSERT_EQ(render({"-o", "out.exr", "--time", "50", "--spp", "3"}).exit_code, 0);
     EXPECT_EQ(value(read_image(at("out.exr")), "G"), 3);
+}
+
+/// The fake error is 1 over the samples: at 32 it is 0.031, at 64 half of that.
+TEST_F(Render, GoesOnUntilTheErrorIsSmallEnough) {
+    const auto render_until = [&](std::vector<std::string> more) {
+        more.insert(more.end(), {"-o", "out.exr", "--stats", "out.json", "-D", "error=1"});
+        return render(more);
+    };
+    const auto statistics = [&] { return nlohmann::json::parse(text_of("out.json")); };
+    for (const auto &[error, samples] : std::vector<std::pair<const char *, int>>{
+             {"1", 16}, {"0.0625", 16}, {"0.0624", 32}, {"0.016", 64}, {"0.0009", 2048}}) {
+        const Outcome outcome = render_until({"--until-error", error});
+        ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+        EXPECT_EQ(statistics().at("spp"), samples) << "the file's sample count is no limit";
+        EXPECT_EQ(statistics().at("stopped_by"), "error");
+        EXPECT_EQ(statistics().at("estimated_error"), 1.0 / samples);
+        EXPECT_THAT(outcome.err, HasSubstr("until the estimated relMSE is " + std::string(error)));
+        EXPECT_THAT(outcome.err, HasSubstr(", estimated relMSE "));
+        EXPECT_THAT(outcome.err, Not(HasSubstr("warning")));
+        EXPECT_EQ(read_image(at("out.exr")).metadata.at("estimated_error"), fmt::format("{:.6g}", 1.0 / samples));
+    }
+    // What else ends it: samples, which may be enough between two looks, and time.
+    Outcome outcome = render_until({"--until-error", "0.016", "--spp", "50"});
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_EQ(statistics().at("spp"), 50);
+    EXPECT_EQ(statistics().at("stopped_by"), "samples");
+    EXPECT_EQ(statistics().at("estimated_error"), 0.02);
+    EXPECT_THAT(outcome.err, HasSubstr("warning: the samples were at their end before the error was small enough"));
+    outcome = render_until({"--until-error", "0.0167", "--spp", "60"});
+    EXPECT_EQ(statistics().at("spp"), 60);
+    EXPECT_THAT(outcome.err, Not(HasSubstr("warning")));
+    EXPECT_EQ(render_until({"--until-error", "1e-9", "--time", "0.3", "-D", "batch_ms=5"}).exit_code, 0);
+    EXPECT_EQ(statistics().at("stopped_by"), "time");
+    EXPECT_GT(statistics().at("spp"), 4);
+    // An error that nobody knows is not small; without --error there is none.
+    EXPECT_EQ(render({"-o", "out.exr", "--stats", "out.json", "--until-error", "1", "--spp", "40"}).exit_code, 0);
+    EXPECT_EQ(statistics().at("spp"), 40);
+    EXPECT_TRUE(statistics().at("estimated_error").is_null());
+    EXPECT_EQ(render_until({}).exit_code, 0);
+    EXPECT_EQ(statistics().at("stopped_by"), "samples");
+    EXPECT_TRUE(statistics().at("estimated_error").is_null());
+    EXPECT_EQ(read_image(at("out.exr")).metadata.count("estimated_error"), 0u);
 }
 
 TEST_F(Render, WarnsOfTheScene) {

@@ -18,6 +18,7 @@ TEST(StatisticsJson, HoldsEveryFigure) {
     statistics.surfaces.gathered = {{"diffuse", 3}};
     statistics.samples = std::uint64_t(1) << 40;
     statistics.non_finite = 3;
+    statistics.estimated_error = 0.125;
     statistics.render_seconds = 4;
     statistics.device_bytes = 1234;
     RenderRecord record;
@@ -25,6 +26,7 @@ TEST(StatisticsJson, HoldsEveryFigure) {
     record.seed = ~std::uint64_t(0);
     record.precision = "double";
     record.wall_seconds = 5;
+    record.stopped_by = "error";
     record.device.name = "a device";
     // Through text, as a reader gets it.
     const nlohmann::json json = nlohmann::json::parse(statistics_to_json(record, statistics).dump());
@@ -44,6 +46,8 @@ TEST(StatisticsJson, HoldsEveryFigure) {
     EXPECT_EQ(json.at("samples").get<std::uint64_t>(), std::uint64_t(1) << 40);
     EXPECT_EQ(json.at("seed").get<std::uint64_t>(), ~std::uint64_t(0));
     EXPECT_EQ(json.at("non_finite"), 3);
+    EXPECT_EQ(json.at("estimated_error"), 0.125);
+    EXPECT_EQ(json.at("stopped_by"), "error");
     EXPECT_EQ(json.at("compile_seconds").at("total"), 0.75);
     EXPECT_EQ(json.at("compile_seconds").at("kernels").at("camera"), 0.25);
     EXPECT_EQ(json.at("memory").at("device_bytes"), 1234);

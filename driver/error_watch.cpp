@@ -1,0 +1,19 @@
+#include "driver/error_watch.h"
+
+namespace gradus {
+
+ErrorWatch::ErrorWatch(Method &method, double aim, std::uint64_t pixels) : method_(method), aim_(aim), pixels_(pixels) {
+    method_.pause_at(next_ * pixels_);
+}
+
+bool ErrorWatch::is_reached() {
+    if (pixels_ == 0 || method_.done_samples() < next_ * pixels_)
+        return false;
+    method_.image();
+    estimate_ = method_.statistics().estimated_error;
+    next_ *= 2;
+    method_.pause_at(next_ * pixels_);
+    return estimate_ && *estimate_ <= aim_; // NaN is not
+}
+
+} // namespace gradus

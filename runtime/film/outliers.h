@@ -1,0 +1,12 @@
+// Images that stand for the reference that there is not: what a pixel is weighed by must not be its own outlier.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace gradus {
+
+/// Each value of a plane, but no more than the second largest and no less than the second smallest of those around it.
+std::vector<double> without_outliers(const std::vector<double> &plane, std::uint32_t width, std::uint32_t height);
+
+} // namespace gradus
