@@ -28,7 +28,9 @@ Rgb LightBuilder::mean_of(const Emitter &emitter) {
 }
 
 void LightBuilder::add_texture(const Emitter &emitter) {
-    const auto width = [](const Vector3 &axis, float size) { return Vector3{axis.x / size, axis.y / size, axis.z / size}; };
+    const auto width = [](const Vector3 &axis, float size) {
+        return Vector3{axis.x / size, axis.y / size, axis.z / size};
+    };
     const bool has_picture = emitter.kind == Emitter::Kind::spot || emitter.kind == Emitter::Kind::projector;
     const Vector3 u = has_picture ? width(emitter.axes[0], emitter.picture[0]) : Vector3{};
     const Vector3 v = has_picture ? width(emitter.axes[1], emitter.picture[1]) : Vector3{};
