@@ -12,8 +12,7 @@ STAGE photon_leave(uint count, uint unit, uint first, uint pairs, uint photon_ro
                    __global const real *photon_sorted, __global const real *light_vertices,
                    __global const uint *light_vertex_marks, __global const uint *material_bin,
                    __global const real *materials, __global real *moved, __global const real *chain,
-                   __global const real *chain_vertex, __global const real *walked,
-                   __global const real *walked_vertex) {
+                   __global const real *chain_vertex, __global const real *walked, __global const real *walked_vertex) {
     const size_t i = work_item();
     if (i >= count)
         return;

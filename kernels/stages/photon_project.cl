@@ -8,9 +8,9 @@
 STAGE photon_project(uint count, uint unit, uint first, uint pairs, uint capacity, uint gather_rows, uint photon_rows,
                      uint pair_rows, uint strip_pixels, uint chain_bin, uint most_inner,
                      __global const uint *moved_index, __global const uint *pair_gather,
-                     __global const uint *pair_photon, __global const real *gather,
-                     __global const real *photon_sorted, __global const uint *light_vertex_marks,
-                     __global const uint *material_bin, __global real *moved, __global real *moved_link) {
+                     __global const uint *pair_photon, __global const real *gather, __global const real *photon_sorted,
+                     __global const uint *light_vertex_marks, __global const uint *material_bin, __global real *moved,
+                     __global real *moved_link) {
     const size_t i = work_item();
     if (i >= count)
         return;

@@ -1,6 +1,6 @@
-/* photon_reconnect: photons whose last vertex is of one BSDF kind, or with LAST_IS_LIGHT on a light, and stays where it is: places `first` on of
- * `moved_index`. Sends a ray from there towards where the offset photon must be, with the power that it brings (Hua et
- * al. 2017, eq. 6 and direct reconnection; kernels/lib/shift_photon.h).
+/* photon_reconnect: photons whose last vertex is of one BSDF kind, or with LAST_IS_LIGHT on a light, and stays where it
+ * is: places `first` on of `moved_index`. Sends a ray from there towards where the offset photon must be, with the
+ * power that it brings (Hua et al. 2017, eq. 6 and direct reconnection; kernels/lib/shift_photon.h).
  *
  * Nothing is sent where the shift fails, or where the path cannot go that way: then it would not find the way back. */
 #include "kernels/lib/light_vertex_leave.h"
@@ -21,8 +21,7 @@ STAGE photon_reconnect(uint count, uint unit, uint first, uint pairs, uint gathe
     const uint record = AT_UINT(photon_sorted, before, from);
     const vec3 position = VERTEX_V3(position), geometric = VERTEX_V3(geometric);
     const vec3 direction = v3_neg(AT_V3(photon_sorted, wi, from));
-    const vec3 origin =
-        ray_origin(position, geometric, VERTEX_REAL(offset), direction);
+    const vec3 origin = ray_origin(position, geometric, VERTEX_REAL(offset), direction);
     const shifted_photon shifted = photon_shift_from(origin, AT_V3(photon_sorted, position, from), PHOTON_DISC(row),
                                                      PHOTON_DISC(row + (j + 1u) * strip_pixels));
     const vec3 way = v3_sub(shifted.target, origin);

@@ -23,10 +23,9 @@ STAGE photon_walk(uint count, uint unit, uint first, uint pairs, uint capacity, 
     const uint row = pair_gather[pair], from = pair_photon[pair], at = row + (j + 1u) * strip_pixels;
     const uint primitive = AT_UINT(moved, primitive, to);
     const int is_hit = primitive < ray_first_special;
-    const surface_point point = surface_point_of(triangles, triangle_normals, triangle_tangents, spheres, unit,
-                                                 triangle_count, primitive_material, material_back,
-                                                 is_hit ? primitive : 0u, AT_V3(moved, origin, to),
-                                                 AT_V3(moved, direction, to));
+    const surface_point point = surface_point_of(
+        triangles, triangle_normals, triangle_tangents, spheres, unit, triangle_count, primitive_material,
+        material_back, is_hit ? primitive : 0u, AT_V3(moved, origin, to), AT_V3(moved, direction, to));
     const photon_disc base = PHOTON_DISC(row), offset = PHOTON_DISC(at);
     const int arrives = is_hit & (AT_UINT(moved_link, open, i) != 0u) &
                         photon_counts(offset, point.position, point.geometric) &
@@ -35,8 +34,7 @@ STAGE photon_walk(uint count, uint unit, uint first, uint pairs, uint capacity, 
     AT(moved, ratio, to) = AT(moved, ratio, to) / facing;
 
     const uint last = AT_UINT(photon_sorted, before, from);
-    const photon_chain found =
-        photon_chain_of(light_vertex_marks, material_bin, chain_bin, most_inner, unit, last);
+    const photon_chain found = photon_chain_of(light_vertex_marks, material_bin, chain_bin, most_inner, unit, last);
     const vec3 start = FIELD_V3(light_vertex, light_vertices, found.start, position);
     const vec3 start_normal = FIELD_V3(light_vertex, light_vertices, found.start, geometric);
     const vec3 end = AT_V3(photon_sorted, position, from), end_normal = AT_V3(photon_sorted, normal, from);
