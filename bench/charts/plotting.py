@@ -24,6 +24,8 @@ BLUE, SKY, GREEN, ORANGE, VERMILLION, PURPLE, YELLOW, GREY = (
 METHODS = {
     "pt": (INK, "o", "-"),
     "gpt": (VERMILLION, "D", "-"),
+    "gpt:guided": (ORANGE, "d", "-"),
+    "pt:guided": (GREY, "o", "-"),
     "auto": (PURPLE, "s", "-"),
     "sppm": (SKY, "P", "-"),
     "gpm": (ORANGE, "X", "-"),
@@ -34,6 +36,8 @@ OTHERS = [(GREY, "*", "-"), (YELLOW, "p", "-"), (GREY, "h", "--")]
 METHOD_TEXTS = {
     "pt": "pt, path tracing",
     "gpt": "gpt, gradient-domain path tracing",
+    "gpt:guided": "gpt, guided by a filter",
+    "pt:guided": "pt, guided by a filter",
     "sppm": "sppm, progressive photon mapping",
     "gpm": "gpm, gradient-domain photon density estimation",
     "denoised": "pt, denoised (Open Image Denoise)",
