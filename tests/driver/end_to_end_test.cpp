@@ -230,7 +230,10 @@ TEST_F(EndToEndTuning, RendersWhereTheTuningIsDamaged) {
     EXPECT_THAT(run({"devices"}).out, HasSubstr("tuned        no: "));
 }
 
-TEST_F(EndToEndTuning, TuneKeepsWhatItFinds) {
+/// Each candidate compiles its kernels anew; the tuner itself has tests of its own.
+class FullEndToEndTuning : public EndToEndTuning {};
+
+TEST_F(FullEndToEndTuning, TuneKeepsWhatItFinds) {
     const Outcome outcome = run({"tune", scene, "--size", "48x48", "--max-depth", "2"});
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_THAT(outcome.out, HasSubstr("tuning.json"));
