@@ -68,12 +68,7 @@ void add_render_command(CLI::App &app, const Services &services, std::function<i
             "this or less (pt, gpt): 0.01 is noise of a tenth. Looked at after 16, 32, 64 ... samples a pixel; the "
             "file's sample count is then no limit, --spp and --time are. Implies --error")
         ->type_name("RELMSE")
-        ->check(CLI::Validator(
-            [](std::string &value) {
-                const std::optional<double> number = finite_number(value);
-                return number && *number > 0 ? std::string() : fmt::format("'{}' is not a number above 0", value);
-            },
-            ""))
+        ->check(CLI::Validator(complain_unless_positive, ""))
         ->group(samples);
     command.add_option("--seed", request->method.options.seed, "Images of different seeds are independent")
         ->check(CLI::Validator(

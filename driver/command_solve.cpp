@@ -63,11 +63,6 @@ std::string complain_about_method(std::string &text) {
     return methods.count(text) ? "" : fmt::format("'{}' is not one of auto, jacobi, cg, pcg, multigrid", text);
 }
 
-std::string complain_about_tolerance(std::string &text) {
-    const auto number = finite_number(text);
-    return number && *number > 0 ? "" : fmt::format("'{}' is not a number above 0", text);
-}
-
 std::string complain_about_damping(std::string &text) {
     const auto number = finite_number(text);
     return number && *number > 0 && *number <= 1 ? "" : fmt::format("'{}' is not above 0 and at most 1", text);
@@ -200,7 +195,7 @@ void add_solver_options(CLI::App &command, SolveRequest &request) {
         .add_option("--tolerance", options.tolerance,
                     "Where to stop. L2: relative residual, 1e-5; L1: relative decrease of the sum by a step, 1e-4")
         ->type_name("NUMBER")
-        ->check(check("", complain_about_tolerance))
+        ->check(check("", complain_unless_positive))
         ->group(group);
     command
         .add_option(

@@ -20,6 +20,11 @@ std::optional<double> finite_number(const std::string &text) {
     return number;
 }
 
+std::string complain_unless_positive(std::string &text) {
+    const auto number = finite_number(text);
+    return number && *number > 0 ? "" : fmt::format("'{}' is not a number above 0", text);
+}
+
 void add_reconstruction_option(CLI::App &command, const char *group, Reconstruction standard,
                                std::function<void(Reconstruction)> set) {
     static const std::map<std::string, Reconstruction> reconstructions{{"l1", Reconstruction::l1},

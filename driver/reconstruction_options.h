@@ -16,6 +16,9 @@ namespace gradus {
 /// The number that the whole text is, or nothing; NaN and infinity are none.
 std::optional<double> finite_number(const std::string &text);
 
+/// A complaint about a text that is not a number above 0, or nothing: a check for CLI11.
+std::string complain_unless_positive(std::string &text);
+
 /// --reconstruction l1|l2|weighted|guided, and --norm, the old name of the first two. `standard` is the default to
 /// print.
 void add_reconstruction_option(CLI::App &command, const char *group, Reconstruction standard,

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <iterator>
 #include <vector>
@@ -86,19 +85,19 @@ Image PathTracer::image() {
     if (is_guided())
         guide(image, tells_error ? &errors : nullptr);
     else if (tells_error)
-        errors = errors_of_mean();
+        errors = errors_of_halves(half_image(0), half_image(1),
+                                  double(samples_of_half(done_, session_.pixels(), 0)) / double(done_));
     if (tells_error)
         statistics_.estimated_error = add_error_layer(image, errors);
     return image;
 }
 
-SquaredErrors PathTracer::errors_of_mean() const {
+std::vector<float> PathTracer::half_image(int half) const {
     const std::size_t pixels = session_.pixels();
-    std::array<std::vector<float>, 2> halves{std::vector<float>(3 * pixels), std::vector<float>(3 * pixels)};
-    for (int i = 0; i < 2; ++i)
-        for (int c = 0; c < 3; ++c)
-            film_.half_mean(i, done_, c, halves[i].data() + c * pixels);
-    return errors_of_halves(halves[0], halves[1], double(samples_of_half(done_, pixels, 0)) / double(done_));
+    std::vector<float> image(3 * pixels);
+    for (int c = 0; c < 3; ++c)
+        film_.half_mean(half, done_, c, image.data() + c * pixels);
+    return image;
 }
 
 void PathTracer::guide(Image &image, SquaredErrors *errors) {
@@ -108,13 +107,14 @@ void PathTracer::guide(Image &image, SquaredErrors *errors) {
         Device &device = session_.device;
         HalvedImages halves;
         for (int i = 0; i < 2; ++i) {
-            halves[i].primal = uploaded(device, "primal", pixels, [&](std::uint32_t c, float *plane) {
-                film_.half_mean(i, done_, int(c), plane);
-                if (options_.layers)
-                    layers.push_back({fmt::format("primal_{}.{}", i == 0 ? "even" : "odd", "RGB"[c]),
-                                      std::vector<float>(plane, plane + pixels)});
-            });
+            const std::vector<float> image_of_half = half_image(i);
+            halves[i].primal = Buffer(device, "primal", image_of_half.data(), image_of_half.size() * sizeof(float));
             halves[i].samples = samples_of_half(done_, pixels, i);
+            for (int c = 0; options_.layers && c < 3; ++c) {
+                const float *plane = image_of_half.data() + c * pixels;
+                layers.push_back({fmt::format("primal_{}.{}", i == 0 ? "even" : "odd", "RGB"[c]),
+                                  std::vector<float>(plane, plane + pixels)});
+            }
         }
         GuideInputs inputs;
         inputs.features = uploaded_features(device, image);

@@ -31,8 +31,8 @@ class PathTracer final : public Method {
     bool has_halves() const { return done_ >= 2 * session_.pixels(); }
     /// Makes of the mean of all samples one that follows a guide, and leaves its features out if they are not wanted.
     void guide(Image &image, SquaredErrors *errors);
-    /// Of the mean of all samples, from both halves.
-    SquaredErrors errors_of_mean() const;
+    /// The mean of a half's samples: planes of R, G and B.
+    std::vector<float> half_image(int half) const;
 
     const RenderOptions options_;
     Session session_;

@@ -214,18 +214,10 @@ GRADUS_FN light_emission emission_sampling(GRADUS_GLOBAL const real *lights, GRA
     place =
         point_of_picture(PICTURE_V3(light, along_u), PICTURE_V3(light, along_v), e.direction, v3_dot(e1, e.direction));
 #endif
-#if LIGHTS_HAVE_SURFACE_TEXTURES && TRAIT_LIGHT_SPHERE
+#if LIGHTS_HAVE_SURFACE_TEXTURES
     /* After what a spot computes alike (kernels/lib/ordered.h). */
-    const vec3 outward = v3_scale(v3_after(e.normal, e.power.r), e1.y);
-    place = texture_point_select(
-        IS_LIGHT_KIND(sphere),
-        point_of_sphere(sphere_place(sphere_axes, unit, LIGHT_TEXTURE_FIELD(light, sphere), outward)), place);
-#endif
-#if LIGHTS_HAVE_SURFACE_TEXTURES && TRAIT_LIGHT_TRIANGLE
-    const point2 weights = warp_uniform_triangle(on_light.x, on_light.y);
-    place = texture_point_select(
-        IS_LIGHT_KIND(triangle),
-        point_of_triangle(triangle_texcoords, unit, LIGHT_TEXTURE_FIELD(light, triangle), weights.x, weights.y), place);
+    place =
+        place_of_light(kind, light, on_light, v3_after(e.normal, e.power.r), e1.y, place, unit LIGHT_TEXTURE_ARGUMENTS);
 #endif
     e.power = rgb_mul(
         e.power, light_texture_at(textures, texture_reals, texels, unit, LIGHT_TEXTURE_FIELD(light, texture), place));

@@ -124,6 +124,28 @@ GRADUS_FN light_choice light_from_environment(rgb value, vec3 x, vec3 y, vec3 z,
     return s;
 }
 
+#if TRAIT_TEXTURED_LIGHTS
+/* Where a point that was chosen on a light lies on its texture: of a triangle by the uniform numbers `chosen`, of a
+ * sphere by the normal there, which `facing` (1 or -1) turns outward; `thrown` of lights that are no surfaces. */
+GRADUS_FN texture_point place_of_light(uint kind, uint light, point2 chosen, vec3 normal, real facing,
+                                       texture_point thrown, uint unit LIGHT_TEXTURE_PARAMETERS) {
+    texture_point place = thrown;
+#if LIGHTS_HAVE_SURFACE_TEXTURES && TRAIT_LIGHT_SPHERE
+    const vec3 outward = v3_scale(normal, facing);
+    place = texture_point_select(
+        IS_LIGHT_KIND(sphere),
+        point_of_sphere(sphere_place(sphere_axes, unit, LIGHT_TEXTURE_FIELD(light, sphere), outward)), place);
+#endif
+#if LIGHTS_HAVE_SURFACE_TEXTURES && TRAIT_LIGHT_TRIANGLE
+    const point2 weights = warp_uniform_triangle(chosen.x, chosen.y);
+    place = texture_point_select(
+        IS_LIGHT_KIND(triangle),
+        point_of_triangle(triangle_texcoords, unit, LIGHT_TEXTURE_FIELD(light, triangle), weights.x, weights.y), place);
+#endif
+    return place;
+}
+#endif
+
 GRADUS_FN chosen_light light_sampling(GRADUS_GLOBAL const real *lights, GRADUS_GLOBAL const uint *light_kinds,
                                       GRADUS_GLOBAL const uint *light_alias, uint light_count, real scene_diameter,
                                       uint unit, vec3 position,
@@ -195,19 +217,13 @@ GRADUS_FN chosen_light light_sampling(GRADUS_GLOBAL const real *lights, GRADUS_G
 #if LIGHTS_HAVE_PROJECTORS
     s.value = rgb_scale(s.value, IS_LIGHT_KIND(projector) ? light_projector_profile(place, ahead) : R(1));
 #endif
-#if LIGHTS_HAVE_SURFACE_TEXTURES && TRAIT_LIGHT_SPHERE
+#if LIGHTS_HAVE_SURFACE_TEXTURES
+    point2 on_light;
+    on_light.x = u.c;
+    on_light.y = u.d;
     /* After what a spot computes alike (kernels/lib/ordered.h). */
-    const vec3 outward = v3_scale(v3_after(s.normal, s.value.r), e1.y);
-    place = texture_point_select(
-        IS_LIGHT_KIND(sphere),
-        point_of_sphere(sphere_place(sphere_axes, unit, LIGHT_TEXTURE_FIELD(light, sphere), outward)), place);
-#endif
-#if LIGHTS_HAVE_SURFACE_TEXTURES && TRAIT_LIGHT_TRIANGLE
-    const point2 on_light = warp_uniform_triangle(u.c, u.d);
-    place = texture_point_select(
-        IS_LIGHT_KIND(triangle),
-        point_of_triangle(triangle_texcoords, unit, LIGHT_TEXTURE_FIELD(light, triangle), on_light.x, on_light.y),
-        place);
+    place =
+        place_of_light(kind, light, on_light, v3_after(s.normal, s.value.r), e1.y, place, unit LIGHT_TEXTURE_ARGUMENTS);
 #endif
     chosen.untextured = s.value;
     s.value = rgb_mul(

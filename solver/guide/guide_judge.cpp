@@ -35,7 +35,8 @@ double GuideJudge::squared_brightness(const Buffer &image) const {
 }
 
 void GuideJudge::run(const std::array<const Buffer *, 2> &halves, double share,
-                     const std::array<const Buffer *, 2> &guides, Buffer &result, const Buffer *followed) {
+                     const std::array<const Buffer *, 2> &guides, Buffer &result, const Buffer *followed,
+                     std::vector<float> *kept) {
     const Buffer moments = make_.planes("moments", grid_, GUIDE_MOMENTS);
     const Buffer smoothed = make_.planes("smoothed", grid_, GUIDE_MOMENTS);
     const Buffer shares = make_.planes("shares", grid_, GUIDE_SHARES);
@@ -67,9 +68,9 @@ void GuideJudge::run(const std::array<const Buffer *, 2> &halves, double share,
     wide_.release();
     narrow_.release();
 
-    if (kept_)
-        *kept_ = make_.precision() == Precision::double_ ? quotients_inside<double>(moments)
-                                                         : quotients_inside<float>(moments);
+    if (kept)
+        *kept = make_.precision() == Precision::double_ ? quotients_inside<double>(moments)
+                                                        : quotients_inside<float>(moments);
     mean_share_ = make_.precision() == Precision::double_ ? mean_inside<double>(shares) : mean_inside<float>(shares);
 }
 

@@ -33,11 +33,9 @@ class GuideJudge {
     /// All are of three channels, planes as PoissonImages has them. `share`: of the samples that the first half has.
     /// A pixel whose halves are not finite follows the guide, one whose guide is not finite the halves.
     /// `followed`: the guide that is followed instead of the mean of both, made of all samples as they are of halves.
+    /// `kept`: gets the share of the guide by pixel, where both images are there.
     void run(const std::array<const Buffer *, 2> &halves, double share, const std::array<const Buffer *, 2> &guides,
-             Buffer &result, const Buffer *followed = nullptr);
-    /// What becomes of the share of the guide by pixel in each run() from now on, where both images are there; null:
-    /// nothing.
-    void keep_shares(std::vector<float> *kept) { kept_ = kept; }
+             Buffer &result, const Buffer *followed = nullptr, std::vector<float> *kept = nullptr);
     /// The mean over the pixels of the share of the guide in the last image.
     double mean_share() const { return mean_share_; }
 
@@ -53,7 +51,6 @@ class GuideJudge {
     Kernel moments_, share_, blend_;
     solver::GuideSmoother wide_, narrow_;
     double mean_share_ = 0;
-    std::vector<float> *kept_ = nullptr;
 };
 
 } // namespace gradus

@@ -67,32 +67,28 @@ PoissonReport GuidedReconstruction::solve(const HalvedImages &halves, const Guid
         guide = Buffer(device_, "guide", result.bytes());
     const double share = double(halves[0].samples) / double(halves[0].samples + halves[1].samples);
     const std::array<const Buffer *, 2> images{&solutions[0], &solutions[1]}, of_halves{&guides[0], &guides[1]};
-    std::vector<float> shares;
-    judge_.keep_shares(errors ? &shares : nullptr);
-    const auto finish_errors = [&] {
-        if (errors)
-            *errors = errors_of_guided(images, share, of_halves, shares);
-    };
-    if (filter_) {
+    Buffer followed;
+    if (filter_)
         filter_->run(images, share, inputs.features, {&guides[0], &guides[1]});
-        judge_.run(images, share, of_halves, result);
-        finish_errors();
-        return report;
+    else {
+        const Denoiser::Features features = cleaned(*denoiser_, inputs.features, solver_.width(), solver_.height());
+        for (int i = 0; i < 2; ++i)
+            denoise(halves[i].primal, is_solved ? &solutions[i] : nullptr, inputs.direct, features, guides[i]);
+        // Halves tell how good a denoised image is. One of all samples is a little better.
+        ImageMixer mixer(device_);
+        Buffer primal(device_, "primal", result.bytes()), solution;
+        mixer.mix(halves[0].primal, share, halves[1].primal, 1 - share, primal);
+        if (is_solved) {
+            solution = Buffer(device_, "solution", result.bytes());
+            mixer.mix(solutions[0], share, solutions[1], 1 - share, solution);
+        }
+        followed = Buffer(device_, "guide", result.bytes());
+        denoise(primal, is_solved ? &solution : nullptr, inputs.direct, features, followed);
     }
-    const Denoiser::Features features = cleaned(*denoiser_, inputs.features, solver_.width(), solver_.height());
-    for (int i = 0; i < 2; ++i)
-        denoise(halves[i].primal, is_solved ? &solutions[i] : nullptr, inputs.direct, features, guides[i]);
-    // Halves tell how good a denoised image is. One of all samples is a little better.
-    ImageMixer mixer(device_);
-    Buffer primal(device_, "primal", result.bytes()), solution, guide(device_, "guide", result.bytes());
-    mixer.mix(halves[0].primal, share, halves[1].primal, 1 - share, primal);
-    if (is_solved) {
-        solution = Buffer(device_, "solution", result.bytes());
-        mixer.mix(solutions[0], share, solutions[1], 1 - share, solution);
-    }
-    denoise(primal, is_solved ? &solution : nullptr, inputs.direct, features, guide);
-    judge_.run(images, share, of_halves, result, &guide);
-    finish_errors();
+    std::vector<float> shares;
+    judge_.run(images, share, of_halves, result, followed.valid() ? &followed : nullptr, errors ? &shares : nullptr);
+    if (errors)
+        *errors = errors_of_guided(images, share, of_halves, shares);
     return report;
 }
 

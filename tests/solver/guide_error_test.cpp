@@ -56,8 +56,7 @@ class KnownErrors {
         Buffer result(test_device(), "result", 3 * pixels * sizeof(float));
         GuideJudge judge(test_device(), width, height);
         std::vector<float> shares;
-        judge.keep_shares(&shares);
-        judge.run({&images[0], &images[1]}, case_.share, {&followed[0], &followed[1]}, result);
+        judge.run({&images[0], &images[1]}, case_.share, {&followed[0], &followed[1]}, result, nullptr, &shares);
         image.resize(3 * pixels);
         result.read(image.data(), result.bytes());
         errors = errors_of_guided({&images[0], &images[1]}, case_.share, {&followed[0], &followed[1]}, shares);
