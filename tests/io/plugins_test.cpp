@@ -470,7 +470,7 @@ TEST(EmitterPlugin, Projector) {
         return error_of_text(scene_around("<emitter type=\"projector\">\n" + inside + "</emitter>"));
     };
     const std::string white = "<rgb name=\"irradiance\" value=\"1\"/>";
-    EXPECT_THAT(error(""), HasSubstr("scene.xml:3: a projector needs an irradiance"));
+    EXPECT_THAT(error(""), HasSubstr("scene.xml:3: projector needs an irradiance"));
     EXPECT_THAT(error(white + "<transform name=\"to_world\"><scale value=\"2\"/></transform>"),
                 HasSubstr("not stretched"));
     EXPECT_THAT(error(white + "<float name=\"fov\" value=\"180\"/>"), HasSubstr("between 0 and 180"));
