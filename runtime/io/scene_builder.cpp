@@ -23,8 +23,8 @@ constexpr std::size_t longest_alias = 16;       // names that stand for names
 
 SceneBuilder::SceneBuilder(const Document &document, const LoadOptions &options, FileFinder &finder,
                            Diagnostics &diagnostics)
-    : document_(document), limits_(options.limits), ignore_media_(options.ignore_media), finder_(finder),
-      diagnostics_(diagnostics),
+    : document_(document), limits_(options.limits), ignore_media_(options.ignore_media), phases_(options.phases),
+      finder_(finder), diagnostics_(diagnostics),
       resolve_([this](const Element &reference) -> const Element & { return resolve(reference); }),
       read_texture_([this](const Element &element, double lowest, double highest) {
           return texture(element, lowest, highest);

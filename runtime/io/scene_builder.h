@@ -77,6 +77,8 @@ class SceneBuilder {
     Result build_object(const Element &element);
     const ResolveReference &resolver() const { return resolve_; }
     Diagnostics &diagnostics() { return diagnostics_; }
+    /// May be nullptr.
+    Phases *phases() const { return phases_; }
 
   private:
     Bsdf with_map(const Bsdf &bsdf, const NormalTexture &map, const Location &location);
@@ -115,6 +117,7 @@ class SceneBuilder {
     const Document &document_;
     const LoadLimits limits_;
     const bool ignore_media_;
+    Phases *const phases_;
     FileFinder &finder_;
     Diagnostics &diagnostics_;
     ResolveReference resolve_;

@@ -3,6 +3,7 @@
 #include "runtime/io/file_search.h"
 #include "runtime/io/plugins/plugin.h"
 #include "runtime/io/scene_builder.h"
+#include "runtime/phases.h"
 
 #include <tbb/parallel_for.h>
 
@@ -131,6 +132,7 @@ void SceneBuilder::build_shapes(const std::vector<const Element *> &elements, st
 }
 
 void SceneBuilder::build_line(std::deque<ShapeInLine> &line, std::vector<Prototype> *group) {
+    const Phase phase(phases_, phase_names::meshes);
     const auto read = [](ShapeInLine &shape) {
         auto &pending = std::get<PendingMesh>(shape.geometry);
         try {

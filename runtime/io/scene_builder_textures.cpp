@@ -4,6 +4,7 @@
 #include "runtime/io/bitmap_reader.h"
 #include "runtime/io/scene_builder.h"
 #include "runtime/io/text.h"
+#include "runtime/phases.h"
 #include "runtime/scene/traits.h"
 
 #include <fmt/format.h>
@@ -20,6 +21,7 @@ std::shared_ptr<const Bitmap> SceneBuilder::bitmap(const std::filesystem::path &
     const auto key = std::make_tuple(path, is_linear, channel);
     auto known = bitmaps_.find(key);
     if (known == bitmaps_.end()) {
+        const Phase phase(phases_, phase_names::pictures);
         ReadBitmap read;
         try {
             read = read_bitmap(path.string(), {is_linear, channel, limits_.texture_bytes / LoadLimits().texture_bytes});

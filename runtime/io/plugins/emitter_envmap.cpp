@@ -1,6 +1,7 @@
 // <emitter type="envmap">: light from every direction, by an image in latitude and longitude.
 #include "runtime/io/environment_file.h"
 #include "runtime/io/plugins/plugin.h"
+#include "runtime/phases.h"
 
 #include <cmath>
 
@@ -42,6 +43,7 @@ Emitter emitter_envmap(Properties &properties, SceneBuilder &builder) {
             throw properties.error("to_world", "an environment map can be turned and mirrored, not stretched");
         emitter.axes[a] = to_float(normalize(axes[a]));
     }
+    const Phase phase(builder.phases(), phase_names::pictures);
     emitter.map = read_environment(builder.find_file(properties), builder.limits().images,
                                    properties.location_of("filename"), builder.diagnostics());
     const Rgb all = emitter.map->integral;
