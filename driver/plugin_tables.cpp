@@ -44,7 +44,7 @@ std::string type_text(const Parameter &parameter) {
         return "colour";
     case Takes::textured_emission:
         return "colour or texture";
-    case Takes::index:
+    case Takes::color:
         return "colour";
     case Takes::textured_number:
         return "number or texture";

@@ -11,7 +11,7 @@ cd "$(dirname "$0")/.."
 
 seconds=${1:-60}
 shift || true
-[ $# -gt 0 ] || set -- xml ply obj serialized exr
+[ $# -gt 0 ] || set -- xml ply obj serialized exr png jpg hdr tga
 if ! command -v clang++ > /dev/null || ! clang++ -fsanitize=fuzzer -x c++ - -o /dev/null 2> /dev/null <<< \
     'extern "C" int LLVMFuzzerTestOneInput(const unsigned char *, unsigned long) { return 0; }'; then
     echo "fuzz: skipped: no clang++ with libFuzzer (Debian: clang)"
@@ -19,6 +19,7 @@ if ! command -v clang++ > /dev/null || ! clang++ -fsanitize=fuzzer -x c++ - -o /
 fi
 cmake --preset fuzz > /dev/null
 cmake --build --preset fuzz --parallel "$(nproc)"
+export LSAN_OPTIONS=suppressions=$PWD/tests/fuzz/leaks.txt:print_suppressions=0
 failed=0
 for name in "$@"; do
     found=build-fuzz/corpus/$name

@@ -22,7 +22,7 @@ enum class Takes {
     reflectance,       ///< a colour from 0 to 1, or a texture
     emission,          ///< a colour of at least 0, a light's
     textured_emission, ///< the same, or a texture
-    index,             ///< a colour of indices of refraction
+    color,             ///< a colour of at least 0, of neither a surface nor a light: an index, or within a texture
     textured_number,   ///< a number, or a texture
     refractive_index,  ///< a number, or the name of a material
     objects,           ///< nested objects; the parameter's name is their tag

@@ -85,8 +85,12 @@ Rgb Properties::read_spectrum(const Element &property, const std::string &name, 
         throw SceneError(property.location, "\"" + name +
                                                 "\" needs one number, three (RGB), or wavelength:value pairs," +
                                                 " not \"" + text + "\"");
-    return values->size() == 1 ? gray((*values)[0])
-                               : Rgb{float((*values)[0]), float((*values)[1]), float((*values)[2])};
+    if (values->size() == 3)
+        return {float((*values)[0]), float((*values)[1]), float((*values)[2])};
+    if (use != ColorUse::emission || element_.is_legacy()) // of 0.x the same in all channels, a light's too
+        return gray((*values)[0]);
+    const Rgb tint = spectrum_to_rgb({{0, 1.0}, {1e6, 1.0}}, use); // of equal energy at all wavelengths
+    return {float(tint.r * (*values)[0]), float(tint.g * (*values)[0]), float(tint.b * (*values)[0])};
 }
 
 Double3 Properties::read_rgb(const std::string &text, const Parameter &parameter, const Location &location) {
@@ -129,7 +133,7 @@ Color Properties::color_of_texture(const Element &texture, double highest) {
 
 Color Properties::color(const std::string &name) {
     const Parameter &parameter =
-        declared(name, {Takes::reflectance, Takes::emission, Takes::textured_emission, Takes::index});
+        declared(name, {Takes::reflectance, Takes::emission, Takes::textured_emission, Takes::color});
     const bool reflects = parameter.takes == Takes::reflectance;
     const Element *property = find(parameter);
     if (!property)
@@ -138,7 +142,7 @@ Color Properties::color(const std::string &name) {
         if (const Element *texture = texture_of(*property))
             return color_of_texture(*texture, reflects ? 1 : std::numeric_limits<float>::max());
     const ColorUse use = reflects                          ? ColorUse::reflectance
-                         : parameter.takes == Takes::index ? ColorUse::index
+                         : parameter.takes == Takes::color ? ColorUse::index
                                                            : ColorUse::emission;
     Color color = read_color(*property, parameter, use);
     for (float value : {color.r, color.g, color.b}) {

@@ -263,7 +263,7 @@ class Declarations : public testing::Test {
         case Takes::textured_emission:
             return color(true);
         case Takes::emission:
-        case Takes::index:
+        case Takes::color:
             return color(false);
         case Takes::refractive_index:
             return {named("float", name, "1.7"), named("string", name, "diamond")};
@@ -347,7 +347,7 @@ std::vector<std::string> wrong_values(const Parameter &parameter) {
     case Takes::reflectance:
     case Takes::emission:
     case Takes::textured_emission:
-    case Takes::index:
+    case Takes::color:
         list = {named("rgb", name, "rubbish"), named("rgb", name, "-1"), named("rgb", name, "1 2"),
                 named("string", name, "1"), named("spectrum", name, "500:rubbish")};
         break;

@@ -363,6 +363,12 @@ TEST(EmitterPlugin, Constant) {
         emitter_of("<emitter type=\"constant\"><spectrum name=\"radiance\" value=\"5000\"/></emitter>", "0.6.0");
     EXPECT_EQ(emitter.kind, Emitter::Kind::constant);
     expect_rgb(emitter.value, 5000, 5000, 5000);
+    // From 2.0 on one number is equal energy at all wavelengths, as Mitsuba 3.9.1 renders it:
+    // (2.40959, 1.89658, 1.81783).
+    expect_rgb(emitter_of("<emitter type=\"constant\"><spectrum name=\"radiance\" value=\"2\"/></emitter>").value,
+               2.40959, 1.89658, 1.81783, 2e-3);
+    expect_rgb(emitter_of("<emitter type=\"constant\"><float name=\"radiance\" value=\"2\"/></emitter>").value, 2, 2,
+               2);
     expect_rgb(emitter_of("<emitter type=\"constant\"/>").value, 1, 1, 1);
 }
 
@@ -574,6 +580,12 @@ TEST(EmitterPlugin, EnvironmentMapsWithBadTexels) {
                 ElementsAre(HasSubstr("1 values that are not numbers")));
     const LoadedScene loaded = load_with_map(emitter, infinity);
     EXPECT_THAT(loaded.warnings, ElementsAre(HasSubstr("1 infinite values, which count as its largest one, 3")));
+    EXPECT_THAT(load_with_map(emitter, 3e38f).warnings, // whose sum over the sphere is infinite
+                ElementsAre(HasSubstr("1 infinite values, which count as its largest one, 3")));
+    EXPECT_THROW(
+        load_with_map("<emitter type=\"envmap\">" + sky_file + "<float name=\"scale\" value=\"1e30\"/></emitter>",
+                      1e30f),
+        Error);
     // Five texels of 1, and one of 3: each has a sixth of the sphere.
     EXPECT_NEAR(loaded.scene.emitters.at(0).map->integral.r, 4 * 3.14159265358979 * 8 / 6, 1e-4);
     // A black one, by its scale, is no light.

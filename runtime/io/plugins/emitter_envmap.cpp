@@ -10,7 +10,8 @@ namespace gradus {
 Declaration declare_emitter_envmap() {
     return {
         "light from every direction, by an image in latitude and longitude. Values are kept to 11 bits, so half floats "
-        "and RGBE exactly; negative ones and those that are no number count as 0, infinite ones as the largest, with a "
+        "and RGBE exactly; negative ones and those that are no number count as 0, infinite ones and those above 1e30 "
+        "as the largest, with a "
         "warning",
         joined({{Parameter{"filename", Takes::filename, nullptr,
                            "EXR, HDR, PNG, JPEG and what else OpenImageIO reads, of any size; 8 bits are decoded from "
@@ -47,6 +48,8 @@ Emitter emitter_envmap(Properties &properties, SceneBuilder &builder) {
     emitter.map = read_environment(builder.find_file(properties), builder.limits().images,
                                    properties.location_of("filename"), builder.diagnostics());
     const Rgb all = emitter.map->integral;
+    if (!std::isfinite(scale * all.r + scale * all.g + scale * all.b))
+        throw properties.error("scale", "the environment is too bright for single precision");
     if (all.r > 0 || all.g > 0 || all.b > 0) // a black one is no light
         emitter.value = {scale, scale, scale};
     return emitter;

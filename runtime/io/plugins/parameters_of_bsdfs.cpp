@@ -115,9 +115,9 @@ void read_principled(Properties &properties, Bsdf &bsdf) {
 ParameterList parameters_of_conductor() {
     return {
         Parameter{"material", Takes::string, "none", "a metal's name; none: a perfect mirror"}.before_2("Cu"),
-        Parameter{"eta", Takes::index, nullptr, "index of refraction, with k and without material"}.or_else(
+        Parameter{"eta", Takes::color, nullptr, "index of refraction, with k and without material"}.or_else(
             "by material"),
-        Parameter{"k", Takes::index, nullptr, "its imaginary part"}.or_else("by material"),
+        Parameter{"k", Takes::color, nullptr, "its imaginary part"}.or_else("by material"),
         Parameter{"ext_eta", Takes::refractive_index, "vacuum", "index of refraction around it"}.before_2("air").also(
             "ext_ior"),
         {"specular_reflectance", Takes::reflectance, "1", "what reflection is times"}};

@@ -6,8 +6,8 @@ namespace gradus {
 
 Declaration declare_texture_checkerboard() {
     return {"two colours in turn, four fields in [0, 1]²",
-            joined({{{"color0", Takes::emission, "0.4", "where both halves are alike"},
-                     {"color1", Takes::emission, "0.2", "of the others"}},
+            joined({{{"color0", Takes::color, "0.4", "where both halves are alike"},
+                     {"color1", Takes::color, "0.2", "of the others"}},
                     parameters_of_coordinates()})};
 }
 

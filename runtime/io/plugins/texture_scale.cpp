@@ -5,7 +5,7 @@ namespace gradus {
 
 Declaration declare_texture_scale() {
     return {"another texture, times a factor, of 0.x",
-            {{"scale", Takes::emission, "1", "the factor"}, {"texture", Takes::objects, nullptr, "one"}}};
+            {{"scale", Takes::color, "1", "the factor"}, {"texture", Takes::objects, nullptr, "one"}}};
 }
 
 Texture texture_scale(Properties &properties, SceneBuilder &builder) {
