@@ -448,6 +448,8 @@ TEST(EmitterPlugin, SpotWithAPicture) {
     EXPECT_THAT(error(board + board), HasSubstr("scene.xml:4: a spot has one texture"));
     EXPECT_THAT(error(board + "<transform name=\"to_world\"><scale x=\"2\"/></transform>"), HasSubstr("not stretched"));
     EXPECT_THAT(error("<texture type=\"checkerboard\" name=\"intensity\"/>"), HasSubstr("cannot be a texture"));
+    EXPECT_THAT(error("<texture type=\"mesh_attribute\"><string name=\"name\" value=\"face_a\"/></texture>"),
+                HasSubstr("scene.xml:4: a picture to throw cannot be a mesh attribute"));
 }
 
 TEST(EmitterPlugin, Projector) {
@@ -481,6 +483,9 @@ TEST(EmitterPlugin, Projector) {
                 HasSubstr("not stretched"));
     EXPECT_THAT(error(white + "<float name=\"fov\" value=\"180\"/>"), HasSubstr("between 0 and 180"));
     EXPECT_THAT(error(white + "<float name=\"scale\" value=\"-1\"/>"), HasSubstr("at least 0"));
+    EXPECT_THAT(error("<texture type=\"mesh_attribute\" name=\"irradiance\"><string name=\"name\" "
+                      "value=\"face_a\"/></texture>"),
+                HasSubstr("scene.xml:4: a picture to throw cannot be a mesh attribute"));
 }
 
 TEST(EmitterPlugin, AreaOfATexture) {

@@ -31,11 +31,13 @@ Emitter emitter_projector(Properties &properties, SceneBuilder &builder) {
     set_texture(irradiance, emitter);
     read_picture_axes(properties, -1, -1, false, emitter); // as a camera's film: +x to the left, +y up
     double width = 1, height = 1;
-    if (irradiance.texture != no_texture)
+    if (irradiance.texture != no_texture) {
+        check_picture(builder.texture_at(irradiance.texture), properties.location_of("irradiance"));
         if (const auto &bitmap = builder.texture_at(irradiance.texture).bitmap) {
             width = bitmap->width;
             height = bitmap->height;
         }
+    }
     Camera camera;
     read_field_of_view(properties, camera);
     const double tangent = film_tangent(camera, width, height);

@@ -51,6 +51,7 @@ Emitter emitter_spot(Properties &properties, SceneBuilder &builder) {
         if (!(cutoff < 89.9))
             throw properties.error("cutoff_angle", "a spot with a texture needs a cutoff_angle below 90 degrees");
         const FoundTexture found = builder.texture(*pictures[0].element, 0, std::numeric_limits<float>::max());
+        check_picture(builder.texture_at(found.index), pictures[0].location);
         Color color(float(found.range.mean[0]), float(found.range.mean[1]), float(found.range.mean[2]));
         color.texture = found.index;
         set_texture(color, emitter);
