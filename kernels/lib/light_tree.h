@@ -84,7 +84,7 @@ GRADUS_FN light_receiver light_receiver_at(vec3 position, uint normal_bits, real
 
 typedef struct {
     vec3 center, axis; /* the axis times the cosine of the cone */
-    real radius, sine, intensity;
+    real radius, radius_squared, sine, intensity;
     GRADUS_NOT_IN_REGISTERS
 } light_cluster;
 
@@ -99,7 +99,8 @@ GRADUS_FN light_cluster light_cluster_of(GRADUS_GLOBAL const uint *nodes, uint u
     const uint zr = uint_after(CLUSTER_WORD(1u), c.center.y);
     c.center.z = (real)(int)(zr & 0xFFFFu);
     c.radius = (real)(int)(uint_after(zr, c.center.z) >> 16);
-    const uint cone = uint_after(CLUSTER_WORD(2u), c.radius);
+    c.radius_squared = c.radius * c.radius;
+    const uint cone = uint_after(CLUSTER_WORD(2u), c.radius_squared);
     c.axis.x = (real)((int)(cone << 24) >> 24) * R(1.0 / 127);
     c.axis.y = (real)((int)(uint_after(cone, c.axis.x) << 16) >> 24) * R(1.0 / 127);
     c.axis.z = (real)((int)(uint_after(cone, c.axis.y) << 8) >> 24) * R(1.0 / 127);
@@ -117,7 +118,7 @@ GRADUS_FN light_cluster light_cluster_of(GRADUS_GLOBAL const uint *nodes, uint u
  * largest is at most cos t (a . d) + sin t. */
 GRADUS_FN real light_cluster_importance(light_cluster c, light_receiver receiver) {
     const vec3 d = v3_sub(c.center, receiver.position);
-    const real inverse_squared = R(1) / (v3_dot(d, d) + c.radius * c.radius + R(1));
+    const real inverse_squared = R(1) / (v3_dot(d, d) + c.radius_squared + R(1));
     const real inverse = r_sqrt(inverse_squared);
     const real leaving = (c.radius - v3_dot(c.axis, d)) * inverse + c.sine;
     const real arriving = (c.radius + r_abs(v3_dot(receiver.normal, v3_after(d, leaving)))) * inverse;
@@ -206,53 +207,69 @@ GRADUS_FN real light_child_share(light_cluster c0, light_cluster c1, light_clust
     return taken / (((w0 + w1) + w2) + w3);
 }
 
-/* A base path's vertex and those of its offset paths, 0 to 3, who are asked for the same light; and what they answer.
- * No arrays: PoCL's compiler would leave them in memory. */
+/* A base path's vertex and those of its offset paths, 0 to 3, who are asked for the same light. No arrays: PoCL's
+ * compiler would leave them in memory. */
 typedef struct {
     light_receiver base, offset_0, offset_1, offset_2, offset_3;
 } light_receivers;
+
+/* With which probability a way from the root leads to a leaf. */
 typedef struct {
-    real base, offset_0, offset_1, offset_2, offset_3;
+    real base;
+    real offset_0, offset_1, offset_2, offset_3; /* over the base path's */
 } light_paths;
+
 /* Of one of the four; j is a constant once loops are unrolled. */
 #define LIGHT_PATH_OF(paths, j)                                                                                        \
     ((j) == 0u ? (paths).offset_0 : (j) == 1u ? (paths).offset_1 : (j) == 2u ? (paths).offset_2 : (paths).offset_3)
 
-/* With which probability a way from the root leads to a leaf. */
+/* A number that is finite, whatever x is. */
+GRADUS_FN real light_finite(real x) { return r_clamp(x, R(0), R(1e30)); }
+
+/* with_base: the base path's is asked for; else it is `base`. with_offsets: those of offset paths are. */
 GRADUS_FN light_paths light_tree_paths(GRADUS_GLOBAL const uint *nodes, uint levels, uint unit, uint leaf,
-                                       light_receivers r, int with_offsets) {
+                                       light_receivers r, int with_base, real base, int with_offsets) {
     (void)levels;
     const uint leaf_count = 1u << (2u * LIGHT_TREE_LEVELS(levels));
     /* Of the leaf of lights at infinity another's way, which is not counted. */
     const uint present = leaf & (leaf_count - 1u);
+    const int is_near = leaf == present;
     light_paths p;
     p.base = p.offset_0 = p.offset_1 = p.offset_2 = p.offset_3 = R(1);
     uint first = 0u;
+    /* One after the other (kernels/lib/ordered.h), and after what is finite even where an offset path has no vertex. */
+    real last = R(0);
     LIGHT_TREE_UNROLL
     for (uint level = 0; level < LIGHT_TREE_LEVELS(levels); ++level) {
         const uint below = 2u * (LIGHT_TREE_LEVELS(levels) - level);
         const uint node = first + (present >> below);
         const uint child = (present >> (below - 2u)) & 3u;
         first = light_tree_children * first + 1u;
-        const light_cluster c0 = light_cluster_of(nodes, unit, node, 0u, r_clamp(p.base, R(0), R(1)));
+        const light_cluster c0 = light_cluster_of(nodes, unit, node, 0u, last);
         const light_cluster c1 = light_cluster_of(nodes, unit, node, 1u, c0.sine);
         const light_cluster c2 = light_cluster_of(nodes, unit, node, 2u, c1.sine);
         const light_cluster c3 = light_cluster_of(nodes, unit, node, 3u, c2.sine);
-        p.base *= light_child_share(c0, c1, c2, c3, child, r.base, c3.sine);
+        last = c3.sine;
+        if (with_base) {
+            p.base *= light_child_share(c0, c1, c2, c3, child, r.base, last);
+            last = light_finite(p.base);
+        }
         if (with_offsets) {
-            /* After what is finite, even where an offset path has no vertex. */
-            p.offset_0 *= light_child_share(c0, c1, c2, c3, child, r.offset_0, r_clamp(p.base, R(0), R(1)));
-            p.offset_1 *= light_child_share(c0, c1, c2, c3, child, r.offset_1, r_clamp(p.offset_0, R(0), R(1)));
-            p.offset_2 *= light_child_share(c0, c1, c2, c3, child, r.offset_2, r_clamp(p.offset_1, R(0), R(1)));
-            p.offset_3 *= light_child_share(c0, c1, c2, c3, child, r.offset_3, r_clamp(p.offset_2, R(0), R(1)));
+            p.offset_0 *= light_child_share(c0, c1, c2, c3, child, r.offset_0, last);
+            last = light_finite(p.offset_0);
+            p.offset_1 *= light_child_share(c0, c1, c2, c3, child, r.offset_1, last);
+            last = light_finite(p.offset_1);
+            p.offset_2 *= light_child_share(c0, c1, c2, c3, child, r.offset_2, last);
+            last = light_finite(p.offset_2);
+            p.offset_3 *= light_child_share(c0, c1, c2, c3, child, r.offset_3, last);
+            last = light_finite(p.offset_3);
         }
     }
-    const int is_near = leaf == present;
-    p.base = is_near ? p.base : R(1);
-    p.offset_0 = is_near ? p.offset_0 : R(1);
-    p.offset_1 = is_near ? p.offset_1 : R(1);
-    p.offset_2 = is_near ? p.offset_2 : R(1);
-    p.offset_3 = is_near ? p.offset_3 : R(1);
+    p.base = with_base ? (is_near ? p.base : R(1)) : base;
+    p.offset_0 = is_near ? p.offset_0 / p.base : R(1);
+    p.offset_1 = is_near ? r_after(p.offset_1, light_finite(p.offset_0)) / p.base : R(1);
+    p.offset_2 = is_near ? r_after(p.offset_2, light_finite(p.offset_1)) / p.base : R(1);
+    p.offset_3 = is_near ? r_after(p.offset_3, light_finite(p.offset_2)) / p.base : R(1);
     return p;
 }
 
@@ -261,7 +278,7 @@ GRADUS_FN real light_tree_path(GRADUS_GLOBAL const uint *nodes, uint levels, uin
                                light_receiver receiver) {
     light_receivers r;
     r.base = r.offset_0 = r.offset_1 = r.offset_2 = r.offset_3 = receiver;
-    return light_tree_paths(nodes, levels, unit, leaf, r, 0).base;
+    return light_tree_paths(nodes, levels, unit, leaf, r, 1, R(1), 0).base;
 }
 
 GRADUS_LIB_END

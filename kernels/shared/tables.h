@@ -265,7 +265,8 @@
     REAL(event, arriving_b, "")                                                                                        \
     REAL(event, inverse_light_pdf, "1 over that density by solid angle; 0 where BSDF sampling cannot find the light")  \
     REAL(event, base_bsdf, "density with which BSDF sampling finds the light point, over light sampling's")            \
-    UINT(event, light, "only with TRAIT_LIGHT_TREE: the light sampled")
+    UINT(event, light, "only with TRAIT_LIGHT_TREE: the light sampled")                                                \
+    REAL(event, light_path, "with it: probability of the tree's way to its leaf")
 
 /* With TRAIT_APART, the vertices of offset paths that are not connected, beyond the first. */
 #define GRADUS_OFFSET_VERTEX_COLUMNS(REAL, UINT) GRADUS_SURFACE_VERTEX_COLUMNS(offset_vertex, REAL, UINT)

@@ -80,7 +80,7 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint stride, uint cap
     receivers.offset_2 = RECEIVER_OF(2u, offset_1);
     receivers.offset_3 = RECEIVER_OF(3u, offset_2);
     const light_paths ways =
-        light_tree_paths(light_nodes, TRAIT_LIGHT_TREE, unit, light_leaf[(int)found.light], receivers, 1);
+        light_tree_paths(light_nodes, TRAIT_LIGHT_TREE, unit, light_leaf[(int)found.light], receivers, 1, R(1), 1);
     found.pdf *= ways.base;
 #endif
 #endif
@@ -123,11 +123,11 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint stride, uint cap
             base_cosine > R(0) ? r_max(cosine, R(0)) / base_cosine * base_distance_squared / distance_squared : R(0);
         real there = jacobian * from_offset.pdf;
 #if OWN_CHOICE
-        there *= LIGHT_PATH_OF(ways, j);
+        there *= ways.base * LIGHT_PATH_OF(ways, j);
 #endif
         offset_light = base_light > R(0) ? there / bsdf_pdf : R(0);
 #elif OWN_CHOICE
-        offset_light = base_light * (LIGHT_PATH_OF(ways, j) / ways.base);
+        offset_light = base_light * LIGHT_PATH_OF(ways, j);
 #endif
 #if TRAIT_APART
         const uint state = AT_UINT(offset, state, at);

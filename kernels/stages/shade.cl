@@ -104,6 +104,7 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
     SET_V3(event, to_light, row, light.direction);
 #if TRAIT_LIGHT_TREE
     AT_UINT(event, light, row) = chosen.light;
+    AT(event, light_path, row) = picked.path;
 #endif
     SET_RGB(event, arriving, row, arriving);
     AT(event, inverse_light_pdf, row) = inverse_light_pdf;
@@ -130,6 +131,7 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
     AT(event, base_bsdf, row) = R(0);
 #if TRAIT_LIGHT_TREE
     AT_UINT(event, light, row) = 0u;
+    AT(event, light_path, row) = R(1);
 #endif
 #endif
 #endif

@@ -142,16 +142,17 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
 #if TRAIT_LIGHT_TREE
     /* The same light; each vertex would choose it with a probability of its own. */
     light_receivers receivers;
-    receivers.base = LIGHT_RECEIVER(base, AT_UINT(path, receiver, row), R(0));
+    receivers.base.normal.z = R(0);
     RECEIVES(0u, offset_0, base)
     RECEIVES(1u, offset_1, offset_0)
     RECEIVES(2u, offset_2, offset_1)
     RECEIVES(3u, offset_3, offset_2)
     light_picked picked;
     picked.light = AT_UINT(event, light, row);
-    const light_paths ways =
-        light_tree_paths(light_nodes, TRAIT_LIGHT_TREE, unit, light_leaf[(int)picked.light], receivers, 1);
-    picked.path = ways.base;
+    picked.path = AT(event, light_path, row);
+    receivers.base = receivers.offset_0; /* not asked for */
+    const light_paths ways = light_tree_paths(light_nodes, TRAIT_LIGHT_TREE, unit, light_leaf[(int)picked.light],
+                                              receivers, 0, picked.path, 1);
 #endif
     const chosen_light chosen =
         light_sampling(lights, light_kinds, light_alias, light_count, scene_diameter, unit, base,
@@ -256,7 +257,7 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         light_density = IS_LIGHT(chosen, sphere, 1) ? by_cone : light_density;
 #endif
 #if TRAIT_LIGHT_TREE
-        light_density *= LIGHT_PATH_OF(ways, j) / ways.base;
+        light_density *= LIGHT_PATH_OF(ways, j);
 #endif
         AT(shift, light_jacobian, at) = light_jacobian;
         asks_light = own.is_own & !is_dirac & arrives & (light_jacobian > R(0));

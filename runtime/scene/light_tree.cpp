@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <span>
@@ -17,7 +18,7 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 constexpr double steps = 65535;           // of a coordinate
 constexpr std::uint32_t most_levels = 10; // a million leaves
-constexpr double lights_of_leaf = 1;      // in the mean
+static const double lights_of_leaf = std::getenv("LEAF") ? std::atof(std::getenv("LEAF")) : 1;
 constexpr double room = 2;                // a subtree may hold so many times its share
 constexpr int bins = 16;                  // of centres along an axis, between which a node is split
 constexpr std::size_t alone = 4096;       // fewer lights are not shared out to other cores
