@@ -42,7 +42,7 @@
 #endif
 
 /* The least that a bound of a cosine counts as. */
-#define LIGHT_LEAST_COSINE R(0.02)
+#define LIGHT_LEAST_COSINE R(0.01)
 
 GRADUS_LIB_BEGIN
 
@@ -84,7 +84,8 @@ GRADUS_FN light_receiver light_receiver_at(vec3 position, uint normal_bits, real
 
 typedef struct {
     vec3 center, axis; /* the axis times the cosine of the cone */
-    real radius, radius_squared, sine, intensity;
+    real radius, sine, intensity;
+    real spread; /* what its size adds to squared distances */
     GRADUS_NOT_IN_REGISTERS
 } light_cluster;
 
@@ -99,8 +100,8 @@ GRADUS_FN light_cluster light_cluster_of(GRADUS_GLOBAL const uint *nodes, uint u
     const uint zr = uint_after(CLUSTER_WORD(1u), c.center.y);
     c.center.z = (real)(int)(zr & 0xFFFFu);
     c.radius = (real)(int)(uint_after(zr, c.center.z) >> 16);
-    c.radius_squared = c.radius * c.radius;
-    const uint cone = uint_after(CLUSTER_WORD(2u), c.radius_squared);
+    c.spread = R(0.25) * (c.radius * c.radius);
+    const uint cone = uint_after(CLUSTER_WORD(2u), c.spread);
     c.axis.x = (real)((int)(cone << 24) >> 24) * R(1.0 / 127);
     c.axis.y = (real)((int)(uint_after(cone, c.axis.x) << 16) >> 24) * R(1.0 / 127);
     c.axis.z = (real)((int)(uint_after(cone, c.axis.y) << 8) >> 24) * R(1.0 / 127);
@@ -112,13 +113,14 @@ GRADUS_FN light_cluster light_cluster_of(GRADUS_GLOBAL const uint *nodes, uint u
 
 /* What a cluster of lights may send to a receiver, in units of which only ratios count; 0 if it holds no light.
  *
- * With d from receiver to centre and a radius r, its points are taken as sqrt(d^2 + r^2) away. A plane through the
+ * With d from receiver to centre and a radius r, its points are taken as sqrt(d^2 + r^2 / 4) away: the mean square of
+ * points in a box about its centre is a third of r^2, and less than that had the least variance. A plane through the
  * receiver has all points of the sphere at most n . d + r above it, which bounds the cosine at the receiver, and with
  * a light's normal in place of n that at the light. Of a cone of normals about the axis a with half angle t the
  * largest is at most cos t (a . d) + sin t. */
 GRADUS_FN real light_cluster_importance(light_cluster c, light_receiver receiver) {
     const vec3 d = v3_sub(c.center, receiver.position);
-    const real inverse_squared = R(1) / (v3_dot(d, d) + c.radius_squared + R(1));
+    const real inverse_squared = R(1) / (v3_dot(d, d) + c.spread + R(1));
     const real inverse = r_sqrt(inverse_squared);
     const real leaving = (c.radius - v3_dot(c.axis, d)) * inverse + c.sine;
     const real arriving = (c.radius + r_abs(v3_dot(receiver.normal, v3_after(d, leaving)))) * inverse;

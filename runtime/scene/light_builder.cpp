@@ -4,6 +4,7 @@
 #include "runtime/scene/traits.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace gradus {
 
@@ -83,7 +84,8 @@ TreeLight LightBuilder::tree_light(std::uint32_t light) {
     const float *record = &tables_.lights[std::size_t(light) * light_stride];
     const auto vector = [&](int field) { return Double3{record[field], record[field + 1], record[field + 2]}; };
     const Double3 p = vector(light_p_x);
-    const Rgb mean = mean_of(scene_.emitters[powers_[light].emitter]);
+    const Emitter &emitter = scene_.emitters[powers_[light].emitter];
+    const Rgb mean = mean_of(emitter);
     TreeLight result{p, p, {}, pi, 0, light};
     switch (tables_.light_kinds[light]) {
     case light_kind_triangle: {
@@ -110,7 +112,9 @@ TreeLight LightBuilder::tree_light(std::uint32_t light) {
         break;
     default: // a spot or a projector
         result.axis = vector(light_e1_x);
-        result.half_angle = std::min(scene_.emitters[powers_[light].emitter].cutoff, float(pi));
+        result.half_angle = tables_.light_kinds[light] == light_kind_spot
+                                ? double(emitter.cutoff)
+                                : std::atan(std::hypot(emitter.picture[0], emitter.picture[1]) / 2);
         result.intensity = 0.2126 * mean.r + 0.7152 * mean.g + 0.0722 * mean.b;
     }
     return result;
