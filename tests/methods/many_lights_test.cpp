@@ -99,7 +99,7 @@ TEST_P(ManyLightsOf, HaveDifferencesWithoutBias) {
                           "the offset path's probability of the base path's light weighs both; unbiased", 0.1});
 }
 
-INSTANTIATE_TEST_SUITE_P(Full, FullManyLights,
+INSTANTIATE_TEST_SUITE_P(Full, ManyLightsOf,
                          ::testing::Values(LampKinds{}, LampKinds{.balls = true},
                                            LampKinds{.textures = true, .points = true},
                                            LampKinds{.balls = true, .textures = true, .points = true, .far = true}),
