@@ -16,39 +16,39 @@ struct LampKinds {
     bool balls = false, textures = false, points = false, far = false;
 };
 
-/// Lamps above, beside and close to a floor, a box that most of them surround, and a metal ball: plates that face
-/// anywhere, balls that shine out or inwards, points, spots and what is at infinity.
+/// Tiles that shine down on a floor close below them, so that light samples and sampled directions find them about as
+/// often, and that each place prefers others; among them balls that shine out or inwards, points, spots and what is at
+/// infinity; a card that stands between, and a ball of metal.
 SceneMaker room_of_lamps(const LampKinds &kinds, bool is_glossy = true) {
     SceneMaker maker(32, 16);
     maker.scene.settings.max_depth = 4;
-    maker.look({0, 1.6, 4}, {0, 0.6, 0}, 45);
+    maker.look({0, 0.45, 2.2}, {0, 0.1, 0}, 50);
     const std::uint32_t grey = maker.material(two_sided(diffuse(0.6))), black = maker.material(diffuse(0));
     maker.floor(-3, 3, 3, grey);
-    maker.parallelogram({-0.5f, 0, -0.5f}, {0, 0.8f, 0}, {0.6f, 0, 0.6f}, grey);
-    maker.sphere({0.9f, 0.4f, 0.5f}, 0.4f, is_glossy ? maker.material(rough_metal(0.15)) : grey);
+    maker.parallelogram({-0.6f, 0, -0.6f}, {0, 0.4f, 0}, {0.4f, 0, 0.4f}, grey);
+    maker.sphere({0.7f, 0.2f, 0.3f}, 0.2f, is_glossy ? maker.material(rough_metal(0.15)) : grey);
     std::mt19937 engine(4);
     const auto uniform = [&](float low, float high) {
         return low + (high - low) * float(engine() >> 8) * float(0x1p-24);
     };
-    const auto color = [&] { return Rgb{uniform(1, 9), uniform(1, 9), uniform(1, 9)}; };
+    const auto color = [&] { return Rgb{uniform(0.1f, 3), uniform(0.1f, 3), uniform(0.1f, 3)}; };
     std::int32_t texture = no_texture;
     if (kinds.textures) {
         maker.scene.textures.push_back(random_texture(4, 3, Bitmap::Format::half, true, 3));
         maker.scene.textures.back().highest = 1e30f;
         texture = 0;
     }
-    for (int i = 0; i < 90; ++i) {
-        const Vector3 p{uniform(-2, 2), uniform(0.05f, 1.8f), uniform(-2, 1)};
+    for (int i = 0; i < 96; ++i) {
+        const Vector3 p{-2 + 0.33f * float(i % 12), uniform(0.5f, 0.7f), -2 + 0.33f * float(i / 12)};
         const std::int32_t lamp = maker.emitter(Emitter::Kind::area, color());
         maker.scene.emitters.back().texture = i % 2 ? texture : no_texture;
         if (kinds.balls && i % 3 == 0)
-            maker.sphere(p, uniform(0.02f, 0.06f), black, lamp);
+            maker.sphere(p, uniform(0.05f, 0.15f), black, lamp);
         else
-            maker.parallelogram(p, {uniform(-0.1f, 0.1f), uniform(-0.1f, 0.1f), 0.1f},
-                                {0.1f, uniform(-0.1f, 0.1f), uniform(-0.1f, 0.1f)}, black, lamp);
+            maker.parallelogram(p, {0.3f, uniform(-0.1f, 0.1f), 0}, {0, uniform(-0.1f, 0.1f), 0.3f}, black, lamp);
         if (kinds.points && i % 10 == 0) {
-            maker.point_light({0.05f, 0.06f, 0.04f}, {p.x, p.y + 0.3f, p.z});
-            maker.spot({0.3f, 0.2f, 0.3f}, {p.x, p.y + 0.5f, p.z}, {0, -1, 0}, 20, 40);
+            maker.point_light({0.05f, 0.06f, 0.04f}, {p.x, p.y - 0.3f, p.z});
+            maker.spot({0.3f, 0.2f, 0.3f}, {p.x, p.y - 0.1f, p.z}, {0, -1, 0}, 20, 40);
         }
     }
     if (kinds.balls) // around the camera's view: shines inwards
@@ -95,7 +95,7 @@ TEST_P(ManyLightsOf, HaveDifferencesWithoutBias) {
     const SceneMaker maker = room_of_lamps(GetParam());
     const GradientBias bias = gradient_bias(maker.scene, {.seeds = 8, .gradient_domain = 64, .path_tracing = 256});
     expect_no_bias(bias, {"Gradients", "many lights: base and offset path choose among them with other probabilities",
-                          "90 lamps around and between surfaces, of many kinds",
+                          "96 tiles close above a floor, and lamps of other kinds among them",
                           "the offset path's probability of the base path's light weighs both; unbiased", 0.1});
 }
 
