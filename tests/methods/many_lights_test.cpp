@@ -95,7 +95,7 @@ TEST_P(ManyLightsOf, HaveDifferencesWithoutBias) {
     SceneMaker maker = room_of_lamps(GetParam());
     // Large pixels: neighbours see other lamps above them. Between small ones the probabilities hardly differ.
     maker.scene.film.width = maker.scene.film.height = 8;
-    const GradientBias bias = gradient_bias(maker.scene, {.seeds = 8, .gradient_domain = 2048, .path_tracing = 8192});
+    const GradientBias bias = gradient_bias(maker.scene, {.seeds = 12, .gradient_domain = 2048, .path_tracing = 8192});
     expect_no_bias(bias, {"Gradients", "many lights: base and offset path choose among them with other probabilities",
                           "96 tiles close above a floor, and lamps of other kinds among them",
                           "the offset path's probability of the base path's light weighs both; unbiased", 0.1});
