@@ -86,26 +86,36 @@ typedef struct {
     vec3 center, axis; /* the axis times the cosine of the cone */
     real radius, sine, intensity;
     real spread; /* what its size adds to squared distances */
+    uint last;   /* for what is to be computed after it */
     GRADUS_NOT_IN_REGISTERS
 } light_cluster;
 
-/* A child of `node`, the number of a record. `after`: computed after that (kernels/lib/ordered.h). */
+/* A child of `node`, the number of a record. `after`: a word that its own are computed after, one after the other, or
+ * LLVM would pack them (kernels/lib/ordered.h); as whole numbers, since rows wait for nothing as long as for this. */
 GRADUS_FN light_cluster light_cluster_of(GRADUS_GLOBAL const uint *nodes, uint unit, uint node, uint child,
-                                         real after) {
+                                         uint after) {
 #define CLUSTER_WORD(word) (nodes + (child * light_child_words + (word)) * (size_t)unit)[(int)(node * light_node_words)]
-    const uint xy = uint_after(CLUSTER_WORD(0u), after);
+    const uint none = unit - 1u; /* 0, which the compiler does not know */
     light_cluster c;
-    c.center.x = (real)(int)(xy & 0xFFFFu);
-    c.center.y = (real)(int)(uint_after(xy, c.center.x) >> 16);
-    const uint zr = uint_after(CLUSTER_WORD(1u), c.center.y);
-    c.center.z = (real)(int)(zr & 0xFFFFu);
-    c.radius = (real)(int)(uint_after(zr, c.center.z) >> 16);
+    const uint xy = CLUSTER_WORD(0u) | (after & none);
+    const uint x = xy & 0xFFFFu, y = (xy | (x & none)) >> 16;
+    const uint zr = CLUSTER_WORD(1u) | (y & none);
+    const uint z = zr & 0xFFFFu, radius = (zr | (z & none)) >> 16;
+    const uint cone = CLUSTER_WORD(2u) | (radius & none);
+    const int axis_x = (int)(cone << 24) >> 24;
+    const int axis_y = (int)((cone | ((uint)axis_x & none)) << 16) >> 24;
+    const int axis_z = (int)((cone | ((uint)axis_y & none)) << 8) >> 24;
+    const uint sine = (cone | ((uint)axis_z & none)) >> 24;
+    c.center.x = (real)(int)x;
+    c.center.y = (real)(int)y;
+    c.center.z = (real)(int)z;
+    c.radius = (real)(int)radius;
     c.spread = R(0.25) * (c.radius * c.radius);
-    const uint cone = uint_after(CLUSTER_WORD(2u), c.spread);
-    c.axis.x = (real)((int)(cone << 24) >> 24) * R(1.0 / 127);
-    c.axis.y = (real)((int)(uint_after(cone, c.axis.x) << 16) >> 24) * R(1.0 / 127);
-    c.axis.z = (real)((int)(uint_after(cone, c.axis.y) << 8) >> 24) * R(1.0 / 127);
-    c.sine = (real)(int)(uint_after(cone, c.axis.z) >> 24) * R(1.0 / 255);
+    c.axis.x = (real)axis_x * R(1.0 / 127);
+    c.axis.y = (real)axis_y * R(1.0 / 127);
+    c.axis.z = (real)axis_z * R(1.0 / 127);
+    c.sine = (real)(int)sine * R(1.0 / 255);
+    c.last = sine;
     c.intensity = (real)as_float(CLUSTER_WORD(3u));
 #undef CLUSTER_WORD
     return c;
@@ -152,13 +162,16 @@ GRADUS_FN light_picked light_tree_pick(GRADUS_GLOBAL const uint *nodes, GRADUS_G
     LIGHT_TREE_UNROLL
     for (uint level = 0; level < LIGHT_TREE_LEVELS(levels); ++level) {
         const uint node = first + place;
-        const light_cluster c0 = light_cluster_of(nodes, unit, node, 0u, path);
+        const light_cluster c0 = light_cluster_of(nodes, unit, node, 0u, 0u);
+        const light_cluster c1 = light_cluster_of(nodes, unit, node, 1u, c0.last);
+        const light_cluster c2 = light_cluster_of(nodes, unit, node, 2u, c1.last);
+        const light_cluster c3 = light_cluster_of(nodes, unit, node, 3u, c2.last);
         const real w0 = light_cluster_importance(c0, receiver);
-        const light_cluster c1 = light_cluster_of(nodes, unit, node, 1u, w0);
+        receiver.position = v3_after(receiver.position, w0);
         const real w1 = light_cluster_importance(c1, receiver);
-        const light_cluster c2 = light_cluster_of(nodes, unit, node, 2u, w1);
+        receiver.position = v3_after(receiver.position, w1);
         const real w2 = light_cluster_importance(c2, receiver);
-        const light_cluster c3 = light_cluster_of(nodes, unit, node, 3u, w2);
+        receiver.position = v3_after(receiver.position, w2);
         const real w3 = light_cluster_importance(c3, receiver);
         const real sum_1 = w0 + w1, sum_2 = sum_1 + w2, sum = sum_2 + w3;
         /* Rounding may take u past the last: one that is never drawn is never taken. */
@@ -241,17 +254,18 @@ GRADUS_FN light_paths light_tree_paths(GRADUS_GLOBAL const uint *nodes, uint lev
     uint first = 0u;
     /* One after the other (kernels/lib/ordered.h), and after what is finite even where an offset path has no vertex. */
     real last = R(0);
+    uint word = 0u;
     LIGHT_TREE_UNROLL
     for (uint level = 0; level < LIGHT_TREE_LEVELS(levels); ++level) {
         const uint below = 2u * (LIGHT_TREE_LEVELS(levels) - level);
         const uint node = first + (present >> below);
         const uint child = (present >> (below - 2u)) & 3u;
         first = light_tree_children * first + 1u;
-        const light_cluster c0 = light_cluster_of(nodes, unit, node, 0u, last);
-        const light_cluster c1 = light_cluster_of(nodes, unit, node, 1u, c0.sine);
-        const light_cluster c2 = light_cluster_of(nodes, unit, node, 2u, c1.sine);
-        const light_cluster c3 = light_cluster_of(nodes, unit, node, 3u, c2.sine);
-        last = c3.sine;
+        const light_cluster c0 = light_cluster_of(nodes, unit, node, 0u, word);
+        const light_cluster c1 = light_cluster_of(nodes, unit, node, 1u, c0.last);
+        const light_cluster c2 = light_cluster_of(nodes, unit, node, 2u, c1.last);
+        const light_cluster c3 = light_cluster_of(nodes, unit, node, 3u, c2.last);
+        word = c3.last;
         if (with_base) {
             p.base *= light_child_share(c0, c1, c2, c3, child, r.base, last);
             last = light_finite(p.base);
