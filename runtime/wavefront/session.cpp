@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t most_few_textures = 8;      // kernels/lib/texture_lookup.h
 constexpr std::uint32_t most_few_lights = 4;      // kernels/lib/light_sampling.h chooses among so many
 constexpr std::uint32_t least_many_lights = 4097; // 24 bits choose among fewer with an error of 2e-4 at most
-constexpr std::uint32_t least_tree_lights = 64;   // bench/render/lights.py
+constexpr std::uint32_t least_tree_lights = 16;   // bench/render/lights.py
 constexpr std::uint32_t deepest = 1u << 16;       // where a file asks for paths without end
 
 TraitMap traits_for(const Scene &scene, const SessionOptions &options, const TraitMap &of_method) {
