@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t most_few_textures = 8;      // kernels/lib/texture_lookup.h
 constexpr std::uint32_t most_few_lights = 4;      // kernels/lib/light_sampling.h chooses among so many
 constexpr std::uint32_t least_many_lights = 4097; // 24 bits choose among fewer with an error of 2e-4 at most
-constexpr std::uint32_t least_tree_lights = 16;   // bench/render/lights.py
+constexpr std::uint32_t least_tree_lights = 4096; // bench/render/lights.py: no scene of so many loses much
 constexpr std::uint32_t deepest = 1u << 16;       // where a file asks for paths without end
 
 TraitMap traits_for(const Scene &scene, const SessionOptions &options, const TraitMap &of_method) {
@@ -35,6 +35,11 @@ TraitMap traits_for(const Scene &scene, const SessionOptions &options, const Tra
     traits["STRATEGY"] = static_cast<int>(options.strategy);
     for (const auto &[name, value] : of_method)
         traits[name] = value;
+    // Features are seen through mirrors and glass (kernels/lib/seen_features.h).
+    bool has_dirac = options.all_traits;
+    for_each_bsdf(scene, [&](const Bsdf &bsdf) { has_dirac = has_dirac || bsdf_kind_traits(bsdf.kind).is_dirac; });
+    if (traits["TRAIT_AOV"] != 0)
+        traits["TRAIT_AOV"] = has_dirac ? 2 : 1;
     return traits;
 }
 
