@@ -56,6 +56,17 @@ void add_method_options(CLI::App &command, const Services &services, MethodReque
         ->check(CLI::IsMember({"sobol", "independent"}))
         ->default_str("sobol")
         ->group(group);
+    const std::map<std::string, RenderOptions::Lights> lights{{"auto", RenderOptions::Lights::automatic},
+                                                              {"tree", RenderOptions::Lights::tree},
+                                                              {"power", RenderOptions::Lights::power}};
+    command
+        .add_option_function<std::string>(
+            "--lights", [&request, lights](const std::string &name) { request.options.lights = lights.at(name); },
+            "How light samples choose a light: power, by what it sends; tree, by what may arrive; auto: tree where "
+            "there are many lights")
+        ->check(CLI::IsMember({"auto", "tree", "power"}))
+        ->default_str("auto")
+        ->group(group);
     command.add_flag("--aov", request.options.aov, "Also write albedo, normal, depth and variance layers")
         ->group(group);
     command

@@ -172,15 +172,16 @@ std::map<std::string, std::string> GradientPathTracer::classify_definitions() co
 TableList GradientPathTracer::tables() const {
     const auto with = [&](const char *trait, int columns) { return session_.has(trait) ? std::uint32_t(columns) : 0u; };
     const std::uint32_t offset_columns_used = session_.has("TRAIT_APART") ? offset_columns : offset_state;
+    const bool has_tree = session_.has("TRAIT_LIGHT_TREE");
     return {
         {.name = "primary",
          .rows = RowsOf::slot,
          .columns = primary_columns - (session_.has("TRAIT_CAMERA_ORIGINS") ? 0u : 3u)},
         {.name = "primary_vertex", .rows = RowsOf::slot, .columns = session_.vertex_columns(primary_vertex_columns)},
         {.name = "vertex", .columns = session_.vertex_columns(vertex_columns)},
-        {.name = "event", .columns = event_columns},
+        {.name = "event", .columns = has_tree ? event_columns : event_light},
         {.name = "offset", .multiple = 4, .columns = offset_columns_used, .alternates = true, .is_cleared = true},
-        {.name = "shift", .multiple = 4, .columns = shift_columns, .is_cleared = true},
+        {.name = "shift", .multiple = 4, .columns = has_tree ? shift_columns : shift_receiver, .is_cleared = true},
         {.name = "shown", .multiple = 4, .columns = has_pictures(session_) ? std::uint32_t(shown_columns) : 0u},
         {.name = "evaluation", .multiple = 8, .columns = evaluation_columns, .is_cleared = true},
         {.name = "link", .multiple = 8, .columns = link_columns},

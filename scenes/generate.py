@@ -212,6 +212,29 @@ def star(points, outer_radius, inner_radius, half_thickness):
     return positions, faces
 
 
+def lanterns(strings, lanterns_of_string, group, groups):
+    """Every third (`groups`) of the lanterns, octahedra 12 cm wide, that hang on strings which cross a court of 19 x 19
+    in both directions and sag; the origin is on its ground."""
+    positions, triangles = [], []
+    for string in range(strings):
+        across = -9 + 18 * (string // 2 + 0.5) / (strings // 2)
+        for k in range(lanterns_of_string):
+            if (k + string) % groups != group:
+                continue
+            along = 2 * (k + 0.5) / lanterns_of_string - 1
+            y = 2.4 + 0.9 * along * along + 0.15 * math.sin(3 * string) + 0.1 * math.sin(7.3 * k + 2.1 * string)
+            x, z = (9.5 * along, across) if string % 2 == 0 else (across, 9.5 * along)
+            first = len(positions)
+            for corner in range(4):
+                angle = corner * math.pi / 2 + 0.3 + k
+                positions.append((x + 0.06 * math.cos(angle), y, z + 0.06 * math.sin(angle)))
+            positions += [(x, y + 0.09, z), (x, y - 0.09, z)]
+            for corner in range(4):
+                a, b = first + corner, first + (corner + 1) % 4
+                triangles += [(a, first + 4, b), (a, b, first + 5)]
+    return positions, None, triangles
+
+
 def write_ply_binary(path, positions, normals, triangles):
     """Binary little-endian PLY: float positions, float normals where given, faces as uchar count and int indices."""
     properties = ["x", "y", "z"] + (["nx", "ny", "nz"] if normals else [])
@@ -324,6 +347,8 @@ def main():
     write_ply_binary(folder / "block.ply", *block(0.86, 0.42, 0.86))
     write_ply_binary(folder / "egg.ply", *egg(0.36, 0.27, 0.18, 36, 56))
     write_ply_binary(folder / "band.ply", *band(0.52, 0.56, 0.34, 128))
+    for group in range(3):
+        write_ply_binary(folder / f"lanterns-{group}.ply", *lanterns(24, 25, group, 3))
     for count in (7, 14, 28):
         write_ply_binary(folder / f"holes-{count}.ply", *perforated_plane(count, 0.78))
     write_obj(folder / "star.obj", *star(5, 1.0, 0.45, 0.14))

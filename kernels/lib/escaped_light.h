@@ -24,6 +24,7 @@ GRADUS_FN light_found light_escaped(GRADUS_GLOBAL const real *lights, uint envir
     light_found found;
     found.radiance = FIELD_RGB(light, lights, environment_light, value);
     found.pdf = probability * (R(0.25) * GRADUS_INV_PI);
+    found.light = environment_light;
 #if TRAIT_LIGHT_ENVIRONMENT
     /* One after the other (kernels/lib/ordered.h). */
     vec3 in_map;

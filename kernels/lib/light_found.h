@@ -11,7 +11,9 @@ GRADUS_LIB_BEGIN
 
 typedef struct {
     rgb radiance; /* 0 from behind, and where nothing is emitted */
-    real pdf;     /* with which light sampling finds the point, by solid angle at the ray's origin */
+    real pdf; /* with which light sampling finds the point, by solid angle at the ray's origin; with a tree, once the
+                 light's leaf is reached (kernels/lib/light_tree.h) */
+    uint light;
     GRADUS_NOT_IN_REGISTERS
 } light_found;
 
@@ -61,6 +63,7 @@ GRADUS_FN light_found light_found_at(GRADUS_GLOBAL const uint *primitive_light, 
                                                               primitive, hit, FIELD_OF(light, lights, light, e1_y)));
 #endif
     found.pdf = pdf * FIELD_OF(light, lights, light, probability);
+    found.light = light;
     return found;
 }
 

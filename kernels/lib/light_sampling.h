@@ -2,11 +2,12 @@
 #ifndef GRADUS_LIB_LIGHT_SAMPLING_H
 #define GRADUS_LIB_LIGHT_SAMPLING_H
 //! traits: TRAIT_LIGHT_TRIANGLE TRAIT_LIGHT_SPHERE TRAIT_LIGHT_POINT TRAIT_LIGHT_DIRECTIONAL TRAIT_LIGHT_CONSTANT
-//! traits: TRAIT_LIGHT_ENVIRONMENT TRAIT_LIGHT_SPOT FEW_LIGHTS
+//! traits: TRAIT_LIGHT_ENVIRONMENT TRAIT_LIGHT_SPOT TRAIT_LIGHT_TREE FEW_LIGHTS
 #include "kernels/lib/environment.h"
 #include "kernels/lib/light.h"
 #include "kernels/lib/light_draw.h"
 #include "kernels/lib/light_texture.h"
+#include "kernels/lib/light_tree.h"
 #include "kernels/lib/random.h"
 
 #define LIGHT_KINDS                                                                                                    \
@@ -146,16 +147,31 @@ GRADUS_FN texture_point place_of_light(uint kind, uint light, point2 chosen, vec
 }
 #endif
 
-GRADUS_FN chosen_light light_sampling(GRADUS_GLOBAL const real *lights, GRADUS_GLOBAL const uint *light_kinds,
-                                      GRADUS_GLOBAL const uint *light_alias, uint light_count, real scene_diameter,
-                                      uint unit, vec3 position,
-                                      random4 u ENVIRONMENT_PARAMETERS LIGHT_TEXTURE_PARAMETERS) {
+/* Which light, where a tree has chosen it: an argument of light_sampling(). */
+#if TRAIT_LIGHT_TREE
+#define LIGHT_PICKED_PARAMETER , light_picked picked
+#define LIGHT_PICKED_ARGUMENT , picked
+#else
+#define LIGHT_PICKED_PARAMETER
+#define LIGHT_PICKED_ARGUMENT
+#endif
+
+GRADUS_FN chosen_light
+light_sampling(GRADUS_GLOBAL const real *lights, GRADUS_GLOBAL const uint *light_kinds,
+               GRADUS_GLOBAL const uint *light_alias, uint light_count, real scene_diameter, uint unit, vec3 position,
+               random4 u ENVIRONMENT_PARAMETERS LIGHT_TEXTURE_PARAMETERS LIGHT_PICKED_PARAMETER) {
     (void)light_kinds, (void)scene_diameter;
+#if TRAIT_LIGHT_TREE
+    (void)light_alias, (void)light_count;
+    const uint light = picked.light;
+    const real probability = LIGHT_FIELD(light, probability) * picked.path;
+#else
     const light_drawn drawn = light_draw(u.a, u.b, light_count);
     const uint column = drawn.column;
     const uint light =
         drawn.keeps < LIGHT_FIELD(column, alias_threshold) ? column : OF_LIGHT(light_alias, column, 1u, 0u);
     const real probability = LIGHT_FIELD(light, probability);
+#endif
     const rgb value = rgb3(LIGHT_FIELD(light, value_r), LIGHT_FIELD(light, value_g), LIGHT_FIELD(light, value_b));
     const vec3 p = LIGHT_V3(light, p);
 #if TRAIT_LIGHT_TRIANGLE || TRAIT_LIGHT_SPHERE || TRAIT_LIGHT_ENVIRONMENT || TRAIT_LIGHT_SPOT || LIGHTS_HAVE_PROJECTORS

@@ -53,7 +53,7 @@
  * environment map: its x, y and z axes in world space. */
 #define GRADUS_LIGHT_FIELDS(FIELD)                                                                                     \
     FIELD(light, alias_threshold, "a draw below it keeps this light, above it takes its alias")                        \
-    FIELD(light, probability, "with which the light is chosen, by power")                                              \
+    FIELD(light, probability, "with which the light is chosen, by power; with a tree, once its leaf is reached")       \
     FIELD(light, value_r, "radiance, intensity or irradiance; of a map, what its numbers are times")                   \
     FIELD(light, value_g, "")                                                                                          \
     FIELD(light, value_b, "")                                                                                          \

@@ -45,7 +45,8 @@
     REAL(path, throughput_g, "")                                                                                       \
     REAL(path, throughput_b, "")                                                                                       \
     REAL(path, pdf, "solid-angle density of the direction in `ray`; 0 for a specular one (light sampling cannot)")     \
-    REAL(path, eta, "only with TRAIT_REFRACTION: product of index ratios so far, for Russian roulette")
+    REAL(path, eta, "only with TRAIT_REFRACTION: product of index ratios so far, for Russian roulette")                \
+    UINT(path, receiver, "only with TRAIT_LIGHT_TREE: normal of the vertex that it left, as light_normal_bits()")
 
 /* A surface as a path meets it, whichever path: what the columns of any table of vertices are. */
 #define GRADUS_SURFACE_VERTEX_COLUMNS(table, REAL, UINT)                                                               \
@@ -263,7 +264,9 @@
     REAL(event, arriving_g, "")                                                                                        \
     REAL(event, arriving_b, "")                                                                                        \
     REAL(event, inverse_light_pdf, "1 over that density by solid angle; 0 where BSDF sampling cannot find the light")  \
-    REAL(event, base_bsdf, "density with which BSDF sampling finds the light point, over light sampling's")
+    REAL(event, base_bsdf, "density with which BSDF sampling finds the light point, over light sampling's")            \
+    UINT(event, light, "only with TRAIT_LIGHT_TREE: the light sampled")                                                \
+    REAL(event, light_path, "with it: probability of the tree's way to its leaf")
 
 /* With TRAIT_APART, the vertices of offset paths that are not connected, beyond the first. */
 #define GRADUS_OFFSET_VERTEX_COLUMNS(REAL, UINT) GRADUS_SURFACE_VERTEX_COLUMNS(offset_vertex, REAL, UINT)
@@ -310,7 +313,8 @@
     REAL(shift, light_density,                                                                                         \
          "of light sampling there, times the Jacobian, over the base path's; then offset_ratio before the step")       \
     REAL(shift, jacobian, "of the step to the next vertex; 0 where it cannot be made")                                 \
-    UINT(shift, outcome, "one of GRADUS_SHIFT_OUTCOMES: which step it is, or why there is none")
+    UINT(shift, outcome, "one of GRADUS_SHIFT_OUTCOMES: which step it is, or why there is none")                       \
+    UINT(shift, receiver, "only with TRAIT_LIGHT_TREE: normal of the vertex that it left, as light_normal_bits()")
 
 /* What a light with a picture sends towards offset vertices, which is not of the base path's colour: beside `shift`,
  * row by row. */

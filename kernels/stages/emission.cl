@@ -2,8 +2,9 @@
  * index[first] on. Runs before `shade`.
  *
  * DIRECT_APART: what the camera sees of lights goes to `direct`. */
-//! traits: TRAIT_HIDE_EMITTERS
+//! traits: TRAIT_HIDE_EMITTERS TRAIT_LIGHT_TREE
 #include "kernels/lib/light_found.h"
+#include "kernels/lib/light_tree.h"
 #include "kernels/lib/mis.h"
 #include "kernels/shared/stage.h"
 
@@ -11,7 +12,7 @@ STAGE emission(uint count, uint unit, uint first, uint capacity, uint slots, __g
                __global const real *ray, __global const real *path, __global real *radiance,
                __global const real *triangles, __global const real *spheres, uint triangle_count,
                __global const uint *primitive_light, __global const real *lights,
-               uint light_count LIGHT_TEXTURE_PARAMETERS
+               uint light_count LIGHT_TEXTURE_PARAMETERS LIGHT_PROBABILITY_PARAMETERS
 #if DIRECT_APART
                ,
                __global real *direct
@@ -32,7 +33,14 @@ STAGE emission(uint count, uint unit, uint first, uint capacity, uint slots, __g
     const primitive_hit hit = primitive_hit_of(triangles, spheres, unit, triangle_count, primitive, origin, direction);
     const light_found found = light_found_at(primitive_light, lights, light_count, unit, triangle_count, primitive, hit,
                                              origin, direction LIGHT_TEXTURE_ARGUMENTS);
-    real weight = mis_weight_bsdf(AT(path, pdf, row), found.pdf);
+#if TRAIT_LIGHT_TREE
+    const light_receiver place = LIGHT_RECEIVER(origin, AT_UINT(path, receiver, row), R(0));
+    const real light_pdf =
+        found.pdf * light_tree_path(light_nodes, TRAIT_LIGHT_TREE, unit, light_leaf[(int)found.light], place);
+#else
+    const real light_pdf = found.pdf;
+#endif
+    real weight = mis_weight_bsdf(AT(path, pdf, row), light_pdf);
 #if TRAIT_HIDE_EMITTERS
     weight = AT_UINT(path, depth, row) > 0u ? weight : R(0);
 #endif

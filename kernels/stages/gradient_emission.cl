@@ -4,11 +4,22 @@
  *
  * TRAIT_APART: others may be elsewhere and find a light where the base path does not. Then light sampling would shift
  * these paths in another way, so each sampler is an integrand of its own, weighted by its share within each path. */
-//! traits: TRAIT_LIGHT_TRIANGLE TRAIT_LIGHT_SPHERE TRAIT_APART
+//! traits: TRAIT_LIGHT_TRIANGLE TRAIT_LIGHT_SPHERE TRAIT_LIGHT_TREE TRAIT_APART
 #include "kernels/lib/escaped_light.h"
+#include "kernels/lib/light_tree.h"
 #include "kernels/lib/mis.h"
 #include "kernels/lib/weighted_difference.h"
 #include "kernels/shared/stage.h"
+
+/* Whether base and offset vertices would choose the light with probabilities of their own. */
+#if TRAIT_LIGHT_TREE && !ESCAPED
+#define OWN_CHOICE 1
+#define RECEIVER_OF(j, before)                                                                                         \
+    LIGHT_RECEIVER(AT_V3(link, origin, (size_t)(4u + (j)) * stride + row),                                             \
+                   AT_UINT(shift, receiver, (size_t)(j)*capacity + row), receivers.before.normal.z)
+#else
+#define OWN_CHOICE 0
+#endif
 
 STAGE gradient_emission(uint count, uint unit, uint first, uint stride, uint capacity, uint slots,
                         __global const uint *index, __global const real *path, __global const real *offset,
@@ -25,11 +36,15 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint stride, uint cap
                         ,
                         __global const real *ray, __global const real *triangles, __global const real *spheres,
                         uint triangle_count, __global const uint *primitive_light,
-                        uint light_count LIGHT_TEXTURE_PARAMETERS
+                        uint light_count LIGHT_TEXTURE_PARAMETERS LIGHT_PROBABILITY_PARAMETERS
+#endif
+#if TRAIT_APART || OWN_CHOICE
+                        ,
+                        __global const real *shift
 #endif
 #if TRAIT_APART
                         ,
-                        __global const real *shift, __global const real *offset_ray
+                        __global const real *offset_ray
 #endif
 ) {
     const size_t i = work_item();
@@ -55,8 +70,19 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint stride, uint cap
     const uint primitive = AT_UINT(ray, primitive, row);
     const vec3 origin = AT_V3(ray, origin, row), direction = AT_V3(ray, direction, row);
     const primitive_hit hit = primitive_hit_of(triangles, spheres, unit, triangle_count, primitive, origin, direction);
-    const light_found found = light_found_at(primitive_light, lights, light_count, unit, triangle_count, primitive, hit,
-                                             origin, direction LIGHT_TEXTURE_ARGUMENTS);
+    light_found found = light_found_at(primitive_light, lights, light_count, unit, triangle_count, primitive, hit,
+                                       origin, direction LIGHT_TEXTURE_ARGUMENTS);
+#if OWN_CHOICE
+    light_receivers receivers;
+    receivers.base = LIGHT_RECEIVER(origin, AT_UINT(path, receiver, row), R(0));
+    receivers.offset_0 = RECEIVER_OF(0u, base);
+    receivers.offset_1 = RECEIVER_OF(1u, offset_0);
+    receivers.offset_2 = RECEIVER_OF(2u, offset_1);
+    receivers.offset_3 = RECEIVER_OF(3u, offset_2);
+    const light_paths ways =
+        light_tree_paths(light_nodes, TRAIT_LIGHT_TREE, unit, light_leaf[(int)found.light], receivers, 1, R(1), 1);
+    found.pdf *= ways.base;
+#endif
 #endif
     /* Densities over that of BSDF sampling; a Dirac direction cannot be found by light sampling. */
     real base_light = bsdf_pdf > R(0) ? found.pdf / bsdf_pdf : R(0);
@@ -95,7 +121,13 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint stride, uint cap
                            v3_scale(connection, R(1) / r_sqrt(distance_squared)) LIGHT_TEXTURE_ARGUMENTS);
         const real jacobian =
             base_cosine > R(0) ? r_max(cosine, R(0)) / base_cosine * base_distance_squared / distance_squared : R(0);
-        offset_light = base_light > R(0) ? jacobian * from_offset.pdf / bsdf_pdf : R(0);
+        real there = jacobian * from_offset.pdf;
+#if OWN_CHOICE
+        there *= ways.base * LIGHT_PATH_OF(ways, j);
+#endif
+        offset_light = base_light > R(0) ? there / bsdf_pdf : R(0);
+#elif OWN_CHOICE
+        offset_light = base_light * LIGHT_PATH_OF(ways, j);
 #endif
 #if TRAIT_APART
         const uint state = AT_UINT(offset, state, at);
@@ -127,10 +159,14 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint stride, uint cap
 #else
         const uint present = offset_primitive < ray_first_special ? offset_primitive : 0u;
         const vec3 own_origin = AT_V3(offset_ray, origin, sent), own_direction = AT_V3(offset_ray, direction, sent);
-        const light_found own = light_found_at(
+        light_found own = light_found_at(
             primitive_light, lights, light_count, unit, triangle_count, present,
             primitive_hit_of(triangles, spheres, unit, triangle_count, present, own_origin, own_direction), own_origin,
             own_direction LIGHT_TEXTURE_ARGUMENTS);
+#if OWN_CHOICE
+        const light_receiver own_receiver = LIGHT_RECEIVER(own_origin, AT_UINT(shift, receiver, at), ratio);
+        own.pdf *= light_tree_path(light_nodes, TRAIT_LIGHT_TREE, unit, light_leaf[(int)own.light], own_receiver);
+#endif
 #endif
         real own_light = own_pdf > R(0) ? own.pdf / own_pdf : R(0);
         real own_share = R(1);

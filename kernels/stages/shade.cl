@@ -9,7 +9,7 @@
  * WITH_OFFSETS: the paths have offset paths that are not connected with them. Then the light sample is not weighted
  * yet, no roulette is played, black paths go on since their offset paths may not be black, and what these need to know
  * of the vertex is left in `vertex` and `event`. */
-//! traits: TRAIT_REFRACTION SAMPLES_LIGHTS
+//! traits: TRAIT_REFRACTION TRAIT_LIGHT_TREE SAMPLES_LIGHTS
 #include "kernels/lib/bsdf.h"
 #include "kernels/lib/bsdf_frame.h"
 #include "kernels/lib/light_sampling.h"
@@ -28,7 +28,7 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
             uint triangle_count, __global const uint *primitive_material, __global const uint *material_back,
             __global const real *materials, __global const real *lights, __global const uint *light_kinds,
             __global const uint *light_alias, uint light_count,
-            real scene_diameter ENVIRONMENT_PARAMETERS LIGHT_TEXTURE_PARAMETERS SURFACE_ARGUMENT
+            real scene_diameter ENVIRONMENT_PARAMETERS LIGHT_TEXTURE_PARAMETERS LIGHT_CHOICE_PARAMETERS SURFACE_ARGUMENT
 #if TRAIT_AOV
             ,
             __global real *feature, uint slots
@@ -77,8 +77,16 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
 
 #if SAMPLES_LIGHTS && !BSDF_IS_DIRAC
     const random4 l = PATH_DRAW(key_0, key_1, random_dimension_light(depth));
-    const chosen_light chosen = light_sampling(lights, light_kinds, light_alias, light_count, scene_diameter, unit,
-                                               point.position, l ENVIRONMENT_ARGUMENTS LIGHT_TEXTURE_ARGUMENTS);
+#if TRAIT_LIGHT_TREE
+    const uint receives = light_normal_bits(point.geometric);
+    const light_receiver place_of_light = LIGHT_RECEIVER(point.position, receives, R(0));
+    const light_picked picked = light_tree_pick(light_nodes, light_leaves, light_slots, TRAIT_LIGHT_TREE, unit,
+                                                light_share_at_infinity, place_of_light, l.a, l.b);
+    AT_UINT(path, receiver, row) = receives;
+#endif
+    const chosen_light chosen =
+        light_sampling(lights, light_kinds, light_alias, light_count, scene_diameter, unit, point.position,
+                       l ENVIRONMENT_ARGUMENTS LIGHT_TEXTURE_ARGUMENTS LIGHT_PICKED_ARGUMENT);
     const light_choice light = chosen.choice;
     const vec3 to_light = frame_to_local(axes, light.direction);
     const bsdf_value f = MAPPED_VALUE(place, PASTE(BSDF, _evaluate)(m, wi, to_light, transport_radiance), to_light);
@@ -91,6 +99,10 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
     /* Who sees the light weighs the offset paths, whatever the base path gains. */
     const int asks = goes_on && (rgb_max(gain) > R(0) || rgb_max(arriving) * f.pdf > R(0));
     SET_V3(event, to_light, row, light.direction);
+#if TRAIT_LIGHT_TREE
+    AT_UINT(event, light, row) = chosen.light;
+    AT(event, light_path, row) = picked.path;
+#endif
     SET_RGB(event, arriving, row, arriving);
     AT(event, inverse_light_pdf, row) = inverse_light_pdf;
     AT(event, base_bsdf, row) = f.pdf * inverse_light_pdf;
@@ -114,6 +126,10 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
     SET_RGB(event, arriving, row, rgb_gray(R(0)));
     AT(event, inverse_light_pdf, row) = R(0);
     AT(event, base_bsdf, row) = R(0);
+#if TRAIT_LIGHT_TREE
+    AT_UINT(event, light, row) = 0u;
+    AT(event, light_path, row) = R(1);
+#endif
 #endif
 #endif
 

@@ -18,7 +18,7 @@
  *
  * BSDF: where all that is not connected is at vertices of one kind, it is inlined, and what would be asked is answered
  * at once. */
-//! traits: TRAIT_SHIFT_DISTANCE TRAIT_ENVIRONMENT TRAIT_MIXED_LOBES SAMPLES_LIGHTS
+//! traits: TRAIT_SHIFT_DISTANCE TRAIT_ENVIRONMENT TRAIT_MIXED_LOBES TRAIT_LIGHT_TREE SAMPLES_LIGHTS
 #include "kernels/lib/bsdf_evaluate.h"
 #include "kernels/lib/bsdf_frame.h"
 #include "kernels/lib/gradient.h"
@@ -45,6 +45,16 @@
 #define MEETS_LIGHTS SAMPLES_LIGHTS
 #endif
 
+/* Where offset path j receives light from a tree. */
+#define RECEIVES(j, member, before)                                                                                    \
+    {                                                                                                                  \
+        const own_vertex_state own = OWN_STATE(j, row, slot, pixel);                                                   \
+        const uint bits =                                                                                              \
+            light_normal_bits(v3_after(AT_V3(own_vertex, geometric, own.row), receivers.before.normal.z));             \
+        receivers.member = LIGHT_RECEIVER(AT_V3(own_vertex, position, own.row), bits, receivers.before.normal.z);      \
+        AT_UINT(shift, receiver, (size_t)(j)*capacity + row) = bits;                                                   \
+    }
+
 STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint slots, __global const real *path,
             __global const real *ray, __global const real *vertex, __global const real *event, OWN_VERTEX, STRIP_PLACE,
             __global real *offset, __global real *shift, __global real *evaluation, __global real *link,
@@ -54,7 +64,7 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
 #if SAMPLES_LIGHTS
             ,
             __global const real *lights, __global const uint *light_kinds, __global const uint *light_alias,
-            uint light_count ENVIRONMENT_PARAMETERS LIGHT_TEXTURE_PARAMETERS
+            uint light_count ENVIRONMENT_PARAMETERS LIGHT_TEXTURE_PARAMETERS LIGHT_PROBABILITY_PARAMETERS
 #if LIGHTS_HAVE_PICTURES
             ,
             __global real *shown
@@ -129,8 +139,24 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
     /* The base path's light sample, made again. */
     const random4 u = PATH_DRAW(AT_UINT(path, key_0, row), AT_UINT(path, key_1, row),
                                 random_dimension_light(AT_UINT(path, depth, row) - 1u));
-    const chosen_light chosen = light_sampling(lights, light_kinds, light_alias, light_count, scene_diameter, unit,
-                                               base, u ENVIRONMENT_ARGUMENTS LIGHT_TEXTURE_ARGUMENTS);
+#if TRAIT_LIGHT_TREE
+    /* The same light; each vertex would choose it with a probability of its own. */
+    light_receivers receivers;
+    receivers.base.normal.z = R(0);
+    RECEIVES(0u, offset_0, base)
+    RECEIVES(1u, offset_1, offset_0)
+    RECEIVES(2u, offset_2, offset_1)
+    RECEIVES(3u, offset_3, offset_2)
+    light_picked picked;
+    picked.light = AT_UINT(event, light, row);
+    picked.path = AT(event, light_path, row);
+    receivers.base = receivers.offset_0; /* not asked for */
+    const light_paths ways = light_tree_paths(light_nodes, TRAIT_LIGHT_TREE, unit, light_leaf[(int)picked.light],
+                                              receivers, 0, picked.path, 1);
+#endif
+    const chosen_light chosen =
+        light_sampling(lights, light_kinds, light_alias, light_count, scene_diameter, unit, base,
+                       u ENVIRONMENT_ARGUMENTS LIGHT_TEXTURE_ARGUMENTS LIGHT_PICKED_ARGUMENT);
     const light_choice s = chosen.choice;
     const int is_surface =
         IS_LIGHT(chosen, triangle, TRAIT_LIGHT_TRIANGLE) | IS_LIGHT(chosen, sphere, TRAIT_LIGHT_SPHERE);
@@ -229,6 +255,9 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
                                                  point_distance_squared, cosine);
         const real by_cone = s.pdf > R(0) ? light_jacobian * sphere_pdf / s.pdf : R(0);
         light_density = IS_LIGHT(chosen, sphere, 1) ? by_cone : light_density;
+#endif
+#if TRAIT_LIGHT_TREE
+        light_density *= LIGHT_PATH_OF(ways, j);
 #endif
         AT(shift, light_jacobian, at) = light_jacobian;
         asks_light = own.is_own & !is_dirac & arrives & (light_jacobian > R(0));

@@ -3,9 +3,16 @@
 #include "kernels/shared/texture.h"
 #include "runtime/scene/traits.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace gradus {
 
 using namespace lib_float;
+
+namespace {
+constexpr double pi = 3.14159265358979323846;
+}
 
 LightBuilder::LightBuilder(const Scene &scene, SceneTables &tables, bool has_textures)
     : scene_(scene), tables_(tables), has_textures_(has_textures) {
@@ -80,7 +87,71 @@ void LightBuilder::set_environment(double emitted) {
     has_environment_ = true;
 }
 
-void LightBuilder::finish() {
+TreeLight LightBuilder::tree_light(std::uint32_t light) {
+    const float *record = &tables_.lights[std::size_t(light) * light_stride];
+    const auto vector = [&](int field) { return Double3{record[field], record[field + 1], record[field + 2]}; };
+    const Double3 p = vector(light_p_x);
+    const Emitter &emitter = scene_.emitters[powers_[light].emitter];
+    const Rgb mean = mean_of(emitter);
+    TreeLight result{p, p, {}, pi, 0, light};
+    switch (tables_.light_kinds[light]) {
+    case light_kind_triangle: {
+        const Double3 e1 = vector(light_e1_x), e2 = vector(light_e2_x);
+        for (const Double3 &corner : {gradus::add(p, e1), gradus::add(p, e2)})
+            for (int i = 0; i < 3; ++i) {
+                result.low[i] = std::min(result.low[i], corner[i]);
+                result.high[i] = std::max(result.high[i], corner[i]);
+            }
+        result.axis = normalize(cross(e1, e2));
+        result.half_angle = 0;
+        result.intensity = powers_[light].power / pi;
+        break;
+    }
+    case light_kind_sphere: {
+        const double radius = record[light_e1_x];
+        result.low = subtract(p, {radius, radius, radius});
+        result.high = gradus::add(p, {radius, radius, radius});
+        result.intensity = powers_[light].power / (4 * pi);
+        break;
+    }
+    case light_kind_point:
+        result.intensity = powers_[light].power / (4 * pi);
+        break;
+    default: // a spot or a projector
+        result.axis = vector(light_e1_x);
+        result.half_angle = tables_.light_kinds[light] == light_kind_spot
+                                ? double(emitter.cutoff)
+                                : std::atan(std::hypot(emitter.picture[0], emitter.picture[1]) / 2);
+        result.intensity = 0.2126 * mean.r + 0.7152 * mean.g + 0.0722 * mean.b;
+    }
+    return result;
+}
+
+void LightBuilder::grow_tree(const std::vector<double> &weights) {
+    std::vector<TreeLight> near;
+    std::vector<std::uint32_t> far;
+    std::vector<double> far_weights;
+    double far_weight = 0, all = 0;
+    for (std::uint32_t i = 0; i < powers_.size(); ++i) {
+        all += weights[i];
+        if (powers_[i].at_infinity) {
+            far.push_back(i);
+            far_weights.push_back(weights[i]);
+            far_weight += weights[i];
+        } else {
+            near.push_back(tree_light(i));
+        }
+    }
+    const LightTree tree = make_light_tree(std::move(near), far, far_weights, tables_.light_count);
+    const double share = far_weight / all;
+    for (std::uint32_t i = 0; i < powers_.size(); ++i)
+        tables_.lights[std::size_t(i) * light_stride + light_probability] =
+            float(tree.probability[i] * (powers_[i].at_infinity ? share : 1 - share));
+    tables_.light_tree = tree;
+    tables_.light_share_at_infinity = float(share);
+}
+
+void LightBuilder::finish(std::uint32_t tree_from) {
     tables_.light_count = static_cast<std::uint32_t>(powers_.size());
     // A black light follows the last: what the environment is where there is none.
     tables_.lights.resize((powers_.size() + 1) * light_stride, 0.0f);
@@ -96,6 +167,8 @@ void LightBuilder::finish() {
         tables_.lights[i * light_stride + light_alias_threshold] = alias.threshold[i];
     }
     tables_.light_alias = alias.alias;
+    if (std::size_t(std::ranges::count(powers_, false, &LightPower::at_infinity)) >= std::max(tree_from, 1u))
+        grow_tree(light_weights(powers_));
     const AliasTable emission = make_alias_table(light_weights(emitted_));
     tables_.emissions.resize(emitted_.size() * emission_stride);
     for (std::size_t i = 0; i < emitted_.size(); ++i) {

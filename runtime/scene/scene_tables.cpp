@@ -314,7 +314,7 @@ std::vector<Bsdf> material_records(const Scene &scene) {
     return records;
 }
 
-SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits) {
+SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits, std::uint32_t tree_from) {
     SceneTables tables;
     reserve_tables(scene, traits, tables);
     tables.kinds = bsdf_kinds(scene);
@@ -331,7 +331,7 @@ SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits) {
     tables.scene_diameter = static_cast<float>(2.02 * radius);
     tables.scene_center = {bounds.center().x, bounds.center().y, bounds.center().z};
     add_other_lights(scene, radius, tables, lights);
-    lights.finish();
+    lights.finish(tree_from);
     if (!tables.environment && traits.at("TRAIT_LIGHT_ENVIRONMENT"))
         tables.environment = std::make_shared<const EnvironmentMap>(no_environment_map());
     add_materials(scene, tables);
@@ -360,7 +360,8 @@ std::size_t table_bytes(const SceneTables &t) {
                 t.emission_alias.size() + t.triangle_texcoords.size() + t.sphere_axes.size() + t.texture_reals.size() +
                 t.material_lookups.size() + t.textures.size() + t.texels.size() + t.material_textures.size() +
                 t.blends.size() + t.record_kind.size() + t.blend_weights.size() + t.normal_maps.size() +
-                t.bump_scales.size() + t.light_textures.size() + t.light_pictures.size());
+                t.bump_scales.size() + t.light_textures.size() + t.light_pictures.size() + t.light_tree.nodes.size() +
+                t.light_tree.leaves.size() + t.light_tree.slots.size() + t.light_tree.leaf.size());
 }
 
 } // namespace gradus

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/scene/camera_clips.h"
+#include "runtime/scene/light_tree.h"
 #include "runtime/scene/scene.h"
 #include "runtime/scene/traits.h"
 
@@ -11,6 +12,8 @@
 #include <vector>
 
 namespace gradus {
+
+constexpr std::uint32_t no_light_tree = 0xFFFFFFFFu;
 
 struct SceneTables {
     std::vector<float> triangles, triangle_normals, triangle_tangents, spheres, materials, lights, camera;
@@ -31,6 +34,8 @@ struct SceneTables {
     /// By light, what light paths choose by: records of kernels/shared/scene_records.h, and the alias.
     std::vector<float> emissions;
     std::vector<std::uint32_t> emission_alias;
+    LightTree light_tree;                              ///< of no levels where lights are chosen by power
+    float light_share_at_infinity = 0;                 ///< with a tree: how often a light at infinity is chosen
     std::shared_ptr<const EnvironmentMap> environment; ///< where the environment is a map, or kernels expect one
     std::vector<std::string> kinds; ///< the BSDF kinds of the scene: kind k has the bins 1 + 2 k and 2 + 2 k
     std::uint32_t triangle_count = 0, light_count = 0, environment_light = 0;
@@ -40,8 +45,9 @@ struct SceneTables {
     Camera::Kind camera_kind = Camera::Kind::perspective;
 };
 
-/// Lays out the scene for these traits. `film_width` and `film_height` are those of the full film.
-SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits);
+/// Lays out the scene for these traits. From so many lights as `tree_from` on that are not at infinity, they are chosen
+/// by a tree.
+SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits, std::uint32_t tree_from = no_light_tree);
 
 /// The BSDF of each material record: the fronts of all materials, then the backs that differ from them, then what
 /// blends are made of.

@@ -17,6 +17,7 @@ namespace {
 constexpr std::size_t most_few_textures = 8;      // kernels/lib/texture_lookup.h
 constexpr std::uint32_t most_few_lights = 4;      // kernels/lib/light_sampling.h chooses among so many
 constexpr std::uint32_t least_many_lights = 4097; // 24 bits choose among fewer with an error of 2e-4 at most
+constexpr std::uint32_t least_tree_lights = 4096; // bench/render/lights.py: no scene of so many loses much
 constexpr std::uint32_t deepest = 1u << 16;       // where a file asks for paths without end
 
 TraitMap traits_for(const Scene &scene, const SessionOptions &options, const TraitMap &of_method) {
@@ -41,6 +42,12 @@ TraitMap traits_for(const Scene &scene, const SessionOptions &options, const Tra
     if (traits["TRAIT_AOV"] != 0)
         traits["TRAIT_AOV"] = has_dirac ? 2 : 1;
     return traits;
+}
+
+std::uint32_t tree_from(SessionOptions::Lights lights) {
+    return lights == SessionOptions::Lights::power  ? no_light_tree
+           : lights == SessionOptions::Lights::tree ? 1
+                                                    : least_tree_lights;
 }
 
 FilmSettings with_crop(FilmSettings film) {
@@ -94,6 +101,12 @@ std::vector<Buffer> make_scene_buffers(Device &device, const SceneTables &t, Pre
     numbers("light_alias", t.light_alias);
     reals("emissions", t.emissions);
     numbers("emission_alias", t.emission_alias);
+    if (t.light_tree.levels > 0) {
+        numbers("light_nodes", t.light_tree.nodes);
+        numbers("light_leaves", t.light_tree.leaves);
+        numbers("light_slots", t.light_tree.slots);
+        numbers("light_leaf", t.light_tree.leaf);
+    }
     if (t.environment) {
         numbers("environment_texels", t.environment->texels);
         numbers("environment_cells", t.environment->cells);
@@ -126,19 +139,21 @@ Session::Session(Device &session_device, const Scene &s, const SessionOptions &s
                  const TraitMap &method_traits)
     : device(session_device), options(session_options), settings(s.settings), film(with_crop(s.film)),
       traits(traits_for(s, session_options, method_traits)),
-      scene(in_phase(options.phases, phase_names::tables, [&] { return make_scene_tables(s, traits); })),
+      scene(in_phase(options.phases, phase_names::tables,
+                     [&] { return make_scene_tables(s, traits, tree_from(session_options.lights)); })),
       scene_buffers(in_phase(options.phases, phase_names::tables,
                              [&] { return make_scene_buffers(session_device, scene, session_options.precision); })),
       tracer(in_phase(options.phases, phase_names::tree, [&] { return Tracer(s, session_options.threads); })) {
     traits["SAMPLES_LIGHTS"] = scene.light_count > 0 && options.strategy != SessionOptions::Strategy::bsdf;
-    traits["FEW_LIGHTS"] =
-        scene.light_count <= most_few_lights && !options.all_traits ? static_cast<int>(scene.light_count) : 0;
+    traits["TRAIT_LIGHT_TREE"] = traits["SAMPLES_LIGHTS"] ? static_cast<int>(scene.light_tree.levels) : 0;
+    const bool has_few = scene.light_count <= most_few_lights && !options.all_traits && !traits["TRAIT_LIGHT_TREE"];
+    traits["FEW_LIGHTS"] = has_few ? static_cast<int>(scene.light_count) : 0;
     const std::size_t textures = s.textures.size();
     const int few_textures = textures <= most_few_textures && !options.all_traits ? static_cast<int>(textures) : 0;
     for (const char *name : {"TRAIT_TEXTURES", "TRAIT_BLEND_TEXTURES", "TRAIT_NORMAL_TEXTURES", "TRAIT_LIGHT_TEXTURES"})
         if (traits[name] != 0)
             traits[name] = textures_with_count(traits[name], few_textures);
-    traits["MANY_LIGHTS"] = scene.light_count >= least_many_lights;
+    traits["MANY_LIGHTS"] = scene.light_count >= least_many_lights && !traits["TRAIT_LIGHT_TREE"];
     numbers = {{"unit", 1},
                {"triangle_count", scene.triangle_count},
                {"light_count", scene.light_count},
@@ -159,6 +174,13 @@ Session::Session(Device &session_device, const Scene &s, const SessionOptions &s
     }
     set_divisor(*this, "pixels", "pixels", pixels());
     set_divisor(*this, "width", "crop_width", film.crop_width);
+    if (traits["TRAIT_LIGHT_TREE"]) {
+        reals["light_tree_x"] = scene.light_tree.origin[0];
+        reals["light_tree_y"] = scene.light_tree.origin[1];
+        reals["light_tree_z"] = scene.light_tree.origin[2];
+        reals["light_tree_scale"] = scene.light_tree.scale;
+        reals["light_share_at_infinity"] = scene.light_share_at_infinity;
+    }
     reals["scene_diameter"] = scene.scene_diameter;
     reals["scene_center_x"] = scene.scene_center[0];
     reals["scene_center_y"] = scene.scene_center[1];

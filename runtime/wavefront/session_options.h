@@ -28,6 +28,10 @@ struct SessionOptions {
     /// dimension (kernels/lib/stratified.h). Light paths of photons are independent in either case.
     enum class Sampler { sobol, independent };
     Sampler sampler = Sampler::sobol;
+    /// How light samples choose a light: by power, or from a tree by what may arrive; automatic: from a tree where
+    /// there are many.
+    enum class Lights { automatic, tree, power };
+    Lights lights = Lights::automatic;
     enum class Strategy { mis, light, bsdf };
     Strategy strategy = Strategy::mis; ///< for tests: light sampling alone or BSDF sampling alone
     std::string dump_kernels;          ///< folder for the source of each kernel as it was compiled; empty: none

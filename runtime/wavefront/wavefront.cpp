@@ -52,7 +52,9 @@ Wavefront::Wavefront(Session &session, Stages &stages, const BinLayout &layout,
       scatter_(stages.add(partition_stage("partition_scatter", "partition scatter", {"bins", "rows"}))) {}
 
 TableList Wavefront::tables() const {
-    const std::uint32_t path_columns_used = session_.has("TRAIT_REFRACTION") ? path_columns : path_eta;
+    const std::uint32_t path_columns_used = session_.has("TRAIT_LIGHT_TREE")   ? path_columns
+                                            : session_.has("TRAIT_REFRACTION") ? path_receiver
+                                                                               : path_eta;
     TableList list = ray_tables();
     list.push_back({.name = "path", .columns = path_columns_used, .alternates = true});
     list.push_back({.name = "shadow", .columns = shadow_columns});

@@ -95,7 +95,8 @@ TEST(KernelTraits, AreThoseThatAMethodKnows) {
                                    "SAMPLES_LIGHTS",     "FEW_LIGHTS",
                                    "MANY_LIGHTS",        "STRATEGY",
                                    "SOLVER_CHANNELS",    "SOLVER_WEIGHTED",
-                                   "SOLVER_JOINT",       "TRAIT_HALVES"};
+                                   "SOLVER_JOINT",       "TRAIT_HALVES",
+                                   "TRAIT_LIGHT_TREE"};
     for (const auto &[name, value] : scene_traits(Scene{}))
         known.insert(name);
     known.erase("TRAIT_FAR_CLIP"); // a stage of its own, there or not

@@ -69,11 +69,16 @@ GradientBias gradient_bias(const Scene &scene, const Scene &path_traced, const G
     std::vector<std::vector<double>> primal, change, true_primal, true_change;
     RenderOptions unweighted; // of all samples; the reconstruction is not looked at
     unweighted.reconstruction = Reconstruction::l1;
+    RenderOptions of_truth;
+    if (samples.by_tree) {
+        unweighted.lights = RenderOptions::Lights::tree;
+        of_truth.lights = RenderOptions::Lights::power;
+    }
     for (const Image &image : render_seeds(with_gradients, samples.seeds, unweighted, 1, "gpt")) {
         primal.push_back(values_of(whole(image)));
         change.push_back(values_of_both(whole_differences(image, true), whole_differences(image, false)));
     }
-    for (const Image &image : render_seeds(without, samples.seeds, {}, 1 + samples.seeds, "pt")) {
+    for (const Image &image : render_seeds(without, samples.seeds, of_truth, 1 + samples.seeds, "pt")) {
         true_primal.push_back(values_of(image));
         true_change.push_back(values_of_both(differences(image, "", true), differences(image, "", false)));
     }

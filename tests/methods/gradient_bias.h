@@ -36,6 +36,7 @@ struct GradientBias {
 struct GradientSamples {
     std::size_t seeds = 8;
     std::uint64_t gradient_domain = 16, path_tracing = 32; ///< samples a pixel and seed
+    bool by_tree = false; ///< the gradient-domain one chooses lights from a tree, the other one by power
 };
 
 /// The beginning of a small scene, of 32 x 32 pixels; gradient_bias() sets its samples.

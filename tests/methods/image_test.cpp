@@ -46,8 +46,9 @@ INSTANTIATE_TEST_SUITE_P(Image, OwnReference,
                                            "clipped-mitchell", "textures", "lamps"),
                          name_of_scene);
 INSTANTIATE_TEST_SUITE_P(Full, OwnReference,
-                         ::testing::Values("metal-ring-soft", "holes-7", "holes-14", "holes-28", "door-ajar",
-                                           "cornell-box-glossy", "slab-and-ball-soft", "lamp-in-egg-soft", "relief"),
+                         ::testing::Values("metal-ring-soft", "lanterns", "holes-7", "holes-14", "holes-28",
+                                           "door-ajar", "cornell-box-glossy", "slab-and-ball-soft", "lamp-in-egg-soft",
+                                           "relief"),
                          name_of_scene);
 
 struct SharedCase {

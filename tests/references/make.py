@@ -45,6 +45,7 @@ REFERENCES = {
     "lamp-in-egg-soft": ("lamp-in-egg.xml", 96, {"lamp": 0.1, "glow": 15}, 12288),
     "metal-ring": ("metal-ring.xml", 96, {}, 65536),
     "sundial": ("sundial.xml", 96, {}, 16384),
+    "lanterns": ("lanterns.xml", 96, {}, 16384),
     # Small ones, of plugins.
     "thin-lens": ("../tests/scenes/thin-lens.xml", 48, {}, 16384),
     "orthographic": ("../tests/scenes/orthographic.xml", 48, {}, 16384),
