@@ -3,6 +3,7 @@
 #include "kernels/shared/material.h"
 #include "kernels/shared/scene_records.h"
 #include "kernels/shared/texture.h"
+#include "runtime/scene/attribute_light.h"
 #include "runtime/scene/camera_record.h"
 #include "runtime/scene/environment_map.h"
 #include "runtime/scene/light_builder.h"
@@ -93,13 +94,27 @@ void add_primitive(const SurfaceOfShape &surface, std::uint32_t light, SceneTabl
     tables.primitive_back_bin.push_back(surface.back_bin + emits);
 }
 
+Rgb times(const Rgb &a, const Rgb &b) { return {a.r * b.r, a.g * b.g, a.b * b.b}; }
+
+/// The texture of a light that a mesh bears, or nullptr.
+const Texture *attribute_of(const Scene &scene, const Emitter &emitter) {
+    if (emitter.texture == no_texture)
+        return nullptr;
+    const Texture &texture = scene.textures[std::size_t(emitter.texture)];
+    return texture.kind == Texture::Kind::mesh_attribute ? &texture : nullptr;
+}
+
 void add_mesh(const Scene &scene, const Shape &shape, const TraitMap &traits, SceneTables &tables,
               LightBuilder &lights) {
     const Mesh &mesh = scene.meshes[shape.geometry];
     const SurfaceOfShape surface(scene, shape, tables);
     const bool has_normals = traits.at("TRAIT_SHADING_NORMALS"), has_tangents = traits.at("TRAIT_ANISOTROPIC"),
                has_textures = traits.at("TRAIT_MATERIAL") || traits.at("TRAIT_TEXTURED_LIGHTS");
-    for (const auto &t : mesh.triangles) {
+    const Emitter *const emitter = shape.emitter >= 0 ? &scene.emitters[std::size_t(shape.emitter)] : nullptr;
+    const Texture *const bright = emitter ? attribute_of(scene, *emitter) : nullptr;
+    const Rgb mean_of_all = bright ? times(emitter->value, mean_over_mesh(*bright, mesh)) : Rgb();
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        const auto &t = mesh.triangles[i];
         const Vector3 p0 = mesh.positions[t[0]];
         const Vector3 e1 = mesh.positions[t[1]] - p0, e2 = mesh.positions[t[2]] - p0;
         const Vector3 area_normal = cross(e1, e2);
@@ -135,13 +150,13 @@ void add_mesh(const Scene &scene, const Shape &shape, const TraitMap &traits, Sc
         }
 
         std::uint32_t light = no_light;
-        if (shape.emitter >= 0) {
-            const Emitter &emitter = scene.emitters[shape.emitter];
-            const Rgb radiance = emitter.value;
-            const double power = pi * area * luminance(lights.mean_of(emitter));
+        if (emitter) {
+            const Rgb mean =
+                bright ? times(emitter->value, mean_over_triangle(*bright, mesh, i)) : lights.mean_of(*emitter);
+            const double power = pi * area * luminance(mean);
             if (power > 0) {
                 float *light_record;
-                light = lights.add(light_kind_triangle, radiance, {power, std::uint32_t(shape.emitter), false},
+                light = lights.add(light_kind_triangle, emitter->value, {power, std::uint32_t(shape.emitter), false},
                                    light_record);
                 put(light_record, light_p_x, p0);
                 put(light_record, light_e1_x, e1);
@@ -149,6 +164,8 @@ void add_mesh(const Scene &scene, const Shape &shape, const TraitMap &traits, Sc
                 light_record[light_inverse_area] = static_cast<float>(std::min(1 / area, 3e38));
                 light_record[light_offset] = offset;
                 lights.set_triangle(light, std::uint32_t(tables.primitive_material.size()));
+                if (bright)
+                    lights.set_mean(light, mean_of_all);
             }
         }
         add_primitive(surface, light, tables);

@@ -2,6 +2,7 @@
 
 #include "kernels/shared/texture.h"
 #include "runtime/error.h"
+#include "runtime/phases.h"
 #include "runtime/scene/environment_map.h"
 #include "runtime/wavefront/invariant_division.h"
 
@@ -138,9 +139,11 @@ Session::Session(Device &session_device, const Scene &s, const SessionOptions &s
                  const TraitMap &method_traits)
     : device(session_device), options(session_options), settings(s.settings), film(with_crop(s.film)),
       traits(traits_for(s, session_options, method_traits)),
-      scene(make_scene_tables(s, traits, tree_from(session_options.lights))),
-      scene_buffers(make_scene_buffers(session_device, scene, session_options.precision)),
-      tracer(s, session_options.threads) {
+      scene(in_phase(options.phases, phase_names::tables,
+                     [&] { return make_scene_tables(s, traits, tree_from(session_options.lights)); })),
+      scene_buffers(in_phase(options.phases, phase_names::tables,
+                             [&] { return make_scene_buffers(session_device, scene, session_options.precision); })),
+      tracer(in_phase(options.phases, phase_names::tree, [&] { return Tracer(s, session_options.threads); })) {
     traits["SAMPLES_LIGHTS"] = scene.light_count > 0 && options.strategy != SessionOptions::Strategy::bsdf;
     traits["TRAIT_LIGHT_TREE"] = traits["SAMPLES_LIGHTS"] ? static_cast<int>(scene.light_tree.levels) : 0;
     const bool has_few = scene.light_count <= most_few_lights && !options.all_traits && !traits["TRAIT_LIGHT_TREE"];
