@@ -116,7 +116,7 @@ TEST(Traits, AllOnLeavesThePictureAlone) {
                                  name == "TRAIT_LOOKUPS" || name == "TRAIT_NORMAL_TEXTURES" ||
                                  name == "TRAIT_LIGHT_TEXTURES" || name.starts_with("TRAIT_BLEND")
                              ? special.at(name)
-                             : 1)
+                             : (name == "TRAIT_INDEXED" ? 8 : 1)) // position, normal, (u, v)
             << name;
 }
 
