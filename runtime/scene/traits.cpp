@@ -383,15 +383,17 @@ std::string trait_description(const std::string &name) {
 
 TraitMap with_all_traits(TraitMap traits) {
     for (auto &[name, value] : traits) {
-        // The filter and hidden emitters change the picture; the rest only makes room for what is not there.
+        // The filter and hidden emitters change the picture, TRAIT_INDEXED how tables lie; the rest only makes room for
+        // what is not there.
         const bool setting = name.starts_with("TRAIT_FILTER") || name == "TRAIT_HIDE_EMITTERS" ||
-                             name.starts_with("TRAIT_TEXTURE") || name == "TRAIT_MATERIAL" || name == "TRAIT_LOOKUPS" ||
-                             name == "TRAIT_NORMAL_TEXTURES" || name == "TRAIT_LIGHT_TEXTURES" ||
-                             name.starts_with("TRAIT_BLEND");
+                             name == "TRAIT_INDEXED" || name.starts_with("TRAIT_TEXTURE") || name == "TRAIT_MATERIAL" ||
+                             name == "TRAIT_LOOKUPS" || name == "TRAIT_NORMAL_TEXTURES" ||
+                             name == "TRAIT_LIGHT_TEXTURES" || name.starts_with("TRAIT_BLEND");
         if (!setting)
             value = 1;
     }
-    traits["TRAIT_INDEXED"] = indexed_trait(traits, std::numeric_limits<std::size_t>::max());
+    if (traits["TRAIT_INDEXED"] != 0) // vertices have what all of these read
+        traits["TRAIT_INDEXED"] = indexed_trait(traits, std::numeric_limits<std::size_t>::max());
     return traits;
 }
 

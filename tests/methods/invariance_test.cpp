@@ -79,12 +79,13 @@ TEST_P(Invariance, NotToTheSeed) {
     EXPECT_FALSE(equal_bits(image, render(small_scene(), high).image));
 }
 
-// Kernels with every trait on compute the same, but a compiler may join multiplications and additions otherwise. What
-// that changes in the last bits sends a path another way now and then: past an edge, or on with Russian roulette.
+// Kernels with every trait on, with triangles by index too, compute the same, but a compiler may join multiplications
+// and additions otherwise. What that changes in the last bits sends a path another way now and then: past an edge, or
+// on with Russian roulette.
 TEST_P(Invariance, ToSpecialisationButForRounding) {
     RenderOptions options;
     const Image special = render(small_scene(), options).image;
-    options.all_traits = true;
+    options.all_traits = options.by_index = true;
     const Image general = render(small_scene(), options).image;
     std::size_t different = 0, far = 0, count = 0;
     for (const Channel &channel : special.channels)
