@@ -3,7 +3,7 @@
 
     PYTHON-WITH-DENOISER bench/peers/denoise.py IN.exr OUT.exr [IN.exr OUT.exr ...]
 
-The inputs are gradus's, with --aov; the guides are taken as they are, noisy where the first hits are, or with
+The inputs are gradus's, with --aov; the guides are taken as they are, noisy where what is seen is, or with
 --clean-features are denoised first, which is not timed. Quality is the highest. The time is that of the filter on
 images in memory, the median of three; starting the device, reading and writing are left out.
 """

@@ -78,7 +78,7 @@
 /* The pixel filter over the density of a sample's place in it, by slot; only of filters with negative lobes. */
 #define GRADUS_FILTERED_COLUMNS(REAL, UINT) REAL(filtered, weight, "negative in the negative lobes")
 
-/* First-hit features by slot, only with --aov. */
+/* Features by slot (kernels/lib/seen_features.h), only with TRAIT_AOV. */
 #define GRADUS_FEATURE_COLUMNS(REAL, UINT)                                                                             \
     REAL(feature, albedo_r, "")                                                                                        \
     REAL(feature, albedo_g, "")                                                                                        \
@@ -86,7 +86,7 @@
     REAL(feature, normal_x, "shading normal towards the camera, world frame")                                          \
     REAL(feature, normal_y, "")                                                                                        \
     REAL(feature, normal_z, "")                                                                                        \
-    REAL(feature, depth, "distance from the camera")
+    REAL(feature, depth, "length of the way from the camera; negative until a surface is met that is no mirror or glass")
 
 /* Sums over the samples of each pixel of the crop. The sums are compensated (sum + correction is the value), so that
  * many samples lose nothing; they are added in the order of the samples, whatever the batches are. */

@@ -40,7 +40,8 @@ STAGE accumulate(uint count, uint slots, uint pixels, uint first_slot, uint firs
 #if TRAIT_AOV
     const rgb albedo = AT_RGB(feature, albedo, slot);
     const vec3 normal = AT_V3(feature, normal, slot);
-    const real depth = AT(feature, depth, slot);
+    /* Negative where a path has met mirrors and glass alone. */
+    const real depth = r_abs(AT(feature, depth, slot));
 #endif
     const int finite = is_finite(value.r) && is_finite(value.g) && is_finite(value.b);
     value = rgb3(finite ? value.r : R(0), finite ? value.g : R(0), finite ? value.b : R(0));

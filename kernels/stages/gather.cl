@@ -10,6 +10,7 @@
  * FEATURES: also leaves the features that the camera sees, in the place of `shade` (by BSDF kind). */
 #include "kernels/lib/bsdf.h"
 #include "kernels/lib/bsdf_frame.h"
+#include "kernels/lib/seen_features.h"
 #include "kernels/lib/surface_point.h"
 #include "kernels/lib/textured_material.h"
 #include "kernels/lib/vertex_frame.h"
@@ -58,13 +59,9 @@ STAGE gather(uint count, uint unit, uint first, uint to, uint capacity, uint gat
     SET_SURFACE_VERTEX(gather, row, material_kind[point.material], point, direction)
     SET_VERTEX_TEXTURED(gather, row, capacity, old)
 #if FEATURES
-    if (depth == 0u) {
-        const material m = HIT_MATERIAL(point.material, capacity, old);
-        const rgb albedo = PASTE(BSDF, _albedo)(m);
-        SET_RGB(feature, albedo, slot, albedo);
-        const bsdf_frame place = HIT_FRAME(point, m, v3_neg(direction), capacity, old);
-        SET_V3(feature, normal, slot, place.axes.n);
-        AT(feature, depth, slot) = distance;
-    }
+    const material m = HIT_MATERIAL(point.material, capacity, old);
+    const rgb albedo = PASTE(BSDF, _albedo)(m);
+    const bsdf_frame place = HIT_FRAME(point, m, v3_neg(direction), capacity, old);
+    SET_SEEN_FEATURES(slot, depth, 0, distance, throughput, albedo, place.axes.n)
 #endif
 }

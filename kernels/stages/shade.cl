@@ -9,12 +9,13 @@
  * WITH_OFFSETS: the paths have offset paths that are not connected with them. Then the light sample is not weighted
  * yet, no roulette is played, black paths go on since their offset paths may not be black, and what these need to know
  * of the vertex is left in `vertex` and `event`. */
-//! traits: TRAIT_REFRACTION TRAIT_AOV SAMPLES_LIGHTS
+//! traits: TRAIT_REFRACTION SAMPLES_LIGHTS
 #include "kernels/lib/bsdf.h"
 #include "kernels/lib/bsdf_frame.h"
 #include "kernels/lib/light_sampling.h"
 #include "kernels/lib/mis.h"
 #include "kernels/lib/path_draw.h"
+#include "kernels/lib/seen_features.h"
 #include "kernels/lib/surface_point.h"
 #include "kernels/lib/textured_material.h"
 #include "kernels/lib/vertex_frame.h"
@@ -65,13 +66,9 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
     const int goes_on = depth + 1u < max_depth;
 
 #if TRAIT_AOV
-    /* What the camera sees: vertices further along leave it alone. */
-    if (depth == 0u) {
-        const rgb albedo = PASTE(BSDF, _albedo)(m);
-        SET_RGB(feature, albedo, slot, albedo);
-        SET_V3(feature, normal, slot, axes.n);
-        AT(feature, depth, slot) = r_sqrt(v3_length_squared(v3_sub(point.position, from)));
-    }
+    const rgb albedo = PASTE(BSDF, _albedo)(m);
+    SET_SEEN_FEATURES(slot, depth, BSDF_IS_DIRAC, r_sqrt(v3_length_squared(v3_sub(point.position, from))), throughput,
+                      albedo, axes.n)
 #endif
 #if WITH_OFFSETS
     SET_SURFACE_VERTEX(vertex, row, material_kind[point.material], point, direction)

@@ -1,0 +1,62 @@
+// Albedo, normal and depth as images have them: what the camera sees through mirrors, glass and holes.
+#include "tests/support/render.h"
+#include "tests/support/small_scenes.h"
+
+#include <string>
+
+namespace gradus::testing {
+namespace {
+
+class SeenFeatures : public ::testing::TestWithParam<const char *> {
+  protected:
+    static constexpr std::uint32_t size = 16;
+
+    /// A camera at z = 4 looks down at a surface at z = 0; six above that, where x < 0, hangs a wall of albedo 0.8.
+    static Image image_with(const Bsdf &surface) {
+        SceneMaker maker(size, 2);
+        maker.look({0, 0, 4}, {0, 0, 0}, 4);
+        maker.parallelogram({-9, -9, 6}, {0, 18, 0}, {9, 0, 0}, maker.material(diffuse(0.8)));
+        maker.parallelogram({-9, -9, -2}, {18, 0, 0}, {0, 18, 0}, maker.material(diffuse(0.3)));
+        maker.parallelogram({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.material(surface));
+        maker.environment(1);
+        RenderOptions options;
+        options.aov = true;
+        options.photons = 100;
+        options.direct_photons = true; // `gather` in the place of `shade`
+        return render(maker.scene, options, GetParam()).image;
+    }
+
+    /// At the middles of the left and of the right half; rays are within two degrees of the axis.
+    static void expect(const Image &image, bool right, double albedo, double normal, double depth) {
+        const std::uint32_t x = right ? size * 3 / 4 : size / 4, y = size / 2;
+        EXPECT_NEAR(pixel(image, x, y, "albedo.G"), albedo, 1e-6);
+        EXPECT_NEAR(pixel(image, x, y, "normal.Z"), normal, 1e-6);
+        EXPECT_NEAR(pixel(image, x, y, "depth.Z"), depth, 2e-3 * depth);
+    }
+};
+
+TEST_P(SeenFeatures, AreThoseOfWhatAMirrorShows) {
+    Bsdf tinted = mirror();
+    tinted.specular_reflectance = {0.5f, 0.5f, 0.5f};
+    const Image image = image_with(tinted);
+    expect(image, false, 0.5 * 0.8, -1, 4 + 6); // the wall
+    expect(image, true, 0.5, 1, 4);             // the sky has none, so the mirror's own
+}
+
+TEST_P(SeenFeatures, AreThoseOfWhatAHoleShows) {
+    Bsdf hole;
+    hole.kind = BsdfKind::null;
+    expect(image_with(hole), true, 0.3, 1, 4 + 2);
+}
+
+TEST_P(SeenFeatures, AreThoseOfRoughSurfacesThemselves) {
+    Bsdf tinted = rough_metal(0.3);
+    tinted.specular_reflectance = {0.5f, 0.5f, 0.5f};
+    expect(image_with(tinted), false, 0.5, 1, 4);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, SeenFeatures, ::testing::Values("pt", "sppm"),
+                         [](const auto &info) { return std::string(info.param); });
+
+} // namespace
+} // namespace gradus::testing
