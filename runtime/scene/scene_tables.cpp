@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 namespace gradus {
 
@@ -384,45 +383,6 @@ SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits) {
     if (tables.spheres.empty())
         tables.spheres.resize(sphere_stride, 0.0f);
     return tables;
-}
-
-TableTriangle SceneTables::triangle(std::uint32_t number) const {
-    TableTriangle found{};
-    if (!is_indexed()) {
-        const float *record = &triangles[std::size_t(number) * triangle_stride];
-        std::copy_n(record + triangle_p0_x, 3, found.p0.begin());
-        std::copy_n(record + triangle_e1_x, 3, found.e1.begin());
-        std::copy_n(record + triangle_e2_x, 3, found.e2.begin());
-        return found;
-    }
-    std::memcpy(found.corners.data(), &triangles[std::size_t(number) * 3], sizeof found.corners);
-    const auto vertex = [&](std::size_t corner) {
-        return &triangles[std::size_t(found.corners[corner]) * vertex_numbers];
-    };
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        found.p0[axis] = vertex(0)[axis];
-        found.e1[axis] = vertex(1)[axis] - vertex(0)[axis];
-        found.e2[axis] = vertex(2)[axis] - vertex(0)[axis];
-    }
-    return found;
-}
-
-std::array<float, 6> SceneTables::texcoords(std::uint32_t number) const {
-    std::array<float, 6> uv{};
-    const TableTriangle of = triangle(number);
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-        const float *from = is_indexed() ? &triangles[std::size_t(of.corners[corner] + 1) * vertex_numbers - 2]
-                                         : &triangle_texcoords[std::size_t(number) * texcoords_stride + 2 * corner];
-        std::copy_n(from, 2, uv.begin() + std::ptrdiff_t(2 * corner));
-    }
-    return uv;
-}
-
-std::uint32_t SceneTables::light_of(std::uint32_t primitive) const {
-    if (!is_indexed())
-        return primitive_light[primitive];
-    const std::uint32_t lag = primitive_surface[primitive_surface[primitive] + surface_of_lag];
-    return lag == no_light ? no_light : primitive - lag;
 }
 
 std::size_t table_bytes(const SceneTables &t) {

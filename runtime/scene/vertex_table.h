@@ -15,8 +15,8 @@ namespace gradus {
 
 struct SceneTables;
 
-/// Scenes with more triangles than this have them by index. Below it records of their own take 8 MB at most, and save
-/// the kernels three loads a hit.
+/// Scenes with more triangles than this have them by index. Up to it records of their own take 8 MB at most. Either is
+/// as fast (docs/design.md).
 constexpr std::size_t most_dense_triangles = 1u << 16;
 
 /// TRAIT_INDEXED of a scene that has these other traits and so many triangles: how many numbers a vertex has.
