@@ -1,4 +1,5 @@
 #include "driver/commands.h"
+#include "driver/phase_watch.h"
 #include "driver/scene_request.h"
 #include "driver/scene_summary.h"
 #include "driver/standard_streams.h"
@@ -156,9 +157,13 @@ void add_inspect_command(CLI::App &app, const Services &services, std::function<
         ->capture_default_str();
     command.callback([arguments, &services, &chosen] {
         chosen = [arguments, &services] {
-            const Scene scene = load_requested_scene(arguments->scene, services, [](const std::string &warning) {
-                print_message("gradus: warning: " + warning + "\n");
-            });
+            Progress progress(Progress::choose_mode(false, stderr));
+            Phases phases;
+            const Scene scene = [&] {
+                const PhaseWatch watch(phases, progress);
+                const auto warn = [&](const std::string &text) { progress.message("gradus: warning: " + text); };
+                return load_requested_scene(arguments->scene, services, warn, nullptr, &phases);
+            }();
             print_result((arguments->json ? summary_json : summary_text)(
                 scene, summarize(scene), services.traits(scene), arguments->gather_roughness));
             return static_cast<int>(ExitCode::success);

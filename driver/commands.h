@@ -15,6 +15,7 @@ namespace gradus {
 void add_render_command(CLI::App &app, const Services &services, std::function<int()> &chosen);
 void add_inspect_command(CLI::App &app, const Services &services, std::function<int()> &chosen);
 void add_devices_command(CLI::App &app, const Services &services, std::function<int()> &chosen);
+void add_plugins_command(CLI::App &app, std::function<int()> &chosen);
 void add_compare_command(CLI::App &app, std::function<int()> &chosen);
 void add_solve_command(CLI::App &app, const Services &services, std::function<int()> &chosen);
 void add_tune_command(CLI::App &app, const Services &services, std::function<int()> &chosen);

@@ -3,6 +3,7 @@
 #include "driver/standard_streams.h"
 #include "driver/tuning_store.h"
 #include "planning/make_method.h"
+#include "runtime/phases.h"
 #include "runtime/scene/traits.h"
 #include "solver/weighted_reconstruction.h"
 
@@ -14,7 +15,9 @@ int main(int argc, char **argv) {
     services.traits = gradus::trait_list;
     services.prepare = [](const std::string &method, const std::string &selector, const gradus::Scene &scene,
                           const gradus::RenderOptions &options) {
-        const auto device = std::make_shared<gradus::Device>(selector, options.threads);
+        const auto device = gradus::in_phase(options.phases, gradus::phase_names::device, [&] {
+            return std::make_shared<gradus::Device>(selector, options.threads);
+        });
         gradus::RenderOptions tuned = options;
         std::string problem;
         gradus::apply_tuning(gradus::stored_tuning(device->description(), &problem), tuned);

@@ -23,6 +23,7 @@ constexpr const char *examples = R"(Examples:
   gradus render scene.xml -o out.exr --spp 256 --png      more samples, and a PNG to look at
   gradus render scene.xml -o out.exr --time 60            as good as it gets in a minute
   gradus inspect scene.xml                                what the scene holds
+  gradus plugins                                          what scene files may say
   gradus solve layers.exr -o out.exr                      an image from its gradients
   gradus compare out.exr reference.exr                    how far from the truth
   gradus warm scene.xml                                   compile the kernels ahead
@@ -77,6 +78,7 @@ int run_program(int argc, const char *const *argv, const Services &services) {
         app.footer(examples);
         add_render_command(app, services, chosen);
         add_inspect_command(app, services, chosen);
+        add_plugins_command(app, chosen);
         add_devices_command(app, services, chosen);
         add_compare_command(app, chosen);
         add_solve_command(app, services, chosen);

@@ -95,6 +95,29 @@ void Progress::compiled(const std::string &kernel, std::size_t ready, std::size_
     message(fmt::format("compiled {} in {:.2f} s ({} of {})", kernel, seconds, ready, total));
 }
 
+void Progress::phase(const std::string &text, double seconds) {
+    if (mode_ == Mode::quiet)
+        return;
+    const std::lock_guard lock(mutex_);
+    if (mode_ == Mode::terminal) {
+        const std::string line = fmt::format("{}  {}", text, format_duration(std::floor(seconds)));
+        const auto columns = static_cast<std::size_t>(terminal_columns(out_));
+        std::fputs(fmt::format("\r{}\x1b[K", line.substr(0, columns - 1)).c_str(), out_);
+        drawn_ = true;
+    } else if (seconds >= plain_interval_ && text != told_phase_) {
+        std::fputs(fmt::format("{}\n", text).c_str(), out_);
+        told_phase_ = text;
+    }
+    std::fflush(out_);
+}
+
+void Progress::phase_ended() {
+    const std::lock_guard lock(mutex_);
+    clear_line();
+    if (mode_ != Mode::quiet)
+        std::fflush(out_);
+}
+
 void Progress::draw(const ProgressState &state) {
     if (mode_ == Mode::terminal) {
         std::string line = progress_line(state, 20);

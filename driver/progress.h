@@ -45,6 +45,12 @@ class Progress {
     void message(const std::string &text);
     /// A line for a kernel that was compiled: `ready` of `total` are there now.
     void compiled(const std::string &kernel, std::size_t ready, std::size_t total, double seconds);
+    /// What is being done before the render, and for how long, in seconds: on a terminal a line that is redrawn,
+    /// elsewhere one line for each phase that lasts.
+    void phase(const std::string &text, double seconds);
+    /// The line goes.
+    void phase_ended();
+    Mode mode() const { return mode_; }
     /// To be called after each batch; prints only when enough time has passed.
     void update(const ProgressState &state);
     /// The last line.
@@ -59,6 +65,7 @@ class Progress {
     const double plain_interval_;
     std::mutex mutex_;
     bool drawn_ = false, started_ = false;
+    std::string told_phase_; ///< the last that a plain line told
     std::chrono::steady_clock::time_point last_;
 };
 

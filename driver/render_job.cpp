@@ -3,6 +3,7 @@
 #include "driver/error_watch.h"
 #include "driver/interrupt.h"
 #include "driver/memory_check.h"
+#include "driver/phase_watch.h"
 #include "driver/program.h"
 #include "driver/progress.h"
 #include "driver/reconstruction_options.h"
@@ -61,9 +62,11 @@ class RenderJob {
 
   private:
     void prepare() {
+        const PhaseWatch phase_watch(phases_, progress_);
         Scene scene = load_requested_scene(
             request_.scene, services_,
-            [this](const std::string &warning) { progress_.message("gradus: warning: " + warning); }, &files_read_);
+            [this](const std::string &warning) { progress_.message("gradus: warning: " + warning); }, &files_read_,
+            &phases_);
         check_distinct(output_list(request_.outputs), files_read_);
         check_counts(scene);
         check_alpha(request_.method.options.reconstruction, request_.method.options.alpha.has_value());
@@ -88,6 +91,7 @@ class RenderJob {
         options.on_compiled = [this](const std::string &kernel, std::size_t ready, std::size_t total, double seconds) {
             progress_.compiled(kernel, ready, total, seconds);
         };
+        options.phases = &phases_;
         options.stop = [this] { return is_to_stop(); };
         options.on_pilot = [this](std::uint64_t samples) {
             progress_.message(fmt::format("pilot of {} samples a pixel, to choose the method", samples));
@@ -96,6 +100,8 @@ class RenderJob {
         prepared_ = services_.prepare(request_.method.method, request_.method.device, scene, options);
         record_.prepare_seconds = seconds_since(start);
         record_.device = prepared_.description;
+        for (const Phases::Time &time : phases_.times())
+            record_.phase_seconds.emplace_back(time.name.key, time.seconds);
         if (const std::optional<MethodChoice> choice = prepared_.method->statistics().choice) {
             record_.method = choice->method;
             pilot_seconds_ = choice->pilot_seconds;
@@ -295,6 +301,7 @@ class RenderJob {
     const Clock::time_point job_start_ = Clock::now();
     Clock::time_point render_start_ = job_start_;
     Progress progress_;
+    Phases phases_;                       ///< until the first sample
     std::optional<InterruptWatch> watch_; ///< once there is something to lose
     PreparedMethod prepared_;
     RenderRecord record_;

@@ -154,8 +154,10 @@ void apply_request(const SceneRequest &request, Scene &scene) {
 }
 
 Scene load_requested_scene(const SceneRequest &request, const Services &services,
-                           const std::function<void(const std::string &)> &warn, std::vector<std::string> *files) {
+                           const std::function<void(const std::string &)> &warn, std::vector<std::string> *files,
+                           Phases *phases) {
     LoadOptions options;
+    options.phases = phases;
     options.strict = request.strict;
     options.confined = request.confined;
     options.ignore_media = request.ignore_media;

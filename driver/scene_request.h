@@ -45,9 +45,9 @@ void add_scene_options(CLI::App &command, SceneRequest &request);
 void apply_request(const SceneRequest &request, Scene &scene);
 
 /// Loads the scene, hands each warning to `warn`, and applies the request. `files`: takes the names of all files that
-/// were read.
+/// were read. `phases`: where loading counts its time.
 Scene load_requested_scene(const SceneRequest &request, const Services &services,
                            const std::function<void(const std::string &)> &warn,
-                           std::vector<std::string> *files = nullptr);
+                           std::vector<std::string> *files = nullptr, Phases *phases = nullptr);
 
 } // namespace gradus

@@ -83,6 +83,10 @@ nlohmann::json statistics_to_json(const RenderRecord &record, const Statistics &
     for (const auto &[kernel, kernel_seconds] : statistics.compile_seconds)
         compile_total += kernel_seconds;
 
+    json phases = json::object();
+    for (const auto &[phase, phase_seconds] : record.phase_seconds)
+        phases[phase] = phase_seconds;
+
     json result = {{"version", version()},
                    {"scene", record.scene},
                    {"method", record.method},
@@ -112,6 +116,7 @@ nlohmann::json statistics_to_json(const RenderRecord &record, const Statistics &
                    {"memory",
                     {{"peak_host_bytes", std::max(statistics.peak_host_bytes, peak_memory_bytes())},
                      {"device_bytes", statistics.device_bytes}}},
+                   {"phase_seconds", phases},
                    {"prepare_seconds", record.prepare_seconds},
                    {"render_seconds", seconds},
                    {"wall_seconds", record.wall_seconds}};

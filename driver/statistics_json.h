@@ -7,6 +7,8 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace gradus {
 
@@ -20,7 +22,9 @@ struct RenderRecord {
     bool interrupted = false;
     std::string stopped_by = "samples"; ///< or "time", "error", "interrupt"
     double prepare_seconds = 0;         ///< kernels, tables and the ray tracer's tree
-    double wall_seconds = 0;            ///< the whole command until the image was written
+    /// Of what came before the first sample, by the keys of runtime/phases.h.
+    std::vector<std::pair<std::string, double>> phase_seconds;
+    double wall_seconds = 0; ///< the whole command until the image was written
 };
 
 /// Keys are sorted but for the list of stages, which is in the order of the method. Every rate is over the seconds

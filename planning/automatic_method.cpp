@@ -35,7 +35,6 @@ class ChosenMethod final : public Method {
     MethodChoice choice_;
 };
 
-/// Without a pilot. Where gpt gains nothing it loses at most what its samples cost more; where it gains, it gains more.
 // Photons are taken where they are estimated to have less than so much of the error: costs of so unlike methods are
 // known less well, and their bias does not fall as noise does.
 constexpr double least_gain_of_photons = 0.5;
@@ -45,6 +44,7 @@ constexpr double samples_of_endless = 1024;
 // Passes are a render's samples: with fewer, radii hardly shrink, and nobody knows alpha.
 constexpr double fewest_passes = 16;
 
+/// Without a pilot. Where gpt gains nothing it loses at most what its samples cost more; where it gains, it gains more.
 MethodChoice choose_by_rule(const RenderSettings &settings) {
     MethodChoice choice;
     const bool only_lights = settings.max_depth == 0 || settings.max_depth == 1;

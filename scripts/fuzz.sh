@@ -11,7 +11,7 @@ cd "$(dirname "$0")/.."
 
 seconds=${1:-60}
 shift || true
-[ $# -gt 0 ] || set -- xml ply obj serialized exr
+[ $# -gt 0 ] || set -- xml ply obj serialized exr png jpg hdr tga
 if ! command -v clang++ > /dev/null || ! clang++ -fsanitize=fuzzer -x c++ - -o /dev/null 2> /dev/null <<< \
     'extern "C" int LLVMFuzzerTestOneInput(const unsigned char *, unsigned long) { return 0; }'; then
     echo "fuzz: skipped: no clang++ with libFuzzer (Debian: clang)"
@@ -19,13 +19,17 @@ if ! command -v clang++ > /dev/null || ! clang++ -fsanitize=fuzzer -x c++ - -o /
 fi
 cmake --preset fuzz > /dev/null
 cmake --build --preset fuzz --parallel "$(nproc)"
+export LSAN_OPTIONS=suppressions=$PWD/tests/fuzz/leaks.txt:print_suppressions=0
 failed=0
 for name in "$@"; do
     found=build-fuzz/corpus/$name
     mkdir -p "$found"
     options=(-max_total_time="$seconds" -timeout=20 -rss_limit_mb=4096 -max_len=16384 -print_final_stats=1
         -verbosity=0 -artifact_prefix="build-fuzz/$name-")
-    [ ! -f "tests/fuzz/$name.dict" ] || options+=(-dict="tests/fuzz/$name.dict")
+    if [ "$name" = xml ]; then # its words, and the names of all plugins and parameters
+        { cat tests/fuzz/xml.dict && grep -o '`[a-z][a-z_0-9]*`' docs/scene-format.md | sort -u | tr '`' '"'; } > build-fuzz/xml.dict
+        options+=(-dict=build-fuzz/xml.dict)
+    fi
     if build-fuzz/tests/fuzz/fuzz_"$name" "${options[@]}" "$found" "tests/fuzz/corpus/$name" &> "build-fuzz/$name.log"; then
         echo "$name: $(sed -n 's/^stat::number_of_executed_units: *//p' "build-fuzz/$name.log") runs, nothing found"
     else

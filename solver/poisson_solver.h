@@ -112,8 +112,8 @@ struct PoissonReport {
 class PoissonSolver {
   public:
     /// Throws Error(ExitCode::usage) for a size or channel count of 0 (or over 8 channels). `together`: how many
-    /// channels the linear systems are solved for at a time; 0: one on a CPU and where memory is short, else all. The
-    /// result is the same; memory is not. Buffers are made in the first solve.
+    /// channels the linear systems are solved for at a time; 0: one on a CPU, but for small images, and where memory is
+    /// short, else all. The result is the same; memory is not. Buffers are made in the first solve.
     PoissonSolver(Device &device, std::uint32_t width, std::uint32_t height, std::uint32_t channels = 3,
                   Precision precision = Precision::single, std::uint32_t together = 0);
     ~PoissonSolver();

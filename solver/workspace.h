@@ -2,8 +2,8 @@
 //
 // Linear systems are solved for a group of channels at a time, and what that takes, some eight planes a channel, is
 // there for one group. On a CPU a group is one channel: what an iteration touches of one channel of a common image
-// stays in the last-level cache, where that of three would come from memory anew for each kernel. Elsewhere all
-// channels go together, which fills the device, unless its memory is short.
+// stays in the last-level cache, where that of three would come from memory anew for each kernel. Those of small images
+// go together, which takes fewer launches, and elsewhere all do, which fills the device, unless its memory is short.
 #pragma once
 
 #include "solver/linear_solver.h"

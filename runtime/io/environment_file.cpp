@@ -17,10 +17,13 @@ struct Mended {
     std::uint64_t negative = 0, not_numbers = 0, infinite = 0;
 };
 
+/// Above this values count as infinite: what the whole sphere adds up to must fit into single precision.
+constexpr float most_radiance = 1e30f;
+
 float largest_finite(const std::vector<float> &values) {
     float largest = 0;
     for (const float value : values)
-        if (value > largest && value <= std::numeric_limits<float>::max())
+        if (value > largest && value <= most_radiance)
             largest = value;
     return largest;
 }

@@ -10,8 +10,8 @@
 namespace gradus {
 
 /// The map of an image file: its channels R, G and B, or its first one for all three where it lacks them; PNG and JPEG
-/// decoded from sRGB. Texels that are negative or no number count as 0, infinite ones as the image's largest, each with
-/// a warning. Throws SceneError for what cannot be read.
+/// decoded from sRGB. Texels that are negative or no number count as 0, infinite ones, and those above 1e30, as the
+/// image's largest, each with a warning. Throws SceneError for what cannot be read.
 std::shared_ptr<const EnvironmentMap> read_environment(const std::filesystem::path &path, std::uint64_t limits,
                                                        const Location &location, Diagnostics &diagnostics);
 

@@ -10,6 +10,8 @@
 
 namespace gradus {
 
+class Phases;
+
 struct LoadOptions {
     std::map<std::string, std::string> parameters; ///< -D name=value, before the file's own <default>s
     bool strict = false;                           ///< parameters that are not known become errors
@@ -18,6 +20,7 @@ struct LoadOptions {
     bool confined = false;
     std::vector<std::filesystem::path> allowed_folders = {};
     LoadLimits limits = {};
+    Phases *phases = nullptr;  ///< where the time is counted; may be nullptr
     bool ignore_media = false; ///< scenes with participating media as if these were empty; else they are errors
 };
 

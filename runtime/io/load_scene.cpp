@@ -4,6 +4,7 @@
 #include "runtime/io/document.h"
 #include "runtime/io/file_search.h"
 #include "runtime/io/scene_builder.h"
+#include "runtime/phases.h"
 
 namespace gradus {
 
@@ -15,8 +16,10 @@ LoadedScene load_scene(const std::string &path, const LoadOptions &options) {
         folders.push_back(std::filesystem::path(path).parent_path());
         finder.confine(folders);
     }
-    const Document document = read_document(path, options, finder, diagnostics);
+    const Document document =
+        in_phase(options.phases, phase_names::parse, [&] { return read_document(path, options, finder, diagnostics); });
     LoadedScene loaded;
+    const Phase phase(options.phases, phase_names::build);
     loaded.scene = SceneBuilder(document, options, finder, diagnostics).build();
     diagnostics.throw_if_errors();
     loaded.scene.path = path;

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <stdexcept>
 
 namespace gradus {
 
@@ -24,14 +26,42 @@ constexpr const char *property_tags[] = {"boolean", "integer", "float",    "stri
 bool is_object_tag(const std::string &tag) { return is_one_of(tag, object_tags); }
 bool is_property_tag(const std::string &tag) { return is_one_of(tag, property_tags); }
 
-Properties::Properties(const Element &element, const ResolveReference &resolve, Diagnostics &diagnostics)
-    : element_(element), resolve_(resolve), diagnostics_(diagnostics) {}
+std::string type_of(const Element &element) { return std::string(trimmed(element.attribute_or("type", ""))); }
 
-std::string Properties::type() const { return std::string(trimmed(element_.attribute_or("type", ""))); }
+std::string described(const Element &element) {
+    const std::string type = element.attribute_or("type", "");
+    return "<" + element.tag + (type.empty() ? "" : " type=\"" + type + "\"") + ">";
+}
+
+std::vector<NestedObject> nested_objects(const Element &element, const std::string &tag,
+                                         const ResolveReference &resolve) {
+    std::vector<NestedObject> found;
+    for (const Element &child : element.children)
+        if (const Element *target = child.tag == "ref" ? &resolve(child) : &child; target->tag == tag)
+            found.push_back({target, child.location});
+    return found;
+}
+
+Properties::Properties(const Element &element, const Declaration &declaration, const ResolveReference &resolve,
+                       Diagnostics &diagnostics, const ReadTexture *read_texture)
+    : element_(element), declaration_(declaration), resolve_(resolve), diagnostics_(diagnostics),
+      read_texture_(read_texture) {}
+
+const Parameter &Properties::declared(const std::string &name, std::initializer_list<Takes> types) const {
+    const Parameter *parameter = declaration_.find(name);
+    if (!parameter)
+        throw std::logic_error("a plugin asks for \"" + name + "\", which it does not declare");
+    if (types.size() > 0 && std::find(types.begin(), types.end(), parameter->takes) == types.end())
+        throw std::logic_error("a plugin asks for \"" + name + "\" as another type than it declares");
+    return *parameter;
+}
+
+const Element *Properties::find(const Parameter &parameter) {
+    const Element *found = find(parameter.name);
+    return found || !parameter.also_named ? found : find(parameter.also_named);
+}
 
 const Element *Properties::find(const std::string &name) {
-    if (std::find(asked_.begin(), asked_.end(), name) == asked_.end())
-        asked_.push_back(name);
     const Element *found = nullptr;
     for (const Element &child : element_.children) {
         const std::string *child_name = child.attribute("name");
@@ -45,7 +75,6 @@ const Element *Properties::find(const std::string &name) {
         if (found)
             diagnostics_.warn(child.location, "\"" + name + "\" is given twice; this one counts");
         found = &child;
-        read_.insert(found);
     }
     return found;
 }
@@ -55,7 +84,7 @@ SceneError Properties::error(const std::string &name, const std::string &message
 }
 
 Location Properties::location_of(const std::string &name) {
-    const Element *property = find(name);
+    const Element *property = find(declared(name, {}));
     return property ? property->location : element_.location;
 }
 
@@ -69,17 +98,33 @@ const std::string &Properties::value_of(const Element &property) {
     return *value;
 }
 
-bool Properties::has(const std::string &name) { return find(name) != nullptr; }
+std::string Properties::text_of(const Parameter &parameter, const Element *property) {
+    if (property)
+        return value_of(*property);
+    if (parameter.is_required) {
+        const bool is_vowel = std::string("aeiou").find(parameter.name[0]) != std::string::npos;
+        throw SceneError(element_.location, type() + " needs " + (is_vowel ? "an " : "a ") + parameter.name);
+    }
+    const char *otherwise =
+        element_.is_legacy() && parameter.otherwise_before_2 ? parameter.otherwise_before_2 : parameter.otherwise;
+    if (!otherwise)
+        throw std::logic_error("\"" + parameter.name + "\" has no default; a plugin must ask whether it is there");
+    return otherwise;
+}
 
-double Properties::number(const std::string &name, double otherwise, double lowest, double highest) {
-    const Element *property = find(name);
-    if (!property)
-        return otherwise;
-    const std::string &text = value_of(*property);
+bool Properties::has(const std::string &name) { return find(declared(name, {})) != nullptr; }
+
+double Properties::number(const std::string &name) {
+    const Parameter &parameter = declared(name, {Takes::number});
+    return number_of(parameter, find(parameter));
+}
+
+double Properties::number_of(const Parameter &parameter, const Element *property) {
+    const std::string &name = parameter.name, text = text_of(parameter, property);
     const std::optional<double> value = parse_number(text);
     if (!value)
-        throw SceneError(property->location, "\"" + name + "\" needs a number, not \"" + text + "\"");
-    if (*value < lowest || *value > highest) {
+        throw error(name, "\"" + name + "\" needs a number, not \"" + text + "\"");
+    if (*value < parameter.lowest || *value > parameter.highest) {
         std::string range;
         const auto show = [](double bound) {
             std::string shown = std::to_string(bound);
@@ -88,24 +133,25 @@ double Properties::number(const std::string &name, double otherwise, double lowe
                 shown.pop_back();
             return shown;
         };
-        if (std::isfinite(lowest))
-            range += "at least " + show(lowest);
-        if (std::isfinite(highest))
-            range += (range.empty() ? "" : " and ") + ("at most " + show(highest));
-        throw SceneError(property->location, "\"" + name + "\" is " + text + " but must be " + range);
+        if (std::isfinite(parameter.lowest))
+            range += "at least " + show(parameter.lowest);
+        if (std::isfinite(parameter.highest))
+            range += (range.empty() ? "" : " and ") + ("at most " + show(parameter.highest));
+        throw error(name, "\"" + name + "\" is " + text + " but must be " + range);
     }
-    return *value;
+    return std::max(parameter.least, *value);
 }
 
-Number Properties::textured_number(const std::string &name, const Number &otherwise, double lowest, double highest,
-                                   double least) {
-    const Element *property = find(name);
-    if (!property)
-        return otherwise;
-    const Element *texture = texture_of(*property);
+Number Properties::textured_number(const std::string &name) {
+    const Parameter &parameter = declared(name, {Takes::textured_number});
+    const Element *property = find(parameter);
+    if (!property && parameter.like)
+        return textured_number(parameter.like);
+    const Element *texture = property ? texture_of(*property) : nullptr;
     if (!texture)
-        return float(std::max(least, number(name, otherwise, lowest, highest)));
-    const FoundTexture found = (*read_texture_)(*texture, std::max(lowest, least), highest);
+        return float(number_of(parameter, property));
+    const FoundTexture found =
+        (*read_texture_)(*texture, std::max(parameter.lowest, parameter.least), parameter.highest);
     Number result(float(*std::min_element(found.range.least.begin(), found.range.least.end())));
     result.texture = found.index;
     return result;
@@ -118,49 +164,62 @@ const Element *Properties::texture_of(const Element &property) {
     return target.tag == "texture" ? &target : nullptr;
 }
 
-std::int64_t Properties::integer(const std::string &name, std::int64_t otherwise, std::int64_t lowest,
-                                 std::int64_t highest) {
-    const Element *property = find(name);
-    if (!property)
-        return otherwise;
-    const std::string &text = value_of(*property);
+std::int64_t Properties::integer(const std::string &name) {
+    const Parameter &parameter = declared(name, {Takes::integer});
+    return integer(name, std::int64_t(parameter.lowest), std::int64_t(parameter.highest));
+}
+
+std::int64_t Properties::integer(const std::string &name, std::int64_t lowest, std::int64_t highest) {
+    const Parameter &parameter = declared(name, {Takes::integer});
+    const std::string text = text_of(parameter, find(parameter));
     const std::optional<std::int64_t> value = parse_integer(text);
     if (!value)
-        throw SceneError(property->location, "\"" + name + "\" needs an integer, not \"" + text + "\"");
+        throw error(name, "\"" + name + "\" needs an integer, not \"" + text + "\"");
     if (*value < lowest || *value > highest)
-        throw SceneError(property->location, "\"" + name + "\" is " + text + " but must be from " +
-                                                 std::to_string(lowest) + " to " + std::to_string(highest));
+        throw error(name, "\"" + name + "\" is " + text + " but must be from " + std::to_string(lowest) + " to " +
+                              std::to_string(highest));
     return *value;
 }
 
-bool Properties::boolean(const std::string &name, bool otherwise) {
-    const Element *property = find(name);
-    if (!property)
-        return otherwise;
-    const std::string &text = value_of(*property);
+bool Properties::boolean(const std::string &name) {
+    const Parameter &parameter = declared(name, {Takes::boolean});
+    const std::string text = text_of(parameter, find(parameter));
     const std::optional<bool> value = parse_boolean(text);
     if (!value)
-        throw SceneError(property->location, "\"" + name + "\" needs true or false, not \"" + text + "\"");
+        throw error(name, "\"" + name + "\" needs true or false, not \"" + text + "\"");
     return *value;
 }
 
-std::string Properties::string(const std::string &name, const std::string &otherwise) {
-    const Element *property = find(name);
-    return property ? std::string(trimmed(value_of(*property))) : otherwise;
+std::string Properties::string(const std::string &name) {
+    const Parameter &parameter = declared(name, {Takes::string, Takes::filename});
+    const std::string text(trimmed(text_of(parameter, find(parameter))));
+    if (text.empty() && parameter.is_required)
+        throw error(name, "\"" + name + "\" is empty");
+    return text;
 }
 
-Double3 Properties::point(const std::string &name, const Double3 &otherwise) {
-    const Element *property = find(name);
-    if (!property)
-        return otherwise;
-    if (property->tag != "point" && property->tag != "vector")
+std::string Properties::choice(const std::string &name) {
+    const Parameter &parameter = declared(name, {Takes::choice});
+    const Element *property = find(parameter);
+    if (!property && parameter.like)
+        return choice(parameter.like);
+    const std::string text = lower_case(trimmed(text_of(parameter, property)));
+    if (std::ranges::find(parameter.words, text) == parameter.words.end())
+        throw error(name, "unknown " + name + " \"" + text + "\" (known: " + join(parameter.words) + ")");
+    return text;
+}
+
+Double3 Properties::point(const std::string &name) {
+    const Parameter &parameter = declared(name, {Takes::point});
+    const Element *property = find(parameter);
+    if (property && property->tag != "point" && property->tag != "vector")
         throw SceneError(property->location,
                          "\"" + name + "\" needs a <point> or <vector>, not a <" + property->tag + ">");
-    if (property->attribute("value")) {
-        const std::string &text = value_of(*property);
+    if (!property || property->attribute("value")) {
+        const std::string text = text_of(parameter, property);
         const std::optional<std::vector<double>> values = parse_numbers(text);
         if (!values || values->size() != 3)
-            throw SceneError(property->location, "\"" + name + "\" needs three numbers, not \"" + text + "\"");
+            throw error(name, "\"" + name + "\" needs three numbers, not \"" + text + "\"");
         return {(*values)[0], (*values)[1], (*values)[2]};
     }
     Double3 result{0, 0, 0};
@@ -177,7 +236,7 @@ Double3 Properties::point(const std::string &name, const Double3 &otherwise) {
 }
 
 Matrix4 Properties::transform(const std::string &name) {
-    const Element *property = find(name);
+    const Element *property = find(declared(name, {Takes::transform}));
     if (!property)
         return {};
     if (property->tag != "transform")
@@ -185,8 +244,9 @@ Matrix4 Properties::transform(const std::string &name) {
     return read_transform(*property, diagnostics_);
 }
 
-double Properties::refractive_index(const std::string &name, const std::string &otherwise) {
-    const std::string text = string(name, otherwise);
+double Properties::refractive_index(const std::string &name) {
+    const Parameter &parameter = declared(name, {Takes::refractive_index});
+    const std::string text(trimmed(text_of(parameter, find(parameter))));
     const std::optional<double> index = dielectric_index(text);
     const std::optional<double> value = index ? index : parse_number(text);
     if (!value) {
@@ -200,42 +260,47 @@ double Properties::refractive_index(const std::string &name, const std::string &
     return *value;
 }
 
-std::vector<Properties::Object> Properties::objects(const std::string &tag) {
-    std::vector<Object> found;
-    for (const Element &child : element_.children) {
-        const Element *target = child.tag == "ref" ? &resolve_(child) : &child;
-        if (target->tag != tag)
-            continue;
-        read_.insert(&child);
-        found.push_back({target, child.location});
-    }
-    return found;
+std::vector<NestedObject> Properties::objects(const std::string &tag) {
+    if (!declaration_.find_objects(tag))
+        throw std::logic_error("a plugin asks for nested objects <" + tag + ">, which it does not declare");
+    return nested_objects(element_, tag, resolve_);
 }
 
-void Properties::ignore(std::initializer_list<const char *> names) {
-    for (const char *name : names)
-        find(name);
-}
-
-void Properties::report_unread() {
-    if (ignore_rest_)
-        return;
+void Properties::report_unknown() {
+    std::vector<std::string> names;
+    for (const Parameter &parameter : declaration_.parameters)
+        if (parameter.takes != Takes::objects) {
+            names.push_back(parameter.name);
+            if (parameter.also_named)
+                names.push_back(parameter.also_named);
+        }
     const std::string owner = element_.tag + (type().empty() ? "" : " \"" + type() + "\"");
     for (const Element &child : element_.children) {
-        if (read_.count(&child))
-            continue;
         const std::string *written = child.attribute("name");
+        const std::string name = snake_case(trimmed(written ? *written : ""));
+        const bool is_reference = child.tag == "ref", is_parameter = std::ranges::count(names, name) > 0;
+        const std::string tag = is_reference ? referenced_tag(child) : child.tag;
+        if (declaration_.find_objects(tag) || (is_parameter && (is_property_tag(tag) || tag == "texture")))
+            continue;
         if (is_property_tag(child.tag) || (child.tag == "texture" && written)) {
-            const std::string name = snake_case(trimmed(written ? *written : ""));
             std::string message = "unknown parameter \"" + (written ? *written : "") + "\" of " + owner + " is ignored";
-            if (const auto nearest = diagnostics_.is_full() ? std::nullopt : nearest_name(name, asked_))
+            if (const auto nearest = diagnostics_.is_full() ? std::nullopt : nearest_name(name, names))
                 message += "; did you mean \"" + *nearest + "\"?";
             diagnostics_.unknown(child.location, message);
-        } else if (child.tag == "ref")
+        } else if (is_reference)
             diagnostics_.unknown(child.location,
                                  "<ref id=\"" + child.attribute_or("id", "") + "\"> in " + owner + " is not used");
         else
             diagnostics_.unknown(child.location, "<" + child.tag + "> in " + owner + " is not used");
+    }
+}
+
+/// Empty where it leads nowhere.
+std::string Properties::referenced_tag(const Element &reference) const {
+    try {
+        return resolve_(reference).tag;
+    } catch (const SceneError &) {
+        return "";
     }
 }
 

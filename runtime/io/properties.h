@@ -1,7 +1,8 @@
-// Typed access to what an element of a scene file says about one object. It keeps book of what was asked for, so that
-// whatever the file says beyond that can be reported.
+// Typed access to what an element of a scene file says about one object, by what its plugin declares; whatever the file
+// says beyond that can be reported.
 #pragma once
 
+#include "runtime/io/declaration.h"
 #include "runtime/io/diagnostics.h"
 #include "runtime/io/element.h"
 #include "runtime/io/spectrum.h"
@@ -10,8 +11,6 @@
 
 #include <functional>
 #include <initializer_list>
-#include <limits>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -28,75 +27,81 @@ struct FoundTexture {
 /// The texture that an element describes, whose values are clamped to a range.
 using ReadTexture = std::function<FoundTexture(const Element &, double lowest, double highest)>;
 
-/// Parameters are asked for by their snake_case names; files may spell them in camelCase. Every getter throws
-/// SceneError where the file's value is not of its type or out of range, and returns `otherwise` where the file has
-/// none.
+struct NestedObject {
+    const Element *element;
+    Location location; ///< where it is used: the object itself or a <ref> to it
+};
+/// Objects of that tag in an element, referenced ones too.
+std::vector<NestedObject> nested_objects(const Element &element, const std::string &tag,
+                                         const ResolveReference &resolve);
+/// Of the element's plugin, as in <bsdf type="diffuse">.
+std::string type_of(const Element &element);
+/// For messages: <bsdf type="diffuse">.
+std::string described(const Element &element);
+
+/// Parameters are asked for by their snake_case names; files may spell them in camelCase. Only what the declaration has
+/// can be asked for, in the getter of its type: all else is a defect of the program, a std::logic_error. Every getter
+/// throws SceneError where the file's value is not of its type or out of range, and returns the declared default where
+/// the file has none.
 class Properties {
   public:
-    Properties(const Element &element, const ResolveReference &resolve, Diagnostics &diagnostics);
+    /// The declaration and the resolver must outlive it. `read_texture`: nullptr where nothing takes textures.
+    Properties(const Element &element, const Declaration &declaration, const ResolveReference &resolve,
+               Diagnostics &diagnostics, const ReadTexture *read_texture = nullptr);
 
     const Element &element() const { return element_; }
     const Location &location() const { return element_.location; }
-    /// Of the file's plugin, as in <bsdf type="diffuse">.
-    std::string type() const;
+    std::string type() const { return type_of(element_); }
     Diagnostics &diagnostics() { return diagnostics_; }
 
     bool has(const std::string &name);
-    /// From here on, colours and numbers that materials have may be textures.
-    void accept_textures(const ReadTexture *read) { read_texture_ = read; }
 
-    double number(const std::string &name, double otherwise, double lowest = -std::numeric_limits<double>::infinity(),
-                  double highest = std::numeric_limits<double>::infinity());
-    std::int64_t integer(const std::string &name, std::int64_t otherwise, std::int64_t lowest, std::int64_t highest);
-    bool boolean(const std::string &name, bool otherwise);
-    std::string string(const std::string &name, const std::string &otherwise);
-    Double3 point(const std::string &name, const Double3 &otherwise);
+    double number(const std::string &name);
+    std::int64_t integer(const std::string &name);
+    /// Within these bounds, too.
+    std::int64_t integer(const std::string &name, std::int64_t lowest, std::int64_t highest);
+    bool boolean(const std::string &name);
+    /// Of a string or a file's name.
+    std::string string(const std::string &name);
+    /// In lower case.
+    std::string choice(const std::string &name);
+    Double3 point(const std::string &name);
     /// The identity where the file has none.
     Matrix4 transform(const std::string &name);
-    /// A reflectance may be a texture where those are accepted.
-    Color color(const std::string &name, const Color &otherwise, ColorUse use);
-    /// As color() of an emission, but it may be a texture where those are accepted.
-    Color textured_emission(const std::string &name, const Color &otherwise);
-    /// As number(), but it may be a texture where those are accepted. Both are clamped to `least` at least, and a
-    /// texture to the range.
-    Number textured_number(const std::string &name, const Number &otherwise, double lowest, double highest,
-                           double least);
-    /// A number, or the name of a material with an index of refraction.
-    double refractive_index(const std::string &name, const std::string &otherwise);
+    /// A colour, which may be a texture where the parameter takes one.
+    Color color(const std::string &name);
+    Number textured_number(const std::string &name);
+    double refractive_index(const std::string &name);
+    std::vector<NestedObject> objects(const std::string &tag);
 
-    struct Object {
-        const Element *element;
-        Location location; ///< where it is used: the object itself or a <ref> to it
-    };
-    /// Nested objects of that tag, referenced ones too.
-    std::vector<Object> objects(const std::string &tag);
-    /// Names that may be there and have no meaning for this program.
-    void ignore(std::initializer_list<const char *> names);
-    /// Everything else may be there, too.
-    void ignore_rest() { ignore_rest_ = true; }
-
-    /// Reports parameters and nested objects that nobody asked for, with the nearest name that was.
-    void report_unread();
+    /// Reports parameters and nested objects that are not declared, with the nearest name that is.
+    void report_unknown();
 
     /// An error at the parameter, or at the object if the file does not have it.
     SceneError error(const std::string &name, const std::string &message);
     Location location_of(const std::string &name);
 
   private:
+    const Parameter &declared(const std::string &name, std::initializer_list<Takes> types) const;
+    std::string referenced_tag(const Element &reference) const;
     const Element *find(const std::string &name);
+    const Element *find(const Parameter &parameter);
     const std::string &value_of(const Element &property);
+    /// What the file says, or the default as if the file said it.
+    std::string text_of(const Parameter &parameter, const Element *property);
+    double number_of(const Parameter &parameter, const Element *property);
+    Double3 read_rgb(const std::string &text, const Parameter &parameter, const Location &location);
     Rgb read_spectrum(const Element &property, const std::string &name, ColorUse use);
     /// The texture that stands for a parameter, or nullptr.
     const Element *texture_of(const Element &property);
-    Rgb read_color(const Element &property, const std::string &name, ColorUse use);
+    Color color_of_texture(const Element &texture, double highest);
+    Rgb read_color(const Element &property, const Parameter &parameter, ColorUse use);
 
     const Element &element_;
+    const Declaration &declaration_;
     const ResolveReference &resolve_;
     Diagnostics &diagnostics_;
-    const ReadTexture *read_texture_ = nullptr;
-    std::set<const Element *> read_;
-    std::vector<std::string> asked_;
-    bool ignore_rest_ = false;
+    const ReadTexture *read_texture_;
 };
 
 /// Tags of plugins, which may have an id and be referenced.

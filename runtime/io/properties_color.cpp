@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 namespace gradus {
 
@@ -84,11 +85,29 @@ Rgb Properties::read_spectrum(const Element &property, const std::string &name, 
         throw SceneError(property.location, "\"" + name +
                                                 "\" needs one number, three (RGB), or wavelength:value pairs," +
                                                 " not \"" + text + "\"");
-    return values->size() == 1 ? gray((*values)[0])
-                               : Rgb{float((*values)[0]), float((*values)[1]), float((*values)[2])};
+    if (values->size() == 3)
+        return {float((*values)[0]), float((*values)[1]), float((*values)[2])};
+    if (use != ColorUse::emission || element_.is_legacy()) // of 0.x the same in all channels, a light's too
+        return gray((*values)[0]);
+    const Rgb tint = spectrum_to_rgb({{0, 1.0}, {1e6, 1.0}}, use); // of equal energy at all wavelengths
+    return {float(tint.r * (*values)[0]), float(tint.g * (*values)[0]), float(tint.b * (*values)[0])};
 }
 
-Rgb Properties::read_color(const Element &property, const std::string &name, ColorUse use) {
+Double3 Properties::read_rgb(const std::string &text, const Parameter &parameter, const Location &location) {
+    if (const std::optional<Double3> hex = parse_hex_color(text))
+        return *hex;
+    const std::optional<std::vector<double>> values = parse_numbers(text);
+    if (!values || (values->size() != 1 && values->size() != 3))
+        throw SceneError(location,
+                         "\"" + parameter.name + "\" needs one or three numbers or #rrggbb, not \"" + text + "\"");
+    Double3 color;
+    for (int i = 0; i < 3; ++i)
+        color[i] = (*values)[values->size() == 3 ? i : 0];
+    return color;
+}
+
+Rgb Properties::read_color(const Element &property, const Parameter &parameter, ColorUse use) {
+    const std::string &name = parameter.name;
     const Element &target = property.tag == "ref" ? resolve_(property) : property;
     if (target.tag == "texture")
         throw SceneError(property.location, "\"" + name + "\" cannot be a texture; give it as <rgb> or <spectrum>");
@@ -98,53 +117,41 @@ Rgb Properties::read_color(const Element &property, const std::string &name, Col
     if (property.tag != "rgb" && !gamma_coded && property.tag != "float" && property.tag != "integer")
         throw SceneError(property.location, "\"" + name + "\" needs a colour (<rgb>, <srgb>, <spectrum> or <float>)," +
                                                 " not a <" + property.tag + ">");
-    const std::string &text = value_of(property);
-    Double3 color;
-    if (const std::optional<Double3> hex = parse_hex_color(text))
-        color = *hex;
-    else {
-        const std::optional<std::vector<double>> values = parse_numbers(text);
-        if (!values || (values->size() != 1 && values->size() != 3))
-            throw SceneError(property.location,
-                             "\"" + name + "\" needs one or three numbers or #rrggbb, not \"" + text + "\"");
-        for (int i = 0; i < 3; ++i)
-            color[i] = (*values)[values->size() == 3 ? i : 0];
-    }
+    Double3 color = read_rgb(value_of(property), parameter, property.location);
     if (gamma_coded)
         for (double &value : color)
             value = value < 0 ? value : srgb_to_linear(value);
     return to_rgb(color);
 }
 
-Color Properties::textured_emission(const std::string &name, const Color &otherwise) {
-    const Element *property = find(name);
-    const Element *texture = property ? texture_of(*property) : nullptr;
-    if (!texture)
-        return color(name, otherwise, ColorUse::emission);
-    const FoundTexture found = (*read_texture_)(*texture, 0, std::numeric_limits<float>::max());
+Color Properties::color_of_texture(const Element &texture, double highest) {
+    const FoundTexture found = (*read_texture_)(texture, 0, highest);
     Color color(float(found.range.mean[0]), float(found.range.mean[1]), float(found.range.mean[2]));
     color.texture = found.index;
     return color;
 }
 
-Color Properties::color(const std::string &name, const Color &otherwise, ColorUse use) {
-    const Element *property = find(name);
+Color Properties::color(const std::string &name) {
+    const Parameter &parameter =
+        declared(name, {Takes::reflectance, Takes::emission, Takes::textured_emission, Takes::color});
+    const bool reflects = parameter.takes == Takes::reflectance;
+    const Element *property = find(parameter);
     if (!property)
-        return otherwise;
-    if (const Element *texture = use == ColorUse::reflectance ? texture_of(*property) : nullptr) {
-        const FoundTexture found = (*read_texture_)(*texture, 0, 1);
-        Color color(float(found.range.mean[0]), float(found.range.mean[1]), float(found.range.mean[2]));
-        color.texture = found.index;
-        return color;
-    }
-    Color color = read_color(*property, name, use);
+        return to_rgb(read_rgb(text_of(parameter, nullptr), parameter, element_.location));
+    if (reflects || parameter.takes == Takes::textured_emission)
+        if (const Element *texture = texture_of(*property))
+            return color_of_texture(*texture, reflects ? 1 : std::numeric_limits<float>::max());
+    const ColorUse use = reflects                          ? ColorUse::reflectance
+                         : parameter.takes == Takes::color ? ColorUse::index
+                                                           : ColorUse::emission;
+    Color color = read_color(*property, parameter, use);
     for (float value : {color.r, color.g, color.b}) {
         if (value < 0)
             throw SceneError(property->location, "\"" + name + "\" must not be negative");
         if (!std::isfinite(value))
             throw SceneError(property->location, "\"" + name + "\" is too large for single precision");
     }
-    if (use == ColorUse::reflectance && (color.r > 1 || color.g > 1 || color.b > 1)) {
+    if (reflects && (color.r > 1 || color.g > 1 || color.b > 1)) {
         diagnostics_.warn(property->location, "\"" + name + "\" is above 1, which would create energy; clamped to 1");
         color = {std::min(color.r, 1.0f), std::min(color.g, 1.0f), std::min(color.b, 1.0f)};
     }

@@ -77,9 +77,13 @@ class SceneBuilder {
     Result build_object(const Element &element);
     const ResolveReference &resolver() const { return resolve_; }
     Diagnostics &diagnostics() { return diagnostics_; }
+    /// May be nullptr.
+    Phases *phases() const { return phases_; }
 
   private:
     Bsdf with_map(const Bsdf &bsdf, const NormalTexture &map, const Location &location);
+    template <typename Result>
+    Result read_as(const Element &element, const std::string &type);
     void index(const Element &element, int depth);
     void want_attribute(const Element &texture);
     void settle_attributes(Mesh &mesh, const std::string &name, const Location &location);
@@ -101,18 +105,19 @@ class SceneBuilder {
     void finish(ShapeInLine &shape, std::vector<Prototype> *group);
     void add_shape(const Element &element, std::variant<BuiltMesh, Sphere> geometry);
     void add_instance(const Element &element, const ShapeGroup &instance);
-    void check_media(Properties &properties);
+    void check_media(const Element &element);
     std::uint32_t boundary_material();
     void build_emitter(const Element &element);
     void check_unused_bsdf(const Element &element);
-    std::uint32_t material_of(Properties &shape);
-    std::int32_t emitter_of(Properties &shape);
+    std::uint32_t material_of(const Element &shape);
+    std::int32_t emitter_of(const Element &shape);
     void count_geometry(std::uint64_t bytes, const Location &location);
     void check_whole();
 
     const Document &document_;
     const LoadLimits limits_;
     const bool ignore_media_;
+    Phases *const phases_;
     FileFinder &finder_;
     Diagnostics &diagnostics_;
     ResolveReference resolve_;

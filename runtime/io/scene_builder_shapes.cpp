@@ -3,6 +3,7 @@
 #include "runtime/io/file_search.h"
 #include "runtime/io/plugins/plugin.h"
 #include "runtime/io/scene_builder.h"
+#include "runtime/phases.h"
 
 #include <tbb/parallel_for.h>
 
@@ -74,11 +75,10 @@ void SceneBuilder::count_geometry(std::uint64_t bytes, const Location &location)
 }
 
 /// Where media are not to be ignored, an error at the first of the object.
-void SceneBuilder::check_media(Properties &properties) {
+void SceneBuilder::check_media(const Element &element) {
     for (const char *tag : {"medium", "subsurface", "volume", "phase"})
-        for (const Properties::Object &found : properties.objects(tag)) {
-            const std::string type = found.element->attribute_or("type", "");
-            const std::string what = "<" + found.element->tag + (type.empty() ? "" : " type=\"" + type + "\"") + ">";
+        for (const NestedObject &found : nested_objects(element, tag, resolve_)) {
+            const std::string what = described(*found.element);
             if (!ignore_media_)
                 throw SceneError(found.location, what + ": participating media are not supported; --ignore-media "
                                                         "renders the scene without them");
@@ -98,8 +98,7 @@ void SceneBuilder::put_in_line(const Element &element, bool in_group, std::vecto
                                                    " shapes, as often as shapes contain them" + limits_hint);
         if (std::find(parents.begin(), parents.end(), &element) != parents.end())
             throw SceneError(element.location, "a shape contains itself through a <ref>");
-        Properties attachments(element, resolve_, diagnostics_);
-        check_media(attachments);
+        check_media(element);
         shape.geometry = build_object<ShapeGeometry>(element);
         if (const auto *group = std::get_if<ShapeGroup>(&shape.geometry); group && group->instanced && in_group)
             throw SceneError(element.location, "an instance in a shapegroup is not supported, nor is it by Mitsuba");
@@ -133,6 +132,7 @@ void SceneBuilder::build_shapes(const std::vector<const Element *> &elements, st
 }
 
 void SceneBuilder::build_line(std::deque<ShapeInLine> &line, std::vector<Prototype> *group) {
+    const Phase phase(phases_, phase_names::meshes);
     const auto read = [](ShapeInLine &shape) {
         auto &pending = std::get<PendingMesh>(shape.geometry);
         try {
@@ -187,7 +187,6 @@ void SceneBuilder::finish(ShapeInLine &shape, std::vector<Prototype> *group) {
 }
 
 void SceneBuilder::add_shape(const Element &element, std::variant<BuiltMesh, Sphere> geometry) {
-    Properties attachments(element, resolve_, diagnostics_);
     Shape shape;
     shape.name = element.attribute_or("id", element.attribute_or("type", "") + " at " + element.location.text());
     if (auto *built = std::get_if<BuiltMesh>(&geometry)) {
@@ -203,10 +202,10 @@ void SceneBuilder::add_shape(const Element &element, std::variant<BuiltMesh, Sph
         }
     }
     // In 0.x a boundary of media without a BSDF is not seen itself.
-    const bool is_boundary = element.is_legacy() && !attachments.objects("medium").empty();
+    const bool is_boundary = element.is_legacy() && !nested_objects(element, "medium", resolve_).empty();
     shape.material =
-        is_boundary && attachments.objects("bsdf").empty() ? boundary_material() : material_of(attachments);
-    shape.emitter = emitter_of(attachments);
+        is_boundary && nested_objects(element, "bsdf", resolve_).empty() ? boundary_material() : material_of(element);
+    shape.emitter = emitter_of(element);
     const Material &material = scene_.materials[shape.material];
     if (shape.emitter < 0 && is_never_met(material))
         return;
@@ -227,16 +226,6 @@ void SceneBuilder::add_shape(const Element &element, std::variant<BuiltMesh, Sph
         scene_.meshes.push_back(std::move(std::get<BuiltMesh>(geometry).mesh));
     }
     scene_.shapes.push_back(std::move(shape));
-}
-
-std::uint32_t SceneBuilder::boundary_material() {
-    if (boundary_material_ < 0) {
-        boundary_material_ = std::int64_t(scene_.materials.size());
-        scene_.materials.push_back({});
-        scene_.materials.back().front.kind = BsdfKind::null;
-        scene_.materials.back().name = "boundary of a medium";
-    }
-    return std::uint32_t(boundary_material_);
 }
 
 /// Instances are copies. `element`: the instance.

@@ -67,6 +67,13 @@ void LightBuilder::set_sphere(std::uint32_t light, std::uint32_t sphere) {
         tables_.light_textures[std::size_t(light) * light_texture_stride + light_texture_sphere] = sphere;
 }
 
+void LightBuilder::set_mean(std::uint32_t light, const Rgb &mean) {
+    float *to = &tables_.light_means[std::size_t(light) * 3];
+    to[0] = mean.r;
+    to[1] = mean.g;
+    to[2] = mean.b;
+}
+
 void LightBuilder::set_environment(double emitted) {
     tables_.environment_light = static_cast<std::uint32_t>(powers_.size() - 1);
     emitted_.back().power = emitted;

@@ -23,6 +23,8 @@ class LightBuilder {
     /// Of a light that is one: its number among the triangles, or the spheres, of the scene.
     void set_triangle(std::uint32_t light, std::uint32_t triangle);
     void set_sphere(std::uint32_t light, std::uint32_t sphere);
+    /// Of a light that is a part of its emitter: what the emitter's value is in the mean over all of it.
+    void set_mean(std::uint32_t light, const Rgb &mean);
     /// The newest light is what rays find that leave the scene; light paths begin there with that power.
     void set_environment(double emitted);
     /// What an emitter's value is in the mean over its texture.

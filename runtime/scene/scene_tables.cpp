@@ -4,6 +4,7 @@
 #include "kernels/shared/material.h"
 #include "kernels/shared/scene_records.h"
 #include "kernels/shared/texture.h"
+#include "runtime/scene/attribute_light.h"
 #include "runtime/scene/camera_record.h"
 #include "runtime/scene/environment_map.h"
 #include "runtime/scene/light_builder.h"
@@ -159,31 +160,64 @@ void add_triangle(const Mesh &mesh, std::size_t number, const TraitMap &traits, 
     }
 }
 
-/// The light that a triangle of that shape is, or no_light.
-std::uint32_t add_triangle_light(const Scene &scene, const Shape &shape, std::size_t number, LightBuilder &lights,
-                                 std::uint32_t primitive) {
-    if (shape.emitter < 0)
-        return no_light;
-    const Mesh &mesh = scene.meshes[shape.geometry];
-    const auto &t = mesh.triangles[number];
-    const Vector3 p0 = mesh.positions[t[0]];
-    const Vector3 e1 = mesh.positions[t[1]] - p0, e2 = mesh.positions[t[2]] - p0;
-    const double area = 0.5 * length(cross(e1, e2));
-    const Emitter &emitter = scene.emitters[shape.emitter];
-    const double power = pi * area * luminance(lights.mean_of(emitter));
-    if (!(power > 0))
-        return no_light;
-    float *record;
-    const std::uint32_t light =
-        lights.add(light_kind_triangle, emitter.value, {power, std::uint32_t(shape.emitter), false}, record);
-    put(record, light_p_x, p0);
-    put(record, light_e1_x, e1);
-    put(record, light_e2_x, e2);
-    record[light_inverse_area] = static_cast<float>(std::min(1 / area, 3e38));
-    record[light_offset] = triangle_offset_of(e1, e2, area);
-    lights.set_triangle(light, primitive);
-    return light;
+Rgb times(const Rgb &a, const Rgb &b) { return {a.r * b.r, a.g * b.g, a.b * b.b}; }
+
+/// The texture of a light that a mesh bears, or nullptr.
+const Texture *attribute_of(const Scene &scene, const Emitter &emitter) {
+    if (emitter.texture == no_texture)
+        return nullptr;
+    const Texture &texture = scene.textures[std::size_t(emitter.texture)];
+    return texture.kind == Texture::Kind::mesh_attribute ? &texture : nullptr;
 }
+
+/// Lights that the triangles of a shape are.
+class TriangleLights {
+  public:
+    TriangleLights(const Scene &scene, const Shape &shape, LightBuilder &lights)
+        : mesh_(scene.meshes[shape.geometry]), number_(shape.emitter), lights_(lights) {
+        if (number_ < 0)
+            return;
+        emitter_ = &scene.emitters[std::size_t(number_)];
+        bright_ = attribute_of(scene, *emitter_);
+        if (bright_)
+            mean_of_all_ = times(emitter_->value, mean_over_mesh(*bright_, mesh_));
+    }
+
+    /// The light that a triangle is, or no_light. `primitive`: its number among those of the scene.
+    std::uint32_t add(std::size_t triangle, std::uint32_t primitive) {
+        if (!emitter_)
+            return no_light;
+        const auto &t = mesh_.triangles[triangle];
+        const Vector3 p0 = mesh_.positions[t[0]];
+        const Vector3 e1 = mesh_.positions[t[1]] - p0, e2 = mesh_.positions[t[2]] - p0;
+        const double area = 0.5 * length(cross(e1, e2));
+        const Rgb mean = bright_ ? times(emitter_->value, mean_over_triangle(*bright_, mesh_, triangle))
+                                 : lights_.mean_of(*emitter_);
+        const double power = pi * area * luminance(mean);
+        if (!(power > 0))
+            return no_light;
+        float *record;
+        const std::uint32_t light =
+            lights_.add(light_kind_triangle, emitter_->value, {power, std::uint32_t(number_), false}, record);
+        put(record, light_p_x, p0);
+        put(record, light_e1_x, e1);
+        put(record, light_e2_x, e2);
+        record[light_inverse_area] = static_cast<float>(std::min(1 / area, 3e38));
+        record[light_offset] = triangle_offset_of(e1, e2, area);
+        lights_.set_triangle(light, primitive);
+        if (bright_)
+            lights_.set_mean(light, mean_of_all_);
+        return light;
+    }
+
+  private:
+    const Mesh &mesh_;
+    const std::int32_t number_;
+    LightBuilder &lights_;
+    const Emitter *emitter_ = nullptr;
+    const Texture *bright_ = nullptr;
+    Rgb mean_of_all_;
+};
 
 void add_mesh(const Scene &scene, const Shape &shape, const TraitMap &traits, SceneTables &tables,
               PrimitiveBuilder &primitives, LightBuilder &lights) {
@@ -193,10 +227,11 @@ void add_mesh(const Scene &scene, const Shape &shape, const TraitMap &traits, Sc
         primitives.add_unlit(surface, mesh.triangles.size());
         return;
     }
+    TriangleLights of_shape(scene, shape, lights);
     for (std::size_t number = 0; number < mesh.triangles.size(); ++number) {
         if (!primitives.is_indexed())
             add_triangle(mesh, number, traits, tables);
-        primitives.add(surface, add_triangle_light(scene, shape, number, lights, tables.primitive_count));
+        primitives.add(surface, of_shape.add(number, tables.primitive_count));
     }
 }
 

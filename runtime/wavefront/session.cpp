@@ -2,6 +2,7 @@
 
 #include "kernels/shared/texture.h"
 #include "runtime/error.h"
+#include "runtime/phases.h"
 #include "runtime/scene/environment_map.h"
 #include "runtime/scene/vertex_table.h"
 #include "runtime/wavefront/invariant_division.h"
@@ -156,9 +157,11 @@ std::vector<Buffer> make_scene_buffers(Device &device, const SceneTables &t, Pre
 Session::Session(Device &session_device, const Scene &s, const SessionOptions &session_options,
                  const TraitMap &method_traits)
     : device(session_device), options(session_options), settings(s.settings), film(with_crop(s.film)),
-      traits(traits_for(s, session_options, method_traits)), scene(make_scene_tables(s, traits)),
-      scene_buffers(make_scene_buffers(session_device, scene, session_options.precision)),
-      tracer(s, session_options.threads, &scene) {
+      traits(traits_for(s, session_options, method_traits)),
+      scene(in_phase(options.phases, phase_names::tables, [&] { return make_scene_tables(s, traits); })),
+      scene_buffers(in_phase(options.phases, phase_names::tables,
+                             [&] { return make_scene_buffers(session_device, scene, session_options.precision); })),
+      tracer(in_phase(options.phases, phase_names::tree, [&] { return Tracer(s, session_options.threads, &scene); })) {
     traits["SAMPLES_LIGHTS"] = scene.light_count > 0 && options.strategy != SessionOptions::Strategy::bsdf;
     traits["FEW_LIGHTS"] =
         scene.light_count <= most_few_lights && !options.all_traits ? static_cast<int>(scene.light_count) : 0;

@@ -10,6 +10,8 @@
 
 namespace gradus {
 
+class Phases;
+
 /// Thrown where SessionOptions::stop has asked for it. The samples of that batch are lost, those before are not; only
 /// an image may be asked for then.
 struct Stopped {};
@@ -30,6 +32,7 @@ struct SessionOptions {
     enum class Strategy { mis, light, bsdf };
     Strategy strategy = Strategy::mis; ///< for tests: light sampling alone or BSDF sampling alone
     std::string dump_kernels;          ///< folder for the source of each kernel as it was compiled; empty: none
+    Phases *phases = nullptr;          ///< where the time until the first sample is counted; may be nullptr
     /// Asked every few milliseconds while samples render; true: render_batch() throws Stopped. May be empty.
     std::function<bool()> stop;
     /// Called when a kernel has been compiled: its name, how many are ready, of how many, and its seconds.

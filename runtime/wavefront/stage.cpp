@@ -1,5 +1,6 @@
 #include "runtime/wavefront/stage.h"
 
+#include "runtime/phases.h"
 #include "runtime/seconds_since.h"
 
 #include <fmt/format.h>
@@ -137,6 +138,7 @@ Stage &Stages::add(StageDeclaration declaration) {
 
 void Stages::build(Session &session, const Tables &tables) {
     const std::vector<std::string> &kinds = session.scene.kinds;
+    const Phase phase(session.options.phases, phase_names::compile);
     std::vector<KernelRequest> requests;
     std::vector<std::pair<Stage *, std::size_t>> places; // by request
     for (Stage &stage : stages_) {

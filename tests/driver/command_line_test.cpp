@@ -15,7 +15,7 @@ TEST_F(CommandLine, HelpAndVersion) {
     EXPECT_EQ(run({"--version"}).out, "gradus 0.1.0\n");
     const Outcome help = run({"--help"});
     EXPECT_EQ(help.exit_code, 0);
-    for (const char *word : {"render", "inspect", "devices", "compare", "solve", "warm", "Examples:", "130"})
+    for (const char *word : {"render", "inspect", "plugins", "devices", "compare", "solve", "warm", "Examples:", "130"})
         EXPECT_THAT(help.out, HasSubstr(word));
     const Outcome render = run({"render", "--help"});
     EXPECT_EQ(render.exit_code, 0);

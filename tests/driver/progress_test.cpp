@@ -1,3 +1,4 @@
+#include "driver/phase_watch.h"
 #include "driver/progress.h"
 
 #include <gmock/gmock.h>
@@ -55,6 +56,65 @@ TEST(Progress, LineHasShareRateAndTimeLeft) {
     EXPECT_EQ(line, " 25 %  1.00 M samples  500 k/s  0:02 elapsed  0:06 left");
     EXPECT_EQ(progress_line(state(1000000, 2), 8).substr(0, 10), "[==      ]");
     EXPECT_THAT(progress_line(state(0, 0), 0), Not(HasSubstr("left")));
+}
+
+TEST(Progress, PhasesThatLast) {
+    Printed terminal, plain, quiet;
+    {
+        Progress progress(Progress::Mode::terminal, terminal.file);
+        progress.phase("decoding pictures", 1.2);
+        progress.phase_ended();
+        progress.phase_ended();
+    }
+    EXPECT_EQ(terminal.text(), "\rdecoding pictures  0:01\x1b[K\r\x1b[K");
+    {
+        Progress progress(Progress::Mode::plain, plain.file, 5);
+        for (const double seconds : {4.9, 5.0, 6.0})
+            progress.phase("decoding pictures", seconds);
+        progress.phase("building meshes", 5);
+        progress.phase_ended();
+    }
+    EXPECT_EQ(plain.text(), "decoding pictures\nbuilding meshes\n");
+    Progress(Progress::Mode::quiet, quiet.file).phase("decoding pictures", 100);
+    EXPECT_EQ(quiet.text(), "");
+}
+
+TEST(PhaseWatch, TellsThoseThatAreFelt) {
+    Printed printed;
+    Progress progress(Progress::Mode::terminal, printed.file);
+    Phases phases;
+    {
+        const PhaseWatch watch(phases, progress);
+        const auto wait = [](int milliseconds) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+        };
+        const Phase outer(&phases, phase_names::build);
+        in_phase(&phases, phase_names::meshes, [&] { wait(150); });
+        // In pieces, too: what counts is all of its time.
+        for (int i = 0; i < 10; ++i)
+            in_phase(&phases, phase_names::pictures, [&] { wait(90); });
+    }
+    EXPECT_THAT(printed.text(), HasSubstr("decoding pictures  0:00"));
+    EXPECT_THAT(printed.text(), Not(HasSubstr("building")));
+    EXPECT_TRUE(printed.text().ends_with("\r\x1b[K")) << "the line is gone";
+}
+
+TEST(Phases, TimeIsOfTheInnermost) {
+    Phases phases;
+    EXPECT_FALSE(phases.current());
+    {
+        const Phase outer(&phases, phase_names::build);
+        in_phase(&phases, phase_names::meshes, [] { std::this_thread::sleep_for(std::chrono::milliseconds(30)); });
+        EXPECT_STREQ(phases.current()->name.key, "build");
+    }
+    in_phase(nullptr, phase_names::tree, [] {});
+    const std::vector<Phases::Time> times = phases.times();
+    ASSERT_EQ(times.size(), 2u);
+    EXPECT_STREQ(times[0].name.key, "build");
+    EXPECT_STREQ(times[1].name.key, "meshes");
+    EXPECT_GE(times[1].seconds, 0.03);
+    EXPECT_LT(times[0].seconds, times[1].seconds); // by a factor of thousands where nothing else runs
+    EXPECT_FALSE(phases.current());
 }
 
 TEST(Progress, LineHasTheErrorAndWhatItTakes) {

@@ -26,6 +26,7 @@ TEST(StatisticsJson, HoldsEveryFigure) {
     record.seed = ~std::uint64_t(0);
     record.precision = "double";
     record.wall_seconds = 5;
+    record.phase_seconds = {{"parse", 0.5}, {"tree", 0.25}};
     record.stopped_by = "error";
     record.device.name = "a device";
     // Through text, as a reader gets it.
@@ -54,6 +55,7 @@ TEST(StatisticsJson, HoldsEveryFigure) {
     EXPECT_EQ(json.at("device").at("name"), "a device");
     EXPECT_EQ(json.at("precision"), "double");
     EXPECT_EQ(json.at("wall_seconds"), 5);
+    EXPECT_EQ(json.at("phase_seconds").at("tree"), 0.25);
     EXPECT_GT(json.at("memory").at("peak_host_bytes").get<std::uint64_t>(), 100000u);
 }
 

@@ -30,6 +30,8 @@ class FuzzFolder {
         return path;
     }
 
+    const std::string &path() const { return path_; }
+
   private:
     std::string path_;
 };

@@ -1,6 +1,8 @@
-// Scenes, with meshes and a scene to include beside them.
+// Scenes, with meshes, pictures and a scene to include beside them.
 #include "runtime/error.h"
+#include "runtime/io/image_io.h"
 #include "runtime/io/load_scene.h"
+#include "runtime/scene/traits.h"
 #include "tests/fuzz/fuzz_file.h"
 #include "tests/fuzz/fuzz_mesh.h"
 
@@ -11,6 +13,17 @@ extern "C" int LLVMFuzzerTestOneInput(const unsigned char *data, std::size_t siz
             mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
             part = "<scene version=\"3.0.0\"><default name=\"a\" value=\"b\"/><shape type=\"cube\"/></scene>";
         folder.write("m.obj", mesh.data(), mesh.size());
+        const std::string colored = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                                    "property float z\nproperty float r\nproperty float g\nproperty float b\nelement "
+                                    "face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 1 0 0\n1 0 0 0 "
+                                    "1 0\n0 1 0 0 0 1\n3 0 1 2\n";
+        folder.write("m.ply", colored.data(), colored.size());
+        gradus::Image picture;
+        picture.width = 2;
+        picture.height = 1;
+        picture.channels = {{"R", {0.25f, 1}}, {"G", {0.5f, 1}}, {"B", {1, 0.125f}}};
+        gradus::write_image(picture, folder.path() + "/t.exr");
+        gradus::write_png(picture, folder.path() + "/t.png");
         folder.write("p.xml", part.data(), part.size());
         return true;
     }();
@@ -24,6 +37,9 @@ extern "C" int LLVMFuzzerTestOneInput(const unsigned char *data, std::size_t siz
         for (const gradus::Shape &shape : scene.shapes) {
             gradus::require(shape.material < scene.materials.size());
             gradus::require(shape.emitter < std::int32_t(scene.emitters.size()));
+            gradus::for_each_texture(scene, shape, [&](std::int32_t texture) {
+                gradus::require(texture < std::int32_t(scene.textures.size()));
+            });
         }
     } catch (const gradus::Error &) {
     }

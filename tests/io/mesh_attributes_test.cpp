@@ -227,7 +227,7 @@ TEST_F(SceneWithAttributes, MissingOnesAreErrors) {
     EXPECT_THAT(error("<shape type=\"sphere\"><bsdf type=\"diffuse\"><texture name=\"reflectance\" " + of_mesh_ +
                       "</bsdf></shape>"),
                 HasSubstr("has no attribute \"vertex_color\""));
-    EXPECT_THAT(error(shape("c.ply", "type=\"mesh_attribute\"/>")), HasSubstr("needs the name of an attribute"));
+    EXPECT_THAT(error(shape("c.ply", "type=\"mesh_attribute\"/>")), HasSubstr("mesh_attribute needs a name"));
     EXPECT_THAT(error(shape("c.ply", "type=\"mesh_attribute\"><string name=\"name\" value=\"color\"/></texture>")),
                 HasSubstr("begins with vertex_ or face_"));
 }

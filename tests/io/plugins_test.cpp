@@ -363,6 +363,12 @@ TEST(EmitterPlugin, Constant) {
         emitter_of("<emitter type=\"constant\"><spectrum name=\"radiance\" value=\"5000\"/></emitter>", "0.6.0");
     EXPECT_EQ(emitter.kind, Emitter::Kind::constant);
     expect_rgb(emitter.value, 5000, 5000, 5000);
+    // From 2.0 on one number is equal energy at all wavelengths, as Mitsuba 3.9.1 renders it:
+    // (2.40959, 1.89658, 1.81783).
+    expect_rgb(emitter_of("<emitter type=\"constant\"><spectrum name=\"radiance\" value=\"2\"/></emitter>").value,
+               2.40959, 1.89658, 1.81783, 2e-3);
+    expect_rgb(emitter_of("<emitter type=\"constant\"><float name=\"radiance\" value=\"2\"/></emitter>").value, 2, 2,
+               2);
     expect_rgb(emitter_of("<emitter type=\"constant\"/>").value, 1, 1, 1);
 }
 
@@ -442,6 +448,8 @@ TEST(EmitterPlugin, SpotWithAPicture) {
     EXPECT_THAT(error(board + board), HasSubstr("scene.xml:4: a spot has one texture"));
     EXPECT_THAT(error(board + "<transform name=\"to_world\"><scale x=\"2\"/></transform>"), HasSubstr("not stretched"));
     EXPECT_THAT(error("<texture type=\"checkerboard\" name=\"intensity\"/>"), HasSubstr("cannot be a texture"));
+    EXPECT_THAT(error("<texture type=\"mesh_attribute\"><string name=\"name\" value=\"face_a\"/></texture>"),
+                HasSubstr("scene.xml:4: a picture to throw cannot be a mesh attribute"));
 }
 
 TEST(EmitterPlugin, Projector) {
@@ -470,11 +478,14 @@ TEST(EmitterPlugin, Projector) {
         return error_of_text(scene_around("<emitter type=\"projector\">\n" + inside + "</emitter>"));
     };
     const std::string white = "<rgb name=\"irradiance\" value=\"1\"/>";
-    EXPECT_THAT(error(""), HasSubstr("scene.xml:3: a projector needs an irradiance"));
+    EXPECT_THAT(error(""), HasSubstr("scene.xml:3: projector needs an irradiance"));
     EXPECT_THAT(error(white + "<transform name=\"to_world\"><scale value=\"2\"/></transform>"),
                 HasSubstr("not stretched"));
     EXPECT_THAT(error(white + "<float name=\"fov\" value=\"180\"/>"), HasSubstr("between 0 and 180"));
     EXPECT_THAT(error(white + "<float name=\"scale\" value=\"-1\"/>"), HasSubstr("at least 0"));
+    EXPECT_THAT(error("<texture type=\"mesh_attribute\" name=\"irradiance\"><string name=\"name\" "
+                      "value=\"face_a\"/></texture>"),
+                HasSubstr("scene.xml:4: a picture to throw cannot be a mesh attribute"));
 }
 
 TEST(EmitterPlugin, AreaOfATexture) {
@@ -574,6 +585,12 @@ TEST(EmitterPlugin, EnvironmentMapsWithBadTexels) {
                 ElementsAre(HasSubstr("1 values that are not numbers")));
     const LoadedScene loaded = load_with_map(emitter, infinity);
     EXPECT_THAT(loaded.warnings, ElementsAre(HasSubstr("1 infinite values, which count as its largest one, 3")));
+    EXPECT_THAT(load_with_map(emitter, 3e38f).warnings, // whose sum over the sphere is infinite
+                ElementsAre(HasSubstr("1 infinite values, which count as its largest one, 3")));
+    EXPECT_THROW(
+        load_with_map("<emitter type=\"envmap\">" + sky_file + "<float name=\"scale\" value=\"1e30\"/></emitter>",
+                      1e30f),
+        Error);
     // Five texels of 1, and one of 3: each has a sixth of the sphere.
     EXPECT_NEAR(loaded.scene.emitters.at(0).map->integral.r, 4 * 3.14159265358979 * 8 / 6, 1e-4);
     // A black one, by its scale, is no light.

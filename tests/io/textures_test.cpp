@@ -206,7 +206,7 @@ TEST_F(TexturePlugin, Errors) {
     folder_.write("bad.png", "\x89PNG\r\n\x1a\nnothing");
     EXPECT_THAT(error(bitmap_text("bad.png")), HasSubstr("cannot read the texture"));
     EXPECT_THAT(error(bitmap_text("a.png", "<string name=\"filter_type\" value=\"cubic\"/>")),
-                HasSubstr("unknown filter_type \"cubic\" (known: bilinear, nearest)"));
+                HasSubstr("unknown filter_type \"cubic\" (known: bilinear, nearest, trilinear, ewa)"));
     EXPECT_THAT(error(bitmap_text("a.png", "<string name=\"wrap_mode\" value=\"zero\"/>")),
                 HasSubstr("unknown wrap_mode \"zero\" (known: repeat, mirror, clamp)"));
     EXPECT_THAT(error("<texture type=\"bitmep\"/>"), HasSubstr("did you mean \"bitmap\"?"));
@@ -242,7 +242,7 @@ TEST_F(TexturePlugin, WrapsOtherwiseAlongV) {
     const Texture alike = texture(bitmap_text("a.png", "<string name=\"wrapMode\" value=\"clamp\"/>"), "0.6.0");
     EXPECT_EQ(alike.wrap_along_v(), Texture::Wrap::clamp);
     EXPECT_THAT(error(bitmap_text("a.png", "<string name=\"wrapModeV\" value=\"zero\"/>")),
-                HasSubstr("unknown wrap_mode \"zero\""));
+                HasSubstr("unknown wrap_mode_v \"zero\""));
 }
 
 class MapPlugin : public TexturePlugin {

@@ -74,6 +74,40 @@ SceneMaker room(std::uint64_t samples) {
     return maker;
 }
 
+/// A lamp that bears one colour is the plain lamp of that colour: the same numbers choose the same places of it.
+TEST(FullTexturedLights, OfOneColourArePlainOnes) {
+    for (const std::string name : {"vertex_glow", "face_glow"}) {
+        SceneMaker bears(16, 8);
+        bears.look({0, 1.2, 3.6}, {0, 0.7, 0}, 40);
+        bears.floor(-2, 2, 2, bears.material(diffuse(0.6)));
+        SceneMaker plain = bears;
+        Texture texture;
+        texture.kind = Texture::Kind::mesh_attribute;
+        texture.attribute = name;
+        const auto add_lamp = [](SceneMaker &maker, std::int32_t emitter) {
+            maker.parallelogram({-0.8f, 1.5f, -0.6f}, {1.2f, 0, 0}, {0, 0, 1.2f}, maker.material(diffuse(0)), emitter);
+        };
+        add_lamp(bears, textured_emitter(bears, texture, 2));
+        Mesh &mesh = bears.scene.meshes.back();
+        mesh.texcoords.clear();
+        const std::size_t count = name == "face_glow" ? mesh.triangles.size() : mesh.positions.size();
+        mesh.attributes = {{name, 3, {}}};
+        for (std::size_t i = 0; i < count; ++i)
+            mesh.attributes[0].values.insert(mesh.attributes[0].values.end(), {2, 1, 0.5f});
+        add_lamp(plain, plain.emitter(Emitter::Kind::area, {4, 2, 1}));
+        const Image found = render(bears.scene, {}, "pt").image, expected = render(plain.scene, {}, "pt").image;
+        double total = 0;
+        for (const char *channel : {"R", "G", "B"})
+            for (std::uint32_t y = 0; y < 16; ++y)
+                for (std::uint32_t x = 0; x < 16; ++x) {
+                    const double value = pixel(expected, x, y, channel);
+                    total += value;
+                    EXPECT_NEAR(pixel(found, x, y, channel), value, 1e-4 * value + 1e-6) << name << channel;
+                }
+        EXPECT_GT(total, 1);
+    }
+}
+
 TEST(FullTexturedLights, AreFoundAsTheyAreSampled) {
     constexpr std::size_t seeds = 10;
     constexpr std::uint64_t samples = 64;

@@ -125,7 +125,7 @@ TEST_F(Oclgrind, EveryMaterialAndLight) {
 }
 
 // The same by gradient-domain path tracing; the reconstruction's kernels have a test of their own.
-TEST_F(Oclgrind, GradientsOfEveryMaterialAndLight) {
+TEST_F(FullOclgrind, GradientsOfEveryMaterialAndLight) {
     std::vector<std::string> expected = {"primary",    "gradient_begin",     "gradient_connect", "shift",
                                          "weigh",      "weigh apart",        "gradient escape",  "gradient emission",
                                          "advance",    "advance apart",      "shift count",      "gradient_combine",
@@ -196,7 +196,7 @@ TEST_F(Oclgrind, Photons) {
 }
 
 // Photons shifted by reconnections and walks.
-TEST_F(Oclgrind, GradientsOfPhotons) {
+TEST_F(FullOclgrind, GradientsOfPhotons) {
     EXPECT_THAT(render("lamp-in-egg.xml", {"--method", "gpm", "--norm", "L2", "--size", "6x5", "--photons", "45",
                                            "--radius", "10%", "--batch-size", "64"}),
                 IsSupersetOf({"photon_shift diffuse", "photon_reconnect diffuse", "photon_arrive diffuse",

@@ -183,6 +183,62 @@ TEST(Primitives, HaveTangentsAlongU) {
     EXPECT_NEAR(along({0, 0}, {1, 0}, {2, 1})[0], 1, 1e-6) << "sheared";
 }
 
+/// A lamp of two triangles, of areas 1 and 3, that bears `attribute`; and a plain one of area 2.
+SceneMaker lamps(const MeshAttribute &attribute, float scale) {
+    SceneMaker maker(4, 1);
+    Texture texture;
+    texture.kind = Texture::Kind::mesh_attribute;
+    texture.attribute = attribute.name;
+    texture.scale = {scale, scale, scale};
+    texture.highest = 1e30f;
+    maker.scene.textures = {texture};
+    const std::int32_t bright = maker.emitter(Emitter::Kind::area, {1, 1, 1});
+    maker.scene.emitters.back().texture = 0;
+    const std::uint32_t material = maker.material(diffuse(0.5));
+    maker.parallelogram({0, 0, 0}, {1, 0, 0}, {0, 2, 0}, material, bright);
+    Mesh &mesh = maker.scene.meshes.back();
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {-3, 0, 0}};
+    mesh.normals.clear();
+    mesh.texcoords.clear();
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    mesh.attributes = {attribute};
+    maker.parallelogram({9, 0, 0}, {1, 0, 0}, {0, 2, 0}, material, maker.emitter(Emitter::Kind::area, {1, 1, 1}));
+    return maker;
+}
+
+/// Half of the choice is by emitter: the probabilities of the two emitters of these powers, of which one has two parts.
+std::vector<double> chosen_by(double first, double second, double plain) {
+    const double bright = first + second, total = bright + plain;
+    const double of_bright = 0.5 * bright / total + 0.25, of_plain = 0.5 * plain / total + 0.25;
+    return {of_bright * first / bright, of_bright * second / bright, of_plain / 2, of_plain / 2};
+}
+
+void expect_chosen(const SceneMaker &maker, const std::vector<double> &expected) {
+    const SceneTables tables = tables_of(maker.scene);
+    ASSERT_EQ(tables.light_count, expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i)
+        EXPECT_NEAR(tables.lights[i * light_stride + light_probability], expected[i], 1e-6) << i;
+}
+
+// Lights are chosen by what they emit: of an attribute its mean over each triangle.
+TEST(AttributeLights, AreChosenByTheirTriangles) {
+    expect_chosen(lamps({"face_a", 1, {5, 0.5f}}, 2), chosen_by(1 * 10, 3 * 1, 2));
+    // At the vertices: means 2 and 3.
+    expect_chosen(lamps({"vertex_a", 1, {1, 2, 3, 5}}, 1), chosen_by(1 * 2, 3 * 3, 2));
+    // Of colours the luminance; the same everywhere is a plain lamp.
+    expect_chosen(lamps({"vertex_a", 3, {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1}}, 1), chosen_by(1, 3, 2));
+    expect_chosen(lamps({"face_a", 3, {1, 0, 0, 0, 0, 1}}, 1), chosen_by(0.2126, 3 * 0.0722, 2));
+    // Negative numbers shine as 0; a triangle that is black all over is no light.
+    expect_chosen(lamps({"vertex_a", 1, {-1, 6, 0, -7}}, 1), {0.5 * 0.5 + 0.25, 0.25, 0.25});
+}
+
+// Where edges of lights are looked for, the lamp is one: its mean over all of it.
+TEST(AttributeLights, AreOneWhereTheirEdgesCount) {
+    const SceneTables tables = tables_of(lamps({"face_a", 1, {5, 0.5f}}, 2).scene);
+    for (std::size_t i = 0; i < 6; ++i)
+        EXPECT_NEAR(tables.light_means[i], (1 * 10 + 3 * 1) / 4.0, 1e-6);
+}
+
 // Kernels look up a texture for every row, compiled for what those of its use have: another might be read beyond its
 // end.
 TEST(Textures, WhoHasNoneLooksUpOneOfTheSameUse) {

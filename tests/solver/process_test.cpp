@@ -36,9 +36,12 @@ TEST_F(SolverProcess, GivesTheSameBitsWithAnyNumberOfThreads) {
     }
 }
 
+/// What takes long.
+class FullSolverProcess : public SolverProcess {};
+
 /// As in tests/portability/oclgrind_test.cpp, which shows that these options find what they are to find. One size is
 /// of odd width on every level of multigrid and wider than a work-group; a second a pixel is what it takes.
-TEST_F(SolverProcess, IsCleanUnderOclgrind) {
+TEST_F(FullSolverProcess, IsCleanUnderOclgrind) {
     const Outcome version = run({"oclgrind", "--version"});
     ASSERT_EQ(version.exit_code, 0) << "oclgrind is not installed (Debian: apt install oclgrind)\n" << version.err;
     for (const auto &[width, height] : {std::pair{"9", "3"}, {"1", "1"}}) {

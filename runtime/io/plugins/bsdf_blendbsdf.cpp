@@ -1,5 +1,4 @@
 // <bsdf type="blendbsdf">: a mixture of two BSDFs, which may be mixtures again.
-//   weight  of the second, 0.5, a number or a texture; the two BSDFs
 #include "runtime/io/plugins/plugin.h"
 
 namespace gradus {
@@ -17,6 +16,12 @@ Bsdf back_of(const Material &material) {
 
 } // namespace
 
+Declaration declare_bsdf_blendbsdf() {
+    return {"a mixture of two BSDFs, each of which may be a mixture again. Not with `gpm`",
+            {Parameter{"weight", Takes::textured_number, "0.5", "share of the second"}.at_least(0).at_most(1),
+             {"bsdf", Takes::objects, nullptr, "the first and the second"}}};
+}
+
 Material bsdf_blendbsdf(Properties &properties, SceneBuilder &builder) {
     const auto nested = properties.objects("bsdf");
     if (nested.size() != 2)
@@ -28,7 +33,7 @@ Material bsdf_blendbsdf(Properties &properties, SceneBuilder &builder) {
         if (parts[i].opacity != 1.0f)
             throw SceneError(nested[i].location, "mask inside blendbsdf is not supported: put the blend into the mask");
     }
-    const Number weight = properties.textured_number("weight", 0.5f, 0, 1, 0);
+    const Number weight = properties.textured_number("weight");
     Material material;
     material.two_sided = parts[0].two_sided || parts[1].two_sided;
     if (material.two_sided)

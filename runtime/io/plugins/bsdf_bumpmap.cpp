@@ -1,8 +1,15 @@
 // <bsdf type="bumpmap">: a BSDF under the normals of a surface that a texture raises.
-//   a texture and a BSDF; scale (1, lengths for a luminance of 1), flip_invalid_normals, use_shadowing_function
 #include "runtime/io/plugins/parameters_of_maps.h"
 
 namespace gradus {
+
+Declaration declare_bsdf_bumpmap() {
+    return {
+        "a BSDF under the normals of a surface that a texture raises. Not with `gpm`",
+        joined({{{"texture", Takes::objects, nullptr, "of one number or of a colour, whose luminance is the height"},
+                 Parameter{"scale", Takes::number, "1", "how high a luminance of 1 is"}.in("lengths")},
+                parameters_of_maps()})};
+}
 
 Material bsdf_bumpmap(Properties &properties, SceneBuilder &builder) {
     return read_mapped(properties, builder, NormalTexture::Kind::bump);

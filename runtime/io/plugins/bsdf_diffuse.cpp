@@ -1,14 +1,17 @@
 // <bsdf type="diffuse">: Lambertian reflection.
-//   reflectance (diffuseReflectance in 0.x)  albedo, 0.5
 #include "runtime/io/plugins/plugin.h"
 
 namespace gradus {
 
+Declaration declare_bsdf_diffuse() {
+    return {"Lambertian reflection",
+            {Parameter{"reflectance", Takes::reflectance, "0.5", "albedo"}.also("diffuse_reflectance")}};
+}
+
 Material bsdf_diffuse(Properties &properties, SceneBuilder &) {
     Material material;
     material.front.kind = BsdfKind::diffuse;
-    const Rgb legacy = properties.color("diffuse_reflectance", {0.5f, 0.5f, 0.5f}, ColorUse::reflectance);
-    material.front.reflectance = properties.color("reflectance", legacy, ColorUse::reflectance);
+    material.front.reflectance = properties.color("reflectance");
     return material;
 }
 

@@ -1,9 +1,12 @@
 // <bsdf type="roughconductor">: a rough metal.
-//   those of conductor; distribution, alpha or alpha_u and alpha_v
 #include "runtime/io/plugins/parameters_of_bsdfs.h"
 #include "runtime/io/plugins/plugin.h"
 
 namespace gradus {
+
+Declaration declare_bsdf_roughconductor() {
+    return {"a rough metal", joined({parameters_of_conductor(), parameters_of_roughness()})};
+}
 
 Material bsdf_roughconductor(Properties &properties, SceneBuilder &) {
     Material material;

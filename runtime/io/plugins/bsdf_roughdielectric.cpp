@@ -1,9 +1,13 @@
 // <bsdf type="roughdielectric">: a rough boundary between two transparent media.
-//   those of dielectric; distribution, alpha or alpha_u and alpha_v
 #include "runtime/io/plugins/parameters_of_bsdfs.h"
 #include "runtime/io/plugins/plugin.h"
 
 namespace gradus {
+
+Declaration declare_bsdf_roughdielectric() {
+    return {"a rough boundary between two transparent media",
+            joined({parameters_of_dielectric(), parameters_of_roughness()})};
+}
 
 Material bsdf_roughdielectric(Properties &properties, SceneBuilder &) {
     Material material;

@@ -1,9 +1,14 @@
 // <bsdf type="roughplastic">: a diffuse base under a rough dielectric coat.
-//   those of plastic; distribution, alpha
 #include "runtime/io/plugins/parameters_of_bsdfs.h"
 #include "runtime/io/plugins/plugin.h"
 
 namespace gradus {
+
+Declaration declare_bsdf_roughplastic() {
+    return {
+        "a diffuse base under a rough dielectric coat, as rough along both axes, and not by a texture. Not with `gpm`",
+        joined({parameters_of_plastic(), parameters_of_roughness()})};
+}
 
 Material bsdf_roughplastic(Properties &properties, SceneBuilder &) {
     Material material;

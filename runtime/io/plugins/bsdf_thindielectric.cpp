@@ -1,9 +1,12 @@
 // <bsdf type="thindielectric">: a thin pane with the same medium on both sides.
-//   those of dielectric
 #include "runtime/io/plugins/parameters_of_bsdfs.h"
 #include "runtime/io/plugins/plugin.h"
 
 namespace gradus {
+
+Declaration declare_bsdf_thindielectric() {
+    return {"a thin pane with the same medium on both sides", parameters_of_dielectric()};
+}
 
 Material bsdf_thindielectric(Properties &properties, SceneBuilder &) {
     Material material;

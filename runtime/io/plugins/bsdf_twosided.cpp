@@ -4,6 +4,11 @@
 
 namespace gradus {
 
+Declaration declare_bsdf_twosided() {
+    return {"gives a one-sided BSDF a back",
+            {{"bsdf", Takes::objects, nullptr, "one for both sides, or two: front and back"}}};
+}
+
 Material bsdf_twosided(Properties &properties, SceneBuilder &builder) {
     const auto nested = properties.objects("bsdf");
     if (nested.empty() || nested.size() > 2)

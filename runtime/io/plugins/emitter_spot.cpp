@@ -1,7 +1,4 @@
 // <emitter type="spot">: light from one point into a cone about +z, less of it towards its rim.
-//   to_world; intensity within the beam  W sr^-1, 1; cutoff_angle  20 degrees, where it ends;
-//   beam_width  three quarters of that, up to where intensity is whole; texture, which the intensity is times: a
-//   picture across the cone
 #include "runtime/io/plugins/parameters_of_emitters.h"
 #include "runtime/io/plugins/plugin.h"
 
@@ -10,19 +7,38 @@
 
 namespace gradus {
 
+Declaration declare_emitter_spot() {
+    return {
+        "light from one point into a cone about +z, less of it towards its rim",
+        joined({{Parameter{"intensity", Takes::emission, "1", "within the beam"}.in("W sr⁻¹"),
+                 {"to_world", Takes::transform, nullptr, "from the origin and +z to its place and direction"},
+                 Parameter{"cutoff_angle", Takes::number, "20", "where it ends, from the axis; below 90 with a texture"}
+                     .in("degrees")
+                     .at_least(0)
+                     .at_most(180),
+                 Parameter{"beam_width", Takes::number, nullptr, "up to where intensity is whole, from the axis"}
+                     .in("degrees")
+                     .at_least(0)
+                     .at_most(180)
+                     .or_else("3/4 cutoff_angle"),
+                 {"texture", Takes::objects, nullptr,
+                  "a picture across the cone, which the intensity is times; to_world does not stretch it"}},
+                meaningless({"sampling_weight"})})};
+}
+
 Emitter emitter_spot(Properties &properties, SceneBuilder &builder) {
     constexpr double radians = 3.14159265358979323846 / 180;
     Emitter emitter;
     emitter.kind = Emitter::Kind::spot;
-    emitter.value = properties.color("intensity", {1, 1, 1}, ColorUse::emission);
+    emitter.value = properties.color("intensity");
     const Matrix4 to_world = properties.transform("to_world");
     const Double3 axis = transform_vector(to_world, {0, 0, 1});
     if (!(length(axis) > 0))
         throw properties.error("to_world", "the direction of a spot is zero");
     emitter.position = to_float(transform_point(to_world, {0, 0, 0}));
     emitter.direction = to_float(normalize(axis));
-    const double cutoff = properties.number("cutoff_angle", 20, 0, 180);
-    const double beam = properties.number("beam_width", cutoff * 0.75, 0, 180);
+    const double cutoff = properties.number("cutoff_angle");
+    const double beam = properties.has("beam_width") ? properties.number("beam_width") : cutoff * 0.75;
     if (!(cutoff > 0))
         throw properties.error("cutoff_angle", "a spot of no width");
     if (beam > cutoff)
@@ -35,6 +51,7 @@ Emitter emitter_spot(Properties &properties, SceneBuilder &builder) {
         if (!(cutoff < 89.9))
             throw properties.error("cutoff_angle", "a spot with a texture needs a cutoff_angle below 90 degrees");
         const FoundTexture found = builder.texture(*pictures[0].element, 0, std::numeric_limits<float>::max());
+        check_picture(builder.texture_at(found.index), pictures[0].location);
         Color color(float(found.range.mean[0]), float(found.range.mean[1]), float(found.range.mean[2]));
         color.texture = found.index;
         set_texture(color, emitter);
@@ -42,7 +59,6 @@ Emitter emitter_spot(Properties &properties, SceneBuilder &builder) {
         const auto width = float(2 * std::tan(cutoff * radians));
         emitter.picture = {width, width};
     }
-    properties.ignore({"sampling_weight"});
     return emitter;
 }
 

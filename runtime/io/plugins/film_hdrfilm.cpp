@@ -1,27 +1,42 @@
 // <film type="hdrfilm">: the size of the image and its reconstruction filter.
-//   width (768), height (576); crop_offset_x, crop_offset_y, crop_width, crop_height; a nested rfilter (gaussian)
 #include "runtime/io/plugins/plugin.h"
 #include "runtime/io/text.h"
 
 namespace gradus {
 
+Declaration declare_film_hdrfilm() {
+    return {
+        "the size of the image and its reconstruction filter",
+        joined({{Parameter{"width", Takes::integer, "768", "of the film"}.in("pixels").at_least(1).at_most(0x7fffffff),
+                 Parameter{"height", Takes::integer, "576", "of the film"}.in("pixels").at_least(1).at_most(0x7fffffff),
+                 Parameter{"crop_offset_x", Takes::integer, "0", "the part of the film that is the image"}.in("pixels"),
+                 Parameter{"crop_offset_y", Takes::integer, "0", ""}.in("pixels"),
+                 Parameter{"crop_width", Takes::integer, nullptr, ""}.in("pixels").or_else("the rest"),
+                 Parameter{"crop_height", Takes::integer, nullptr, ""}.in("pixels").or_else("the rest"),
+                 {"rfilter", Takes::objects, nullptr, "one, or a Gaussian"}},
+                meaningless({"file_format", "pixel_format", "component_format", "banner", "attach_log",
+                             "high_quality_edges", "sample_border", "compensate", "exposure", "gamma",
+                             "tonemap_method"})})};
+}
+
 FilmSettings film_hdrfilm(Properties &properties, SceneBuilder &builder) {
     FilmSettings film;
     constexpr std::int64_t most = 0x7fffffff;
-    film.width = std::uint32_t(properties.integer("width", 768, 1, most));
-    film.height = std::uint32_t(properties.integer("height", 576, 1, most));
+    film.width = std::uint32_t(properties.integer("width"));
+    film.height = std::uint32_t(properties.integer("height"));
     if (std::int64_t(film.width) * film.height > most)
         throw properties.error("width", "a film of " + std::to_string(film.width) + " x " +
                                             std::to_string(film.height) + " has more than 2^31 - 1 pixels");
     const bool is_cropped = properties.has("crop_offset_x") || properties.has("crop_offset_y") ||
                             properties.has("crop_width") || properties.has("crop_height");
     if (is_cropped) {
-        film.crop_x = std::uint32_t(properties.integer("crop_offset_x", 0, 0, film.width - 1));
-        film.crop_y = std::uint32_t(properties.integer("crop_offset_y", 0, 0, film.height - 1));
+        film.crop_x = std::uint32_t(properties.integer("crop_offset_x", 0, film.width - 1));
+        film.crop_y = std::uint32_t(properties.integer("crop_offset_y", 0, film.height - 1));
+        const std::uint32_t wide = film.width - film.crop_x, high = film.height - film.crop_y;
         film.crop_width =
-            std::uint32_t(properties.integer("crop_width", film.width - film.crop_x, 1, film.width - film.crop_x));
+            properties.has("crop_width") ? std::uint32_t(properties.integer("crop_width", 1, wide)) : wide;
         film.crop_height =
-            std::uint32_t(properties.integer("crop_height", film.height - film.crop_y, 1, film.height - film.crop_y));
+            properties.has("crop_height") ? std::uint32_t(properties.integer("crop_height", 1, high)) : high;
     }
     if (const auto filters = properties.objects("rfilter"); !filters.empty()) {
         const Element &element = *filters.front().element;
@@ -40,8 +55,6 @@ FilmSettings film_hdrfilm(Properties &properties, SceneBuilder &builder) {
         film.mitchell_b = filter.b;
         film.mitchell_c = filter.c;
     }
-    properties.ignore({"file_format", "pixel_format", "component_format", "banner", "attach_log", "high_quality_edges",
-                       "sample_border", "compensate", "exposure", "gamma", "tonemap_method"});
     return film;
 }
 

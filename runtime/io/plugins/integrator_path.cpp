@@ -1,15 +1,26 @@
 // <integrator type="path">
-//   max_depth  path edges at most, -1 (no limit); rr_depth  Russian roulette from here on, 5; hide_emitters  false
 #include "runtime/io/plugins/plugin.h"
 
 namespace gradus {
 
+Declaration declare_integrator_path() {
+    return {"paths of any length",
+            joined({{Parameter{"max_depth", Takes::integer, "-1", "edges of a path at most; −1: no limit"}
+                         .at_least(-1)
+                         .at_most(1000000),
+                     Parameter{"rr_depth", Takes::integer, "5", "Russian roulette from here on"}
+                         .in("edges")
+                         .at_least(1)
+                         .at_most(1000000),
+                     {"hide_emitters", Takes::boolean, "false", "the camera sees no emitters"}},
+                    meaningless({"strict_normals"})})};
+}
+
 RenderSettings integrator_path(Properties &properties, SceneBuilder &) {
     RenderSettings settings;
-    settings.max_depth = int(properties.integer("max_depth", -1, -1, 1000000));
-    settings.rr_depth = int(properties.integer("rr_depth", 5, 1, 1000000));
-    settings.hide_emitters = properties.boolean("hide_emitters", false);
-    properties.ignore({"strict_normals"});
+    settings.max_depth = int(properties.integer("max_depth"));
+    settings.rr_depth = int(properties.integer("rr_depth"));
+    settings.hide_emitters = properties.boolean("hide_emitters");
     return settings;
 }
 

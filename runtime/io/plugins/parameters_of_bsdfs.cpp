@@ -9,69 +9,122 @@
 
 namespace gradus {
 
-Microfacet read_roughness(Properties &properties, Bsdf &bsdf) {
-    const std::string name = lower_case(properties.string("distribution", "beckmann"));
-    if (name != "beckmann" && name != "ggx")
-        throw properties.error("distribution",
-                               "unknown microfacet distribution \"" + name + "\" (known: beckmann, ggx)");
+ParameterList parameters_of_roughness() {
     // Below this, single precision cannot hold the distribution's peak.
     constexpr double least_alpha = 1e-4;
     constexpr double most_alpha = 1e30;
-    const Number alpha = properties.textured_number("alpha", 0.1f, 0, most_alpha, least_alpha);
-    bsdf.alpha_u = properties.textured_number("alpha_u", alpha, 0, most_alpha, least_alpha);
-    bsdf.alpha_v = properties.textured_number("alpha_v", alpha, 0, most_alpha, least_alpha);
-    properties.ignore({"sample_visible"}); // visible normals are always sampled
-    return name == "ggx" ? Microfacet::ggx : Microfacet::beckmann;
+    const auto roughness = [](const char *name, const char *otherwise, const char *about) {
+        return Parameter{name, Takes::textured_number, otherwise, about}
+            .at_least(0)
+            .at_most(most_alpha)
+            .raised_to(least_alpha);
+    };
+    return joined({{Parameter{"distribution", Takes::choice, "beckmann", "of the microfacets"}.of({"beckmann", "ggx"}),
+                    roughness("alpha", "0.1", "roughness; below 1e-4 it is 1e-4"),
+                    roughness("alpha_u", nullptr, "roughness along dp/du").as("alpha"),
+                    roughness("alpha_v", nullptr, "roughness across it").as("alpha")},
+                   meaningless({"sample_visible"})}); // visible normals are always sampled
+}
+
+ParameterList roughness_left_over() { return meaningless({"alpha", "distribution"}); }
+
+Microfacet read_roughness(Properties &properties, Bsdf &bsdf) {
+    bsdf.alpha_u = properties.textured_number("alpha_u");
+    bsdf.alpha_v = properties.textured_number("alpha_v");
+    return properties.choice("distribution") == "ggx" ? Microfacet::ggx : Microfacet::beckmann;
+}
+
+ParameterList parameters_of_dielectric() {
+    return {{"int_ior", Takes::refractive_index, "bk7", "index of refraction behind the front"},
+            {"ext_ior", Takes::refractive_index, "air", "index of refraction before it"},
+            {"specular_reflectance", Takes::reflectance, "1", "what reflection is times"},
+            {"specular_transmittance", Takes::reflectance, "1", "what transmission is times"}};
 }
 
 void read_dielectric(Properties &properties, Bsdf &bsdf) {
-    bsdf.ior = float(properties.refractive_index("int_ior", "bk7") / properties.refractive_index("ext_ior", "air"));
-    bsdf.specular_reflectance = properties.color("specular_reflectance", {1, 1, 1}, ColorUse::reflectance);
-    bsdf.specular_transmittance = properties.color("specular_transmittance", {1, 1, 1}, ColorUse::reflectance);
+    bsdf.ior = float(properties.refractive_index("int_ior") / properties.refractive_index("ext_ior"));
+    bsdf.specular_reflectance = properties.color("specular_reflectance");
+    bsdf.specular_transmittance = properties.color("specular_transmittance");
+}
+
+ParameterList parameters_of_plastic() {
+    return {{"diffuse_reflectance", Takes::reflectance, "0.5", "albedo of the base"},
+            {"specular_reflectance", Takes::reflectance, "1", "what reflection by the coat is times"},
+            {"int_ior", Takes::refractive_index, "polypropylene", "index of refraction of the coat"},
+            {"ext_ior", Takes::refractive_index, "air", "index of refraction around it"},
+            {"nonlinear", Takes::boolean, "false", "light that the coat throws back takes the base's colour again"}};
 }
 
 void read_plastic(Properties &properties, Bsdf &bsdf) {
-    bsdf.ior =
-        float(properties.refractive_index("int_ior", "polypropylene") / properties.refractive_index("ext_ior", "air"));
-    bsdf.reflectance = properties.color("diffuse_reflectance", {0.5f, 0.5f, 0.5f}, ColorUse::reflectance);
-    bsdf.specular_reflectance = properties.color("specular_reflectance", {1, 1, 1}, ColorUse::reflectance);
-    bsdf.nonlinear = properties.boolean("nonlinear", false) ? 1.0f : 0.0f;
+    bsdf.ior = float(properties.refractive_index("int_ior") / properties.refractive_index("ext_ior"));
+    bsdf.reflectance = properties.color("diffuse_reflectance");
+    bsdf.specular_reflectance = properties.color("specular_reflectance");
+    bsdf.nonlinear = properties.boolean("nonlinear") ? 1.0f : 0.0f;
     set_coating(bsdf);
 }
 
+ParameterList parameters_of_two_lobes() {
+    return {
+        {"diffuse_reflectance", Takes::reflectance, "0.5", "albedo of the diffuse part"},
+        {"specular_reflectance", Takes::reflectance, "0.2", "weight of the lobe"},
+        {"ensure_energy_conservation", Takes::boolean, "true", "both are scaled to a sum of 0.99 where it exceeds 1"}};
+}
+
 void read_two_lobes(Properties &properties, Bsdf &bsdf) {
-    bsdf.reflectance = properties.color("diffuse_reflectance", {0.5f, 0.5f, 0.5f}, ColorUse::reflectance);
-    bsdf.specular_reflectance = properties.color("specular_reflectance", {0.2f, 0.2f, 0.2f}, ColorUse::reflectance);
+    bsdf.reflectance = properties.color("diffuse_reflectance");
+    bsdf.specular_reflectance = properties.color("specular_reflectance");
     const auto scale = [](Rgb &color, float by) { color = {color.r * by, color.g * by, color.b * by}; };
     const float most =
         std::max({bsdf.reflectance.r + bsdf.specular_reflectance.r, bsdf.reflectance.g + bsdf.specular_reflectance.g,
                   bsdf.reflectance.b + bsdf.specular_reflectance.b});
-    if (properties.boolean("ensure_energy_conservation", true) && most > 1) {
+    if (properties.boolean("ensure_energy_conservation") && most > 1) {
         scale(bsdf.reflectance, 0.99f / most);
         scale(bsdf.specular_reflectance, 0.99f / most);
     }
 }
 
-void read_principled(Properties &properties, Bsdf &bsdf) {
-    const auto share = [&](const char *name, float otherwise) {
-        return properties.textured_number(name, otherwise, 0, 1, 0);
+ParameterList parameters_of_principled() {
+    const auto share = [](const char *name, const char *otherwise, const char *about) {
+        return Parameter{name, Takes::textured_number, otherwise, about}.at_least(0).at_most(1);
     };
-    bsdf.reflectance = properties.color("base_color", {0.5f, 0.5f, 0.5f}, ColorUse::reflectance);
-    bsdf.roughness = share("roughness", 0.5f);
-    bsdf.anisotropic = share("anisotropic", 0);
-    bsdf.spec_trans = share("spec_trans", 0);
-    bsdf.spec_tint = share("spec_tint", 0);
-    bsdf.sheen = share("sheen", 0);
-    bsdf.sheen_tint = share("sheen_tint", 0);
-    bsdf.flatness = share("flatness", 0);
+    return {{"base_color", Takes::reflectance, "0.5", "albedo"},
+            share("roughness", "0.5", "square root of the microfacets' alpha"),
+            share("anisotropic", "0", "how much longer highlights are along dp/du"),
+            share("spec_trans", "0", "from opaque to transparent"),
+            share("spec_tint", "0", "how much of base_color the reflection has"),
+            share("sheen", "0", "strength of a lobe at grazing angles"),
+            share("sheen_tint", "0", "how much of base_color it has"),
+            share("flatness", "0", "from diffuse reflection to one as of scattering below the surface")};
+}
+
+void read_principled(Properties &properties, Bsdf &bsdf) {
+    bsdf.reflectance = properties.color("base_color");
+    bsdf.roughness = properties.textured_number("roughness");
+    bsdf.anisotropic = properties.textured_number("anisotropic");
+    bsdf.spec_trans = properties.textured_number("spec_trans");
+    bsdf.spec_tint = properties.textured_number("spec_tint");
+    bsdf.sheen = properties.textured_number("sheen");
+    bsdf.sheen_tint = properties.textured_number("sheen_tint");
+    bsdf.flatness = properties.textured_number("flatness");
     const float squared = bsdf.roughness * bsdf.roughness, aspect = std::sqrt(1 - 0.9f * bsdf.anisotropic);
     bsdf.alpha_u = std::max(squared / aspect, 0.001f);
     bsdf.alpha_v = std::max(squared * aspect, 0.001f);
 }
 
+// 0.x took copper in air where nothing is said, Mitsuba 3 takes a perfect mirror.
+ParameterList parameters_of_conductor() {
+    return {
+        Parameter{"material", Takes::string, "none", "a metal's name; none: a perfect mirror"}.before_2("Cu"),
+        Parameter{"eta", Takes::color, nullptr, "index of refraction, with k and without material"}.or_else(
+            "by material"),
+        Parameter{"k", Takes::color, nullptr, "its imaginary part"}.or_else("by material"),
+        Parameter{"ext_eta", Takes::refractive_index, "vacuum", "index of refraction around it"}.before_2("air").also(
+            "ext_ior"),
+        {"specular_reflectance", Takes::reflectance, "1", "what reflection is times"}};
+}
+
 void read_conductor(Properties &properties, Bsdf &bsdf) {
-    // 0.x took copper where nothing is said, Mitsuba 3 takes a perfect mirror.
-    const std::string material = properties.string("material", properties.element().is_legacy() ? "Cu" : "none");
+    const std::string material = properties.string("material");
     const bool has_eta = properties.has("eta"), has_k = properties.has("k");
     if (has_eta != has_k)
         throw properties.error(has_eta ? "eta" : "k", "a conductor needs both eta and k, or a material");
@@ -79,8 +132,8 @@ void read_conductor(Properties &properties, Bsdf &bsdf) {
         throw properties.error("material", "give a conductor's material or its eta and k, not both");
     const std::optional<ConductorIndex> named = conductor_index(material);
     if (has_eta) {
-        bsdf.eta = properties.color("eta", {}, ColorUse::index);
-        bsdf.k = properties.color("k", {}, ColorUse::index);
+        bsdf.eta = properties.color("eta");
+        bsdf.k = properties.color("k");
     } else if (named) {
         bsdf.eta = named->eta;
         bsdf.k = named->k;
@@ -90,14 +143,12 @@ void read_conductor(Properties &properties, Bsdf &bsdf) {
             message += "; did you mean \"" + *nearest + "\"?";
         throw properties.error("material", message + " (known: " + join(conductor_names()) + ")");
     }
-    const std::string around = properties.element().is_legacy() ? "air" : "vacuum";
-    const double first = properties.refractive_index("ext_ior", around);
-    const double outside = properties.has("ext_eta") ? properties.refractive_index("ext_eta", around) : first;
+    const double outside = properties.refractive_index("ext_eta");
     // A perfect mirror stays one, whatever is around it.
     if (has_eta || lower_case(material) != "none")
         for (Rgb *index : {&bsdf.eta, &bsdf.k})
             *index = {float(index->r / outside), float(index->g / outside), float(index->b / outside)};
-    bsdf.specular_reflectance = properties.color("specular_reflectance", {1, 1, 1}, ColorUse::reflectance);
+    bsdf.specular_reflectance = properties.color("specular_reflectance");
 }
 
 } // namespace gradus

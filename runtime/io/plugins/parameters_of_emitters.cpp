@@ -28,6 +28,11 @@ void read_picture_axes(Properties &properties, double u_sign, double v_sign, boo
     emitter.direction = emitter.axes[2];
 }
 
+void check_picture(const Texture &picture, const Location &location) {
+    if (picture.kind == Texture::Kind::mesh_attribute)
+        throw SceneError(location, "a picture to throw cannot be a mesh attribute, which only a surface has");
+}
+
 void set_texture(const Color &texture, Emitter &emitter) {
     emitter.texture = texture.texture;
     if (texture.r == 0 && texture.g == 0 && texture.b == 0)

@@ -4,6 +4,15 @@
 
 namespace gradus {
 
+ParameterList parameters_of_maps() {
+    // The program of 0.x files has neither.
+    return {{"bsdf", Takes::objects, nullptr, "one"},
+            Parameter{"flip_invalid_normals", Takes::boolean, "true",
+                      "normals that the eye would see from behind are turned"}
+                .before_2("false"),
+            Parameter{"use_shadowing_function", Takes::boolean, "true", "grazing light is dimmed"}.before_2("false")};
+}
+
 Material read_mapped(Properties &properties, SceneBuilder &builder, NormalTexture::Kind kind) {
     const auto nested = properties.objects("bsdf");
     const auto textures = properties.objects("texture");
@@ -15,11 +24,10 @@ Material read_mapped(Properties &properties, SceneBuilder &builder, NormalTextur
                          properties.type() + " needs one nested texture, not " + std::to_string(textures.size()));
     NormalTexture map;
     map.kind = kind;
-    const bool is_of_now = !properties.element().is_legacy();
-    map.turns_over = properties.boolean("flip_invalid_normals", is_of_now);
-    map.shadows = properties.boolean("use_shadowing_function", is_of_now);
+    map.turns_over = properties.boolean("flip_invalid_normals");
+    map.shadows = properties.boolean("use_shadowing_function");
     if (kind == NormalTexture::Kind::bump)
-        map.scale = float(properties.number("scale", 1));
+        map.scale = float(properties.number("scale"));
     const FoundTexture found = builder.texture(*textures.front().element, std::numeric_limits<float>::lowest(),
                                                std::numeric_limits<float>::max());
     map.texture = found.index;

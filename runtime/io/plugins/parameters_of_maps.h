@@ -5,8 +5,9 @@
 
 namespace gradus {
 
-/// The nested BSDF with the nested texture as its map, which must be one each: scale 1 (of a bump map),
-/// flip_invalid_normals and use_shadowing_function (true; false in 0.x files, whose program has neither).
+/// But the nested texture, and what one of them has alone.
+ParameterList parameters_of_maps();
+/// The nested BSDF with the nested texture as its map, which must be one each.
 Material read_mapped(Properties &properties, SceneBuilder &builder, NormalTexture::Kind kind);
 
 } // namespace gradus

@@ -5,9 +5,10 @@
 
 namespace gradus {
 
-/// to_world, near_clip (0.01), far_clip (10000); marks what hangs on a sensor and is read by the scene builder.
+/// With what hangs on a sensor and is read by the scene builder.
+ParameterList parameters_of_camera();
 void read_camera(Properties &properties, Camera &camera);
-/// fov in degrees along fov_axis (x), or focal_length ("50mm") of a 35 mm film.
+ParameterList parameters_of_field_of_view();
 void read_field_of_view(Properties &properties, Camera &camera);
 
 } // namespace gradus

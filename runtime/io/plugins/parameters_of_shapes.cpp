@@ -7,19 +7,29 @@ namespace gradus {
 namespace {
 /// The other options as they are, and to_world.
 Matrix4 read_placement(Properties &properties, MeshOptions &options) {
-    claim_attachments(properties);
-    options.face_normals |= properties.boolean("face_normals", false);
-    options.flip_normals |= properties.boolean("flip_normals", false);
+    if (options.compute_normals)
+        options.face_normals |= properties.boolean("face_normals");
+    options.flip_normals |= properties.boolean("flip_normals");
     return properties.transform("to_world");
 }
 } // namespace
 
-void claim_attachments(Properties &properties) {
-    properties.objects("bsdf");
-    properties.objects("emitter");
-    for (const char *tag : {"medium", "subsurface", "volume"})
-        properties.objects(tag);
-    properties.ignore({"silhouette_sampling_weight"});
+ParameterList parameters_of_any_shape() {
+    return joined({{{"to_world", Takes::transform, nullptr, "from the shape's own space"},
+                    {"flip_normals", Takes::boolean, "false", "the front becomes the back"},
+                    {"bsdf", Takes::objects, nullptr, "one, or diffuse 0.5; of a shape that emits black"},
+                    {"emitter", Takes::objects, nullptr, "one of type area"},
+                    {"medium", Takes::objects, nullptr, "an error, or left out; so are subsurface and volume"},
+                    {"subsurface", Takes::objects},
+                    {"volume", Takes::objects}},
+                   meaningless({"silhouette_sampling_weight", "face_normals"})});
+}
+
+ParameterList parameters_of_meshes() {
+    ParameterList list = parameters_of_any_shape();
+    std::erase_if(list, [](const Parameter &parameter) { return parameter.name == "face_normals"; });
+    list.push_back({"face_normals", Takes::boolean, "false", "flat triangles, whatever normals there are"});
+    return list;
 }
 
 BuiltMesh build_shape_mesh(Properties &properties, Mesh mesh, MeshOptions options) {

@@ -7,12 +7,13 @@
 
 namespace gradus {
 
-/// to_world, flip_normals (false), face_normals (false): builds the mesh. What `options`
-/// already sets stays set.
+/// With what hangs on a shape and is read by the scene builder: its BSDF and its emitter.
+ParameterList parameters_of_meshes();
+/// The same of a shape whose normals are what they are.
+ParameterList parameters_of_any_shape();
+/// By these parameters. What `options` already sets stays set.
 BuiltMesh build_shape_mesh(Properties &properties, Mesh mesh, MeshOptions options);
 /// The same of a mesh that is read later.
 PendingMesh pending_shape_mesh(Properties &properties, std::function<SerializedMesh()> read);
-/// Marks what hangs on a shape and is read by the scene builder: its BSDF and its emitter.
-void claim_attachments(Properties &properties);
 
 } // namespace gradus

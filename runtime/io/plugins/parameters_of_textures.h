@@ -6,7 +6,8 @@
 
 namespace gradus {
 
-/// to_uv (the identity), a map of the surface's (u, v); in 0.x uscale, vscale (1), uoffset and voffset (0).
+ParameterList parameters_of_coordinates();
+/// By these, the map of the surface's (u, v).
 void read_to_uv(Properties &properties, Texture &texture);
 
 } // namespace gradus

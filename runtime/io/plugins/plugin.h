@@ -1,9 +1,10 @@
 // What a plugin of each category turns its properties into. A plugin is a file <category>_<name>.cpp beside this one
-// that defines the function <category>_<name>; plugin_list.h, which names them all, is made of the files' names when
-// the project is configured.
+// that defines the functions declare_<category>_<name>, what files may say of it, and <category>_<name>, what that
+// means. plugin_list.h, which names them all, is made of the files' names when the project is configured.
 #pragma once
 
 #include "runtime/io/mesh_files.h"
+#include "runtime/io/plugins/catalogue.h"
 #include "runtime/io/plugins/plugin_list.h"
 #include "runtime/io/properties.h"
 #include "runtime/io/scene_builder.h"
@@ -40,27 +41,35 @@ struct ShapeGroup {
 
 using ShapeGeometry = std::variant<BuiltMesh, Sphere, PendingMesh, ShapeGroup>;
 
+struct SampleCount {
+    std::uint64_t count = 4; ///< samples a pixel
+};
+
 using bsdf_result = Material;
 using emitter_result = Emitter;
 using film_result = FilmSettings;
 using integrator_result = RenderSettings;
 using rfilter_result = ReconstructionFilter;
+using sampler_result = SampleCount;
 using sensor_result = Camera;
 using shape_result = ShapeGeometry;
 using texture_result = Texture;
 
 #define GRADUS_PLUGIN_DECLARATION(category, name)                                                                      \
+    Declaration declare_##category##_##name();                                                                         \
     category##_result category##_##name(Properties &properties, SceneBuilder &builder);
 GRADUS_PLUGINS(GRADUS_PLUGIN_DECLARATION)
 #undef GRADUS_PLUGIN_DECLARATION
 
 template <typename Result>
-using PluginFunction = Result (*)(Properties &, SceneBuilder &);
+struct Plugin {
+    const Declaration *declaration = nullptr;
+    Result (*build)(Properties &, SceneBuilder &) = nullptr;
+    explicit operator bool() const { return build != nullptr; }
+};
 
-/// The plugin that the element names, or nullptr. The category is the element's tag.
+/// The plugin that the element names; false where there is none. The category is the element's tag.
 template <typename Result>
-PluginFunction<Result> find_plugin(const std::string &name);
-/// Names of a category's plugins, sorted.
-std::vector<std::string> plugin_names(const std::string &category);
+Plugin<Result> find_plugin(const std::string &name);
 
 } // namespace gradus

@@ -4,20 +4,31 @@
 
 namespace gradus {
 
+const std::vector<CataloguedPlugin> &plugin_catalogue() {
+    static const std::vector<CataloguedPlugin> catalogue = {
+#define GRADUS_PLUGIN_ENTRY(category, name) {#category, #name, declare_##category##_##name()},
+        GRADUS_PLUGINS(GRADUS_PLUGIN_ENTRY)
+#undef GRADUS_PLUGIN_ENTRY
+    };
+    return catalogue;
+}
+
 namespace {
 template <typename Result>
-using Table = std::vector<std::pair<const char *, PluginFunction<Result>>>;
+using Table = std::vector<std::pair<const char *, Plugin<Result>>>;
 
 /// Sorts each plugin into the table of its category by what its function returns.
 template <typename Result>
 const Table<Result> &table() {
     static const Table<Result> entries = [] {
         Table<Result> result;
-        const auto add = [&]<typename Other>(const char *name, PluginFunction<Other> function) {
+        const CataloguedPlugin *catalogued = plugin_catalogue().data();
+        const auto add = [&]<typename Other>(const char *name, Other (*build)(Properties &, SceneBuilder &)) {
             if constexpr (std::is_same_v<Other, Result>)
-                result.emplace_back(name, function);
+                result.emplace_back(name, Plugin<Result>{&catalogued->declaration, build});
+            ++catalogued;
         };
-#define GRADUS_PLUGIN_ENTRY(category, name) add.template operator()<category##_result>(#name, category##_##name);
+#define GRADUS_PLUGIN_ENTRY(category, name) add(#name, category##_##name);
         GRADUS_PLUGINS(GRADUS_PLUGIN_ENTRY)
 #undef GRADUS_PLUGIN_ENTRY
         return result;
@@ -27,29 +38,28 @@ const Table<Result> &table() {
 } // namespace
 
 template <typename Result>
-PluginFunction<Result> find_plugin(const std::string &name) {
-    for (const auto &[known, function] : table<Result>())
+Plugin<Result> find_plugin(const std::string &name) {
+    for (const auto &[known, plugin] : table<Result>())
         if (name == known)
-            return function;
-    return nullptr;
+            return plugin;
+    return {};
 }
 
-template PluginFunction<Material> find_plugin(const std::string &);
-template PluginFunction<Emitter> find_plugin(const std::string &);
-template PluginFunction<FilmSettings> find_plugin(const std::string &);
-template PluginFunction<RenderSettings> find_plugin(const std::string &);
-template PluginFunction<ReconstructionFilter> find_plugin(const std::string &);
-template PluginFunction<Camera> find_plugin(const std::string &);
-template PluginFunction<ShapeGeometry> find_plugin(const std::string &);
-template PluginFunction<Texture> find_plugin(const std::string &);
+template Plugin<Material> find_plugin(const std::string &);
+template Plugin<Emitter> find_plugin(const std::string &);
+template Plugin<FilmSettings> find_plugin(const std::string &);
+template Plugin<RenderSettings> find_plugin(const std::string &);
+template Plugin<ReconstructionFilter> find_plugin(const std::string &);
+template Plugin<SampleCount> find_plugin(const std::string &);
+template Plugin<Camera> find_plugin(const std::string &);
+template Plugin<ShapeGeometry> find_plugin(const std::string &);
+template Plugin<Texture> find_plugin(const std::string &);
 
 std::vector<std::string> plugin_names(const std::string &category) {
     std::vector<std::string> names;
-#define GRADUS_PLUGIN_NAME(plugin_category, name)                                                                      \
-    if (category == #plugin_category)                                                                                  \
-        names.push_back(#name);
-    GRADUS_PLUGINS(GRADUS_PLUGIN_NAME)
-#undef GRADUS_PLUGIN_NAME
+    for (const CataloguedPlugin &plugin : plugin_catalogue())
+        if (plugin.category == category)
+            names.push_back(plugin.name);
     return names;
 }
 

@@ -3,9 +3,10 @@
 
 namespace gradus {
 
-ReconstructionFilter rfilter_box(Properties &properties, SceneBuilder &) {
-    properties.ignore({"radius"}); // half a pixel, whatever old files say
-    return {FilmSettings::Filter::box, 0.5f, 0.5f};
+Declaration declare_rfilter_box() {
+    return {"each sample counts for the pixel it falls into, whatever radius old files say", meaningless({"radius"})};
 }
+
+ReconstructionFilter rfilter_box(Properties &, SceneBuilder &) { return {FilmSettings::Filter::box, 0.5f, 0.5f}; }
 
 } // namespace gradus

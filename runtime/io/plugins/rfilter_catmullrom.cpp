@@ -3,8 +3,9 @@
 
 namespace gradus {
 
-ReconstructionFilter rfilter_catmullrom(Properties &properties, SceneBuilder &) {
-    properties.ignore({"b", "c"}); // 0 and 1/2, whatever files say
+Declaration declare_rfilter_catmullrom() { return {"Mitchell's with B 0 and C 1/2", meaningless({"b", "c"})}; }
+
+ReconstructionFilter rfilter_catmullrom(Properties &, SceneBuilder &) {
     return {FilmSettings::Filter::catmullrom, 2, 0.5f};
 }
 

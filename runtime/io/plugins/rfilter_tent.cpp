@@ -1,11 +1,15 @@
 // <rfilter type="tent">
-//   radius  half its support, in pixels, 1
 #include "runtime/io/plugins/plugin.h"
 
 namespace gradus {
 
+Declaration declare_rfilter_tent() {
+    return {"linear from the middle",
+            {Parameter{"radius", Takes::number, "1", "half its support"}.in("pixels").at_least(1e-3).at_most(100)}};
+}
+
 ReconstructionFilter rfilter_tent(Properties &properties, SceneBuilder &) {
-    return {FilmSettings::Filter::tent, float(properties.number("radius", 1, 1e-3, 100)), 0.5f};
+    return {FilmSettings::Filter::tent, float(properties.number("radius")), 0.5f};
 }
 
 } // namespace gradus

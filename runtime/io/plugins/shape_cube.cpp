@@ -1,9 +1,10 @@
 // <shape type="cube">: [-1, 1]^3, its front outside.
-//   to_world, flip_normals
 #include "runtime/io/plugins/parameters_of_shapes.h"
 #include "runtime/io/plugins/plugin.h"
 
 namespace gradus {
+
+Declaration declare_shape_cube() { return {"[−1, 1]³, its front outside", parameters_of_any_shape()}; }
 
 ShapeGeometry shape_cube(Properties &properties, SceneBuilder &) {
     // Each side from its corner (u, v) = (0, 0) along u and along v, placed as Mitsuba has them; v x u points outside.

@@ -1,5 +1,4 @@
 // <shape type="cylinder">: open at its ends, its front outside.
-//   p0 (0, 0, 0), p1 (0, 0, 1), radius (1); to_world, flip_normals
 #include "runtime/io/plugins/parameters_of_shapes.h"
 #include "runtime/io/plugins/plugin.h"
 
@@ -7,9 +6,18 @@
 
 namespace gradus {
 
+Declaration declare_shape_cylinder() {
+    return {"open at its ends, its front outside; a prism of 256 sides with the cylinder's area and normals, within "
+            "5e-5 of the radius",
+            joined({{Parameter{"p0", Takes::point, "0 0 0", "where its axis begins"}.in("lengths"),
+                     Parameter{"p1", Takes::point, "0 0 1", "where its axis ends"}.in("lengths"),
+                     Parameter{"radius", Takes::number, "1", ""}.in("lengths")},
+                    parameters_of_meshes()})};
+}
+
 ShapeGeometry shape_cylinder(Properties &properties, SceneBuilder &) {
-    const Double3 p0 = properties.point("p0", {0, 0, 0}), axis = subtract(properties.point("p1", {0, 0, 1}), p0);
-    const double radius = std::fabs(properties.number("radius", 1));
+    const Double3 p0 = properties.point("p0"), axis = subtract(properties.point("p1"), p0);
+    const double radius = std::fabs(properties.number("radius"));
     if (!(length(axis) > 0) || !std::isfinite(length(axis)))
         throw properties.error("p1", "a cylinder's p0 and p1 must differ");
     if (!std::isnormal(float(radius)))

@@ -1,11 +1,16 @@
 // <shape type="disk">: the unit disk in the plane z = 0, its front towards +z.
-//   to_world, flip_normals
 #include "runtime/io/plugins/parameters_of_shapes.h"
 #include "runtime/io/plugins/plugin.h"
 
 #include <cmath>
 
 namespace gradus {
+
+Declaration declare_shape_disk() {
+    return {"radius 1 in the plane z = 0, its front towards +z; a polygon of 256 corners and the disk's area, within "
+            "5e-5 of the radius",
+            parameters_of_any_shape()};
+}
 
 ShapeGeometry shape_disk(Properties &properties, SceneBuilder &) {
     // A regular polygon of the disk's area: its edge departs from the circle by 5e-5 of the radius, to either side.

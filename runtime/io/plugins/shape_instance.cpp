@@ -1,22 +1,28 @@
 // <shape type="instance">: the shapes of a shapegroup, nested or by <ref>, once more.
-//   to_world, applied after those of the shapes; normals are mapped as normals, so that a mirror turns no front
 #include "runtime/io/plugins/parameters_of_shapes.h"
 #include "runtime/io/plugins/plugin.h"
 
 namespace gradus {
 
+Declaration declare_shape_instance() {
+    return {"the shapes of a shapegroup, nested or by `<ref>`, once more; copies in memory. None in groups",
+            {{"to_world", Takes::transform, nullptr,
+              "after those of the shapes; normals are mapped as normals, so that a mirror turns no front"},
+             {"shape", Takes::objects, nullptr, "the shapegroup"}}};
+}
+
 ShapeGeometry shape_instance(Properties &properties, SceneBuilder &builder) {
-    const std::vector<Properties::Object> shapes = properties.objects("shape");
+    const std::vector<NestedObject> shapes = properties.objects("shape");
     if (shapes.size() != 1)
         throw SceneError(properties.location(), "an instance needs one shapegroup");
-    Properties inner(*shapes.front().element, builder.resolver(), properties.diagnostics());
-    if (inner.type() != "shapegroup")
+    const Element &instanced = *shapes.front().element;
+    if (type_of(instanced) != "shapegroup")
         throw SceneError(shapes.front().location,
-                         "an instance is of a shapegroup, not of a shape of type \"" + inner.type() + "\"");
+                         "an instance is of a shapegroup, not of a shape of type \"" + type_of(instanced) + "\"");
     ShapeGroup group;
-    for (const Properties::Object &shape : inner.objects("shape"))
+    for (const NestedObject &shape : nested_objects(instanced, "shape", builder.resolver()))
         group.shapes.push_back(shape.element);
-    group.instanced = shapes.front().element;
+    group.instanced = &instanced;
     group.to_world = properties.transform("to_world");
     group.location = properties.location();
     return group;

@@ -4,9 +4,13 @@
 
 namespace gradus {
 
+Declaration declare_shape_merge() {
+    return {"shapes that count as if they stood by themselves", {{"shape", Takes::objects, nullptr, "any number"}}};
+}
+
 ShapeGeometry shape_merge(Properties &properties, SceneBuilder &) {
     ShapeGroup group;
-    for (const Properties::Object &shape : properties.objects("shape"))
+    for (const NestedObject &shape : properties.objects("shape"))
         group.shapes.push_back(shape.element);
     return group;
 }

@@ -1,9 +1,12 @@
 // <shape type="rectangle">: [-1, 1]^2 in the plane z = 0, its front towards +z.
-//   to_world, flip_normals
 #include "runtime/io/plugins/parameters_of_shapes.h"
 #include "runtime/io/plugins/plugin.h"
 
 namespace gradus {
+
+Declaration declare_shape_rectangle() {
+    return {"[−1, 1]² in the plane z = 0, its front towards +z", parameters_of_any_shape()};
+}
 
 ShapeGeometry shape_rectangle(Properties &properties, SceneBuilder &) {
     Mesh mesh;

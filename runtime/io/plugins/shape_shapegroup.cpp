@@ -4,9 +4,11 @@
 
 namespace gradus {
 
-ShapeGeometry shape_shapegroup(Properties &properties, SceneBuilder &) {
-    properties.objects("shape");
-    return ShapeGroup();
+Declaration declare_shape_shapegroup() {
+    return {"shapes that are seen where instances of the group are; emitters among them shine from each",
+            {{"shape", Takes::objects, nullptr, "any number"}}};
 }
+
+ShapeGeometry shape_shapegroup(Properties &, SceneBuilder &) { return ShapeGroup(); }
 
 } // namespace gradus

@@ -3,6 +3,8 @@
 
 namespace gradus {
 
+Declaration declare_texture_vertexcolors() { return {"the attribute `vertex_color` of a mesh, of 0.x", {}}; }
+
 Texture texture_vertexcolors(Properties &, SceneBuilder &) {
     Texture texture;
     texture.kind = Texture::Kind::mesh_attribute;

@@ -4,6 +4,7 @@
 #include "runtime/io/bitmap_reader.h"
 #include "runtime/io/scene_builder.h"
 #include "runtime/io/text.h"
+#include "runtime/phases.h"
 #include "runtime/scene/traits.h"
 
 #include <fmt/format.h>
@@ -20,6 +21,7 @@ std::shared_ptr<const Bitmap> SceneBuilder::bitmap(const std::filesystem::path &
     const auto key = std::make_tuple(path, is_linear, channel);
     auto known = bitmaps_.find(key);
     if (known == bitmaps_.end()) {
+        const Phase phase(phases_, phase_names::pictures);
         ReadBitmap read;
         try {
             read = read_bitmap(path.string(), {is_linear, channel, limits_.texture_bytes / LoadLimits().texture_bytes});
@@ -115,49 +117,6 @@ void SceneBuilder::check_attributes(const Shape &shape, const Mesh *mesh, const 
             throw SceneError(location, "shape \"" + shape.name + "\" has no attribute \"" + texture.attribute +
                                            "\", which its texture \"" + texture.name + "\" reads");
     });
-}
-
-Bsdf SceneBuilder::blend(const Bsdf &first, const Bsdf &second, const Number &weight) {
-    Blend blend;
-    blend.weight = weight;
-    blend.first = std::uint32_t(scene_.blended.size());
-    scene_.blended.push_back(first);
-    blend.second = std::uint32_t(scene_.blended.size());
-    scene_.blended.push_back(second);
-    Bsdf bsdf;
-    bsdf.blend = std::int32_t(scene_.blends.size());
-    scene_.blends.push_back(blend);
-    return bsdf;
-}
-
-Bsdf SceneBuilder::with_map(const Bsdf &bsdf, const NormalTexture &map, const Location &location) {
-    if (bsdf.blend != no_blend) {
-        const Blend parts = scene_.blends[std::size_t(bsdf.blend)];
-        const Bsdf first = with_map(Bsdf(scene_.blended[parts.first]), map, location);
-        return blend(first, with_map(Bsdf(scene_.blended[parts.second]), map, location), parts.weight);
-    }
-    if (bsdf.map.kind != NormalTexture::Kind::none)
-        throw SceneError(location, "a normal map or bump map around another one is not supported");
-    Bsdf mapped = bsdf;
-    if (bsdf.kind != BsdfKind::null) // which has no normal
-        mapped.map = map;
-    return mapped;
-}
-
-Material SceneBuilder::with_map(Material material, const NormalTexture &map, const Location &location) {
-    NormalTexture of_sides = map;
-    of_sides.is_outside = material.two_sided;
-    const bool is_alike = material.back == material.front;
-    material.front = with_map(material.front, of_sides, location);
-    if (material.two_sided)
-        material.back = is_alike ? material.front : with_map(material.back, of_sides, location);
-    return material;
-}
-
-bool SceneBuilder::transmits(const Bsdf &bsdf) const {
-    bool found = false;
-    for_each_part(scene_, bsdf, [&](const Bsdf &part) { found |= bsdf_kind_traits(part.kind).transmits; });
-    return found;
 }
 
 } // namespace gradus

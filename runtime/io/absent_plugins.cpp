@@ -1,0 +1,78 @@
+#include "runtime/io/absent_plugins.h"
+
+#include "runtime/io/diagnostics.h"
+#include "runtime/io/plugins/catalogue.h"
+#include "runtime/io/text.h"
+
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace gradus {
+
+namespace {
+
+/// Of BSDFs that other renderers of such files have and this one has not: what looks most like them. Empty for others.
+std::string substitute_for(const std::string &type) {
+    static const std::map<std::string, std::string> substitutes = {
+        {"coating", "plastic, of a diffuse base,"},
+        {"roughcoating", "roughplastic, of a diffuse base,"},
+        {"pplastic", "plastic"},
+        {"polarizer", "null"},
+        {"retarder", "null"},
+        {"circular", "null"},
+        {"difftrans", "principledthin with diff_trans 2"},
+        {"hk", "principledthin with diff_trans 1"},
+        {"irawan", "roughdiffuse"},
+        {"sssbrdf", "principled with flatness 1"},
+        {"measured", "principled"},
+        {"measured_polarized", "principled"},
+        {"hair", "principled"},
+    };
+    const auto found = substitutes.find(type);
+    return found == substitutes.end() ? "" : found->second;
+}
+
+/// What other programs have and this one has not: nobody misspelt it.
+bool is_of_mitsuba(const std::string &tag, const std::string &type) {
+    static const std::set<std::pair<std::string, std::string>> plugins = {
+        {"shape", "hair"},           {"shape", "bsplinecurve"},       {"shape", "linearcurve"},
+        {"shape", "sdfgrid"},        {"shape", "heightfield"},        {"shape", "deformable"},
+        {"shape", "ellipsoids"},     {"shape", "ellipsoidsmesh"},     {"sensor", "irradiancemeter"},
+        {"sensor", "radiancemeter"}, {"sensor", "fluencemeter"},      {"sensor", "spherical"},
+        {"sensor", "distant"},       {"sensor", "distantflux"},       {"sensor", "mradiancemeter"},
+        {"sensor", "batch"},         {"sensor", "perspective_rdist"}, {"sensor", "telecentric"}};
+    return plugins.contains({tag, type});
+}
+
+} // namespace
+
+std::string unknown_plugin(const std::string &category, const std::string &type) {
+    const std::vector<std::string> known = plugin_names(category);
+    std::string message =
+        type.empty() ? "<" + category + "> needs a type" : "unknown " + category + " plugin \"" + type + "\"";
+    const std::string substitute = category == "bsdf" ? substitute_for(type) : "";
+    if (is_of_mitsuba(category, type))
+        message = "the " + category + " \"" + type + "\" is not supported";
+    if (!substitute.empty())
+        message += "; " + substitute + " is the nearest there is";
+    else if (const auto nearest = is_of_mitsuba(category, type) ? std::nullopt : nearest_name(type, known))
+        message += "; did you mean \"" + *nearest + "\"?";
+    return message + " (known: " + join(known) + ")";
+}
+
+void refuse_emitter(const std::string &type, const Location &location) {
+    for (const char *model : {"sky", "sun", "sunsky", "timed_sunsky"})
+        if (type == model)
+            throw SceneError(location, "the sky model \"" + type +
+                                           "\" is not supported: bake it into an image in latitude and longitude, "
+                                           "and give that to an emitter \"envmap\"");
+    if (type == "directionalarea" || type == "collimated")
+        throw SceneError(location, "the emitter \"" + type +
+                                       "\" is not supported; of what shines one way there are \"directional\" and "
+                                       "\"spot\"");
+}
+
+} // namespace gradus

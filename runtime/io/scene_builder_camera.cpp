@@ -1,0 +1,61 @@
+// The sensor of a scene file with what hangs on it, and its integrator.
+#include "runtime/io/plugins/plugin.h"
+#include "runtime/io/scene_builder.h"
+#include "runtime/io/text.h"
+
+namespace gradus {
+
+/// What an object of any type says that a plugin knows, the rest in silence.
+template <typename Result>
+Result SceneBuilder::read_as(const Element &element, const std::string &type) {
+    const Plugin<Result> plugin = find_plugin<Result>(type);
+    Properties properties(element, *plugin.declaration, resolve_, diagnostics_, &read_texture_);
+    return plugin.build(properties, *this);
+}
+
+void SceneBuilder::build_integrator(const Element &element) {
+    if (integrator_) {
+        diagnostics_.warn(element.location,
+                          "a second <integrator> is ignored; the first is at " + integrator_->location.text());
+        return;
+    }
+    integrator_ = &element;
+    const std::uint64_t samples = scene_.settings.samples_per_pixel;
+    if (find_plugin<RenderSettings>(type_of(element))) {
+        scene_.settings = build_object<RenderSettings>(element);
+    } else {
+        // Of an integrator that we do not have, the depths still count: on itself or on the one that it wraps.
+        std::string message = "the integrator \"" + type_of(element) + "\" is not known here; the method decides";
+        diagnostics_.warn(element.location, message + " (known: " + join(plugin_names("integrator")) + ")");
+        const std::vector<NestedObject> nested = nested_objects(element, "integrator", resolve_);
+        scene_.settings = read_as<RenderSettings>(nested.empty() ? element : *nested.front().element, "path");
+    }
+    scene_.settings.integrator = type_of(element);
+    scene_.settings.samples_per_pixel = samples;
+}
+
+void SceneBuilder::build_sensor(const Element &element) {
+    if (sensor_) {
+        diagnostics_.warn(element.location,
+                          "a second <sensor> is ignored; the first is at " + sensor_->location.text());
+        return;
+    }
+    sensor_ = &element;
+    if (const auto films = nested_objects(element, "film", resolve_); !films.empty()) {
+        const Element &film = *films.front().element;
+        const std::string type = type_of(film);
+        if (!type.empty() && !find_plugin<FilmSettings>(type)) {
+            // Of a film that we do not have, size, crop and filter still count.
+            diagnostics_.warn(film.location, "the film \"" + type + "\" is not known here; it is read as hdrfilm");
+            scene_.film = read_as<FilmSettings>(film, "hdrfilm");
+        } else {
+            scene_.film = build_object<FilmSettings>(film);
+        }
+    }
+    check_media(element);
+    if (const auto samplers = nested_objects(element, "sampler", resolve_); !samplers.empty())
+        scene_.settings.samples_per_pixel = read_as<SampleCount>(*samplers.front().element, "any").count;
+    scene_.camera = build_object<Camera>(element);
+}
+
+} // namespace gradus

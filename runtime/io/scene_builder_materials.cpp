@@ -1,0 +1,101 @@
+// BSDFs of a scene file: the materials of its shapes, blends and maps.
+#include "runtime/io/plugins/plugin.h"
+#include "runtime/io/scene_builder.h"
+#include "runtime/scene/traits.h"
+
+namespace gradus {
+
+/// A BSDF that no shape uses cannot harm the image: what is wrong with it is worth a warning.
+void SceneBuilder::check_unused_bsdf(const Element &element) {
+    if (materials_.count(&element))
+        return;
+    try {
+        build_object<Material>(element);
+    } catch (const SceneError &error) {
+        diagnostics_.warn(element.location, std::string("unused BSDF: ") + error.what());
+    }
+}
+
+std::uint32_t SceneBuilder::material_of(const Element &shape) {
+    const std::vector<NestedObject> bsdfs = nested_objects(shape, "bsdf", resolve_);
+    if (bsdfs.size() > 1)
+        throw SceneError(bsdfs[1].location, "a shape has one BSDF; this is its second");
+    if (bsdfs.empty()) {
+        // Mitsuba 3's defaults: half of the light is reflected, but nothing by a shape that emits.
+        const bool emits = !nested_objects(shape, "emitter", resolve_).empty();
+        std::int64_t &index = emits ? default_emitter_material_ : default_material_;
+        if (index < 0) {
+            index = std::int64_t(scene_.materials.size());
+            scene_.materials.push_back({});
+            scene_.materials.back().name = emits ? "default of emitters" : "default";
+            if (emits)
+                scene_.materials.back().front.reflectance = {0, 0, 0};
+        }
+        return std::uint32_t(index);
+    }
+    const Element &element = *bsdfs.front().element;
+    const auto known = materials_.find(&element);
+    if (known != materials_.end())
+        return known->second;
+    Material material = build_object<Material>(element);
+    material.name = element.attribute_or("id", element.attribute_or("type", "") + " at " + element.location.text());
+    const auto index = std::uint32_t(scene_.materials.size());
+    scene_.materials.push_back(material);
+    materials_[&element] = index;
+    return index;
+}
+
+std::uint32_t SceneBuilder::boundary_material() {
+    if (boundary_material_ < 0) {
+        boundary_material_ = std::int64_t(scene_.materials.size());
+        scene_.materials.push_back({});
+        scene_.materials.back().front.kind = BsdfKind::null;
+        scene_.materials.back().name = "boundary of a medium";
+    }
+    return std::uint32_t(boundary_material_);
+}
+
+Bsdf SceneBuilder::blend(const Bsdf &first, const Bsdf &second, const Number &weight) {
+    Blend blend;
+    blend.weight = weight;
+    blend.first = std::uint32_t(scene_.blended.size());
+    scene_.blended.push_back(first);
+    blend.second = std::uint32_t(scene_.blended.size());
+    scene_.blended.push_back(second);
+    Bsdf bsdf;
+    bsdf.blend = std::int32_t(scene_.blends.size());
+    scene_.blends.push_back(blend);
+    return bsdf;
+}
+
+Bsdf SceneBuilder::with_map(const Bsdf &bsdf, const NormalTexture &map, const Location &location) {
+    if (bsdf.blend != no_blend) {
+        const Blend parts = scene_.blends[std::size_t(bsdf.blend)];
+        const Bsdf first = with_map(Bsdf(scene_.blended[parts.first]), map, location);
+        return blend(first, with_map(Bsdf(scene_.blended[parts.second]), map, location), parts.weight);
+    }
+    if (bsdf.map.kind != NormalTexture::Kind::none)
+        throw SceneError(location, "a normal map or bump map around another one is not supported");
+    Bsdf mapped = bsdf;
+    if (bsdf.kind != BsdfKind::null) // which has no normal
+        mapped.map = map;
+    return mapped;
+}
+
+Material SceneBuilder::with_map(Material material, const NormalTexture &map, const Location &location) {
+    NormalTexture of_sides = map;
+    of_sides.is_outside = material.two_sided;
+    const bool is_alike = material.back == material.front;
+    material.front = with_map(material.front, of_sides, location);
+    if (material.two_sided)
+        material.back = is_alike ? material.front : with_map(material.back, of_sides, location);
+    return material;
+}
+
+bool SceneBuilder::transmits(const Bsdf &bsdf) const {
+    bool found = false;
+    for_each_part(scene_, bsdf, [&](const Bsdf &part) { found |= bsdf_kind_traits(part.kind).transmits; });
+    return found;
+}
+
+} // namespace gradus
