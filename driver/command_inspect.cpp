@@ -84,7 +84,8 @@ std::string summary_text(const Scene &scene, const SceneSummary &summary, const 
                         scene.settings.max_depth < 0 ? "unlimited" : std::to_string(scene.settings.max_depth),
                         scene.settings.rr_depth, scene.settings.hide_emitters ? ", emitters hidden" : "",
                         scene.settings.integrator.empty() ? "" : ", integrator " + scene.settings.integrator);
-    text += fmt::format("memory      geometry {}, ", mebibytes(summary.geometry_bytes));
+    text += fmt::format("memory      geometry {}, its tables {}, ", mebibytes(summary.geometry_bytes),
+                        mebibytes(summary.table_bytes));
     if (summary.texture_bytes > 0)
         text += fmt::format("textures and maps {}, ", mebibytes(summary.texture_bytes));
     text += fmt::format("ray tracing about {}, film {}; a render adds its batch\n", mebibytes(summary.tree_bytes),
@@ -128,6 +129,7 @@ std::string summary_json(const Scene &scene, const SceneSummary &summary, const 
           {"integrator", scene.settings.integrator}}},
         {"memory",
          {{"geometry_bytes", summary.geometry_bytes},
+          {"table_bytes", summary.table_bytes},
           {"texture_bytes", summary.texture_bytes},
           {"tree_bytes_estimated", summary.tree_bytes},
           {"film_bytes", summary.film_bytes}}},

@@ -5,6 +5,7 @@
 #include "runtime/scene/mesh_builder.h"
 #include "runtime/scene/texture.h"
 #include "runtime/scene/traits.h"
+#include "runtime/scene/vertex_table.h"
 
 #include <algorithm>
 #include <limits>
@@ -14,8 +15,9 @@ namespace gradus {
 namespace {
 
 /// What Embree 3.13 keeps of a triangle at high build quality, its copy of vertices and indices included: its memory
-/// monitor says 79 to 82 bytes on grids of ten thousand to a million triangles, 100 on one of 200.
-constexpr std::uint64_t tree_bytes_per_triangle = 82;
+/// monitor says 79 to 82 bytes on grids of ten thousand to a million triangles, 100 on one of 200. Of those that are
+/// laid out by index it shares vertices and indices.
+constexpr std::uint64_t tree_bytes_per_triangle = 82, shared_tree_bytes_per_triangle = 64;
 
 std::string side_name(const Bsdf &bsdf) { return bsdf.blend == no_blend ? bsdf_kind_name(bsdf) : "blendbsdf"; }
 
@@ -133,7 +135,10 @@ SceneSummary summarize(const Scene &scene) {
         summary.vertices += mesh.positions.size();
         summary.geometry_bytes += mesh_bytes(mesh);
     }
-    summary.tree_bytes = summary.triangles * tree_bytes_per_triangle;
+    const TraitMap traits = scene_traits(scene);
+    summary.table_bytes = geometry_table_bytes(scene, traits);
+    summary.tree_bytes =
+        summary.triangles * (traits.at("TRAIT_INDEXED") ? shared_tree_bytes_per_triangle : tree_bytes_per_triangle);
     if (!scene.shapes.empty()) {
         summary.lower = bounds.lower;
         summary.upper = bounds.upper;

@@ -62,10 +62,10 @@ GRADUS_FN normal_change normal_change_of(GRADUS_GLOBAL const real *triangles,
     (void)turn;
 #if TRAIT_SHADING_NORMALS
     const uint smooth = TRIANGLE_OF(primitive);
-    const normal_change of_triangle = normal_change_triangle(
-        FIELD_V3(triangle, triangles, smooth, e1), FIELD_V3(triangle, triangles, smooth, e2),
-        FIELD_V3(normals, triangle_normals, smooth, n0), FIELD_V3(normals, triangle_normals, smooth, n1),
-        FIELD_V3(normals, triangle_normals, smooth, n2), hit.u, hit.v, turn);
+    const scene_triangle triangle = scene_triangle_of(triangles, unit, smooth);
+    const vertex_normals normals = vertex_normals_of(triangle_normals, unit, smooth, hit);
+    const normal_change of_triangle =
+        normal_change_triangle(triangle.e1, triangle.e2, normals.n0, normals.n1, normals.n2, hit.u, hit.v, turn);
     const int is_smooth = !TRAIT_SPHERES || primitive < triangle_count;
     const real keep = is_smooth ? R(1) : R(0);
     change.u = v3_scale(of_triangle.u, keep);

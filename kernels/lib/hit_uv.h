@@ -15,8 +15,10 @@ GRADUS_FN texture_point hit_texture_point(GRADUS_GLOBAL const real *triangle_tex
     texture_point point = point_of_sphere(on_sphere);
 #if TRAIT_TRIANGLES
     const int is_triangle = !TRAIT_SPHERES || primitive < triangle_count;
-    point = texture_point_select(
-        is_triangle, point_of_triangle(triangle_texcoords, unit, TRIANGLE_OF(primitive), hit.u, hit.v), point);
+    point = texture_point_select(is_triangle,
+                                 point_of_triangle(HIT_UV(triangle_texcoords, unit, TRIANGLE_OF(primitive), hit),
+                                                   TRIANGLE_OF(primitive), hit.u, hit.v),
+                                 point);
 #endif
     return point;
 }

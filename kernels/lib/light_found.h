@@ -34,16 +34,15 @@ GRADUS_FN rgb light_texture_on(GRADUS_GLOBAL const uint *light_textures, GRADUS_
 }
 #endif
 
-/* For any primitive: the record after the last light's is that of a black one. With TRAIT_TEXTURED_LIGHTS its radiance
- * is that of the place. */
-GRADUS_FN light_found light_found_at(GRADUS_GLOBAL const uint *primitive_light, GRADUS_GLOBAL const real *lights,
-                                     uint light_count, uint unit, uint triangle_count, uint primitive,
-                                     primitive_hit hit, vec3 origin, vec3 direction LIGHT_TEXTURE_PARAMETERS) {
+/* named: the light that the primitive is, or no_light; the record after the last light's is that of a black one. With
+ * TRAIT_TEXTURED_LIGHTS its radiance is that of the place. */
+GRADUS_FN light_found light_found_as(uint named, GRADUS_GLOBAL const real *lights, uint light_count, uint unit,
+                                     uint triangle_count, uint primitive, primitive_hit hit, vec3 origin,
+                                     vec3 direction LIGHT_TEXTURE_PARAMETERS) {
     (void)triangle_count;
     const real side = -v3_dot(hit.normal, direction);
     const vec3 connection = v3_sub(hit.position, origin);
     const real distance_squared = v3_dot(connection, connection);
-    const uint named = primitive_light[primitive];
     const uint light = named < light_count ? named : light_count;
     const real inverse_area = FIELD_OF(light, lights, light, inverse_area);
     real pdf = light_area_pdf(inverse_area, distance_squared, side);
@@ -65,6 +64,14 @@ GRADUS_FN light_found light_found_at(GRADUS_GLOBAL const uint *primitive_light, 
     found.pdf = pdf * FIELD_OF(light, lights, light, probability);
     found.light = light;
     return found;
+}
+
+/* The same for any primitive. */
+GRADUS_FN light_found light_found_at(GRADUS_GLOBAL const uint *primitive_light, GRADUS_GLOBAL const real *lights,
+                                     uint light_count, uint unit, uint triangle_count, uint primitive,
+                                     primitive_hit hit, vec3 origin, vec3 direction LIGHT_TEXTURE_PARAMETERS) {
+    return light_found_as(LIGHT_OF_PRIMITIVE(primitive_light, primitive), lights, light_count, unit, triangle_count,
+                          primitive, hit, origin, direction LIGHT_TEXTURE_ARGUMENTS);
 }
 
 GRADUS_LIB_END

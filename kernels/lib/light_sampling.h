@@ -141,7 +141,9 @@ GRADUS_FN texture_point place_of_light(uint kind, uint light, point2 chosen, vec
     const point2 weights = warp_uniform_triangle(chosen.x, chosen.y);
     place = texture_point_select(
         IS_LIGHT_KIND(triangle),
-        point_of_triangle(triangle_texcoords, unit, LIGHT_TEXTURE_FIELD(light, triangle), weights.x, weights.y), place);
+        point_of_triangle(triangle_uv_of(triangle_texcoords, unit, LIGHT_TEXTURE_FIELD(light, triangle)),
+                          LIGHT_TEXTURE_FIELD(light, triangle), weights.x, weights.y),
+        place);
 #endif
     return place;
 }

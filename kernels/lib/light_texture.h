@@ -46,6 +46,9 @@ GRADUS_FN texture_point point_of_picture(vec3 along_u, vec3 along_v, vec3 d, rea
     point.triangle = 0u;
     point.second = R(0);
     point.third = R(0);
+#if TRAIT_INDEXED || !defined(__OPENCL_VERSION__)
+    point.corner_0 = point.corner_1 = point.corner_2 = 0u;
+#endif
     return point;
 }
 

@@ -2,6 +2,7 @@
  * computing them here makes a result independent of how rays were packed, and exact for spheres. */
 #ifndef GRADUS_LIB_PRIMITIVE_H
 #define GRADUS_LIB_PRIMITIVE_H
+//! traits: TRAIT_INDEXED
 #include "kernels/lib/vector.h"
 #include "kernels/shared/scene_records.h"
 
@@ -11,6 +12,9 @@ typedef struct {
     vec3 position;
     vec3 normal; /* geometric, unit length */
     real u, v;   /* triangles: barycentric weights of the second and third vertex */
+#if TRAIT_INDEXED
+    uint corner_0, corner_1, corner_2; /* triangles: their vertices */
+#endif
 } primitive_hit;
 
 /* The point on the plane of triangle (p0, e1, e2) along (origin, direction), by Cramer's rule as Moeller and Trumbore

@@ -14,9 +14,10 @@ GRADUS_FN uint kind_of_primitive(GRADUS_GLOBAL const uint *primitive_material, G
                                  GRADUS_GLOBAL const uint *material_kind, uint primitive, int is_behind) {
     (void)material_back, (void)is_behind;
 #if TRAIT_TWO_FACED
-    return material_kind[material_on_side(material_back, primitive_material[primitive], is_behind)];
+    return material_kind[material_on_side(material_back, OF_PRIMITIVE(primitive_material, material, primitive),
+                                          is_behind)];
 #else
-    return material_kind[material_record(primitive_material[primitive])];
+    return material_kind[material_record(OF_PRIMITIVE(primitive_material, material, primitive))];
 #endif
 }
 

@@ -4,6 +4,7 @@
 //! traits: TRAIT_SPHERES TRAIT_TRIANGLES
 #include "kernels/lib/primitive.h"
 #include "kernels/lib/ray_start.h"
+#include "kernels/lib/scene_triangle.h"
 
 GRADUS_LIB_BEGIN
 
@@ -18,9 +19,13 @@ GRADUS_FN primitive_hit primitive_hit_of(GRADUS_GLOBAL const real *triangles, GR
     primitive_hit hit;
     (void)triangles, (void)spheres, (void)triangle_count;
 #if TRAIT_TRIANGLES
-    const uint triangle = TRIANGLE_OF(primitive);
-    hit = triangle_hit(FIELD_V3(triangle, triangles, triangle, p0), FIELD_V3(triangle, triangles, triangle, e1),
-                       FIELD_V3(triangle, triangles, triangle, e2), origin, direction);
+    const scene_triangle triangle = scene_triangle_of(triangles, unit, TRIANGLE_OF(primitive));
+    hit = triangle_hit(triangle.p0, triangle.e1, triangle.e2, origin, direction);
+#if TRAIT_INDEXED
+    hit.corner_0 = triangle.corner_0;
+    hit.corner_1 = triangle.corner_1;
+    hit.corner_2 = triangle.corner_2;
+#endif
 #endif
 #if TRAIT_SPHERES
     const uint sphere = SPHERE_OF(primitive);
@@ -49,7 +54,12 @@ GRADUS_FN real primitive_offset(GRADUS_GLOBAL const real *triangles, GRADUS_GLOB
     real offset = R(0);
     (void)triangles, (void)spheres, (void)triangle_count;
 #if TRAIT_TRIANGLES
+#if TRAIT_INDEXED
+    const scene_triangle triangle = scene_triangle_of(triangles, unit, TRIANGLE_OF(primitive));
+    offset = triangle_offset_of(triangle.e1, triangle.e2);
+#else
     offset = FIELD_OF(triangle, triangles, TRIANGLE_OF(primitive), offset);
+#endif
 #endif
 #if TRAIT_SPHERES
     const real of_sphere = FIELD_OF(sphere, spheres, SPHERE_OF(primitive), offset);

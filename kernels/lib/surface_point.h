@@ -16,6 +16,21 @@ typedef struct {
     GRADUS_NOT_IN_REGISTERS
 } surface_point;
 
+#if TRAIT_INDEXED && TRAIT_ANISOTROPIC
+/* dp/du, of any length; zero where (u, v) do not tell. */
+GRADUS_FN vec3 tangent_of_corners(GRADUS_GLOBAL const real *vertices, uint unit, scene_triangle triangle) {
+    const real u_0 = OF_VERTEX(vertices, triangle.corner_0, vertex_u);
+    const real v_0 = OF_VERTEX(vertices, triangle.corner_0, vertex_v);
+    const real u_1 = OF_VERTEX(vertices, triangle.corner_1, vertex_u) - u_0;
+    const real v_1 = OF_VERTEX(vertices, triangle.corner_1, vertex_v) - v_0;
+    const real u_2 = OF_VERTEX(vertices, triangle.corner_2, vertex_u) - u_0;
+    const real v_2 = OF_VERTEX(vertices, triangle.corner_2, vertex_v) - v_0;
+    const real determinant = u_1 * v_2 - u_2 * v_1;
+    const real sign = determinant == R(0) ? R(0) : r_copysign1(determinant); /* only the direction counts */
+    return v3_scale(v3_mad(v3_scale(triangle.e1, v_2), -v_1, triangle.e2), sign);
+}
+#endif
+
 /* Where a ray in that direction has met the primitive. */
 GRADUS_FN surface_point surface_point_at(GRADUS_GLOBAL const real *triangles,
                                          GRADUS_GLOBAL const real *triangle_normals,
@@ -26,7 +41,7 @@ GRADUS_FN surface_point surface_point_at(GRADUS_GLOBAL const real *triangles,
     (void)triangle_tangents, (void)material_back, (void)direction;
     surface_point point;
     vec3 shading = shading_normal_at(triangle_normals, unit, triangle_count, primitive, hit);
-    const uint sided_material = primitive_material[primitive];
+    const uint sided_material = OF_PRIMITIVE(primitive_material, material, primitive);
     uint material_index = material_record(sided_material);
     vec3 geometric = hit.normal;
 #if TRAIT_TWO_SIDED
@@ -41,7 +56,12 @@ GRADUS_FN surface_point surface_point_at(GRADUS_GLOBAL const real *triangles,
 #endif
     point.along = v3(-hit.normal.y, hit.normal.x, R(0)); /* spheres: around the z axis */
 #if TRAIT_ANISOTROPIC
+#if TRAIT_INDEXED
+    const scene_triangle triangle = scene_triangle_of(triangles, unit, TRIANGLE_OF(primitive));
+    const vec3 of_triangle = tangent_of_corners(triangle_tangents, unit, triangle);
+#else
     const vec3 of_triangle = FIELD_V3(triangle_tangent, triangle_tangents, TRIANGLE_OF(primitive), along);
+#endif
     point.along = v3_select(!TRAIT_SPHERES || primitive < triangle_count, of_triangle, point.along);
 #endif
     point.position = hit.position;

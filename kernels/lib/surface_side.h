@@ -7,17 +7,40 @@
 
 GRADUS_LIB_BEGIN
 
+typedef struct {
+    vec3 n0, n1, n2;
+} vertex_normals;
+
+/* Shading normals at the vertices of the triangle that was hit; with TRAIT_INDEXED zero where its mesh has none. */
+GRADUS_FN vertex_normals vertex_normals_of(GRADUS_GLOBAL const real *triangle_normals, uint unit, uint triangle,
+                                           primitive_hit hit) {
+    vertex_normals found;
+    (void)triangle, (void)hit;
+#if TRAIT_INDEXED
+    found.n0 = OF_VERTEX_V3(triangle_normals, hit.corner_0, vertex_normal);
+    found.n1 = OF_VERTEX_V3(triangle_normals, hit.corner_1, vertex_normal);
+    found.n2 = OF_VERTEX_V3(triangle_normals, hit.corner_2, vertex_normal);
+#else
+    found.n0 = FIELD_V3(normals, triangle_normals, triangle, n0);
+    found.n1 = FIELD_V3(normals, triangle_normals, triangle, n1);
+    found.n2 = FIELD_V3(normals, triangle_normals, triangle, n2);
+#endif
+    return found;
+}
+
 /* Unit vector, on the side of the surface's own front. */
 GRADUS_FN vec3 shading_normal_at(GRADUS_GLOBAL const real *triangle_normals, uint unit, uint triangle_count,
                                  uint primitive, primitive_hit hit) {
     vec3 shading = hit.normal;
     (void)triangle_normals, (void)unit, (void)triangle_count, (void)primitive;
 #if TRAIT_SHADING_NORMALS
-    const uint smooth = TRIANGLE_OF(primitive);
-    const vec3 interpolated =
-        v3_normalize(v3_mad(v3_mad(v3_scale(FIELD_V3(normals, triangle_normals, smooth, n0), R(1) - hit.u - hit.v),
-                                   hit.u, FIELD_V3(normals, triangle_normals, smooth, n1)),
-                            hit.v, FIELD_V3(normals, triangle_normals, smooth, n2)));
+    const vertex_normals n = vertex_normals_of(triangle_normals, unit, TRIANGLE_OF(primitive), hit);
+    const vec3 sum = v3_mad(v3_mad(v3_scale(n.n0, R(1) - hit.u - hit.v), hit.u, n.n1), hit.v, n.n2);
+#if TRAIT_INDEXED
+    const vec3 interpolated = v3_select(v3_dot(sum, sum) > R(0), v3_normalize(sum), shading);
+#else
+    const vec3 interpolated = v3_normalize(sum);
+#endif
     shading = v3_select(!TRAIT_SPHERES || primitive < triangle_count, interpolated, shading);
 #endif
     return shading;

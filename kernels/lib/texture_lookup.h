@@ -217,20 +217,27 @@ typedef struct {
     real u, v;
     uint triangle;      /* of the scene; 0 on spheres */
     real second, third; /* barycentric weights of its second and third vertex */
+#if TRAIT_INDEXED || !defined(__OPENCL_VERSION__)
+    uint corner_0, corner_1, corner_2; /* its vertices, of scenes that have them by index */
+#endif
     GRADUS_NOT_IN_REGISTERS
 } texture_point;
 
-/* A channel of a mesh attribute, whose number at the first corner is at `at`. The gathers come one after the other
+typedef struct {
+    uint corner_0, corner_1, corner_2;
+    GRADUS_NOT_IN_REGISTERS
+} texture_corners;
+
+/* A channel of a mesh attribute, whose numbers at the corners are there. The gathers come one after the other
  * (kernels/lib/ordered.h), after `before`. */
-GRADUS_FN real texture_of_corners(GRADUS_GLOBAL const uint *texels, int is_this, uint at, uint corner,
+GRADUS_FN real texture_of_corners(GRADUS_GLOBAL const uint *texels, int is_this, texture_corners at, uint channel,
                                   texture_point point, real before) {
     /* Words that are none of an attribute may be no number, which must not come into an index. */
-    const uint first = uint_after(at, before);
-    const real word_a = as_float(texels[first]);
+    const real word_a = as_float(texels[uint_after(at.corner_0 + channel, before)]);
     const real a = is_this ? word_a : R(0);
-    const real word_b = as_float(texels[uint_after(first + corner, a)]);
+    const real word_b = as_float(texels[uint_after(at.corner_1 + channel, a)]);
     const real b = is_this ? word_b : R(0);
-    const real word_c = as_float(texels[uint_after(first + 2u * corner, b)]);
+    const real word_c = as_float(texels[uint_after(at.corner_2 + channel, b)]);
     const real c = is_this ? word_c : R(0);
     const real rest = R(1) - point.second - point.third;
     return rest * a + r_after(point.second, c) * b + point.third * c;
@@ -244,10 +251,22 @@ GRADUS_FN rgb texture_of_mesh(GRADUS_GLOBAL const uint *texels, uint flags, uint
     const uint corner = (is_this & !is_by_face) ? channels : 0u, step = (is_this & (channels > 1u)) ? 1u : 0u;
     /* Who asks for what is not there, and then takes a constant, may be anywhere. */
     const uint triangle = r_min(point.triangle - first, count - 1u);
-    const uint at = is_this ? offset + triangle * (is_by_face ? channels : 3u * channels) : 0u;
-    const real r = texture_of_corners(texels, is_this, at, corner, point, R(0));
-    const real g = texture_of_corners(texels, is_this, at + step, corner, point, r);
-    const real b = texture_of_corners(texels, is_this, at + 2u * step, corner, point, g);
+    texture_corners at;
+    at.corner_0 = is_this ? offset + triangle * (is_by_face ? channels : 3u * channels) : 0u;
+    at.corner_1 = at.corner_0 + corner;
+    at.corner_2 = at.corner_1 + corner;
+#if TRAIT_INDEXED || !defined(__OPENCL_VERSION__)
+    const int is_by_vertex = is_this & ((flags & texture_flag_by_vertex) != 0u);
+    const uint vertex_0 = offset + channels * r_min(point.corner_0 - first, count - 1u);
+    const uint vertex_1 = offset + channels * r_min(point.corner_1 - first, count - 1u);
+    const uint vertex_2 = offset + channels * r_min(point.corner_2 - first, count - 1u);
+    at.corner_0 = is_by_vertex ? vertex_0 : at.corner_0;
+    at.corner_1 = is_by_vertex ? vertex_1 : at.corner_1;
+    at.corner_2 = is_by_vertex ? vertex_2 : at.corner_2;
+#endif
+    const real r = texture_of_corners(texels, is_this, at, 0u, point, R(0));
+    const real g = texture_of_corners(texels, is_this, at, step, point, r);
+    const real b = texture_of_corners(texels, is_this, at, 2u * step, point, g);
     return rgb3(r, g, b);
 }
 

@@ -1,9 +1,18 @@
 /* How a scene lies in device memory: records of reals, one after the other, in the order of these lists.
  *
  * Primitives are numbered triangles first, then spheres. Random access into a record touches one or two cache
- * lines, which is why these are records and not columns. Materials: kernels/shared/material.h. */
+ * lines, which is why these are records and not columns. Materials: kernels/shared/material.h.
+ *
+ * TRAIT_INDEXED, of scenes with many triangles, is how many numbers a vertex has, and 0 where each triangle has records
+ * of its own. With it `triangles` begins with the numbers of each triangle's three vertices, of 32 bits. Records of
+ * vertices follow: position, normal (zero where the mesh has none) if any mesh has normals, (u, v) if anybody reads
+ * them. They are numbered by their place, counted from the beginning of `triangles` in lengths of such records. Other
+ * arguments that bear the names of tables of triangles are the same memory, which who has one of them need not know
+ * another for. So are those that bear the names of tables of primitives: for each primitive the place of a record of
+ * its surface, and these records behind them. */
 #ifndef GRADUS_SHARED_SCENE_RECORDS_H
 #define GRADUS_SHARED_SCENE_RECORDS_H
+//! traits: TRAIT_INDEXED
 #include "kernels/shared/compat.h"
 
 #define GRADUS_TRIANGLE_FIELDS(FIELD)                                                                                  \
@@ -37,6 +46,13 @@
     FIELD(triangle_tangent, along_x, "")                                                                               \
     FIELD(triangle_tangent, along_y, "")                                                                               \
     FIELD(triangle_tangent, along_z, "")
+
+/* What the primitives of a shape share, only with TRAIT_INDEXED. */
+#define GRADUS_SURFACE_FIELDS(FIELD)                                                                                   \
+    FIELD(surface_of, material, "what primitive_material has by primitive without that trait")                         \
+    FIELD(surface_of, bin, "the same of primitive_bin")                                                                \
+    FIELD(surface_of, back_bin, "the same of primitive_back_bin")                                                      \
+    FIELD(surface_of, lag, "how far the numbers of its lights are behind those of its primitives, or no_light")
 
 #define GRADUS_SPHERE_FIELDS(FIELD)                                                                                    \
     FIELD(sphere, center_x, "")                                                                                        \
@@ -114,6 +130,7 @@ GRADUS_LIB_BEGIN
 enum triangle_field { GRADUS_TRIANGLE_FIELDS(GRADUS_RECORD_INDEX) triangle_stride };
 enum normals_field { GRADUS_TRIANGLE_NORMALS_FIELDS(GRADUS_RECORD_INDEX) normals_stride };
 enum triangle_tangent_field { GRADUS_TRIANGLE_TANGENT_FIELDS(GRADUS_RECORD_INDEX) triangle_tangent_stride };
+enum surface_of_field { GRADUS_SURFACE_FIELDS(GRADUS_RECORD_INDEX) surface_of_stride };
 enum sphere_field { GRADUS_SPHERE_FIELDS(GRADUS_RECORD_INDEX) sphere_stride };
 enum light_field { GRADUS_LIGHT_FIELDS(GRADUS_RECORD_INDEX) light_stride };
 enum emission_field { GRADUS_EMISSION_FIELDS(GRADUS_RECORD_INDEX) emission_stride };
@@ -151,6 +168,16 @@ enum light_kind {
 #define FIELD_RGB(record, array, index, field)                                                                         \
     rgb3(FIELD_OF(record, array, index, field##_r), FIELD_OF(record, array, index, field##_g),                         \
          FIELD_OF(record, array, index, field##_b))
+
+/* By primitive: the field of its surface, from the argument that bears the name of its column. */
+#if TRAIT_INDEXED
+#define OF_PRIMITIVE(column, field, primitive) (column)[(int)((column)[primitive] + (uint)surface_of_##field)]
+#define LIGHT_OF_PRIMITIVE(column, primitive) light_behind(OF_PRIMITIVE(column, lag, primitive), primitive)
+GRADUS_FN uint light_behind(uint lag, uint primitive) { return lag == no_light ? no_light : primitive - lag; }
+#else
+#define OF_PRIMITIVE(column, field, primitive) (column)[primitive]
+#define LIGHT_OF_PRIMITIVE(column, primitive) (column)[primitive]
+#endif
 
 GRADUS_LIB_END
 #endif

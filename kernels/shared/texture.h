@@ -31,7 +31,7 @@
     FIELD(texture, offset, "its first word of `texels`")                                                               \
     FIELD(texture, width, "in texels; 1 by 1 where it is no picture")                                                  \
     FIELD(texture, height, "")                                                                                         \
-    FIELD(texture, first, "of a mesh attribute the first triangle of the scene that has it")                           \
+    FIELD(texture, first, "of a mesh attribute the first triangle, or shared vertex, of the scene that has it")        \
     FIELD(texture, count, "and how many follow, up to the last")
 
 #define GRADUS_TEXTURE_REAL_FIELDS(FIELD)                                                                              \
@@ -116,6 +116,7 @@
 #define texture_flag_srgb 128u
 #define texture_flag_attribute 1024u /* of a mesh: below */
 #define texture_flag_by_face 2048u
+#define texture_flag_by_vertex 4096u /* of vertices that triangles share, with TRAIT_INDEXED */
 
 /* The lowest three go with a vertex (kernels/lib/mapped_normal.h). */
 #define normal_map_there 1u   /* a texture turns the normal */
@@ -158,7 +159,8 @@
 #define textures_with_count(features, count) ((features) | (count) << 24)
 #define textures_counted(features) ((uint)(features) >> 24)
 
-/* A mesh attribute is three records of one or three reals for each triangle, or one by face, in `texels` too. */
+/* A mesh attribute is three records of one or three reals for each triangle, or one by face, or one for each vertex
+ * that triangles share, in `texels` too. */
 
 GRADUS_LIB_BEGIN
 

@@ -55,12 +55,12 @@ STAGE classify(uint count, uint unit, uint capacity, __global const real *ray, _
     const uint primitive = AT_UINT(ray, primitive, row);
     const int hit = primitive < ray_first_special;
     const uint present = hit ? primitive : 0u;
-    uint hit_bin = primitive_bin[present];
+    uint hit_bin = OF_PRIMITIVE(primitive_bin, bin, present);
 #if TRAIT_TWO_FACED
     /* The two sides may be of different kinds. */
     const int behind = primitive_is_behind(triangles, triangle_normals, spheres, unit, triangle_count, present,
                                            AT_V3(ray, origin, row), AT_V3(ray, direction, row));
-    const uint back_bin = primitive_back_bin[present];
+    const uint back_bin = OF_PRIMITIVE(primitive_back_bin, back_bin, present);
     hit_bin = behind ? back_bin : hit_bin;
 #endif
 #if TRAIT_BLENDS
@@ -70,9 +70,9 @@ STAGE classify(uint count, uint unit, uint capacity, __global const real *ray, _
 #endif
     uint escaped_bin = 0u;
 #if GATHER
-    uint record = material_record(primitive_material[present]);
+    uint record = material_record(OF_PRIMITIVE(primitive_material, material, present));
 #if TRAIT_TWO_FACED
-    record = material_on_side(material_back, primitive_material[present], behind);
+    record = material_on_side(material_back, OF_PRIMITIVE(primitive_material, material, present), behind);
 #endif
 #if TRAIT_BLENDS
     record = hit ? chosen : 0u;

@@ -112,10 +112,10 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
     const vec3 direction = AT_V3(traced, direction, row);
     const primitive_hit hit =
         primitive_hit_of(triangles, spheres, unit, triangle_count, primitive, AT_V3(traced, origin, row), direction);
-    uint record = material_record(primitive_material[primitive]);
+    uint record = material_record(OF_PRIMITIVE(primitive_material, material, primitive));
 #if TRAIT_TWO_FACED
     const int behind = is_met_from_behind(triangle_normals, unit, triangle_count, primitive, hit, direction);
-    record = material_on_side(material_back, primitive_material[primitive], behind);
+    record = material_on_side(material_back, OF_PRIMITIVE(primitive_material, material, primitive), behind);
 #endif
     vec3 on_sphere = v3(R(0), R(0), R(1));
 #if TRAIT_SPHERES
@@ -176,14 +176,11 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
 #if TRAIT_TEXTURED_NORMALS
     vec3 along_u = v3(R(0), R(0), R(0)), along_v = along_u;
 #if TRAIT_TRIANGLES
-    const uint triangle = TRIANGLE_OF(primitive);
-    const real u_0 = FIELD_OF(texcoords, triangle_texcoords, triangle, u_0);
-    const real v_0 = FIELD_OF(texcoords, triangle_texcoords, triangle, v_0);
-    const real u_1 = FIELD_OF(texcoords, triangle_texcoords, triangle, u_1) - u_0;
-    const real v_1 = FIELD_OF(texcoords, triangle_texcoords, triangle, v_1) - v_0;
-    const real u_2 = FIELD_OF(texcoords, triangle_texcoords, triangle, u_2) - u_0;
-    const real v_2 = FIELD_OF(texcoords, triangle_texcoords, triangle, v_2) - v_0;
-    const vec3 e1 = FIELD_V3(triangle, triangles, triangle, e1), e2 = FIELD_V3(triangle, triangles, triangle, e2);
+    const uint number = TRIANGLE_OF(primitive);
+    const scene_triangle triangle = scene_triangle_of(triangles, unit, number);
+    const triangle_uv uv = HIT_UV(triangle_texcoords, unit, number, hit);
+    const real u_1 = uv.u_1 - uv.u_0, v_1 = uv.v_1 - uv.v_0, u_2 = uv.u_2 - uv.u_0, v_2 = uv.v_2 - uv.v_0;
+    const vec3 e1 = triangle.e1, e2 = triangle.e2;
     const real determinant = u_1 * v_2 - u_2 * v_1;
     const real inverse = determinant == R(0) ? R(0) : R(1) / determinant;
     along_u = v3_scale(v3_mad(v3_scale(e1, v_2), -v_1, e2), inverse);
@@ -221,8 +218,8 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
     mapped = v3_select((map_flags & normal_map_is_bump) != 0u, bumped, mapped);
 #endif
 #if TRAIT_TWO_SIDED
-    const int is_from_behind =
-        ((primitive_material[primitive] & material_two_sided) != 0u) & (v3_dot(place.shading, direction) > R(0));
+    const int is_from_behind = ((OF_PRIMITIVE(primitive_material, material, primitive) & material_two_sided) != 0u) &
+                               (v3_dot(place.shading, direction) > R(0));
     const vec3 from_behind = normal_from_behind(place.shading, mapped, (map_flags & normal_map_is_outside) != 0u);
     mapped = v3_select(is_from_behind, from_behind, mapped);
 #endif

@@ -122,7 +122,7 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
     const frame base_axes = BSDF_FRAME(vertex, row, base_material, base_towards).axes;
     const vec3 base_wi = frame_to_local(base_axes, base_towards);
     const vec3 base_wo = frame_to_local(base_axes, base_direction);
-    const uint next_light = primitive_light[present];
+    const uint next_light = LIGHT_OF_PRIMITIVE(primitive_light, present);
     int is_behind = 0;
 #if TRAIT_TWO_FACED
     is_behind = is_met_from_behind(triangle_normals, unit, triangle_count, present, hit, base_direction);

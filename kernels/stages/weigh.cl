@@ -180,13 +180,13 @@ STAGE weigh(uint count, uint unit, uint first, uint stride, uint capacity, uint 
 #else
         const uint met_kind = kind_of_primitive(primitive_material, material_back, material_kind, met, is_behind);
 #endif
-        int would_reconnect = is_reconnectable(met_kind, primitive_light[met]);
+        int would_reconnect = is_reconnectable(met_kind, LIGHT_OF_PRIMITIVE(primitive_light, met));
 #if TRAIT_SHIFT_DISTANCE
         const vec3 met_position = primitive_hit_of(triangles, spheres, unit, triangle_count, met,
                                                    AT_V3(offset_ray, origin, sent), AT_V3(offset_ray, direction, sent))
                                       .position;
         would_reconnect &= is_far(AT_V3(vertex, position, row), AT_V3(own_vertex, position, own.row), met_position,
-                                  primitive_light[met], shift_distance);
+                                  LIGHT_OF_PRIMITIVE(primitive_light, met), shift_distance);
 #endif
         const int was_rough = (outcome & shift_both_rough) != 0u;
         const int copies = own.is_own & works & !reconnects;
@@ -196,7 +196,7 @@ STAGE weigh(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         ratio = has_failed ? shift_failed(meets ? outcome_failed_back : outcome_failed_nothing) : ratio;
         const int is_apart = copies & is_hit & !has_failed;
         any_apart |= is_apart;
-        meets_light |= copies & meets & (primitive_light[met] != no_light);
+        meets_light |= copies & meets & (LIGHT_OF_PRIMITIVE(primitive_light, met) != no_light);
         all_alike &= !is_apart | (kind_number(met_kind) == kind_number(next_kind));
         const int parts =
             base_is_dirac & own.is_there & !own.is_own & (AT_UINT(offset, state, at) == connection_recent);

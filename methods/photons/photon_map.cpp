@@ -52,14 +52,13 @@ Box box_of(const SceneTables &tables) {
         box.high[axis] = std::max(box.high[axis], to);
     };
     for (std::size_t i = 0; i < tables.triangle_count; ++i) {
-        const float *record = &tables.triangles[i * triangle_stride];
+        const TableTriangle triangle = tables.triangle(std::uint32_t(i));
         for (int axis = 0; axis < 3; ++axis) {
-            const double corner = record[triangle_p0_x + axis];
-            const double first = record[triangle_e1_x + axis], second = record[triangle_e2_x + axis];
+            const double corner = triangle.p0[axis], first = triangle.e1[axis], second = triangle.e2[axis];
             add(axis, corner + std::min({0.0, first, second}), corner + std::max({0.0, first, second}));
         }
     }
-    for (std::size_t i = tables.triangle_count; i < tables.primitive_material.size(); ++i) {
+    for (std::size_t i = tables.triangle_count; i < tables.primitive_count; ++i) {
         const float *record = &tables.spheres[(i - tables.triangle_count) * sphere_stride];
         for (int axis = 0; axis < 3; ++axis)
             add(axis, double(record[sphere_center_x + axis]) - record[sphere_radius],

@@ -12,7 +12,6 @@ using namespace lib_float;
 
 double seen_distance(Session &session) {
     constexpr std::size_t side = 24, count = side * side;
-    constexpr std::uint32_t unit = 1; // of FIELD_OF
     const SceneTables &tables = session.scene;
     CameraRays rays;
     rays.trace(tables, session.tracer, count, [&](std::size_t i) {
@@ -23,11 +22,7 @@ double seen_distance(Session &session) {
     for (std::size_t i = 0; i < count; ++i) {
         if (rays.primitive(i) == ray_escaped)
             continue;
-        const vec3 origin = rays.origin(i), direction = rays.direction(i);
-        const vec3 step = v3_sub(primitive_hit_of(tables.triangles.data(), tables.spheres.data(), unit,
-                                                  tables.triangle_count, rays.primitive(i), origin, direction)
-                                     .position,
-                                 origin);
+        const vec3 step = v3_sub(rays.hit(tables, i).position, rays.origin(i));
         distances.push_back(std::sqrt(v3_dot(step, step)));
     }
     if (distances.empty())

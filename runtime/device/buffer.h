@@ -34,6 +34,13 @@ class Buffer {
     /// the device aligns memory to (4096 is on all known).
     Buffer part(std::size_t first, std::size_t bytes) const;
 
+    /// The same memory for arguments of another name.
+    Buffer named(const std::string &name) const {
+        Buffer other = *this;
+        other.name_ = name;
+        return other;
+    }
+
     const std::string &name() const { return name_; }
     std::size_t bytes() const { return bytes_; }
     bool valid() const { return handle_ != nullptr; }

@@ -67,30 +67,38 @@ class DirectRays {
                                  std::uint32_t(map.strips.size() / 2))
                 .radiance;
         }
-        if (tables_.primitive_light[primitive] == no_light)
+        const std::uint32_t light = tables_.light_of(primitive);
+        if (light == no_light)
             return rgb_gray(0);
-        const vec3 origin = camera_rays_.origin(i), direction = camera_rays_.direction(i);
-        const primitive_hit hit = primitive_hit_of(tables_.triangles.data(), tables_.spheres.data(), unit,
-                                                   tables_.triangle_count, primitive, origin, direction);
-        const rgb found = light_found_at(tables_.primitive_light.data(), lights, tables_.light_count, unit,
-                                         tables_.triangle_count, primitive, hit, origin, direction)
+        const primitive_hit hit = camera_rays_.hit(tables_, i);
+        const rgb found = light_found_as(light, lights, tables_.light_count, unit, tables_.triangle_count, primitive,
+                                         hit, camera_rays_.origin(i), camera_rays_.direction(i))
                               .radiance;
-        return tables_.light_textures.empty() ? found : textured(found, primitive, hit, as_one);
+        return tables_.light_textures.empty() ? found : textured(found, light, primitive, hit, as_one);
     }
 
     /// The light of a surface that may have a texture; `as_one`: as if it were its mean.
-    rgb textured(rgb found, std::uint32_t primitive, const primitive_hit &hit, bool as_one) const {
-        const std::uint32_t light = tables_.primitive_light[primitive];
+    rgb textured(rgb found, std::uint32_t light, std::uint32_t primitive, const primitive_hit &hit, bool as_one) const {
         if (texture_is_absent(FIELD_OF(light_texture, tables_.light_textures.data(), light, texture)))
             return found;
         const float *mean = &tables_.light_means[std::size_t(light) * 3];
         if (as_one)
             return rgb_max(found) > 0 ? rgb3(mean[0], mean[1], mean[2]) : found;
-        return rgb_mul(found, light_texture_on(tables_.light_textures.data(), tables_.triangle_texcoords.data(),
-                                               tables_.sphere_axes.data(), tables_.textures.data(),
-                                               tables_.texture_reals.data(), tables_.texels.data(), unit,
-                                               tables_.triangle_count, light, primitive, hit,
-                                               FIELD_OF(light, tables_.lights.data(), light, e1_y)));
+        const std::uint32_t texture = FIELD_OF(light_texture, tables_.light_textures.data(), light, texture);
+        return rgb_mul(found, light_texture_at(tables_.textures.data(), tables_.texture_reals.data(),
+                                               tables_.texels.data(), unit, texture, place_of(light, primitive, hit)));
+    }
+
+    texture_point place_of(std::uint32_t light, std::uint32_t primitive, const primitive_hit &hit) const {
+        if (primitive < tables_.triangle_count) {
+            const std::array<float, 6> uv = tables_.texcoords(primitive);
+            const std::array<std::uint32_t, 3> corners = tables_.triangle(primitive).corners;
+            const triangle_uv of_corners{uv[0], uv[1], uv[2], uv[3], uv[4], uv[5], corners[0], corners[1], corners[2]};
+            return point_of_triangle(of_corners, primitive, hit.u, hit.v);
+        }
+        const float facing = FIELD_OF(light, tables_.lights.data(), light, e1_y);
+        return point_of_sphere(sphere_place(tables_.sphere_axes.data(), unit, primitive - tables_.triangle_count,
+                                            v3_scale(hit.normal, facing)));
     }
 
     const SceneTables &tables_;

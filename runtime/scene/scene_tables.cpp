@@ -1,5 +1,6 @@
 #include "runtime/scene/scene_tables.h"
 
+#include "kernels/lib/scene_triangle.h"
 #include "kernels/shared/material.h"
 #include "kernels/shared/scene_records.h"
 #include "kernels/shared/texture.h"
@@ -8,6 +9,7 @@
 #include "runtime/scene/environment_map.h"
 #include "runtime/scene/light_builder.h"
 #include "runtime/scene/texture_tables.h"
+#include "runtime/scene/vertex_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,12 +21,7 @@ using namespace lib_float;
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-/// What the tracer errs by in meeting a primitive, relative to its size: 4 units of 2^-24, four times what was found
-/// (tests/trace/self_hit_test.cpp).
-constexpr double tracer_error = 0x1p-22;
-/// Times the edges' product over the doubled area where that is large; found: a fifth of it. Of longer splinters than
-/// most_slant some rays are caught.
-constexpr double least_slant = 4, most_slant = 1024;
+constexpr double tracer_error = GRADUS_TRACER_ERROR, least_slant = GRADUS_LEAST_SLANT, most_slant = GRADUS_MOST_SLANT;
 
 Vector3 operator-(Vector3 a, Vector3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 Vector3 operator+(Vector3 a, Vector3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
@@ -86,12 +83,81 @@ struct SurfaceOfShape {
     }
 };
 
-void add_primitive(const SurfaceOfShape &surface, std::uint32_t light, SceneTables &tables) {
-    const std::uint32_t emits = light == no_light ? 0 : 1;
-    tables.primitive_light.push_back(light);
-    tables.primitive_material.push_back(surface.material);
-    tables.primitive_bin.push_back(surface.bin + emits);
-    tables.primitive_back_bin.push_back(surface.back_bin + emits);
+/// Puts one primitive after the other into the tables.
+class PrimitiveBuilder {
+  public:
+    PrimitiveBuilder(SceneTables &tables, bool is_indexed) : tables_(tables), is_indexed_(is_indexed) {}
+    bool is_indexed() const { return is_indexed_; }
+    void reserve(std::size_t primitives) {
+        if (is_indexed_)
+            surfaces_.reserve(primitives);
+        else
+            for (std::vector<std::uint32_t> *column : {&tables_.primitive_light, &tables_.primitive_material,
+                                                       &tables_.primitive_bin, &tables_.primitive_back_bin})
+                column->reserve(primitives);
+    }
+    void add(const SurfaceOfShape &surface, std::uint32_t light) {
+        const std::uint32_t emits = light == no_light ? 0 : 1;
+        ++tables_.primitive_count;
+        if (is_indexed_) {
+            surfaces_.add(surface.material, surface.bin + emits, surface.back_bin + emits, light);
+            return;
+        }
+        tables_.primitive_light.push_back(light);
+        tables_.primitive_material.push_back(surface.material);
+        tables_.primitive_bin.push_back(surface.bin + emits);
+        tables_.primitive_back_bin.push_back(surface.back_bin + emits);
+    }
+    /// So many with indices that do not emit.
+    void add_unlit(const SurfaceOfShape &surface, std::size_t count) {
+        surfaces_.add_unlit(surface.material, surface.bin, surface.back_bin, count);
+        tables_.primitive_count += std::uint32_t(count);
+    }
+    void finish() {
+        if (is_indexed_)
+            tables_.primitive_surface = surfaces_.finish();
+    }
+
+  private:
+    SceneTables &tables_;
+    const bool is_indexed_;
+    SurfaceTable surfaces_;
+};
+
+/// What a mesh without indices has of each triangle.
+void add_triangle(const Mesh &mesh, std::size_t number, const TraitMap &traits, SceneTables &tables) {
+    const auto &t = mesh.triangles[number];
+    const Vector3 p0 = mesh.positions[t[0]];
+    const Vector3 e1 = mesh.positions[t[1]] - p0, e2 = mesh.positions[t[2]] - p0;
+    const Vector3 area_normal = cross(e1, e2);
+    const double area = 0.5 * length(area_normal);
+    tables.triangles.resize(tables.triangles.size() + triangle_stride, 0.0f);
+    float *record = &tables.triangles[tables.triangles.size() - triangle_stride];
+    put(record, triangle_p0_x, p0);
+    put(record, triangle_e1_x, e1);
+    put(record, triangle_e2_x, e2);
+    record[triangle_offset] = triangle_offset_of(e1, e2, area);
+
+    if (traits.at("TRAIT_SHADING_NORMALS")) {
+        const Vector3 flat = static_cast<float>(1 / (2 * area)) * area_normal;
+        for (int corner = 0; corner < 3; ++corner) {
+            const Vector3 n = mesh.normals.empty() ? flat : mesh.normals[t[corner]];
+            tables.triangle_normals.insert(tables.triangle_normals.end(), {n.x, n.y, n.z});
+        }
+    }
+    if (traits.at("TRAIT_MATERIAL") || traits.at("TRAIT_TEXTURED_LIGHTS"))
+        add_triangle_texcoords(mesh, t, tables);
+    if (traits.at("TRAIT_ANISOTROPIC")) {
+        Vector3 along{};
+        if (!mesh.texcoords.empty()) {
+            const auto &a = mesh.texcoords[t[0]], &b = mesh.texcoords[t[1]], &c = mesh.texcoords[t[2]];
+            const float u1 = b[0] - a[0], v1 = b[1] - a[1], u2 = c[0] - a[0], v2 = c[1] - a[1];
+            const float determinant = u1 * v2 - u2 * v1;
+            const float sign = determinant < 0 ? -1.0f : 1.0f; // only the direction counts
+            along = determinant == 0 ? Vector3{} : sign * (v2 * e1 - v1 * e2);
+        }
+        tables.triangle_tangents.insert(tables.triangle_tangents.end(), {along.x, along.y, along.z});
+    }
 }
 
 Rgb times(const Rgb &a, const Rgb &b) { return {a.r * b.r, a.g * b.g, a.b * b.b}; }
@@ -104,75 +170,73 @@ const Texture *attribute_of(const Scene &scene, const Emitter &emitter) {
     return texture.kind == Texture::Kind::mesh_attribute ? &texture : nullptr;
 }
 
+/// Lights that the triangles of a shape are.
+class TriangleLights {
+  public:
+    TriangleLights(const Scene &scene, const Shape &shape, LightBuilder &lights)
+        : mesh_(scene.meshes[shape.geometry]), number_(shape.emitter), lights_(lights) {
+        if (number_ < 0)
+            return;
+        emitter_ = &scene.emitters[std::size_t(number_)];
+        bright_ = attribute_of(scene, *emitter_);
+        if (bright_)
+            mean_of_all_ = times(emitter_->value, mean_over_mesh(*bright_, mesh_));
+    }
+
+    /// The light that a triangle is, or no_light. `primitive`: its number among those of the scene.
+    std::uint32_t add(std::size_t triangle, std::uint32_t primitive) {
+        if (!emitter_)
+            return no_light;
+        const auto &t = mesh_.triangles[triangle];
+        const Vector3 p0 = mesh_.positions[t[0]];
+        const Vector3 e1 = mesh_.positions[t[1]] - p0, e2 = mesh_.positions[t[2]] - p0;
+        const double area = 0.5 * length(cross(e1, e2));
+        const Rgb mean = bright_ ? times(emitter_->value, mean_over_triangle(*bright_, mesh_, triangle))
+                                 : lights_.mean_of(*emitter_);
+        const double power = pi * area * luminance(mean);
+        if (!(power > 0))
+            return no_light;
+        float *record;
+        const std::uint32_t light =
+            lights_.add(light_kind_triangle, emitter_->value, {power, std::uint32_t(number_), false}, record);
+        put(record, light_p_x, p0);
+        put(record, light_e1_x, e1);
+        put(record, light_e2_x, e2);
+        record[light_inverse_area] = static_cast<float>(std::min(1 / area, 3e38));
+        record[light_offset] = triangle_offset_of(e1, e2, area);
+        lights_.set_triangle(light, primitive);
+        if (bright_)
+            lights_.set_mean(light, mean_of_all_);
+        return light;
+    }
+
+  private:
+    const Mesh &mesh_;
+    const std::int32_t number_;
+    LightBuilder &lights_;
+    const Emitter *emitter_ = nullptr;
+    const Texture *bright_ = nullptr;
+    Rgb mean_of_all_;
+};
+
 void add_mesh(const Scene &scene, const Shape &shape, const TraitMap &traits, SceneTables &tables,
-              LightBuilder &lights) {
+              PrimitiveBuilder &primitives, LightBuilder &lights) {
     const Mesh &mesh = scene.meshes[shape.geometry];
     const SurfaceOfShape surface(scene, shape, tables);
-    const bool has_normals = traits.at("TRAIT_SHADING_NORMALS"), has_tangents = traits.at("TRAIT_ANISOTROPIC"),
-               has_textures = traits.at("TRAIT_MATERIAL") || traits.at("TRAIT_TEXTURED_LIGHTS");
-    const Emitter *const emitter = shape.emitter >= 0 ? &scene.emitters[std::size_t(shape.emitter)] : nullptr;
-    const Texture *const bright = emitter ? attribute_of(scene, *emitter) : nullptr;
-    const Rgb mean_of_all = bright ? times(emitter->value, mean_over_mesh(*bright, mesh)) : Rgb();
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-        const auto &t = mesh.triangles[i];
-        const Vector3 p0 = mesh.positions[t[0]];
-        const Vector3 e1 = mesh.positions[t[1]] - p0, e2 = mesh.positions[t[2]] - p0;
-        const Vector3 area_normal = cross(e1, e2);
-        const double area = 0.5 * length(area_normal);
-        const float offset = triangle_offset_of(e1, e2, area);
-
-        tables.triangles.resize(tables.triangles.size() + triangle_stride, 0.0f);
-        float *record = &tables.triangles[tables.triangles.size() - triangle_stride];
-        put(record, triangle_p0_x, p0);
-        put(record, triangle_e1_x, e1);
-        put(record, triangle_e2_x, e2);
-        record[triangle_offset] = offset;
-
-        if (has_normals) {
-            const Vector3 flat = static_cast<float>(1 / (2 * area)) * area_normal;
-            for (int corner = 0; corner < 3; ++corner) {
-                const Vector3 n = mesh.normals.empty() ? flat : mesh.normals[t[corner]];
-                tables.triangle_normals.insert(tables.triangle_normals.end(), {n.x, n.y, n.z});
-            }
-        }
-        if (has_textures)
-            add_triangle_texcoords(mesh, t, tables);
-        if (has_tangents) {
-            Vector3 along{};
-            if (!mesh.texcoords.empty()) {
-                const auto &a = mesh.texcoords[t[0]], &b = mesh.texcoords[t[1]], &c = mesh.texcoords[t[2]];
-                const float u1 = b[0] - a[0], v1 = b[1] - a[1], u2 = c[0] - a[0], v2 = c[1] - a[1];
-                const float determinant = u1 * v2 - u2 * v1;
-                const float sign = determinant < 0 ? -1.0f : 1.0f; // only the direction counts
-                along = determinant == 0 ? Vector3{} : sign * (v2 * e1 - v1 * e2);
-            }
-            tables.triangle_tangents.insert(tables.triangle_tangents.end(), {along.x, along.y, along.z});
-        }
-
-        std::uint32_t light = no_light;
-        if (emitter) {
-            const Rgb mean =
-                bright ? times(emitter->value, mean_over_triangle(*bright, mesh, i)) : lights.mean_of(*emitter);
-            const double power = pi * area * luminance(mean);
-            if (power > 0) {
-                float *light_record;
-                light = lights.add(light_kind_triangle, emitter->value, {power, std::uint32_t(shape.emitter), false},
-                                   light_record);
-                put(light_record, light_p_x, p0);
-                put(light_record, light_e1_x, e1);
-                put(light_record, light_e2_x, e2);
-                light_record[light_inverse_area] = static_cast<float>(std::min(1 / area, 3e38));
-                light_record[light_offset] = offset;
-                lights.set_triangle(light, std::uint32_t(tables.primitive_material.size()));
-                if (bright)
-                    lights.set_mean(light, mean_of_all);
-            }
-        }
-        add_primitive(surface, light, tables);
+    if (primitives.is_indexed() && shape.emitter < 0) {
+        primitives.add_unlit(surface, mesh.triangles.size());
+        return;
+    }
+    TriangleLights of_shape(scene, shape, lights);
+    for (std::size_t number = 0; number < mesh.triangles.size(); ++number) {
+        if (!primitives.is_indexed())
+            add_triangle(mesh, number, traits, tables);
+        primitives.add(surface, of_shape.add(number, tables.primitive_count));
     }
 }
 
-void add_sphere(const Scene &scene, const Shape &shape, SceneTables &tables, LightBuilder &lights) {
+void add_sphere(const Scene &scene, const Shape &shape, SceneTables &tables, PrimitiveBuilder &primitives,
+                LightBuilder &lights) {
     const Sphere &sphere = scene.spheres[shape.geometry];
     const float offset = static_cast<float>(tracer_error * sphere.radius);
     const float facing = sphere.flip_normals ? -1.0f : 1.0f;
@@ -200,7 +264,7 @@ void add_sphere(const Scene &scene, const Shape &shape, SceneTables &tables, Lig
             lights.set_sphere(light, std::uint32_t(tables.spheres.size() / sphere_stride - 1));
         }
     }
-    add_primitive(SurfaceOfShape(scene, shape, tables), light, tables);
+    primitives.add(SurfaceOfShape(scene, shape, tables), light);
 }
 
 /// Lights without a surface. Those at infinity count with what crosses a disk as wide as the scene.
@@ -275,19 +339,19 @@ void add_material_record(const Bsdf &bsdf, SceneTables &tables) {
 }
 
 /// Room for all that primitives have: tables that grow are copied again and again, and take twice their size.
-void reserve_tables(const Scene &scene, const TraitMap &traits, SceneTables &tables) {
+void reserve_tables(const Scene &scene, const TraitMap &traits, SceneTables &tables, PrimitiveBuilder &primitives) {
     std::size_t triangles = 0;
     for (const Shape &shape : scene.shapes)
         if (shape.kind == Shape::Kind::mesh)
             triangles += scene.meshes[shape.geometry].triangles.size();
+    primitives.reserve(triangles + scene.spheres.size());
+    if (primitives.is_indexed())
+        return;
     tables.triangles.reserve(triangles * triangle_stride);
     if (traits.at("TRAIT_SHADING_NORMALS"))
         tables.triangle_normals.reserve(triangles * normals_stride);
     if (traits.at("TRAIT_ANISOTROPIC"))
         tables.triangle_tangents.reserve(triangles * triangle_tangent_stride);
-    for (std::vector<std::uint32_t> *column :
-         {&tables.primitive_light, &tables.primitive_material, &tables.primitive_bin, &tables.primitive_back_bin})
-        column->reserve(triangles + scene.spheres.size());
 }
 
 bool has_own_back(const Material &material) { return material.two_sided && !(material.back == material.front); }
@@ -316,16 +380,21 @@ std::vector<Bsdf> material_records(const Scene &scene) {
 
 SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits, std::uint32_t tree_from) {
     SceneTables tables;
-    reserve_tables(scene, traits, tables);
+    const int indexed = traits.at("TRAIT_INDEXED");
+    PrimitiveBuilder primitives(tables, indexed != 0);
+    reserve_tables(scene, traits, tables, primitives);
+    if (indexed != 0)
+        add_vertices(scene, indexed, tables);
     tables.kinds = bsdf_kinds(scene);
     LightBuilder lights(scene, tables, traits.at("TRAIT_TEXTURED_LIGHTS") != 0);
     for (const Shape &shape : scene.shapes)
         if (shape.kind == Shape::Kind::mesh)
-            add_mesh(scene, shape, traits, tables, lights);
-    tables.triangle_count = static_cast<std::uint32_t>(tables.primitive_material.size());
+            add_mesh(scene, shape, traits, tables, primitives, lights);
+    tables.triangle_count = tables.primitive_count;
     for (const Shape &shape : scene.shapes)
         if (shape.kind == Shape::Kind::sphere)
-            add_sphere(scene, shape, tables, lights);
+            add_sphere(scene, shape, tables, primitives, lights);
+    primitives.finish();
     const Bounds bounds = scene_bounds(scene);
     const double radius = bounds.radius();
     tables.scene_diameter = static_cast<float>(2.02 * radius);
@@ -354,14 +423,15 @@ SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits, std::u
 std::size_t table_bytes(const SceneTables &t) {
     return (t.environment ? environment_bytes(*t.environment) : 0) +
            4 * (t.triangles.size() + t.triangle_normals.size() + t.triangle_tangents.size() + t.spheres.size() +
-                t.materials.size() + t.lights.size() + t.camera.size() + t.primitive_material.size() +
-                t.primitive_light.size() + t.primitive_bin.size() + t.primitive_back_bin.size() +
-                t.material_back.size() + t.light_kinds.size() + t.light_alias.size() + t.emissions.size() +
-                t.emission_alias.size() + t.triangle_texcoords.size() + t.sphere_axes.size() + t.texture_reals.size() +
-                t.material_lookups.size() + t.textures.size() + t.texels.size() + t.material_textures.size() +
-                t.blends.size() + t.record_kind.size() + t.blend_weights.size() + t.normal_maps.size() +
-                t.bump_scales.size() + t.light_textures.size() + t.light_pictures.size() + t.light_tree.nodes.size() +
-                t.light_tree.leaves.size() + t.light_tree.slots.size() + t.light_tree.leaf.size());
+                t.materials.size() + t.lights.size() + t.camera.size() + t.primitive_surface.size() +
+                t.primitive_material.size() + t.primitive_light.size() + t.primitive_bin.size() +
+                t.primitive_back_bin.size() + t.material_back.size() + t.light_kinds.size() + t.light_alias.size() +
+                t.emissions.size() + t.emission_alias.size() + t.triangle_texcoords.size() + t.sphere_axes.size() +
+                t.texture_reals.size() + t.material_lookups.size() + t.textures.size() + t.texels.size() +
+                t.material_textures.size() + t.blends.size() + t.record_kind.size() + t.blend_weights.size() +
+                t.normal_maps.size() + t.bump_scales.size() + t.light_textures.size() + t.light_pictures.size() +
+                t.light_tree.nodes.size() + t.light_tree.leaves.size() + t.light_tree.slots.size() +
+                t.light_tree.leaf.size());
 }
 
 } // namespace gradus

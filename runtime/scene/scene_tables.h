@@ -15,10 +15,19 @@ namespace gradus {
 
 constexpr std::uint32_t no_light_tree = 0xFFFFFFFFu;
 
+/// One triangle, and its corners: with TRAIT_INDEXED vertices, else 0.
+struct TableTriangle {
+    std::array<float, 3> p0, e1, e2;
+    std::array<std::uint32_t, 3> corners;
+};
+
 struct SceneTables {
+    /// With TRAIT_INDEXED all that is of triangles is in the first of these: indices, then vertices.
     std::vector<float> triangles, triangle_normals, triangle_tangents, spheres, materials, lights, camera;
     /// By primitive. The material bears the bit material_two_sided; the bins are those of `classify`, by the side.
     std::vector<std::uint32_t> primitive_material, primitive_light, primitive_bin, primitive_back_bin;
+    /// With TRAIT_INDEXED in place of these four.
+    std::vector<std::uint32_t> primitive_surface;
     /// Only where textures are: kernels/shared/texture.h.
     std::vector<float> triangle_texcoords, sphere_axes, texture_reals;
     std::vector<std::uint32_t> textures, texels, material_textures, material_lookups, normal_maps;
@@ -38,11 +47,20 @@ struct SceneTables {
     float light_share_at_infinity = 0;                 ///< with a tree: how often a light at infinity is chosen
     std::shared_ptr<const EnvironmentMap> environment; ///< where the environment is a map, or kernels expect one
     std::vector<std::string> kinds; ///< the BSDF kinds of the scene: kind k has the bins 1 + 2 k and 2 + 2 k
-    std::uint32_t triangle_count = 0, light_count = 0, environment_light = 0;
+    std::uint32_t primitive_count = 0, triangle_count = 0, light_count = 0, environment_light = 0;
+    /// With TRAIT_INDEXED how many numbers a vertex has, and the number of the first; else 0.
+    std::uint32_t vertex_numbers = 0, first_vertex = 0;
     float scene_diameter = 1;               ///< longer than any segment within the scene; of a sphere that holds it
     std::array<float, 3> scene_center = {}; ///< of that sphere
     CameraClips camera_clips;
     Camera::Kind camera_kind = Camera::Kind::perspective;
+
+    bool is_indexed() const { return vertex_numbers > 0; }
+    TableTriangle triangle(std::uint32_t number) const;
+    /// u and v of its corners, where there are textures.
+    std::array<float, 6> texcoords(std::uint32_t triangle) const;
+    /// What kernels know by LIGHT_OF_PRIMITIVE.
+    std::uint32_t light_of(std::uint32_t primitive) const;
 };
 
 /// Lays out the scene for these traits. From so many lights as `tree_from` on that are not at infinity, they are chosen

@@ -3,6 +3,7 @@
 #include "kernels/shared/texture.h"
 #include "runtime/error.h"
 #include "runtime/scene/traits.h"
+#include "runtime/scene/vertex_table.h"
 
 #include <algorithm>
 #include <bit>
@@ -36,36 +37,48 @@ std::map<const Bitmap *, std::uint32_t> add_bitmaps(const Scene &scene, SceneTab
 /// How a mesh attribute lies in the words.
 struct AttributePlace {
     std::uint32_t offset = 0, channels = 1;
-    std::uint32_t first = 0, count = 1; ///< the triangles that are there
-    /// Of one triangle.
-    std::size_t words(const std::string &name) const { return std::size_t(channels) * (is_by_face(name) ? 1 : 3); }
+    std::uint32_t first = 0, count = 1; ///< the triangles, or the vertices that they share, that are there
+    bool by_vertex = false;             ///< of these
+    /// Of one of them.
+    std::size_t words(const std::string &name) const {
+        return std::size_t(channels) * (is_by_face(name) || by_vertex ? 1 : 3);
+    }
 };
 
-/// Calls visit(attribute or nullptr, mesh, number of its first triangle) for each mesh of the scene, in the order of
-/// the tables.
+/// Calls visit(attribute or nullptr, shape, number of its first triangle or vertex, how many it has) for each mesh of
+/// the scene, in the order of the tables.
 template <class Visit>
-void for_each_mesh(const Scene &scene, const std::string &name, const Visit &visit) {
-    std::size_t first = 0;
+void for_each_mesh(const Scene &scene, const SceneTables &tables, const std::string &name, bool by_vertex,
+                   const Visit &visit) {
+    std::size_t first = by_vertex ? tables.first_vertex : 0;
     for (const Shape &shape : scene.shapes)
         if (shape.kind == Shape::Kind::mesh) {
             const Mesh &mesh = scene.meshes[shape.geometry];
-            visit(find_attribute(mesh, name), mesh, first);
-            first += mesh.triangles.size();
+            const std::size_t count = by_vertex ? table_vertex_count(scene, shape) : mesh.triangles.size();
+            visit(find_attribute(mesh, name), shape, first, count);
+            first += count;
         }
 }
 
-void put_attribute(const MeshAttribute &attribute, const Mesh &mesh, const AttributePlace &place, std::uint32_t *to) {
-    const bool by_face = is_by_face(attribute.name);
-    for (std::size_t triangle = 0; triangle < mesh.triangles.size(); ++triangle)
-        for (std::size_t corner = 0; corner < (by_face ? 1u : 3u); ++corner) {
-            const std::size_t element = by_face ? triangle : mesh.triangles[triangle][corner];
-            for (std::size_t c = 0; c < place.channels; ++c)
-                *to++ = std::bit_cast<std::uint32_t>(
-                    attribute.values[element * attribute.channels + (attribute.channels > 1 ? c : 0)]);
-        }
+void put_attribute(const MeshAttribute &attribute, const Scene &scene, const Shape &shape, std::size_t count,
+                   const AttributePlace &place, std::uint32_t *to) {
+    const auto put = [&](std::size_t element) {
+        for (std::size_t c = 0; c < place.channels; ++c)
+            *to++ = std::bit_cast<std::uint32_t>(
+                attribute.values[element * attribute.channels + (attribute.channels > 1 ? c : 0)]);
+    };
+    const bool has_own = has_own_vertices(scene, shape);
+    for (std::size_t i = 0; i < count; ++i)
+        if (place.by_vertex)
+            put(has_own ? scene.meshes[shape.geometry].triangles[i / 3][i % 3] : i);
+        else if (is_by_face(attribute.name))
+            put(i);
+        else
+            for (const std::uint32_t corner : scene.meshes[shape.geometry].triangles[i])
+                put(corner);
 }
 
-/// The mesh attributes that textures name, each from the first triangle that has it to the last.
+/// The mesh attributes that textures name, each from the first triangle or vertex that has it to the last.
 std::map<std::string, AttributePlace> add_attributes(const Scene &scene, SceneTables &tables) {
     std::map<std::string, AttributePlace> places;
     for (const Texture &texture : scene.textures) {
@@ -73,14 +86,16 @@ std::map<std::string, AttributePlace> add_attributes(const Scene &scene, SceneTa
         if (texture.kind != Texture::Kind::mesh_attribute || places.contains(name))
             continue;
         AttributePlace &place = places[name];
+        place.by_vertex = tables.is_indexed() && !is_by_face(name);
         std::size_t begin = SIZE_MAX, end = 0;
-        for_each_mesh(scene, name, [&](const MeshAttribute *attribute, const Mesh &mesh, std::size_t first) {
-            if (!attribute)
-                return;
-            place.channels = std::max(place.channels, attribute->channels);
-            begin = std::min(begin, first);
-            end = std::max(end, first + mesh.triangles.size());
-        });
+        for_each_mesh(scene, tables, name, place.by_vertex,
+                      [&](const MeshAttribute *attribute, const Shape &, std::size_t first, std::size_t count) {
+                          if (!attribute)
+                              return;
+                          place.channels = std::max(place.channels, attribute->channels);
+                          begin = std::min(begin, first);
+                          end = std::max(end, first + count);
+                      });
         if (begin >= end) { // no shape has it: none takes what is there
             begin = 0;
             end = 1;
@@ -91,10 +106,12 @@ std::map<std::string, AttributePlace> add_attributes(const Scene &scene, SceneTa
         place.offset = std::uint32_t(base);
         place.first = std::uint32_t(begin);
         place.count = std::uint32_t(end - begin);
-        for_each_mesh(scene, name, [&](const MeshAttribute *attribute, const Mesh &mesh, std::size_t first) {
-            if (attribute)
-                put_attribute(*attribute, mesh, place, &tables.texels[base + (first - begin) * words]);
-        });
+        for_each_mesh(scene, tables, name, place.by_vertex,
+                      [&](const MeshAttribute *attribute, const Shape &shape, std::size_t first, std::size_t count) {
+                          if (attribute)
+                              put_attribute(*attribute, scene, shape, count, place,
+                                            &tables.texels[base + (first - begin) * words]);
+                      });
     }
     if (!places.empty())
         tables.texels.resize(tables.texels.size() + 2); // who takes the last for a picture reads three words
@@ -170,7 +187,8 @@ void add_textures(const Scene &scene, SceneTables &tables) {
         const bool has_bitmap = texture.bitmap != nullptr;
         const bool is_attribute = texture.kind == Texture::Kind::mesh_attribute;
         const AttributePlace attribute = is_attribute ? attributes.at(texture.attribute) : AttributePlace();
-        const std::uint32_t flags = flags_of(texture) | (attribute.channels > 1 ? texture_flag_color : 0);
+        const std::uint32_t flags = flags_of(texture) | (attribute.channels > 1 ? texture_flag_color : 0) |
+                                    (attribute.by_vertex ? texture_flag_by_vertex : 0);
         tables.textures.insert(tables.textures.end(),
                                {flags, has_bitmap ? offsets.at(texture.bitmap.get()) : attribute.offset,
                                 has_bitmap ? texture.bitmap->width : 1, has_bitmap ? texture.bitmap->height : 1,

@@ -3,9 +3,11 @@
 #include "kernels/shared/texture.h"
 #include "runtime/scene/camera_clips.h"
 #include "runtime/scene/filter_table.h"
+#include "runtime/scene/vertex_table.h"
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <set>
 #include <sstream>
 
@@ -20,6 +22,7 @@ struct TraitText {
 constexpr TraitText descriptions[] = {
     {"TRAIT_TRIANGLES", "triangle meshes"},
     {"TRAIT_SPHERES", "spheres"},
+    {"TRAIT_INDEXED", "triangles by index, for they are many: how many numbers a vertex has"},
     {"TRAIT_SHADING_NORMALS", "interpolated normals"},
     {"TRAIT_ANISOTROPIC", "anisotropic roughness, which needs tangents"},
     {"TRAIT_TWO_SIDED", "materials seen alike from both sides"},
@@ -355,6 +358,11 @@ TraitMap scene_traits(const Scene &scene) {
     traits["TRAIT_NEAR_CLIP"] = clips.near_clip;
     traits["TRAIT_FAR_CLIP"] = clips.far_clip;
     traits["TRAIT_CAMERA_ORIGINS"] = scene.camera.kind != Camera::Kind::perspective || clips.near_clip;
+    std::size_t triangles = 0;
+    for (const Shape &shape : scene.shapes)
+        if (shape.kind == Shape::Kind::mesh)
+            triangles += scene.meshes[shape.geometry].triangles.size();
+    traits["TRAIT_INDEXED"] = indexed_trait(traits, triangles);
     return traits;
 }
 
@@ -375,14 +383,17 @@ std::string trait_description(const std::string &name) {
 
 TraitMap with_all_traits(TraitMap traits) {
     for (auto &[name, value] : traits) {
-        // The filter and hidden emitters change the picture; the rest only makes room for what is not there.
+        // The filter and hidden emitters change the picture, TRAIT_INDEXED how tables lie; the rest only makes room for
+        // what is not there.
         const bool setting = name.starts_with("TRAIT_FILTER") || name == "TRAIT_HIDE_EMITTERS" ||
-                             name.starts_with("TRAIT_TEXTURE") || name == "TRAIT_MATERIAL" || name == "TRAIT_LOOKUPS" ||
-                             name == "TRAIT_NORMAL_TEXTURES" || name == "TRAIT_LIGHT_TEXTURES" ||
-                             name.starts_with("TRAIT_BLEND");
+                             name == "TRAIT_INDEXED" || name.starts_with("TRAIT_TEXTURE") || name == "TRAIT_MATERIAL" ||
+                             name == "TRAIT_LOOKUPS" || name == "TRAIT_NORMAL_TEXTURES" ||
+                             name == "TRAIT_LIGHT_TEXTURES" || name.starts_with("TRAIT_BLEND");
         if (!setting)
             value = 1;
     }
+    if (traits["TRAIT_INDEXED"] != 0) // vertices have what all of these read
+        traits["TRAIT_INDEXED"] = indexed_trait(traits, std::numeric_limits<std::size_t>::max());
     return traits;
 }
 

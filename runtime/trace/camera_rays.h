@@ -62,6 +62,20 @@ class CameraRays {
     lib_float::vec3 direction(std::size_t ray) const {
         return lib_float::v3(columns_[3][ray], columns_[4][ray], columns_[5][ray]);
     }
+    /// Where a ray met that primitive; not of one that escaped.
+    lib_float::primitive_hit hit(const SceneTables &tables, std::size_t ray) const {
+        using namespace lib_float;
+        const std::uint32_t number = primitive_[ray];
+        if (number < tables.triangle_count) {
+            const TableTriangle t = tables.triangle(number);
+            const auto vector = [](const std::array<float, 3> &a) { return v3(a[0], a[1], a[2]); };
+            return triangle_hit(vector(t.p0), vector(t.e1), vector(t.e2), origin(ray), direction(ray));
+        }
+        const std::uint32_t sphere = number - tables.triangle_count;
+        const float *spheres = tables.spheres.data();
+        return sphere_hit(FIELD_V3(sphere, spheres, sphere, center), FIELD_OF(sphere, spheres, sphere, radius),
+                          FIELD_OF(sphere, spheres, sphere, facing), origin(ray), direction(ray));
+    }
 
   private:
     /// What was met beyond the far plane is not seen.
@@ -71,9 +85,8 @@ class CameraRays {
         for (std::size_t i = 0; i < count; ++i) {
             if (primitive_[i] >= ray_first_special)
                 continue;
-            const primitive_hit hit = primitive_hit_of(tables.triangles.data(), tables.spheres.data(), unit,
-                                                       tables.triangle_count, primitive_[i], origin(i), direction(i));
-            const float depth = v3_dot(v3_sub(hit.position, origin(i)), FIELD_V3(camera, camera, 0, forward));
+            const float depth =
+                v3_dot(v3_sub(hit(tables, i).position, origin(i)), FIELD_V3(camera, camera, 0, forward));
             if (depth + camera[camera_near_clip] > camera[camera_far_clip])
                 primitive_[i] = ray_escaped;
         }

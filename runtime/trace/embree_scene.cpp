@@ -7,6 +7,7 @@
 #include <xmmintrin.h>
 
 #include <algorithm>
+#include <cstring>
 
 // After all others: its short macro names are not for library headers.
 #include "kernels/shared/tables.h"
@@ -51,7 +52,7 @@ void EmbreeScene::prepare_thread() {
     _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
 }
 
-EmbreeScene::EmbreeScene(const Scene &s, int threads, tbb::task_arena &arena) {
+EmbreeScene::EmbreeScene(const Scene &s, int threads, tbb::task_arena &arena, const SceneTables *tables) {
     prepare_thread();
     device_.reset(rtcNewDevice(threads > 0 ? fmt::format("threads={},set_affinity=0", threads).c_str() : nullptr));
     if (!device_)
@@ -68,7 +69,7 @@ EmbreeScene::EmbreeScene(const Scene &s, int threads, tbb::task_arena &arena) {
         &bytes_);
     scene_.reset(rtcNewScene(device_.get()));
     rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_HIGH);
-    add_geometry(s);
+    add_geometry(s, tables);
     arena.execute([&] { rtcCommitScene(scene_.get()); });
     check("building the acceleration structure");
     RTCBounds bounds;
@@ -142,6 +143,41 @@ void EmbreeScene::add_triangles(const Scene &s, Geometry place) {
     attach(geometry, place);
 }
 
+void EmbreeScene::add_shared_triangles(const Scene &s, const SceneTables &tables, Geometry place) {
+    const auto for_each_mesh = [&](auto visit) {
+        for_each_shape(s, Shape::Kind::mesh, 0, place == passable_triangles,
+                       [&](const Shape &shape, std::uint32_t first) {
+                           visit(shape, s.meshes[shape.geometry].triangles.size(), first);
+                       });
+    };
+    std::size_t triangle_count = 0;
+    for_each_mesh([&](const Shape &, std::size_t count, std::uint32_t) { triangle_count += count; });
+    if (triangle_count == 0)
+        return;
+    RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    const std::size_t numbers = tables.vertex_numbers;
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, tables.triangles.data(), 0,
+                               numbers * sizeof(float), tables.triangles.size() / numbers);
+    using Corners = std::array<std::uint32_t, 3>;
+    if (triangle_count == triangles_) {
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, tables.triangles.data(), 0,
+                                   sizeof(Corners), triangle_count);
+    } else {
+        auto *indices = new_buffer<Corners>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangle_count);
+        for_each_mesh([&](const Shape &, std::size_t count, std::uint32_t first) {
+            std::memcpy(indices, &tables.triangles[std::size_t(first) * 3], count * sizeof(Corners));
+            indices += count;
+        });
+    }
+    check("sharing geometry");
+    if (some_are_passable_)
+        for_each_mesh([&](const Shape &shape, std::size_t count, std::uint32_t first) {
+            for (std::size_t i = 0; i < count; ++i)
+                name(s, shape, i, first + std::uint32_t(i), place);
+        });
+    attach(geometry, place);
+}
+
 void EmbreeScene::add_spheres(const Scene &s, Geometry place) {
     const auto for_each_sphere = [&](auto visit) {
         for_each_shape(s, Shape::Kind::sphere, triangles_, place == passable_spheres, visit);
@@ -160,7 +196,7 @@ void EmbreeScene::add_spheres(const Scene &s, Geometry place) {
     attach(geometry, place);
 }
 
-void EmbreeScene::add_geometry(const Scene &s) {
+void EmbreeScene::add_geometry(const Scene &s, const SceneTables *tables) {
     std::size_t vertex_count = 0, triangle_count = 0;
     for (const Shape &shape : s.shapes) {
         some_are_passable_ |= is_passable(s, shape);
@@ -173,9 +209,15 @@ void EmbreeScene::add_geometry(const Scene &s) {
         throw Error(ExitCode::scene, "the scene has more primitives than 32-bit indices can name");
     triangles_ = static_cast<std::uint32_t>(triangle_count);
     spheres_ = static_cast<std::uint32_t>(s.spheres.size());
-    add_triangles(s, opaque_triangles);
+    const auto add_meshes = [&](Geometry place) {
+        if (tables && tables->is_indexed())
+            add_shared_triangles(s, *tables, place);
+        else
+            add_triangles(s, place);
+    };
+    add_meshes(opaque_triangles);
     add_spheres(s, opaque_spheres);
-    add_triangles(s, passable_triangles);
+    add_meshes(passable_triangles);
     add_spheres(s, passable_spheres);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/scene/scene.h"
+#include "runtime/scene/scene_tables.h"
 #include "runtime/trace/opacity.h"
 
 #include <embree3/rtcore.h>
@@ -19,7 +20,7 @@ namespace gradus {
 class EmbreeScene {
   public:
     /// As Tracer's. Builds on the threads of `arena`.
-    EmbreeScene(const Scene &scene, int threads, tbb::task_arena &arena);
+    EmbreeScene(const Scene &scene, int threads, tbb::task_arena &arena, const SceneTables *tables = nullptr);
 
     /// To be called on every thread that builds or traces, as Embree asks: denormals cost a hundred times a normal
     /// number, and count as 0.
@@ -52,8 +53,11 @@ class EmbreeScene {
     void check(const char *doing);
     template <class Element>
     Element *new_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::size_t count);
-    void add_geometry(const Scene &s);
+    void add_geometry(const Scene &s, const SceneTables *tables);
     void add_triangles(const Scene &s, Geometry place);
+    /// The same with the vertices of tables that have them by index, and with their indices where all triangles are
+    /// here.
+    void add_shared_triangles(const Scene &s, const SceneTables &tables, Geometry place);
     void add_spheres(const Scene &s, Geometry place);
     /// Says which primitive of the scene comes next in a geometry.
     void name(const Scene &s, const Shape &shape, std::size_t triangle, std::uint32_t number, Geometry place);

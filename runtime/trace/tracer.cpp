@@ -49,9 +49,9 @@ class Chunks {
 } // namespace
 
 struct Tracer::Implementation {
-    Implementation(const Scene &s, int threads)
+    Implementation(const Scene &s, int threads, const SceneTables *tables)
         : arena(threads > 0 ? threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()))),
-          scene(s, threads, arena), coherent(scene.primitives() <= beam_limit) {}
+          scene(s, threads, arena, tables), coherent(scene.primitives() <= beam_limit) {}
 
     tbb::task_arena arena;
     EmbreeScene scene;
@@ -83,7 +83,8 @@ struct Tracer::Implementation {
     bool camera_beams() const { return !coherent && !scene.some_are_passable(); }
 };
 
-Tracer::Tracer(const Scene &s, int threads) : implementation_(std::make_unique<Implementation>(s, threads)) {
+Tracer::Tracer(const Scene &s, int threads, const SceneTables *tables)
+    : implementation_(std::make_unique<Implementation>(s, threads, tables)) {
     // Where packets are no beams, sorting gained nothing on the scenes measured, so they stay as they come.
     if (!implementation_->coherent)
         set_order(RayOrder::none, RayOrder::none);

@@ -22,6 +22,8 @@ struct ShadowColumns : SegmentColumns {
     std::uint32_t *open = nullptr; ///< in: 1 asks for a trace; out: 1 if nothing lies before parameter 1
 };
 
+struct SceneTables; // runtime/scene/scene_tables.h
+
 struct TraceCounts {
     std::uint64_t extension = 0, shadow = 0;
 };
@@ -38,8 +40,9 @@ struct Replayed {
 class Tracer {
   public:
     /// Builds the acceleration structures. Primitives are numbered triangles first (mesh by mesh in the order of
-    /// Scene::shapes), then spheres in that order. `threads`: 0 for all. Throws Error where memory is short.
-    Tracer(const Scene &scene, int threads);
+    /// Scene::shapes), then spheres in that order. `threads`: 0 for all. Vertices and indices are those of `tables`,
+    /// where it has them and they outlive the tracer, and copies else. Throws Error where memory is short.
+    Tracer(const Scene &scene, int threads, const SceneTables *tables = nullptr);
     ~Tracer();
 
     /// Traces rows [0, rays) and [0, shadows), on all threads; returns how many were really traced. Which hit a ray

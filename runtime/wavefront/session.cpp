@@ -4,10 +4,13 @@
 #include "runtime/error.h"
 #include "runtime/phases.h"
 #include "runtime/scene/environment_map.h"
+#include "runtime/scene/vertex_table.h"
 #include "runtime/wavefront/invariant_division.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstring>
 #include <limits>
 
 namespace gradus {
@@ -25,6 +28,8 @@ TraitMap traits_for(const Scene &scene, const SessionOptions &options, const Tra
     traits["TRAIT_AOV"] = options.aov;
     if (options.all_traits)
         traits = with_all_traits(traits);
+    if (options.by_index)
+        traits["TRAIT_INDEXED"] = indexed_trait(traits, std::numeric_limits<std::size_t>::max());
     // Settings of a method, which no scene has.
     traits["TRAIT_SHARED_JITTER"] = 0;
     traits["TRAIT_STRATIFIED"] = options.sampler == SessionOptions::Sampler::sobol;
@@ -66,6 +71,28 @@ FilmSettings with_crop(FilmSettings film) {
     return film;
 }
 
+/// What is of triangles and primitives, with TRAIT_INDEXED (kernels/shared/scene_records.h).
+void add_vertex_buffers(Device &device, const SceneTables &t, Precision precision, std::vector<Buffer> &buffers) {
+    if (precision == Precision::double_) {
+        // Indices are as they were, before vertices at twice the place.
+        std::vector<double> wide(t.triangles.size());
+        const std::size_t first = std::size_t(t.first_vertex) * t.vertex_numbers;
+        std::memcpy(wide.data(), t.triangles.data(), first * sizeof(float));
+        std::copy(t.triangles.begin() + std::ptrdiff_t(first), t.triangles.end(), wide.begin() + std::ptrdiff_t(first));
+        buffers.emplace_back(device, "triangles", wide.data(), wide.size() * sizeof(double));
+    } else {
+        buffers.emplace_back(device, "triangles", t.triangles.data(), t.triangles.size() * sizeof(float));
+    }
+    const Buffer triangles = buffers.back();
+    for (const char *name : {"triangle_normals", "triangle_tangents", "triangle_texcoords"})
+        buffers.push_back(triangles.named(name));
+    const std::vector<std::uint32_t> &surfaces = t.primitive_surface;
+    buffers.emplace_back(device, "primitive_material", surfaces.data(), surfaces.size() * sizeof(surfaces[0]));
+    const Buffer primitives = buffers.back();
+    for (const char *name : {"primitive_light", "primitive_bin", "primitive_back_bin"})
+        buffers.push_back(primitives.named(name));
+}
+
 std::vector<Buffer> make_scene_buffers(Device &device, const SceneTables &t, Precision precision) {
     std::vector<Buffer> buffers;
     const auto check = [](const char *name, std::size_t elements) {
@@ -85,17 +112,21 @@ std::vector<Buffer> make_scene_buffers(Device &device, const SceneTables &t, Pre
     const auto numbers = [&](const char *name, const std::vector<std::uint32_t> &values) {
         buffers.emplace_back(device, name, values.data(), values.size() * sizeof(std::uint32_t));
     };
-    reals("triangles", t.triangles);
-    reals("triangle_normals", t.triangle_normals);
-    reals("triangle_tangents", t.triangle_tangents);
+    if (t.is_indexed()) {
+        add_vertex_buffers(device, t, precision, buffers);
+    } else {
+        reals("triangles", t.triangles);
+        reals("triangle_normals", t.triangle_normals);
+        reals("triangle_tangents", t.triangle_tangents);
+        numbers("primitive_material", t.primitive_material);
+        numbers("primitive_light", t.primitive_light);
+        numbers("primitive_bin", t.primitive_bin);
+        numbers("primitive_back_bin", t.primitive_back_bin);
+    }
     reals("spheres", t.spheres);
     reals("materials", t.materials);
     reals("lights", t.lights);
     reals("camera", t.camera);
-    numbers("primitive_material", t.primitive_material);
-    numbers("primitive_light", t.primitive_light);
-    numbers("primitive_bin", t.primitive_bin);
-    numbers("primitive_back_bin", t.primitive_back_bin);
     numbers("material_back", t.material_back);
     numbers("light_kinds", t.light_kinds);
     numbers("light_alias", t.light_alias);
@@ -113,7 +144,8 @@ std::vector<Buffer> make_scene_buffers(Device &device, const SceneTables &t, Pre
         numbers("environment_strips", t.environment->strips);
     }
     if (!t.texture_reals.empty()) {
-        reals("triangle_texcoords", t.triangle_texcoords);
+        if (!t.is_indexed())
+            reals("triangle_texcoords", t.triangle_texcoords);
         reals("sphere_axes", t.sphere_axes);
         reals("texture_reals", t.texture_reals);
         numbers("textures", t.textures);
@@ -143,7 +175,7 @@ Session::Session(Device &session_device, const Scene &s, const SessionOptions &s
                      [&] { return make_scene_tables(s, traits, tree_from(session_options.lights)); })),
       scene_buffers(in_phase(options.phases, phase_names::tables,
                              [&] { return make_scene_buffers(session_device, scene, session_options.precision); })),
-      tracer(in_phase(options.phases, phase_names::tree, [&] { return Tracer(s, session_options.threads); })) {
+      tracer(in_phase(options.phases, phase_names::tree, [&] { return Tracer(s, session_options.threads, &scene); })) {
     traits["SAMPLES_LIGHTS"] = scene.light_count > 0 && options.strategy != SessionOptions::Strategy::bsdf;
     traits["TRAIT_LIGHT_TREE"] = traits["SAMPLES_LIGHTS"] ? static_cast<int>(scene.light_tree.levels) : 0;
     const bool has_few = scene.light_count <= most_few_lights && !options.all_traits && !traits["TRAIT_LIGHT_TREE"];

@@ -24,6 +24,7 @@ struct SessionOptions {
     Precision precision = Precision::single; ///< of the kernels; rays are always traced in float
     bool aov = false;                        ///< also albedo, normal, depth, variance
     bool all_traits = false; ///< for measuring: compile the kernels for everything, as if the scene had it
+    bool by_index = false;   ///< for tests: triangles by index, however few
     /// How the samples of a pixel draw: each by itself, or together from a Sobol sequence, scrambled by pixel and
     /// dimension (kernels/lib/stratified.h). Light paths of photons are independent in either case.
     enum class Sampler { sobol, independent };

@@ -178,6 +178,27 @@ TEST(Textures, FaceAttributesAreConstantOnATriangle) {
     });
 }
 
+/// A mesh with (u, v), one without, and one with numbers at its vertices, by shared vertices and by records of their
+/// own: each value is the same but for how kernels join multiplications and additions.
+TEST(Textures, AreReadByIndexAlike) {
+    SceneMaker maker = wall_with_attribute(
+        {"vertex_color", 3, {0.1f, 0.8f, 0.4f, 0.9f, 0.8f, 0.4f, 0.9f, 0.3f, 0.8f, 0.1f, 0.3f, 0.8f}});
+    const std::uint32_t textured_again = maker.material(textured_diffuse(maker, random_texture()));
+    maker.parallelogram({-1.5f, -1.5f, 0.25f}, {1.25f, 0, 0}, {0, 1.25f, 0.25f}, textured_again);
+    maker.parallelogram({0.25f, 0.25f, 0.25f}, {1, 0, 0}, {0, 1, 0.25f}, textured_again);
+    maker.scene.meshes.back().texcoords.clear();
+    maker.scene.meshes.back().normals.assign(4, {0, -0.6f, 0.8f});
+    RenderOptions options = exact_options();
+    options.aov = true;
+    const Image by_record = render(maker.scene, options).image;
+    options.by_index = true;
+    const Image by_index = render(maker.scene, options).image;
+    for (const Channel &channel : by_record.channels)
+        for (std::size_t i = 0; i < channel.values.size(); ++i)
+            ASSERT_NEAR(by_index.find(channel.name)->values[i], channel.values[i], rounding * 4)
+                << channel.name << " " << i;
+}
+
 /// Two sides of two textures, and a third material without one, whose record lies between them.
 TEST(Textures, SidesHaveTheirOwn) {
     for (const bool from_behind : {false, true}) {

@@ -166,7 +166,7 @@ TEST(TextureLookup, IsTheHostsToRounding) {
                 const std::array<double, 3> expected = texture_value(texture, u, v);
                 const lib_float::rgb actual =
                     lib_float::texture_lookup(all_features, tables.textures.data(), tables.texture_reals.data(),
-                                              tables.texels.data(), 1, std::uint32_t(i), {u, v, 0, 0, 0});
+                                              tables.texels.data(), 1, std::uint32_t(i), {u, v, 0, 0, 0, 0, 0, 0});
                 const double scale = std::max({texture.scale[0], texture.scale[1], texture.scale[2]});
                 const double tolerance = (2 * rounding + 4 * 0x1p-24) * scale;
                 const float values[] = {actual.r, actual.g, actual.b};
@@ -336,7 +336,7 @@ TEST(TextureLookup, StaysWithinThePicture) {
             const float v = std::bit_cast<float>(std::uint32_t(random()));
             const lib_float::rgb value =
                 lib_float::texture_lookup(all_features, tables.textures.data(), tables.texture_reals.data(),
-                                          tables.texels.data(), 1, 1, {u, v, 0, 0, 0});
+                                          tables.texels.data(), 1, 1, {u, v, 0, 0, 0, 0, 0, 0});
             ASSERT_EQ(value.g, 0.25f) << u << ", " << v;
         }
     }

@@ -113,8 +113,9 @@ TEST(Traits, AllOnLeavesThePictureAlone) {
     for (const auto &[name, value] : general)
         EXPECT_EQ(value, name.starts_with("TRAIT_FILTER") || name == "TRAIT_HIDE_EMITTERS" ||
                                  name.starts_with("TRAIT_TEXTURE") || name == "TRAIT_MATERIAL" ||
-                                 name == "TRAIT_LOOKUPS" || name == "TRAIT_NORMAL_TEXTURES" ||
-                                 name == "TRAIT_LIGHT_TEXTURES" || name.starts_with("TRAIT_BLEND")
+                                 name == "TRAIT_LOOKUPS" || name == "TRAIT_INDEXED" ||
+                                 name == "TRAIT_NORMAL_TEXTURES" || name == "TRAIT_LIGHT_TEXTURES" ||
+                                 name.starts_with("TRAIT_BLEND")
                              ? special.at(name)
                              : 1)
             << name;
