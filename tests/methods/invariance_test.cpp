@@ -102,9 +102,9 @@ TEST_P(Invariance, ToSpecialisationButForRounding) {
 
 /// Triangles by index, in all methods: normals, anisotropy, lights, walks and photons. Offsets of rays are computed in
 /// other places with other rounding, so a path goes another way now and then, as above.
-class FullByIndex : public ::testing::TestWithParam<std::tuple<const char *, const char *>> {};
+class ByIndex : public ::testing::TestWithParam<std::tuple<const char *, const char *>> {};
 
-TEST_P(FullByIndex, IsTheSameButForRounding) {
+TEST_P(ByIndex, IsTheSameButForRounding) {
     const auto [name, method] = GetParam();
     Scene scene = own_scene(std::string(name) + ".xml", 64, 48);
     scene.settings.samples_per_pixel = 4;
@@ -127,7 +127,7 @@ TEST_P(FullByIndex, IsTheSameButForRounding) {
     EXPECT_LE(far, count / 20);
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, FullByIndex,
+INSTANTIATE_TEST_SUITE_P(Full, ByIndex,
                          ::testing::Combine(::testing::Values("materials", "slab-and-ball"),
                                             ::testing::Values("pt", "gpt", "sppm", "gpm")),
                          [](const auto &parameter) {
