@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace gradus {
 
@@ -151,7 +152,18 @@ void LightBuilder::grow_tree(const std::vector<double> &weights) {
     tables_.light_share_at_infinity = float(share);
 }
 
-void LightBuilder::finish(std::uint32_t tree_from) {
+bool LightBuilder::wants_tree(const LightTreeFrom &from) const {
+    std::size_t lights = 0;
+    std::set<std::uint32_t> emitters;
+    for (const LightPower &power : powers_)
+        if (!power.at_infinity) {
+            ++lights;
+            emitters.insert(power.emitter);
+        }
+    return lights > 0 && (lights >= from.lights || emitters.size() >= from.emitters);
+}
+
+void LightBuilder::finish(const LightTreeFrom &tree_from) {
     tables_.light_count = static_cast<std::uint32_t>(powers_.size());
     // A black light follows the last: what the environment is where there is none.
     tables_.lights.resize((powers_.size() + 1) * light_stride, 0.0f);
@@ -167,7 +179,7 @@ void LightBuilder::finish(std::uint32_t tree_from) {
         tables_.lights[i * light_stride + light_alias_threshold] = alias.threshold[i];
     }
     tables_.light_alias = alias.alias;
-    if (std::size_t(std::ranges::count(powers_, false, &LightPower::at_infinity)) >= std::max(tree_from, 1u))
+    if (wants_tree(tree_from))
         grow_tree(light_weights(powers_));
     const AliasTable emission = make_alias_table(light_weights(emitted_));
     tables_.emissions.resize(emitted_.size() * emission_stride);

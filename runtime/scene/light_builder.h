@@ -30,12 +30,13 @@ class LightBuilder {
     void set_environment(double emitted);
     /// What an emitter's value is in the mean over its texture.
     Rgb mean_of(const Emitter &emitter);
-    /// After the last: how often each is chosen. Where so many lights as `tree_from` are not at infinity, by a tree.
-    void finish(std::uint32_t tree_from);
+    /// After the last: how often each is chosen.
+    void finish(const LightTreeFrom &tree_from);
 
   private:
     void add_texture(const Emitter &emitter);
     TreeLight tree_light(std::uint32_t light);
+    bool wants_tree(const LightTreeFrom &from) const;
     void grow_tree(const std::vector<double> &weights);
 
     const Scene &scene_;

@@ -378,7 +378,7 @@ std::vector<Bsdf> material_records(const Scene &scene) {
     return records;
 }
 
-SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits, std::uint32_t tree_from) {
+SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits, const LightTreeFrom &tree_from) {
     SceneTables tables;
     const int indexed = traits.at("TRAIT_INDEXED");
     PrimitiveBuilder primitives(tables, indexed != 0);

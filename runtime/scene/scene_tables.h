@@ -15,6 +15,12 @@ namespace gradus {
 
 constexpr std::uint32_t no_light_tree = 0xFFFFFFFFu;
 
+/// Lights that are not at infinity are chosen by a tree from so many of them on, or from so many emitters, of which
+/// they are parts.
+struct LightTreeFrom {
+    std::uint32_t lights = no_light_tree, emitters = no_light_tree;
+};
+
 /// One triangle, and its corners: with TRAIT_INDEXED vertices, else 0.
 struct TableTriangle {
     std::array<float, 3> p0, e1, e2;
@@ -63,9 +69,8 @@ struct SceneTables {
     std::uint32_t light_of(std::uint32_t primitive) const;
 };
 
-/// Lays out the scene for these traits. From so many lights as `tree_from` on that are not at infinity, they are chosen
-/// by a tree.
-SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits, std::uint32_t tree_from = no_light_tree);
+/// Lays out the scene for these traits.
+SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits, const LightTreeFrom &tree_from = {});
 
 /// The BSDF of each material record: the fronts of all materials, then the backs that differ from them, then what
 /// blends are made of.

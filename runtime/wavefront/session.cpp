@@ -20,8 +20,9 @@ namespace {
 constexpr std::size_t most_few_textures = 8;      // kernels/lib/texture_lookup.h
 constexpr std::uint32_t most_few_lights = 4;      // kernels/lib/light_sampling.h chooses among so many
 constexpr std::uint32_t least_many_lights = 4097; // 24 bits choose among fewer with an error of 2e-4 at most
-constexpr std::uint32_t least_tree_lights = 4096; // bench/render/lights.py: no scene of so many loses much
-constexpr std::uint32_t deepest = 1u << 16;       // where a file asks for paths without end
+// bench/render/lights.py: lamps that are scattered gain from few of them on, and no scene of so many lights loses much.
+constexpr LightTreeFrom usual_light_tree{.lights = 4096, .emitters = 16};
+constexpr std::uint32_t deepest = 1u << 16; // where a file asks for paths without end
 
 TraitMap traits_for(const Scene &scene, const SessionOptions &options, const TraitMap &of_method) {
     TraitMap traits = scene_traits(scene);
@@ -49,10 +50,10 @@ TraitMap traits_for(const Scene &scene, const SessionOptions &options, const Tra
     return traits;
 }
 
-std::uint32_t tree_from(SessionOptions::Lights lights) {
-    return lights == SessionOptions::Lights::power  ? no_light_tree
-           : lights == SessionOptions::Lights::tree ? 1
-                                                    : least_tree_lights;
+LightTreeFrom tree_from(SessionOptions::Lights lights) {
+    return lights == SessionOptions::Lights::power  ? LightTreeFrom{}
+           : lights == SessionOptions::Lights::tree ? LightTreeFrom{.lights = 1}
+                                                    : usual_light_tree;
 }
 
 FilmSettings with_crop(FilmSettings film) {

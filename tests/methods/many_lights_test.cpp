@@ -91,8 +91,8 @@ TEST(ManyLights, LookTheSameByTreeAndByPower) {
     record_stability(
         {"Path tracing", "many lights: a place gets most of its light from a few of them",
          "96 tiles that shine on a floor close below them, 16 samples, 8 seeds",
-         "chosen by a tree, and weighed by the same probabilities where they are met; from 4096 lights "
-         "on, or where `--lights tree` says so",
+         "chosen by a tree, and weighed by the same probabilities where they are met; from 16 emitters "
+         "or 4096 lights on",
          "mean of the image less that by power, standard errors",
          std::fabs(by_tree.mean - by_power.mean) / std::hypot(by_tree.standard_error, by_power.standard_error), 4});
 }

@@ -285,5 +285,22 @@ TEST(Textures, WhoHasNoneLooksUpOneOfTheSameUse) {
     EXPECT_LT(tables.textures[of_nobody * texture_stride + texture_offset] + 2, tables.texels.size());
 }
 
+// A tree from so many emitters on, or from so many of their parts; lights at infinity do not count.
+TEST(SceneTables, HaveALightTreeWhereLightsAreMany) {
+    SceneMaker maker(4, 1);
+    const std::uint32_t black = maker.material(diffuse(0));
+    maker.environment(1);
+    maker.lamp({0, 1, 0}, 1, 1, 1, black); // two triangles
+    const auto levels = [&](const LightTreeFrom &from) {
+        return make_scene_tables(maker.scene, scene_traits(maker.scene), from).light_tree.levels;
+    };
+    EXPECT_EQ(levels({}), 0u);
+    EXPECT_EQ(levels({.lights = 3}), 0u);
+    EXPECT_GT(levels({.lights = 2}), 0u);
+    EXPECT_EQ(levels({.emitters = 2}), 0u);
+    maker.point_light({1, 1, 1}, {0, 2, 0});
+    EXPECT_GT(levels({.emitters = 2}), 0u);
+}
+
 } // namespace
 } // namespace gradus::testing
