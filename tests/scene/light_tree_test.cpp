@@ -271,8 +271,7 @@ TEST(LightTree, OfAQuarterOfAMillionLights) {
         tree = make_light_tree(lights, {}, {}, std::uint32_t(lights.size()));
         seconds[i] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
-    std::printf("trees of 62,500 and 250,000 lights: %.2f s, %.2f s; %u levels\n", seconds[0], seconds[1],
-                tree.levels);
+    std::printf("trees of 62,500 and 250,000 lights: %.2f s, %.2f s; %u levels\n", seconds[0], seconds[1], tree.levels);
     EXPECT_LT(seconds[1], 8 * seconds[0]);
     ChosenLights c;
     c.tree = tree;
