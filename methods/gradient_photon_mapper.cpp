@@ -46,10 +46,8 @@ std::vector<std::uint32_t> material_bins(const Scene &scene, const Session &sess
 
 /// Where light may come straight from a light, or by specular vertices alone, shifts ask how it left.
 TraitMap light_vertex_traits(const Scene &scene, const RenderOptions &options) {
-    bool starts = options.direct_photons || options.all_traits;
-    for_each_bsdf(scene, [&](const Bsdf &bsdf) { starts = starts || bsdf_kind_is_dirac(bsdf_kind_name(bsdf)); });
     return {{"TRAIT_LIGHT_VERTICES", 1},
-            {"TRAIT_LIGHT_STARTS", starts},
+            {"TRAIT_LIGHT_STARTS", options.direct_photons || options.all_traits || has_dirac_bsdf(scene)},
             {"TRAIT_ONLY_CHAINS", options.only_chains},
             {"TRAIT_LOBE_LEVELS", options.sampler == RenderOptions::Sampler::sobol},
             {"TRAIT_AOV", options.all_traits || needs_features(options)},

@@ -138,6 +138,39 @@ GRADUS_FN real light_cluster_importance(light_cluster c, light_receiver receiver
            r_clamp(arriving, LIGHT_LEAST_COSINE, R(1));
 }
 
+/* A node's children, and what each may send. No arrays: PoCL's compiler would leave them in memory. */
+typedef struct {
+    light_cluster of_0, of_1, of_2, of_3;
+} light_clusters;
+typedef struct {
+    real of_0, of_1, of_2, of_3;
+    GRADUS_NOT_IN_REGISTERS
+} light_estimates;
+
+/* `after`: as light_cluster_of() has it. */
+GRADUS_FN light_clusters light_clusters_of(GRADUS_GLOBAL const uint *nodes, uint unit, uint node, uint after) {
+    light_clusters c;
+    c.of_0 = light_cluster_of(nodes, unit, node, 0u, after);
+    c.of_1 = light_cluster_of(nodes, unit, node, 1u, c.of_0.last);
+    c.of_2 = light_cluster_of(nodes, unit, node, 2u, c.of_1.last);
+    c.of_3 = light_cluster_of(nodes, unit, node, 3u, c.of_2.last);
+    return c;
+}
+
+/* One after the other (kernels/lib/ordered.h), and after `after`, a finite number. */
+GRADUS_FN light_estimates light_estimates_at(light_clusters c, light_receiver receiver, real after) {
+    light_estimates w;
+    receiver.position = v3_after(receiver.position, after);
+    w.of_0 = light_cluster_importance(c.of_0, receiver);
+    receiver.position = v3_after(receiver.position, w.of_0);
+    w.of_1 = light_cluster_importance(c.of_1, receiver);
+    receiver.position = v3_after(receiver.position, w.of_1);
+    w.of_2 = light_cluster_importance(c.of_2, receiver);
+    receiver.position = v3_after(receiver.position, w.of_2);
+    w.of_3 = light_cluster_importance(c.of_3, receiver);
+    return w;
+}
+
 typedef struct {
     uint light;
     real path; /* probability of the way to its leaf */
@@ -158,31 +191,22 @@ GRADUS_FN light_picked light_tree_pick(GRADUS_GLOBAL const uint *nodes, GRADUS_G
     const int is_far = a < share_at_infinity;
     real u = light_rest_of(a, is_far ? R(0) : share_at_infinity, is_far ? share_at_infinity : R(1) - share_at_infinity);
     uint place = 0u, first = 0u; /* of its level, and its first node */
-    real path = R(1);
+    real path = R(1), last = R(0);
     LIGHT_TREE_UNROLL
     for (uint level = 0; level < LIGHT_TREE_LEVELS(levels); ++level) {
         const uint node = first + place;
-        const light_cluster c0 = light_cluster_of(nodes, unit, node, 0u, 0u);
-        const light_cluster c1 = light_cluster_of(nodes, unit, node, 1u, c0.last);
-        const light_cluster c2 = light_cluster_of(nodes, unit, node, 2u, c1.last);
-        const light_cluster c3 = light_cluster_of(nodes, unit, node, 3u, c2.last);
-        const real w0 = light_cluster_importance(c0, receiver);
-        receiver.position = v3_after(receiver.position, w0);
-        const real w1 = light_cluster_importance(c1, receiver);
-        receiver.position = v3_after(receiver.position, w1);
-        const real w2 = light_cluster_importance(c2, receiver);
-        receiver.position = v3_after(receiver.position, w2);
-        const real w3 = light_cluster_importance(c3, receiver);
-        const real sum_1 = w0 + w1, sum_2 = sum_1 + w2, sum = sum_2 + w3;
+        const light_estimates w = light_estimates_at(light_clusters_of(nodes, unit, node, 0u), receiver, last);
+        last = w.of_2;
+        const real sum_1 = w.of_0 + w.of_1, sum_2 = sum_1 + w.of_2, sum = sum_2 + w.of_3;
         /* Rounding may take u past the last: one that is never drawn is never taken. */
         const real drawn = u * sum;
-        const int takes_1 = (w1 > R(0)) & (drawn >= w0), takes_2 = (w2 > R(0)) & (drawn >= sum_1),
-                  takes_3 = (w3 > R(0)) & (drawn >= sum_2);
-        real low = takes_1 ? w0 : R(0), taken = takes_1 ? w1 : w0;
+        const int takes_1 = (w.of_1 > R(0)) & (drawn >= w.of_0), takes_2 = (w.of_2 > R(0)) & (drawn >= sum_1),
+                  takes_3 = (w.of_3 > R(0)) & (drawn >= sum_2);
+        real low = takes_1 ? w.of_0 : R(0), taken = takes_1 ? w.of_1 : w.of_0;
         low = takes_2 ? sum_1 : low;
-        taken = takes_2 ? w2 : taken;
+        taken = takes_2 ? w.of_2 : taken;
         low = takes_3 ? sum_2 : low;
-        taken = takes_3 ? w3 : taken;
+        taken = takes_3 ? w.of_3 : taken;
         const uint child = max(max((uint)takes_1, 2u * (uint)takes_2), 3u * (uint)takes_3);
         path *= taken / sum;
         u = light_rest_of(drawn, low, taken);
@@ -205,25 +229,15 @@ GRADUS_FN light_picked light_tree_pick(GRADUS_GLOBAL const uint *nodes, GRADUS_G
 }
 
 /* With which probability a receiver is led to `child`. */
-GRADUS_FN real light_child_share(light_cluster c0, light_cluster c1, light_cluster c2, light_cluster c3, uint child,
-                                 light_receiver receiver, real after) {
-    /* One after the other (kernels/lib/ordered.h). */
-    receiver.position = v3_after(receiver.position, after);
-    const real w0 = light_cluster_importance(c0, receiver);
-    receiver.position = v3_after(receiver.position, w0);
-    const real w1 = light_cluster_importance(c1, receiver);
-    receiver.position = v3_after(receiver.position, w1);
-    const real w2 = light_cluster_importance(c2, receiver);
-    receiver.position = v3_after(receiver.position, w2);
-    const real w3 = light_cluster_importance(c3, receiver);
-    real taken = child == 1u ? w1 : w0;
-    taken = child == 2u ? w2 : taken;
-    taken = child == 3u ? w3 : taken;
-    return taken / (((w0 + w1) + w2) + w3);
+GRADUS_FN real light_child_share(light_clusters clusters, uint child, light_receiver receiver, real after) {
+    const light_estimates w = light_estimates_at(clusters, receiver, after);
+    real taken = child == 1u ? w.of_1 : w.of_0;
+    taken = child == 2u ? w.of_2 : taken;
+    taken = child == 3u ? w.of_3 : taken;
+    return taken / (((w.of_0 + w.of_1) + w.of_2) + w.of_3);
 }
 
-/* A base path's vertex and those of its offset paths, 0 to 3, who are asked for the same light. No arrays: PoCL's
- * compiler would leave them in memory. */
+/* A base path's vertex and those of its offset paths, 0 to 3, who are asked for the same light. */
 typedef struct {
     light_receiver base, offset_0, offset_1, offset_2, offset_3;
 } light_receivers;
@@ -261,23 +275,20 @@ GRADUS_FN light_paths light_tree_paths(GRADUS_GLOBAL const uint *nodes, uint lev
         const uint node = first + (present >> below);
         const uint child = (present >> (below - 2u)) & 3u;
         first = light_tree_children * first + 1u;
-        const light_cluster c0 = light_cluster_of(nodes, unit, node, 0u, word);
-        const light_cluster c1 = light_cluster_of(nodes, unit, node, 1u, c0.last);
-        const light_cluster c2 = light_cluster_of(nodes, unit, node, 2u, c1.last);
-        const light_cluster c3 = light_cluster_of(nodes, unit, node, 3u, c2.last);
-        word = c3.last;
+        const light_clusters clusters = light_clusters_of(nodes, unit, node, word);
+        word = clusters.of_3.last;
         if (with_base) {
-            p.base *= light_child_share(c0, c1, c2, c3, child, r.base, last);
+            p.base *= light_child_share(clusters, child, r.base, last);
             last = light_finite(p.base);
         }
         if (with_offsets) {
-            p.offset_0 *= light_child_share(c0, c1, c2, c3, child, r.offset_0, last);
+            p.offset_0 *= light_child_share(clusters, child, r.offset_0, last);
             last = light_finite(p.offset_0);
-            p.offset_1 *= light_child_share(c0, c1, c2, c3, child, r.offset_1, last);
+            p.offset_1 *= light_child_share(clusters, child, r.offset_1, last);
             last = light_finite(p.offset_1);
-            p.offset_2 *= light_child_share(c0, c1, c2, c3, child, r.offset_2, last);
+            p.offset_2 *= light_child_share(clusters, child, r.offset_2, last);
             last = light_finite(p.offset_2);
-            p.offset_3 *= light_child_share(c0, c1, c2, c3, child, r.offset_3, last);
+            p.offset_3 *= light_child_share(clusters, child, r.offset_3, last);
             last = light_finite(p.offset_3);
         }
     }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 namespace gradus {
 
@@ -92,8 +93,6 @@ TreeLight LightBuilder::tree_light(std::uint32_t light) {
     const float *record = &tables_.lights[std::size_t(light) * light_stride];
     const auto vector = [&](int field) { return Double3{record[field], record[field + 1], record[field + 2]}; };
     const Double3 p = vector(light_p_x);
-    const Emitter &emitter = scene_.emitters[powers_[light].emitter];
-    const Rgb mean = mean_of(emitter);
     TreeLight result{p, p, {}, pi, 0, light};
     switch (tables_.light_kinds[light]) {
     case light_kind_triangle: {
@@ -118,12 +117,15 @@ TreeLight LightBuilder::tree_light(std::uint32_t light) {
     case light_kind_point:
         result.intensity = powers_[light].power / (4 * pi);
         break;
-    default: // a spot or a projector
+    default: { // a spot or a projector
+        const Emitter &emitter = scene_.emitters[powers_[light].emitter];
+        const Rgb mean = mean_of(emitter);
         result.axis = vector(light_e1_x);
         result.half_angle = tables_.light_kinds[light] == light_kind_spot
                                 ? double(emitter.cutoff)
                                 : std::atan(std::hypot(emitter.picture[0], emitter.picture[1]) / 2);
         result.intensity = 0.2126 * mean.r + 0.7152 * mean.g + 0.0722 * mean.b;
+    }
     }
     return result;
 }
@@ -143,12 +145,12 @@ void LightBuilder::grow_tree(const std::vector<double> &weights) {
             near.push_back(tree_light(i));
         }
     }
-    const LightTree tree = make_light_tree(std::move(near), far, far_weights, tables_.light_count);
+    LightTree tree = make_light_tree(std::move(near), far, far_weights, tables_.light_count);
     const double share = far_weight / all;
     for (std::uint32_t i = 0; i < powers_.size(); ++i)
         tables_.lights[std::size_t(i) * light_stride + light_probability] =
             float(tree.probability[i] * (powers_[i].at_infinity ? share : 1 - share));
-    tables_.light_tree = tree;
+    tables_.light_tree = std::move(tree);
     tables_.light_share_at_infinity = float(share);
 }
 
@@ -173,14 +175,15 @@ void LightBuilder::finish(const LightTreeFrom &tree_from) {
         tables_.environment_light = tables_.light_count;
     if (powers_.empty())
         return;
-    const AliasTable alias = make_alias_table(light_weights(powers_));
+    const std::vector<double> weights = light_weights(powers_);
+    const AliasTable alias = make_alias_table(weights);
     for (std::size_t i = 0; i < powers_.size(); ++i) {
         tables_.lights[i * light_stride + light_probability] = alias.probability[i];
         tables_.lights[i * light_stride + light_alias_threshold] = alias.threshold[i];
     }
     tables_.light_alias = alias.alias;
     if (wants_tree(tree_from))
-        grow_tree(light_weights(powers_));
+        grow_tree(weights);
     const AliasTable emission = make_alias_table(light_weights(emitted_));
     tables_.emissions.resize(emitted_.size() * emission_stride);
     for (std::size_t i = 0; i < emitted_.size(); ++i) {

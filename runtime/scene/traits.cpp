@@ -87,6 +87,12 @@ std::size_t place_of(const std::string &name) {
 
 const BsdfKindTraits &bsdf_kind_traits(BsdfKind kind) { return kinds().at(std::size_t(kind)); }
 
+bool has_dirac_bsdf(const Scene &scene) {
+    bool result = false;
+    for_each_bsdf(scene, [&](const Bsdf &bsdf) { result = result || bsdf_kind_traits(bsdf.kind).is_dirac; });
+    return result;
+}
+
 std::string bsdf_kind_name(const Bsdf &bsdf) { return bsdf_kind_traits(bsdf.kind).name; }
 
 std::vector<std::string> all_bsdf_kinds() {

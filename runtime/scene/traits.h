@@ -58,6 +58,9 @@ struct BsdfKindTraits {
 
 const BsdfKindTraits &bsdf_kind_traits(BsdfKind kind);
 
+/// Whether a kind with Dirac lobes alone is among the scene's BSDFs, nested ones included.
+bool has_dirac_bsdf(const Scene &scene);
+
 /// The BSDF of the kernels that a Bsdf of the scene uses: a name of GRADUS_BSDF_KINDS.
 std::string bsdf_kind_name(const Bsdf &bsdf);
 

@@ -49,6 +49,20 @@ struct VertexPlaces {
     }
 };
 
+struct MeshCount {
+    std::uint64_t triangles = 0, vertices = 0; // as the table has them
+};
+
+MeshCount count_meshes(const Scene &scene) {
+    MeshCount count;
+    for (const Shape &shape : scene.shapes)
+        if (shape.kind == Shape::Kind::mesh) {
+            count.triangles += scene.meshes[shape.geometry].triangles.size();
+            count.vertices += table_vertex_count(scene, shape);
+        }
+    return count;
+}
+
 } // namespace
 
 int indexed_trait(const TraitMap &traits, std::size_t triangles) {
@@ -71,12 +85,7 @@ std::size_t table_vertex_count(const Scene &scene, const Shape &shape) {
 }
 
 std::uint64_t geometry_table_bytes(const Scene &scene, const TraitMap &traits) {
-    std::uint64_t triangles = 0, vertices = 0;
-    for (const Shape &shape : scene.shapes)
-        if (shape.kind == Shape::Kind::mesh) {
-            triangles += scene.meshes[shape.geometry].triangles.size();
-            vertices += table_vertex_count(scene, shape);
-        }
+    const auto [triangles, vertices] = count_meshes(scene);
     const std::uint64_t primitives = triangles + scene.spheres.size();
     const std::uint64_t of_spheres = scene.spheres.size() * (sphere_stride + (has_uv(traits) ? sphere_axes_stride : 0));
     if (const auto numbers = std::uint64_t(traits.at("TRAIT_INDEXED")))
@@ -90,14 +99,7 @@ std::uint64_t geometry_table_bytes(const Scene &scene, const TraitMap &traits) {
 
 void add_vertices(const Scene &scene, int numbers, SceneTables &tables) {
     const VertexPlaces places{std::size_t(numbers), numbers >= 6, numbers == 5 || numbers == 8};
-    std::size_t triangles = 0, vertices = 0;
-    for (const Shape &shape : scene.shapes) {
-        if (shape.kind != Shape::Kind::mesh)
-            continue;
-        const Mesh &mesh = scene.meshes[shape.geometry];
-        triangles += mesh.triangles.size();
-        vertices += table_vertex_count(scene, shape);
-    }
+    auto [triangles, vertices] = count_meshes(scene);
     const bool is_empty = triangles == 0; // kernels may read one, whatever they then take
     triangles += is_empty;
     vertices += is_empty;

@@ -43,10 +43,8 @@ TraitMap traits_for(const Scene &scene, const SessionOptions &options, const Tra
     for (const auto &[name, value] : of_method)
         traits[name] = value;
     // Features are seen through mirrors and glass (kernels/lib/seen_features.h).
-    bool has_dirac = options.all_traits;
-    for_each_bsdf(scene, [&](const Bsdf &bsdf) { has_dirac = has_dirac || bsdf_kind_traits(bsdf.kind).is_dirac; });
     if (traits["TRAIT_AOV"] != 0)
-        traits["TRAIT_AOV"] = has_dirac ? 2 : 1;
+        traits["TRAIT_AOV"] = options.all_traits || has_dirac_bsdf(scene) ? 2 : 1;
     return traits;
 }
 
