@@ -109,15 +109,10 @@ Image DifferenceFilm::image(std::uint64_t samples, bool layers, bool last, std::
     if (!solver_)
         solver_ =
             std::make_unique<PoissonSolver>(session_.device, session_.film.crop_width, session_.film.crop_height, 3);
-    const std::uint64_t pixels = session_.pixels();
-    GradientFilms films;
-    for (std::size_t i = 0; i < film_names_.size(); ++i)
-        films.add((*tables_)[film_names_[i]], session_.film.crop_width, session_.film.crop_height, options_.precision,
-                  film_names_.size() > 1 ? samples_of_half(samples, pixels, int(i)) : samples);
-    used_ = reconstruction_used(options_, samples, pixels);
+    used_ = reconstruction_used(options_, samples, session_.pixels());
     relative_error_.reset();
     Image image = reconstruct(
-        session_.device, *solver_, std::move(whole), std::move(films), edges(samples, last), options_, layers,
+        session_.device, *solver_, std::move(whole), films(samples), edges(samples, last), options_, layers,
         [&] {
             if (last)
                 tables_->release_all_but({counts_});
@@ -126,6 +121,19 @@ Image DifferenceFilm::image(std::uint64_t samples, bool layers, bool last, std::
     if (last)
         solver_.reset();
     return image;
+}
+
+GradientFilms DifferenceFilm::films(std::uint64_t samples) const {
+    GradientFilms films;
+    for (std::size_t i = 0; i < film_names_.size(); ++i)
+        films.add((*tables_)[film_names_[i]], session_.film.crop_width, session_.film.crop_height, options_.precision,
+                  film_names_.size() > 1 ? samples_of_half(samples, session_.pixels(), int(i)) : samples);
+    return films;
+}
+
+Image DifferenceFilm::mean(std::uint64_t samples) const {
+    std::uint64_t non_finite = 0;
+    return film_.image(samples, non_finite);
 }
 
 void DifferenceFilm::add_to(Statistics &statistics) const {

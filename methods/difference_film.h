@@ -2,6 +2,7 @@
 // lights, and the reconstruction, whose kernels are compiled while the first samples render.
 #pragma once
 
+#include "methods/gradient_films.h"
 #include "methods/method.h"
 #include "runtime/direct_light/direct_light.h"
 #include "runtime/wavefront/film.h"
@@ -40,6 +41,10 @@ class DifferenceFilm {
     /// After `samples` samples; those left out are added to `non_finite`. `last`: lets go of batches and films as soon
     /// as they have been read.
     Image image(std::uint64_t samples, bool layers, bool last, std::uint64_t &non_finite);
+
+    /// What an image of so many samples is made from, which is read where it lies; and the mean of the samples.
+    GradientFilms films(std::uint64_t samples) const;
+    Image mean(std::uint64_t samples) const;
 
     /// All sums and counts zero again. Edges of lights that have been sampled stay.
     void clear();

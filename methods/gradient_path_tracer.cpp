@@ -251,8 +251,9 @@ void GradientPathTracer::trace_primaries(const Strip &strip) {
     const std::uint32_t width = session_.film.crop_width;
     const std::uint32_t above = strip.first > 0, below = strip.first + strip.rows < session_.film.crop_height;
     paths_.begin_pass(strip.frames * (strip.rows + above + below) * width);
+    primaries_beside_ += std::uint64_t(above + below) * width;
     for (;;) {
-        begin_camera_paths(camera_, paths_, (strip.first - above) * width, first_sample_ + done_ / session_.pixels());
+        begin_primaries((strip.first - above) * width);
         if (!paths_.is_alive())
             break;
         paths_.trace();
@@ -260,6 +261,60 @@ void GradientPathTracer::trace_primaries(const Strip &strip) {
         primary_.run(paths_.rays());
         paths_.drop();
     }
+}
+
+void GradientPathTracer::begin_primaries(std::uint32_t first_pixel) {
+    const std::uint64_t sample = first_sample_ + done_ / session_.pixels();
+    if (all_rows_ == 0)
+        return begin_camera_paths(camera_, paths_, first_pixel, sample);
+    // A launch for each pair of rows: it lies elsewhere than by its number.
+    const std::uint32_t width = session_.film.crop_width, pairs = session_.film.crop_height / 2;
+    std::uint32_t slot;
+    const Range fresh = paths_.refill(slot);
+    for (std::uint32_t done = 0; done < fresh.count;) {
+        const std::uint32_t pixel = (first_pixel + slot + done) % session_.pixels(), pair = pixel / (2 * width);
+        const std::uint32_t count = std::min(fresh.count - done, 2 * width - pixel % (2 * width));
+        const auto place = std::uint32_t((2 * std::uint64_t(pair) + 1) * all_rows_ / (2 * pairs)) - 1;
+        stages_.set("crop_y", session_.film.crop_y + place - 2 * pair);
+        camera_.run(count, {{"first_row", fresh.first + done},
+                            {"first_slot", slot + done},
+                            {"first_pixel", first_pixel},
+                            {"first_sample_low", static_cast<std::uint32_t>(sample)},
+                            {"first_sample_high", static_cast<std::uint32_t>(sample >> 32)}});
+        done += count;
+    }
+}
+
+/// How many rows the image has, for all stages.
+void GradientPathTracer::set_rows(std::uint32_t rows) {
+    session_.film.crop_height = rows;
+    session_.numbers["crop_height"] = rows;
+    session_.numbers["crop_y"] = session_.film.crop_y;
+    set_divisor(session_, "pixels", "pixels", session_.pixels());
+    for (const char *number : {"crop_height", "crop_y", "pixels", "pixels_multiplier", "pixels_shift"})
+        stages_.set(number, session_.numbers[number]);
+}
+
+GradientPathTracer::Rows GradientPathTracer::render_rows(std::uint32_t rows, std::uint64_t first_sample,
+                                                         std::uint64_t samples) {
+    const std::uint32_t all = session_.film.crop_height, width = session_.film.crop_width, strip_rows = strip_rows_,
+                        strip_frames = strip_frames_;
+    const std::uint32_t slots = tables_->rows().slots;
+    all_rows_ = all;
+    set_rows(rows);
+    strip_rows_ = std::min(rows, slots / width);
+    if (strip_rows_ < rows) // with the rows beside
+        strip_rows_ = std::max(strip_rows_, 3u) - 2;
+    strip_frames_ = std::max(slots / (rows * width), 1u);
+    restart(first_sample, samples);
+    while (render_batch()) {
+    }
+    Rows found{film_.films(done_), film_.mean(done_), primaries_beside_};
+    set_rows(all);
+    all_rows_ = 0;
+    strip_rows_ = strip_rows;
+    strip_frames_ = strip_frames;
+    return found;
 }
 
 std::vector<GradientPathTracer::OwnVertices> GradientPathTracer::own_vertices() const {
@@ -426,6 +481,7 @@ void GradientPathTracer::restart(std::uint64_t first_sample, std::uint64_t sampl
     first_sample_ = first_sample;
     done_ = 0;
     total_ = session_.pixels() * samples_per_pixel;
+    primaries_beside_ = 0;
     film_.clear();
     (*tables_)["outcome"].clear();
     statistics_ = Statistics();

@@ -39,6 +39,19 @@ class GradientPathTracer final : public Method {
     /// pixel. Other numbers are other random paths of the same seed. A new method is at number 0.
     void restart(std::uint64_t first_sample, std::uint64_t samples_per_pixel);
 
+    /// What some rows of an image know.
+    struct Rows {
+        GradientFilms films;
+        Image image;                        ///< the mean of the samples
+        std::uint64_t primaries_beside = 0; ///< rays of the camera that are of no path, at the borders of strips
+    };
+    /// Renders the samples [first_sample, first_sample + samples) of pairs of neighbouring rows, `rows` in all and
+    /// even, that lie evenly over the image, as an image of these rows alone. Each second row's differences down lead
+    /// to the next pair and mean nothing. All samples are forgotten; restart() is to follow, once Rows has been read.
+    Rows render_rows(std::uint32_t rows, std::uint64_t first_sample, std::uint64_t samples);
+
+    bool has(const char *trait) const { return session_.has(trait); }
+
     Tracer *tracer() override { return &session_.tracer; }
 
   private:
@@ -73,6 +86,8 @@ class GradientPathTracer final : public Method {
     Strip next_strip() const;
     void begin_pass(const Strip &strip);
     void trace_primaries(const Strip &strip);
+    void begin_primaries(std::uint32_t first_pixel);
+    void set_rows(std::uint32_t rows);
     /// The rows with offset paths that are not connected; they come first.
     std::uint32_t shifting() const { return newest_.phases(0, phases_.joined).count; }
     void step_offset_paths();
@@ -97,6 +112,8 @@ class GradientPathTracer final : public Method {
     Hits newest_; ///< of the newest vertices
     std::uint64_t total_ = 0, done_ = 0, first_sample_ = 0;
     std::uint32_t strip_rows_ = 0, strip_frames_ = 1; ///< of a pass, but for the last
+    std::uint64_t primaries_beside_ = 0;              ///< rays of the camera through rows beside strips
+    std::uint32_t all_rows_ = 0;                      ///< of the image, while `session_` has but some of them; else 0
     Statistics statistics_;
 };
 

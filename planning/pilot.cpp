@@ -9,8 +9,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <map>
-#include <string>
 #include <vector>
 
 namespace gradus {
@@ -20,18 +18,7 @@ namespace {
 /// Of the film's 64-bit sample numbers; halves differ in the upper word too, which decides where the sequence of
 /// places within the pixel starts.
 constexpr std::uint64_t first_samples[] = {std::uint64_t(1) << 62, (std::uint64_t(1) << 62) + (std::uint64_t(1) << 32)};
-/// Of a half. Fewer make gpt look worse than it is: all its pixels share their place within the pixel, and edges are as
-/// jagged as those places are few. Times its samples, its relMSE was 1.1 to 1.3 times that of 64 samples where gains
-/// are small (tests/references: holes, materials, torus), with 2 samples 1.2 to 2.1 times, with 1 up to 3.3 times.
-constexpr std::uint64_t half_samples = pilot_samples / 2;
-/// What is left of that: relMSE of gpt over that of pt with so few samples, over the same with many. Measured 1.1
-/// to 1.4 where gains are small, the samples of pt being a little better for gpt's even places.
-constexpr double excess_of_few_places = 1.25;
 constexpr std::uint64_t largest_part = 10; ///< one in so many samples of the render
-
-/// What a ray of an offset path costs, its shift and shading counted in, over one of the base path. From the measured
-/// times of bench/render/gradient.py: 1.2 to 1.7 by scene.
-constexpr double offset_ray_cost = 1.5;
 
 } // namespace
 
@@ -82,28 +69,19 @@ PilotErrors estimate_errors(const Image &first, const Image &second, const Refer
     return {pt / double(count), (gpt_variance + std::max(gpt_bias, 0.0)) / double(count)};
 }
 
-bool has_room_for_pilot(std::uint64_t samples_per_pixel) { return samples_per_pixel >= largest_part * pilot_samples; }
+bool has_room_for_halves(std::uint64_t samples_per_pixel) {
+    return samples_per_pixel >= largest_part * 2 * half_samples;
+}
 
 Pilot run_pilot(GradientPathTracer &method) {
     Pilot pilot;
-    std::array<Image, 2> &halves = pilot.halves;
-    std::map<std::string, double> rays;
-    double samples = 0;
     for (int half = 0; half < 2; ++half) {
         method.restart(first_samples[half], half_samples);
         while (method.render_batch()) {
         }
-        halves[half] = method.image_with_layers();
-        const Statistics statistics = method.statistics();
-        for (const auto &[kind, count] : statistics.rays)
-            rays[kind] += double(count);
-        samples += double(statistics.samples);
-        pilot.seconds += statistics.render_seconds;
+        pilot.halves[half] = method.image_with_layers();
+        pilot.seconds += method.statistics().render_seconds;
     }
-    pilot.errors = estimate_errors(halves[0], halves[1]);
-    pilot.errors.gpt /= excess_of_few_places;
-    pilot.costs.pt = (rays["extension"] + rays["shadow"]) / samples;
-    pilot.costs.gpt = pilot.costs.pt + offset_ray_cost * rays["offset"] / samples;
     return pilot;
 }
 

@@ -1,5 +1,6 @@
-// A short render before a render: what path tracing and gradient-domain path tracing would cost and how far off they
-// would be. Its samples are not in the image: an image that decided on its own method would be biased.
+// Two short renders before a render, which photons are compared with (photon_pilot.h): independent images of
+// gradient-domain path tracing, with what they were made from. Their samples are not in the image: an image that
+// decided on its own method would be biased.
 #pragma once
 
 #include "methods/gradient_path_tracer.h"
@@ -11,8 +12,9 @@
 
 namespace gradus {
 
-/// Samples a pixel of both halves of a pilot.
-constexpr std::uint64_t pilot_samples = 8;
+/// Samples a pixel of a half. Fewer make gpt look worse than it is: all its pixels share their place within the pixel,
+/// and edges are as jagged as those places are few.
+constexpr std::uint64_t half_samples = 4;
 
 /// Errors of images of as many samples as one half of the pilot has.
 struct PilotErrors {
@@ -37,21 +39,13 @@ PilotErrors estimate_errors(const Image &first, const Image &second);
 /// The same relative to others than R_1 and R_2.
 PilotErrors estimate_errors(const Image &first, const Image &second, const ReferencePairs &references);
 
-/// What a sample costs, in rays of a path tracer. Counted, never timed, so that a choice by it is the same on each run
-/// and on each machine. Kernels work by vertex, and vertices are what rays meet, so time follows the rays.
-struct PilotCosts {
-    double pt = 0, gpt = 0;
-};
-
 struct Pilot {
-    PilotErrors errors;
-    PilotCosts costs;
     double seconds = 0;          ///< rendering, kernels compiled; without the reconstructions
     std::array<Image, 2> halves; ///< with layers
 };
 
-/// False before a render of so few samples a pixel that a pilot would be more than a tenth of it.
-bool has_room_for_pilot(std::uint64_t samples_per_pixel);
+/// Whether a render of so many samples a pixel is so long that both halves are at most a tenth of it.
+bool has_room_for_halves(std::uint64_t samples_per_pixel);
 
 /// Renders both halves with `method`, which is to be restarted afterwards. Their samples have numbers that no render
 /// reaches.

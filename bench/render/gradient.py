@@ -9,9 +9,9 @@ seeds of their own. Prints, as medians: seconds of a sample of gpt over one of p
 at equal samples, pt over gpt; at equal time, pt being given as many more samples as its are cheaper (its relMSE falls
 by as much); and at equal time of the whole process, start, loading, reconstruction and writing counted in both. Then
 what --method auto picked, in how many of the runs, the gain at equal time that it expected, and its regret: the relMSE
-at equal time, the pilot counted in, over that of the better of both (1: as good). It renders a pilot with --spp 80 or
-more; below it goes by a rule. Target: a cost of at most 2.2 on the Cornell box, 5 times less error at equal time on
-scenes of diffuse light, at most 1.1 times the error at equal samples on any.
+at equal time, pilot and reconstruction counted in, over that of the better of both (1: as good). Short renders have no
+pilot, and it goes by a rule. Last, the geometric mean and the largest regret. Target: a cost of at most 2.2 on the Cornell box, 5 times less error at equal time on
+scenes of diffuse light, at most 1.1 times the error at equal samples on any, a regret of 1.1.
 """
 
 import argparse
@@ -36,6 +36,13 @@ def render(arguments, scene, method, seed, samples, folder):
     choice = record.get("choice")
     seconds = record["render_seconds"] + (choice["pilot"]["seconds"] if choice else 0)
     return seconds / samples, renders.compare(arguments.gradus, image, scene.reference)["relative_mse"], choice, whole
+
+
+def reconstruction_seconds(arguments, scene, folder):
+    image = pathlib.Path(folder) / "layers.exr"
+    renders.render(arguments.gradus, scene, "gpt", 1, image, samples=arguments.spp, aov=True)
+    name = "weighted" if arguments.spp >= 4 else "l1"
+    return renders.reconstruction_seconds(arguments.gradus, image, ["--reconstruction", name])
 
 
 def equal_process_time(pt, gpt, samples):
@@ -77,12 +84,17 @@ def main():
             pick = statistics.mode(choice["method"] for choice in choices)
             agreed = sum(choice["method"] == pick for choice in choices)
             expected = statistics.median(choice["gain"] or 0 for choice in choices)
-            regret = error["auto"] * cost_auto / min(error["pt"], error["gpt"] * cost)
+            solving = reconstruction_seconds(arguments, scene, folder) / arguments.spp
+            pt_seconds = statistics.median(turn[0] for turn in turns["pt"])
+            regret = (error["auto"] * (cost_auto * pt_seconds + (solving if pick == "gpt" else 0))
+                      / min(error["pt"] * pt_seconds, error["gpt"] * (cost * pt_seconds + solving)))
             print(f"{name:<20} {cost:6.2f} {error['pt']:11.3e} {error['gpt']:11.3e} {gain:14.2f} {gain / cost:11.2f}"
                   f" {process:11.2f} {pick:>5} {agreed}/{len(choices)} {expected:9.2f} {regret:7.2f}", flush=True)
             results.append({"scene": name, "cost": cost, "relmse": error, "equal_samples": gain,
                             "equal_time": gain / cost, "equal_process_time": process, "turns": turns,
                             "auto": {"pick": pick, "agreed": agreed, "expected": expected, "regret": regret}})
+    regrets = [result["auto"]["regret"] for result in results]
+    print(f"regret: geometric mean {statistics.geometric_mean(regrets):.3f}, largest {max(regrets):.2f}")
     if arguments.json:
         arguments.json.write_text(json.dumps(results, indent=2) + "\n")
 

@@ -7,6 +7,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -66,35 +67,91 @@ TEST(PilotErrors, AFireflyIsNotItsOwnReference) {
     EXPECT_NEAR(errors.gpt / expected, 1, 1e-3);
 }
 
-TEST(Pilot, IsATenthOfTheRenderAtMost) {
-    for (const std::uint64_t samples : {std::uint64_t(0), std::uint64_t(1), 10 * pilot_samples - 1})
-        EXPECT_FALSE(has_room_for_pilot(samples)) << samples;
-    EXPECT_TRUE(has_room_for_pilot(10 * pilot_samples));
-    EXPECT_TRUE(has_room_for_pilot(std::uint64_t(1) << 40));
+TEST(Pilot, OfHalvesIsATenthOfTheRenderAtMost) {
+    for (const std::uint64_t samples : {std::uint64_t(0), std::uint64_t(1), 20 * half_samples - 1})
+        EXPECT_FALSE(has_room_for_halves(samples)) << samples;
+    EXPECT_TRUE(has_room_for_halves(20 * half_samples));
+    EXPECT_TRUE(has_room_for_halves(std::uint64_t(1) << 40));
 }
 
-Pilot pilot_of(double pt_error, double gpt_error, double pt_cost, double gpt_cost) {
-    Pilot pilot;
-    pilot.errors = {pt_error, gpt_error};
+/// A sixty-fourth of the paths, in pairs of rows; none where launches would cost more than that.
+TEST(RowPilot, IsAFewRowsOfTheImage) {
+    for (const std::uint64_t samples : {std::uint64_t(0), std::uint64_t(1), std::uint64_t(32)})
+        EXPECT_EQ(rows_of_pilot(128, 96, samples), 0u) << samples;
+    EXPECT_EQ(rows_of_pilot(128, 96, 33), 8u);
+    EXPECT_EQ(rows_of_pilot(128, 96, 120), 22u); // 1.47e6 / 64 / 8 / 128 is 22.5
+    EXPECT_EQ(rows_of_pilot(1920, 1080, 1), 8u);
+    EXPECT_EQ(rows_of_pilot(1920, 1080, std::uint64_t(1) << 40), 64u);
+    EXPECT_EQ(rows_of_pilot(1920, 7, std::uint64_t(1) << 40), 6u);
+    EXPECT_EQ(rows_of_pilot(1 << 20, 1, 1000), 0u) << "no pair of rows";
+    EXPECT_EQ(rows_of_pilot(16, 16, 80, true), 8u);
+}
+
+/// Means over frequencies, against sums of 256 x 256 of them. Frequencies that lie evenly tell the mean of a smooth
+/// periodic function to rounding; the least width of its peak, 1 / sqrt(100), is twice the distance of the 64.
+TEST(RowPilot, KnowsWhatLeastSquaresLeave) {
+    const auto by_sum = [](double across, double down) {
+        double sum = 0;
+        constexpr int count = 256;
+        for (int i = 0; i < count; ++i)
+            for (int j = 0; j < count; ++j)
+                sum += 1 / (1 + across * (2 - 2 * std::cos((i + 0.5) * M_PI / count)) +
+                            down * (2 - 2 * std::cos((j + 0.5) * M_PI / count)));
+        return sum / (count * count);
+    };
+    EXPECT_DOUBLE_EQ(part_left(0, 0), 1);
+    for (const auto &[across, down] :
+         {std::pair{1.0, 1.0}, {1.0, 0.0}, {0.0, 5.0}, {0.3, 20.0}, {20.0, 0.3}, {100.0, 100.0}})
+        EXPECT_NEAR(part_left(across, down) / by_sum(across, down), 1, 1e-3) << across << " " << down;
+    EXPECT_LT(part_left(1e8, 1e8), 1e-3);
+}
+
+RowPilot pilot_of(double error, double left, double pt_cost, double gpt_cost) {
+    RowPilot pilot;
+    pilot.error = error;
+    pilot.left = left;
     pilot.costs = {pt_cost, gpt_cost};
     return pilot;
 }
 
+MethodChoice choice_for(const RowPilot &pilot, Reconstruction reconstruction = Reconstruction::weighted,
+                        std::uint64_t samples = 10'000) {
+    return choose_by_pilot(pilot, reconstruction, samples, 1'000'000);
+}
+
 TEST(ChoiceByPilot, IsOfLessErrorAtEqualCost) {
-    const MethodChoice gpt = choose_by_pilot(pilot_of(1, 0.25, 5, 10));
+    const MethodChoice gpt = choice_for(pilot_of(4, 0.125, 5, 10)); // twice what variances say
     EXPECT_EQ(gpt.method, "gpt");
-    EXPECT_DOUBLE_EQ(gpt.gain, 2);
-    EXPECT_DOUBLE_EQ(gpt.estimates.at("pt").relative_mse, 4) << "of one sample; the pilot's halves have four";
-    const MethodChoice pt = choose_by_pilot(pilot_of(1, 0.625, 5, 10));
+    EXPECT_NEAR(gpt.gain, 2, 0.01);
+    EXPECT_DOUBLE_EQ(gpt.estimates.at("pt").relative_mse, 4);
+    EXPECT_DOUBLE_EQ(gpt.estimates.at("gpt").relative_mse, 1);
+    const MethodChoice pt = choice_for(pilot_of(4, 0.3125, 5, 10));
     EXPECT_EQ(pt.method, "pt");
-    EXPECT_DOUBLE_EQ(pt.gain, 0.8);
+    EXPECT_NEAR(pt.gain, 0.8, 0.01);
+}
+
+/// Solving costs 18 rays a pixel and 1.1 million, as much as gpt's samples where there are few.
+TEST(ChoiceByPilot, CountsTheReconstruction) {
+    const RowPilot pilot = pilot_of(4, 0.125, 5, 10);
+    EXPECT_NEAR(choice_for(pilot, Reconstruction::weighted, 4).gain, 20 / (10 + (18 + 1.1) / 4), 1e-6);
+    EXPECT_EQ(choose_by_pilot(pilot, Reconstruction::weighted, 4, 10'000).method, "pt");
+}
+
+/// What a guide does for pt is not gained by gpt once more.
+TEST(ChoiceByPilot, GoesByTheReconstruction) {
+    const RowPilot pilot = pilot_of(4, 0.1, 5, 12);
+    const double weighted = choice_for(pilot).gain, guided = choice_for(pilot, Reconstruction::guided, 16).gain;
+    EXPECT_GT(weighted, 1.5);
+    EXPECT_LT(guided, 1);
+    EXPECT_GT(choice_for(pilot, Reconstruction::guided, 1 << 20).gain, guided);
+    EXPECT_NEAR(choice_for(pilot, Reconstruction::l1).gain * 1.3, weighted, 1e-6);
 }
 
 TEST(ChoiceByPilot, IsPtWhereThePilotTellsNothing) {
     const double infinity = std::numeric_limits<double>::infinity();
-    for (const Pilot &pilot : {pilot_of(0, 0, 5, 10), pilot_of(std::nan(""), 1, 5, 10), pilot_of(1, infinity, 5, 10),
-                               pilot_of(0, 0, 0, 0)}) {
-        const MethodChoice choice = choose_by_pilot(pilot);
+    for (const RowPilot &pilot : {pilot_of(0, 1, 5, 10), pilot_of(std::nan(""), 1, 5, 10), pilot_of(infinity, 1, 5, 10),
+                                  pilot_of(1, std::nan(""), 5, 10), pilot_of(0, 0, 0, 0)}) {
+        const MethodChoice choice = choice_for(pilot);
         EXPECT_EQ(choice.method, "pt");
         EXPECT_FALSE(choice.reason.empty());
         EXPECT_EQ(choice.gain, 0);
@@ -173,6 +230,47 @@ TEST(ChoiceByPhotons, IsOfLessThanHalfOfTheErrorAtEqualCost) {
     EXPECT_EQ(choose(1600).choice.method, "gpt");
 }
 
+/// Pairs of rows bear what they do in the whole image, for every batch size, but for differences down to the next pair.
+/// Without roulette, for offset paths have a part in it. The sums of a base path are rounded by when its offset paths
+/// join it: some tens of roundings, 2e-6 of the largest value.
+TEST(RowPilot, RendersRowsOfTheImage) {
+    constexpr std::uint32_t width = 40, height = 30, count = 8;
+    Scene scene = own_scene("cornell-box.xml", width, height);
+    scene.settings.samples_per_pixel = 4;
+    scene.settings.rr_depth = -1;
+    scene.settings.max_depth = 5;
+    GradientPathTracer whole(shared_device(), scene, {});
+    while (whole.render_batch()) {
+    }
+    const Image image = whole.image_with_layers();
+    for (const std::uint32_t batch : {0u, 200u}) {
+        RenderOptions options;
+        options.batch_size = batch;
+        GradientPathTracer method(shared_device(), scene, options);
+        const GradientPathTracer::Rows rows = method.render_rows(count, 0, 4);
+        EXPECT_EQ(rows.image.height, count);
+        std::vector<float> plane(width * count);
+        for (const auto &[name, layer] :
+             {std::pair{"primal.G", GradientFilm::primal}, {"dx.G", GradientFilm::dx}, {"dy.G", GradientFilm::dy}}) {
+            rows.films.mean(layer)(1, plane.data());
+            const std::vector<float> &expected = image.find(name)->values;
+            constexpr float rounding = 2e-6f;
+            const float largest = *std::max_element(expected.begin(), expected.end());
+            for (std::uint32_t row = 0; row < count; ++row) {
+                const std::uint32_t y = (row / 2 * 2 + 1) * height / count - 1 + row % 2;
+                for (std::uint32_t x = 0; x < width && !(layer == GradientFilm::dy && row % 2 == 1); ++x)
+                    ASSERT_NEAR(plane[row * width + x], expected[y * width + x], rounding * largest)
+                        << name << " " << x << " " << y;
+            }
+        }
+        // And the method renders the whole as ever.
+        method.restart(0, 4);
+        while (method.render_batch()) {
+        }
+        EXPECT_TRUE(equal_bits(method.image_with_layers(), image)) << batch;
+    }
+}
+
 /// The image is that of the method, for every batch size and number of threads, and so are the estimates.
 void expect_choice(const Scene &scene, const std::string &method) {
     RenderOptions options;
@@ -200,7 +298,7 @@ void expect_choice(const Scene &scene, const std::string &method) {
 
 TEST(Automatic, TakesGptInTheCornellBox) {
     Scene scene = own_scene("cornell-box.xml", 48, 40);
-    scene.settings.samples_per_pixel = 80;
+    scene.settings.samples_per_pixel = 210;
     expect_choice(scene, "gpt");
 }
 
@@ -208,7 +306,7 @@ TEST(Automatic, TakesGptInTheCornellBox) {
 /// method lets go of its memory, is like all others.
 TEST(Automatic, HasNoLayersThatNobodyAskedFor) {
     Scene scene = own_scene("cornell-box.xml", 48, 40);
-    scene.settings.samples_per_pixel = 80;
+    scene.settings.samples_per_pixel = 210;
     const std::unique_ptr<Method> method = make_method("auto", shared_device(), scene, {});
     while (method->render_batch()) {
     }
@@ -223,7 +321,7 @@ TEST(Automatic, HasNoLayersThatNobodyAskedFor) {
 /// Spheres no larger than a pixel, of all colours: neighbouring pixels have nothing in common, and shifts seldom
 /// connect.
 TEST(Automatic, TakesPtWhereNeighboursHaveNothingInCommon) {
-    SceneMaker maker(32, 80);
+    SceneMaker maker(32, 400);
     maker.look({0, 0, 4}, {0, 0, 0}, 30);
     maker.environment(1);
     maker.scene.settings.max_depth = 4;
@@ -288,7 +386,7 @@ TEST(Automatic, LeavesPhotonsWherePathsFindAll) {
 }
 
 TEST(Automatic, TakesPtForABlackImage) {
-    SceneMaker maker(16, 80);
+    SceneMaker maker(16, 1600);
     maker.look({0, 0, 4}, {0, 0, 0}, 30);
     maker.environment(0);
     maker.sphere({0, 0, 0}, 1, maker.material(diffuse(0.5)));
@@ -300,8 +398,13 @@ TEST(Automatic, TakesPtForABlackImage) {
 
 TEST(Automatic, GoesByARuleWhereThereIsNoRoomForAPilot) {
     Scene scene = own_scene("cornell-box.xml", 48, 40);
-    for (const auto &[max_depth, method] : {std::pair{-1, "gpt"}, {1, "pt"}}) {
-        scene.settings.samples_per_pixel = 1;
+    struct Case {
+        std::uint64_t samples;
+        int max_depth;
+        const char *method;
+    };
+    for (const auto &[samples, max_depth, method] : {Case{16, -1, "gpt"}, {16, 1, "pt"}, {1, -1, "pt"}}) {
+        scene.settings.samples_per_pixel = samples;
         scene.settings.max_depth = max_depth;
         const Rendered rendered = render(scene, {}, "auto");
         ASSERT_TRUE(rendered.statistics.choice);

@@ -52,7 +52,7 @@ TEST_P(Threads, DoNotChangeTheImage) {
 
 /// Enough samples for a pilot.
 TEST_F(Threads, DoNotChangeWhichMethodIsChosen) {
-    expect_one_image("cornell-box", {"--size", "48x36", "--spp", "80", "--method", "auto"});
+    expect_one_image("cornell-box", {"--size", "48x36", "--spp", "240", "--method", "auto"});
 }
 
 std::string name_of_threads(const ::testing::TestParamInfo<std::pair<const char *, const char *>> &info) {
