@@ -126,6 +126,18 @@ def add_pictures(report):
         report.add("The same time", page.picture(path, about["caption"]))
 
 
+def add_crops(report):
+    path = report.folder / "crops.png"
+    about = report.read("crops.json")
+    if about and about.get("crops") and path.exists():
+        methods = list(about["crops"][0]["relmse"])
+        rows = [[row["scene"], row["crop"], *(f"{row['relmse'][method]:.2e}" for method in methods),
+                 *(row["samples"][method] for method in methods)] for row in about["crops"]]
+        report.add("What is kept", page.picture(path, about["caption"]) + page.folded("As a table", page.table(
+            ["scene", "crop", *(f"relMSE {method}" for method in methods), *(f"samples {method}" for method in methods)],
+            rows)))
+
+
 def add_photons(report):
     results = report.read("photons.json")
     if not results:
@@ -248,7 +260,7 @@ def main():
     output = arguments.output or arguments.folder / "report"
     output.mkdir(parents=True, exist_ok=True)
     report = Report(arguments.folder, output, plotting.pyplot())
-    for add in (add_convergence, add_pictures, add_photons, add_chains, add_holes, add_stages, add_floors, add_kernels, add_solver,
+    for add in (add_convergence, add_pictures, add_crops, add_photons, add_chains, add_holes, add_stages, add_floors, add_kernels, add_solver,
                 add_log, add_conditions):
         add(report)
     for missing in report.missing:

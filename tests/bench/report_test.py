@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """bench/report --draw-only on small JSON files: the page is there, whole, and says what they hold."""
 
+import base64
 import html
 import json
 import pathlib
@@ -83,6 +84,15 @@ def chains():
     return {"chains": [{"job": "box 8x8 4 spp, depth 12", "points": points, "failed_shifts": 0.125}]}
 
 
+def crops():
+    return {"machine": MACHINE, "command": ["crops.py"], "caption": "Crops <of> a box.", "crops": [
+        {"scene": "box", "crop": "edges", "place": [0, 0], "relmse": {"denoised": 0.25, "gpt:guided": 0.5},
+         "samples": {"denoised": 32, "gpt:guided": 16}, "seconds": {"denoised": 1, "gpt:guided": 1}}]}
+
+
+PNG = base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNgAAAAAgABSK+kcQAAAABJRU5ErkJggg==")
+
+
 class Headline(unittest.TestCase):
     def of(self, *ratios, at_least=False):
         return chart.headline([{"scene": f"scene {number}", "method": "gpt",
@@ -126,6 +136,8 @@ class DrawOnly(unittest.TestCase):
         self.write("floor.json", floor(1.25, 1.5))
         self.write("gradient-floor.json", floor(3))
         self.write("holes.json", holes())
+        self.write("crops.json", crops())
+        (self.folder / "crops.png").write_bytes(PNG)
         _, page = self.draw()
         for name in ("convergence", "convergence-trimmed", "photons", "chains", "stages", "functions", "kernels"):
             self.assertTrue((self.folder / "report" / f"{name}.png").exists(), name)
@@ -148,6 +160,8 @@ class DrawOnly(unittest.TestCase):
         self.assertIn("<td>gpt</td><td>-1.00</td><td>5.00</td>", page)
         self.assertIn("<td>torus 8x8 4 spp</td><td>pt</td><td>1.25</td><td>0.62 to 2.50</td><td>1.5</td>", page)
         self.assertIn("<td>torus 8x8 4 spp</td><td>gpt</td><td>3.00</td><td>1.50 to 6.00</td><td>1.5</td>", page)
+        self.assertIn("<td>edges</td><td>2.50e-01</td><td>5.00e-01</td><td>32</td><td>16</td>", page)
+        self.assertIn("Crops &lt;of&gt; a box.", page)
         self.assertIn("<td>7</td><td>5.38</td><td>0.5</td><td>15</td>", page)
         self.assertIn("<td>holes.py --spp 4</td>", page)
         self.assertNotIn("box <1>", page)
