@@ -39,4 +39,8 @@
 #define GUIDE_COUNTS 1
 #define GUIDE_SHARES 2
 
+/* Planes of what the image has lost: three channels, and the brightness that it is relative to. */
+#define GUIDE_BRIGHT 3
+#define GUIDE_LOST 4
+
 #endif

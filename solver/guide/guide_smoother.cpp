@@ -22,7 +22,8 @@ constexpr GuideKernel guide_kernels[] = {
     {"guide_judge", "guide_moments", 0},         {"guide_judge", "guide_share", 0},
     {"guide_judge", "guide_blend", 0},           {"guide_smooth", "guide_smooth_rows", 3},
     {"guide_smooth", "guide_smooth_columns", 3}, {"guide_smooth", "guide_smooth_rows", 9},
-    {"guide_smooth", "guide_smooth_columns", 9},
+    {"guide_smooth", "guide_smooth_columns", 9}, {"guide_light", "guide_lost", 0},
+    {"guide_light", "guide_light_pass", 0},      {"guide_light", "guide_give_back", 0},
 };
 
 KernelLibrary guide_library(Device &device, Precision precision) {

@@ -20,7 +20,8 @@ Denoiser::Features cleaned(Denoiser &denoiser, const Buffer &features, std::uint
 } // namespace
 
 GuidedReconstruction::GuidedReconstruction(Device &device, PoissonSolver &solver, Guide guide)
-    : device_(device), solver_(solver), judge_(device, solver.width(), solver.height()) {
+    : device_(device), solver_(solver), judge_(device, solver.width(), solver.height()),
+      light_(device, solver.width(), solver.height()) {
     if (guide == Guide::denoiser)
         denoiser_ = std::make_unique<Denoiser>();
     else
@@ -87,6 +88,8 @@ PoissonReport GuidedReconstruction::solve(const HalvedImages &halves, const Guid
     }
     std::vector<float> shares;
     judge_.run(images, share, of_halves, result, followed.valid() ? &followed : nullptr, errors ? &shares : nullptr);
+    if (filter_)
+        light_.run(images, share, result);
     if (errors)
         *errors = errors_of_guided(images, share, of_halves, shares);
     return report;

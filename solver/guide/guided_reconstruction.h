@@ -4,6 +4,7 @@
 #include "solver/guide/denoiser.h"
 #include "solver/guide/feature_filter.h"
 #include "solver/guide/guide_judge.h"
+#include "solver/guide/light_correction.h"
 #include "solver/reconstruction.h"
 #include "solver/squared_errors.h"
 #include "solver/weighted_reconstruction.h"
@@ -49,6 +50,7 @@ class GuidedReconstruction {
     std::unique_ptr<Denoiser> denoiser_;
     std::unique_ptr<FeatureFilter> filter_;
     GuideJudge judge_;
+    LightCorrection light_;
 };
 
 /// GuideInputs in memory of the host: planes of width * height floats, three of albedo and of the normal, one of depth,
