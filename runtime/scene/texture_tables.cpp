@@ -23,12 +23,17 @@ void check_words(std::uint64_t words) {
 /// The pictures one after the other, each once. By picture: its first word.
 std::map<const Bitmap *, std::uint32_t> add_bitmaps(const Scene &scene, SceneTables &tables) {
     std::map<const Bitmap *, std::uint32_t> offsets;
-    std::uint64_t words = 0;
+    const bool has_srgb = std::any_of(scene.textures.begin(), scene.textures.end(), [](const Texture &texture) {
+        return (texture_features(texture) & textures_of_srgb) != 0;
+    });
+    std::uint64_t words = has_srgb ? texture_srgb_words : 0;
     for (const Texture &texture : scene.textures)
         if (texture.bitmap && offsets.emplace(texture.bitmap.get(), std::uint32_t(words)).second)
             words += texture.bitmap->words.size();
     check_words(words);
     tables.texels.resize(std::size_t(words) + 1); // one at least
+    for (std::uint32_t code = 0; has_srgb && code < texture_srgb_words; ++code)
+        tables.texels[code] = std::bit_cast<std::uint32_t>(float(srgb_to_linear_value(code / 255.0)));
     for (const auto &[bitmap, offset] : offsets)
         std::copy(bitmap->words.begin(), bitmap->words.end(), tables.texels.begin() + offset);
     return offsets;
@@ -209,8 +214,9 @@ void add_textures(const Scene &scene, SceneTables &tables) {
             tables.material_textures[first + std::size_t(number)] =
                 std::uint32_t(std::ranges::find(distinct, texture) - distinct.begin());
         });
-        distinct.resize(lookups, std::int32_t(instead.parameter));
-        tables.material_lookups.insert(tables.material_lookups.end(), distinct.begin(), distinct.end());
+        std::vector<std::uint32_t> numbers(distinct.begin(), distinct.end());
+        numbers.resize(lookups, texture_absent | instead.parameter);
+        tables.material_lookups.insert(tables.material_lookups.end(), numbers.begin(), numbers.end());
         add_normal_map(bsdf.map, instead.normal_map, tables);
     }
     if (scene.textures.empty()) { // kernels may ask for one, whatever they then take
