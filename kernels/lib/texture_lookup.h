@@ -67,7 +67,7 @@ GRADUS_FN real texture_value_of(int features, GRADUS_GLOBAL const uint *texels, 
         value = (real)(int)(code & 0xFFFFu) * (are_words ? R(1) / R(65535) : R(1) / R(255));
     }
     if (TEXTURES_HAVE(textures_of_srgb)) {
-        const real linear = as_float(texels[code & 0xFFu]); /* texture_srgb_words of them lie there */
+        const real linear = as_float(texels[(int)(code & 0xFFu)]); /* texture_srgb_words of them lie there */
         value = (flags & texture_flag_srgb) != 0u ? linear : value;
     }
     if (TEXTURES_HAVE(textures_of_halves)) {
@@ -100,7 +100,7 @@ GRADUS_FN rgb texture_fetch(int features, GRADUS_GLOBAL const uint *texels, text
     /* How many words a texel of colour has, and how many texels of gray, as a power of two, a word. */
     const uint words = of_bytes ? 1u : of_pairs ? 2u : 3u, shared = of_bytes ? 2u : of_pairs ? 1u : 0u;
     const uint at = place.offset + (is_color ? number * words : number >> shared);
-    const uint first = texels[uint_after(at, before)];
+    const uint first = texels[(int)uint_after(at, before)];
     const int has_more = TEXTURES_HAVE(textures_in_color) & (has_pairs | has_reals);
     const uint second = has_more ? texels[at + ((is_color & !of_bytes) ? 1u : 0u)] : first;
     const uint third = has_more & has_reals ? texels[at + ((is_color & of_reals) ? 2u : 0u)] : second;

@@ -121,7 +121,7 @@ STAGE read_material(uint count, uint unit, uint first, uint traced_rows, uint pa
                       texture_bits(TRAIT_NORMAL_TEXTURES, normal_texture, textures, texture_reals, unit);
     if (!HAS_ROW(i, count, kept))
         return;
-    const uint row = index[first + i];
+    const int row = (int)index[first + i];
     const uint primitive = AT_UINT(traced, primitive, row);
     const vec3 direction = AT_V3(traced, direction, row);
     const primitive_hit hit =
@@ -218,8 +218,7 @@ STAGE read_material(uint count, uint unit, uint first, uint traced_rows, uint pa
     along_v = v3_select(is_sphere, v3_scale(meridian, half_turn), along_v);
 #endif
     const uint map_flags = FIELD_OF(normal_map, normal_maps, record, flags);
-    const uint map_texture = texture_or_first(
-        FIELD_OF(normal_map, normal_maps, record, texture) | (map_flags == 0u ? texture_absent : 0u), normal_texture);
+    const uint map_texture = texture_or_first(FIELD_OF(normal_map, normal_maps, record, texture), normal_texture);
     const textured_surface place = textured_surface_at(
         hit.normal, shading_normal_at(triangle_normals, unit, triangle_count, primitive, hit), along_u, along_v);
     vec3 mapped = place.shading;

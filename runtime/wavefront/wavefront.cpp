@@ -54,7 +54,7 @@ TableList Wavefront::tables() const {
 TableList Wavefront::ray_tables() const {
     const std::uint32_t bins = layout_.bins();
     TableList list = {{.name = "ray", .columns = ray_columns, .alternates = true},
-                      {.name = "surface", .columns = session_.surface_columns()},
+                      {.name = "surface", .columns = session_.surface_columns(), .is_cleared = true},
                       {.name = "bin", .is_uint = true},
                       {.name = "index", .is_uint = true},
                       {.name = "chunk_offset", .rows = RowsOf::chunk, .columns = bins, .is_uint = true},
