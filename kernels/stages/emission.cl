@@ -20,13 +20,13 @@ STAGE emission(uint count, uint unit, uint first, uint capacity, uint slots, __g
 ) {
     const size_t i = work_item();
 #if LIGHTS_HAVE_SURFACE_TEXTURES
-    if (!HAS_ROW(i, count, texture_bits(TRAIT_LIGHT_TEXTURES, textures, texture_reals, unit)))
+    if (!HAS_ROW(i, count, texture_bits(TRAIT_LIGHT_TEXTURES, 0u, textures, texture_reals, unit)))
 #else
     if (i >= count)
 #endif
         return;
-    const uint row = index[first + i];
-    const uint slot = AT_UINT(path, slot, row);
+    const int row = AT_INDEX(first + i);
+    const int slot = AT_ROW(path, slot, row);
     const uint primitive = AT_UINT(ray, primitive, row);
     const vec3 origin = AT_V3(ray, origin, row);
     const vec3 direction = AT_V3(ray, direction, row);

@@ -15,7 +15,7 @@ STAGE primary(uint count, uint unit, uint capacity, uint slots, __global const r
     const size_t row = work_item();
     if (row >= count)
         return;
-    const uint slot = AT_UINT(path, slot, row);
+    const int slot = AT_ROW(path, slot, row);
     const uint primitive = AT_UINT(ray, primitive, row);
     const vec3 direction = AT_V3(ray, direction, row);
     const int is_hit = primitive < ray_first_special;
