@@ -113,7 +113,8 @@ StageDeclaration count_stage() {
 GradientPathTracer::GradientPathTracer(Device &device, const Scene &scene, const RenderOptions &options)
     : options_(options), session_(device, scene, options, gradient_traits(scene, options)),
       phases_(phases_of(session_)), camera_(stages_.add(camera_stage())),
-      far_clip_(stages_.add(far_clip_stage(session_))), primary_(stages_.add({.name = "primary"})),
+      far_clip_(stages_.add(far_clip_stage(session_))),
+      primary_(stages_.add({.name = "primary", .numbers = {"first_slot"}})),
       begin_(stages_.add({.name = "gradient_begin", .numbers = {"first_row", "first_slot"}})),
       connect_(stages_.add(connect_stage())),
       gradient_connect_(
@@ -256,17 +257,17 @@ void GradientPathTracer::trace_primaries(const Strip &strip) {
     paths_.begin_pass(strip.frames * (strip.rows + above + below) * width);
     primaries_beside_ += std::uint64_t(above + below) * width;
     for (;;) {
-        begin_primaries((strip.first - above) * width);
+        const std::uint32_t slot = begin_primaries((strip.first - above) * width);
         if (!paths_.is_alive())
             break;
         paths_.trace();
         far_clip_.run(paths_.rays());
-        primary_.run(paths_.rays());
+        primary_.run(paths_.rays(), {{"first_slot", slot}});
         paths_.drop();
     }
 }
 
-void GradientPathTracer::begin_primaries(std::uint32_t first_pixel) {
+std::uint32_t GradientPathTracer::begin_primaries(std::uint32_t first_pixel) {
     const std::uint64_t sample = first_sample_ + done_ / session_.pixels();
     if (all_rows_ == 0)
         return begin_camera_paths(camera_, paths_, first_pixel, sample);
@@ -286,6 +287,7 @@ void GradientPathTracer::begin_primaries(std::uint32_t first_pixel) {
                             {"first_sample_high", static_cast<std::uint32_t>(sample >> 32)}});
         done += count;
     }
+    return slot;
 }
 
 /// How many rows the image has, for all stages.

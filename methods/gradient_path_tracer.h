@@ -86,7 +86,8 @@ class GradientPathTracer final : public Method {
     Strip next_strip() const;
     void begin_pass(const Strip &strip);
     void trace_primaries(const Strip &strip);
-    void begin_primaries(std::uint32_t first_pixel);
+    /// Returns the first slot of the paths begun.
+    std::uint32_t begin_primaries(std::uint32_t first_pixel);
     void set_rows(std::uint32_t rows);
     /// The rows with offset paths that are not connected; they come first.
     std::uint32_t shifting() const { return newest_.phases(0, phases_.joined).count; }
