@@ -63,12 +63,13 @@ TableList Wavefront::tables() const {
 
 TableList Wavefront::ray_tables() const {
     const std::uint32_t bins = layout_.bins();
-    return {{.name = "ray", .columns = ray_columns, .alternates = true},
-            {.name = "surface", .columns = session_.surface_columns()},
-            {.name = "bin", .is_uint = true},
-            {.name = "index", .is_uint = true},
-            {.name = "chunk_offset", .rows = RowsOf::chunk, .columns = bins, .is_uint = true},
-            {.name = "range", .rows = RowsOf::one, .columns = bins + 1, .is_uint = true}};
+    return {
+        {.name = "ray", .columns = session_.has("TRAIT_INSTANCES") ? ray_columns : ray_instance, .alternates = true},
+        {.name = "surface", .columns = session_.surface_columns()},
+        {.name = "bin", .is_uint = true},
+        {.name = "index", .is_uint = true},
+        {.name = "chunk_offset", .rows = RowsOf::chunk, .columns = bins, .is_uint = true},
+        {.name = "range", .rows = RowsOf::one, .columns = bins + 1, .is_uint = true}};
 }
 
 void Wavefront::attach(Tables &tables) { tables_ = &tables; }
@@ -94,6 +95,8 @@ void Wavefront::trace() {
     SegmentTable ray{&(*tables_)["ray"], rows, rays(), ray_origin_x, ray_direction_x, ray_primitive};
     if (fresh_are_alike_)
         ray.alike_from = vertices_;
+    if (session_.has("TRAIT_INSTANCES"))
+        ray.instance = ray_instance;
     const TraceCounts counts =
         trace_segments(session_.tracer, tables_->precision(), ray, connections, session_.trace_seconds);
     session_.rays["extension"] += counts.extension;
