@@ -16,10 +16,6 @@ class Phases;
 /// What becomes of instances of groups of shapes: shapes of their own, which are faster to trace, or instances, which
 /// take no memory for geometry. Automatic: copies where all of them are small, or a group has but one.
 enum class InstanceChoice { automatic, copies, kept };
-/// Of copies that are made of groups that are seen more than once, in bytes of their meshes, before all are kept as
-/// instances.
-inline constexpr std::uint64_t most_copied_bytes = 64u << 20;
-
 struct LoadOptions {
     std::map<std::string, std::string> parameters; ///< -D name=value, before the file's own <default>s
     bool strict = false;                           ///< parameters that are not known become errors
@@ -30,6 +26,9 @@ struct LoadOptions {
     LoadLimits limits = {};
     Phases *phases = nullptr; ///< where the time is counted; may be nullptr
     InstanceChoice instances = InstanceChoice::automatic;
+    /// Automatic: of copies of groups that are seen more than once, in bytes of their meshes, before all are kept as
+    /// instances.
+    std::uint64_t most_copied_bytes = 64u << 20;
     bool ignore_media = false; ///< scenes with participating media as if these were empty; else they are errors
 };
 

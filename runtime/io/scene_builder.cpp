@@ -28,7 +28,7 @@ SceneBuilder::SceneBuilder(const Document &document, const LoadOptions &options,
       resolve_([this](const Element &reference) -> const Element & { return resolve(reference); }),
       read_texture_(
           [this](const Element &element, double lowest, double highest) { return texture(element, lowest, highest); }),
-      instance_choice_(options.instances) {}
+      instance_choice_(options.instances), most_copied_bytes_(options.most_copied_bytes) {}
 
 /// Reports tags that mean nothing, in every object.
 void SceneBuilder::check_children(const Element &element) {

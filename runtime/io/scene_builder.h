@@ -161,9 +161,10 @@ class SceneBuilder {
     std::shared_ptr<MeshFile> shared_file_;
     std::uint64_t mesh_bytes_ = 0, geometry_bytes_ = 0, shapes_in_line_ = 0, texture_bytes_ = 0;
     const InstanceChoice instance_choice_;
+    const std::uint64_t most_copied_bytes_;
     std::map<const Element *, KnownGroup> groups_; ///< by shapegroup
     std::vector<Copied> copied_;                   ///< that may still become instances
-    std::uint64_t copied_bytes_ = 0;               ///< most_copied_bytes
+    std::uint64_t copied_bytes_ = 0;               ///< up to most_copied_bytes_
 };
 
 } // namespace gradus

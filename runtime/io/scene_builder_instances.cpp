@@ -75,8 +75,9 @@ void SceneBuilder::add_instance(const Element &element, const ShapeGroup &instan
     ++group.instances;
     const bool can_be_kept =
         group.bytes > 0 && instance_choice_ != InstanceChoice::copies && can_be_instance(instance.to_world);
-    const bool is_copied = !can_be_kept || (instance_choice_ == InstanceChoice::automatic &&
-                                            (group.instances == 1 || copied_bytes_ + group.bytes <= most_copied_bytes));
+    const bool is_copied =
+        !can_be_kept || (instance_choice_ == InstanceChoice::automatic &&
+                         (group.instances == 1 || copied_bytes_ + group.bytes <= most_copied_bytes_));
     Copied copied{&group, make_instance(0, instance.to_world), {}};
     for (const Prototype &prototype : group.prototypes) {
         if (prototype.can_be_kept && !is_copied)

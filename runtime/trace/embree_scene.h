@@ -42,6 +42,7 @@ class EmbreeScene {
     }
     /// Instances counted as those of the scene.
     std::size_t primitives() const { return triangles_ + spheres_ + group_of_.size(); }
+    bool has_instances() const { return !group_of_.empty(); }
     /// Whether rays may pass any of them.
     bool some_are_passable() const { return some_are_passable_; }
     /// Opposite corners of a box around all.

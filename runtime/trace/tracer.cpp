@@ -24,6 +24,8 @@ namespace {
 constexpr std::size_t chunk = 4096; // rows a task: small enough to balance, large enough to sort
 // Embree's coherent traversal tests a packet as one beam. On sorted rays it is twice as fast as the other in a scene of
 // some dozens of primitives, where a cell of origins sees few of them, and half as fast in one of thousands.
+// Nor is it for instances: Embree 3.13 then loops for ever on some packets of shadow rays (tests/methods/
+// instances_test.cpp, by gpt).
 constexpr std::size_t beam_limit = 256;
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
@@ -51,7 +53,7 @@ class Chunks {
 struct Tracer::Implementation {
     Implementation(const Scene &s, int threads, const SceneTables *tables)
         : arena(threads > 0 ? threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()))),
-          scene(s, threads, arena, tables), coherent(scene.primitives() <= beam_limit) {}
+          scene(s, threads, arena, tables), coherent(scene.primitives() <= beam_limit && !scene.has_instances()) {}
 
     tbb::task_arena arena;
     EmbreeScene scene;
@@ -80,7 +82,7 @@ struct Tracer::Implementation {
     }
     bool beams(RayOrder order) const { return coherent && order != RayOrder::none; }
     /// Rays of a camera are alike in whatever scene, and in order as they come but for their octants.
-    bool camera_beams() const { return !coherent && !scene.some_are_passable(); }
+    bool camera_beams() const { return !coherent && !scene.some_are_passable() && !scene.has_instances(); }
 };
 
 Tracer::Tracer(const Scene &s, int threads, const SceneTables *tables)
