@@ -28,7 +28,7 @@ struct LoadOptions {
     InstanceChoice instances = InstanceChoice::automatic;
     /// Automatic: of copies of groups that are seen more than once, in bytes of their meshes, before all are kept as
     /// instances.
-    std::uint64_t most_copied_bytes = 64u << 20;
+    std::uint64_t most_copied_bytes = 32u << 20;
     bool ignore_media = false; ///< scenes with participating media as if these were empty; else they are errors
 };
 

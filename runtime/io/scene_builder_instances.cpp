@@ -14,7 +14,7 @@ namespace {
 /// What a copy of a shape takes beside its mesh.
 constexpr std::uint64_t copied_shape_bytes = 256;
 /// What an instance takes in the scene, in the device's tables, and in Embree's.
-constexpr std::uint64_t kept_instance_bytes = 768;
+constexpr std::uint64_t kept_instance_bytes = 512;
 } // namespace
 
 SceneBuilder::KnownGroup &SceneBuilder::known_group(const Element &element) {
