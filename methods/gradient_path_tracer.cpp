@@ -194,7 +194,10 @@ TableList GradientPathTracer::tables() const {
         {.name = "offset_ray",
          .multiple = 4,
          .columns = with("TRAIT_APART", session_.has("TRAIT_INSTANCES") ? offset_ray_columns : offset_ray_instance)},
-        {.name = "offset_surface", .multiple = 4, .columns = with("TRAIT_APART", int(session_.surface_columns()))},
+        {.name = "offset_surface",
+         .multiple = 4,
+         .columns = with("TRAIT_APART", int(session_.surface_columns())),
+         .is_cleared = true},
         {.name = "offsets_state", .columns = with("TRAIT_APART", 1), .is_uint = true},
         {.name = "outcome", .rows = RowsOf::chunk, .columns = shift_outcomes, .is_uint = true, .is_cleared = true}};
 }

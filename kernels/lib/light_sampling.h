@@ -82,7 +82,7 @@
 #define BITS_OF_LIGHTS 0u BITS_OF_LIGHT(0u) BITS_OF_LIGHT(1u) BITS_OF_LIGHT(2u) BITS_OF_LIGHT(3u)
 #endif
 #if TRAIT_TEXTURED_LIGHTS
-#define BITS_OF_LIGHT_TEXTURES | texture_bits(TRAIT_LIGHT_TEXTURES, textures, texture_reals, unit)
+#define BITS_OF_LIGHT_TEXTURES | texture_bits(TRAIT_LIGHT_TEXTURES, 0u, textures, texture_reals, unit)
 #else
 #define BITS_OF_LIGHT_TEXTURES
 #endif

@@ -32,7 +32,7 @@ GRADUS_LIB_BEGIN
 GRADUS_FN rgb light_texture_at(GRADUS_GLOBAL const uint *textures, GRADUS_GLOBAL const real *texture_reals,
                                GRADUS_GLOBAL const uint *texels, uint unit, uint number, texture_point point) {
     const rgb looked_up =
-        texture_lookup(TRAIT_LIGHT_TEXTURES, textures, texture_reals, texels, unit, texture_present(number), point);
+        texture_lookup(TRAIT_LIGHT_TEXTURES, 0u, textures, texture_reals, texels, unit, texture_present(number), point);
     return rgb_select(texture_is_absent(number), rgb_gray(R(1)), looked_up);
 }
 

@@ -26,7 +26,7 @@ GRADUS_FN real texture_luminance(int features, GRADUS_GLOBAL const uint *texels,
 }
 
 /* `features` as in texture_lookup(). */
-GRADUS_FN texture_slope texture_gradient(int features, GRADUS_GLOBAL const uint *textures,
+GRADUS_FN texture_slope texture_gradient(int features, uint first, GRADUS_GLOBAL const uint *textures,
                                          GRADUS_GLOBAL const real *texture_reals, GRADUS_GLOBAL const uint *texels,
                                          uint unit, uint texture, real u, real v) {
     texture_slope slope;

@@ -1,8 +1,8 @@
 /* The value of a texture at a point of a surface; texture_value() of runtime/scene/texture.h is the same in double.
  *
  * `features` are those that the textures asked for have (kernels/shared/texture.h), a compile-time constant wherever it
- * is passed. All of them are computed for each row and one taken; but a texel is the same one to three words to all
- * formats, so that these differ in arithmetic alone. */
+ * is passed, and `first` is the first of them where they are few. All of them are computed for each row and one taken;
+ * but a texel is the same one to three words to all formats, so that these differ in arithmetic alone. */
 #ifndef GRADUS_LIB_TEXTURE_LOOKUP_H
 #define GRADUS_LIB_TEXTURE_LOOKUP_H
 #include "kernels/lib/ordered.h"
@@ -56,23 +56,8 @@ GRADUS_FN real texture_half(uint bits) {
     return (bits & 0x8000u) != 0u ? -value : value;
 }
 
-/* sRGB to linear, off by 5e-7 of the value: t^2.4 is t^2 and a polynomial in the root of t. */
-GRADUS_FN real texture_srgb(real encoded) {
-    const real t = (encoded + R(0.055)) * R(1 / 1.055);
-    const real s = r_sqrt(t);
-    real power = R(0.1508328195);
-    power = power * s - R(0.7926207378);
-    power = power * s + R(1.812898146);
-    power = power * s - R(2.385718479);
-    power = power * s + R(2.037456747);
-    power = power * s - R(1.283334644);
-    power = power * s + R(1.43265097);
-    power = power * s + R(0.02783566198);
-    return encoded > R(0.04045) ? t * t * power : encoded * R(1 / 12.92);
-}
-
 /* What 8 or 16 bits, or a float's, stand for, linear. Computed after `before` (kernels/lib/ordered.h). */
-GRADUS_FN real texture_value_of(int features, uint bits, uint flags, real before) {
+GRADUS_FN real texture_value_of(int features, GRADUS_GLOBAL const uint *texels, uint bits, uint flags, real before) {
     const uint code = uint_after(bits, before);
     const uint format = texture_format(flags);
     real value = R(0);
@@ -82,7 +67,7 @@ GRADUS_FN real texture_value_of(int features, uint bits, uint flags, real before
         value = (real)(int)(code & 0xFFFFu) * (are_words ? R(1) / R(65535) : R(1) / R(255));
     }
     if (TEXTURES_HAVE(textures_of_srgb)) {
-        const real linear = texture_srgb(value);
+        const real linear = as_float(texels[(int)(code & 0xFFu)]); /* texture_srgb_words of them lie there */
         value = (flags & texture_flag_srgb) != 0u ? linear : value;
     }
     if (TEXTURES_HAVE(textures_of_halves)) {
@@ -115,19 +100,20 @@ GRADUS_FN rgb texture_fetch(int features, GRADUS_GLOBAL const uint *texels, text
     /* How many words a texel of colour has, and how many texels of gray, as a power of two, a word. */
     const uint words = of_bytes ? 1u : of_pairs ? 2u : 3u, shared = of_bytes ? 2u : of_pairs ? 1u : 0u;
     const uint at = place.offset + (is_color ? number * words : number >> shared);
-    const uint first = texels[uint_after(at, before)];
-    const uint second = has_pairs | has_reals ? texels[at + ((is_color & !of_bytes) ? 1u : 0u)] : first;
-    const uint third = has_reals ? texels[at + ((is_color & of_reals) ? 2u : 0u)] : second;
+    const uint first = texels[(int)uint_after(at, before)];
+    const int has_more = TEXTURES_HAVE(textures_in_color) & (has_pairs | has_reals);
+    const uint second = has_more ? texels[at + ((is_color & !of_bytes) ? 1u : 0u)] : first;
+    const uint third = has_more & has_reals ? texels[at + ((is_color & of_reals) ? 2u : 0u)] : second;
     /* Of gray the texel's place in its word. */
     const uint shift = is_color ? 0u : of_bytes ? 8u * (number & 3u) : of_pairs ? 16u * (number & 1u) : 0u;
     const uint mask = of_bytes ? 0xFFu : of_pairs ? 0xFFFFu : 0xFFFFFFFFu;
-    const real r = texture_value_of(features, (first >> shift) & mask, flags, R(0));
+    const real r = texture_value_of(features, texels, (first >> shift) & mask, flags, R(0));
     if (!TEXTURES_HAVE(textures_in_color))
         return rgb_gray(r);
     const uint code_g = of_bytes ? first >> 8 : of_pairs ? first >> 16 : second;
     const uint code_b = of_bytes ? first >> 16 : of_pairs ? second : third;
-    const real g = texture_value_of(features, code_g & mask, flags, r);
-    const real b = texture_value_of(features, code_b & mask, flags, g);
+    const real g = texture_value_of(features, texels, code_g & mask, flags, r);
+    const real b = texture_value_of(features, texels, code_b & mask, flags, g);
     return rgb3(r, is_color ? g : r, is_color ? b : r);
 }
 
@@ -141,35 +127,46 @@ GRADUS_FN rgb texture_between(int features, rgb a, rgb b, real share) {
     return rgb3(r, g, blue);
 }
 
-/* A field of a texture's record. Where the scene has few textures, which `features` says, all are loaded once for all
- * work-items and chosen from, in a sum of which all terms but one are 0. */
-GRADUS_FN uint texture_number_of(int features, GRADUS_GLOBAL const uint *textures, uint texture, size_t field) {
+/* The texture of that number, or the asker's first where it says that there is none. */
+GRADUS_FN uint texture_or_first(uint number, uint first) { return texture_is_absent(number) ? first : number; }
+
+/* A field of a texture's record. Where these are few, those from `first` on, all are loaded once for all work-items and
+ * chosen from, in a sum of which all terms but one are 0; a single one needs no choice. */
+GRADUS_FN uint texture_number_of(int features, uint first, GRADUS_GLOBAL const uint *textures, uint texture,
+                                 size_t field) {
     if (textures_counted(features) == 0u)
         return (textures + field)[(int)(texture * (uint)texture_stride)];
+    if (textures_counted(features) == 1u)
+        return textures[(size_t)first * texture_stride + field];
     uint number = 0u;
     TEXTURES_UNROLLED
     for (uint n = 0; n < textures_counted(features); ++n)
-        number |= (0u - (uint)(texture == n)) & textures[(size_t)n * texture_stride + field];
+        number |= (0u - (uint)(texture == first + n)) & textures[(size_t)(first + n) * texture_stride + field];
     return number;
 }
-GRADUS_FN real texture_real_of(int features, GRADUS_GLOBAL const real *texture_reals, uint texture, size_t field) {
+GRADUS_FN real texture_real_of(int features, uint first, GRADUS_GLOBAL const real *texture_reals, uint texture,
+                               size_t field) {
     if (textures_counted(features) == 0u)
         return (texture_reals + field)[(int)(texture * (uint)texture_real_stride)];
+    if (textures_counted(features) == 1u)
+        return texture_reals[(size_t)first * texture_real_stride + field];
     real number = R(0);
     TEXTURES_UNROLLED
     for (uint n = 0; n < textures_counted(features); ++n)
-        number += (texture == n ? R(1) : R(0)) * texture_reals[(size_t)n * texture_real_stride + field];
+        number +=
+            (texture == first + n ? R(1) : R(0)) * texture_reals[(size_t)(first + n) * texture_real_stride + field];
     return number;
 }
 /* Something made of all fields of few textures that are read, for HAS_ROW (kernels/shared/stage.h). */
-GRADUS_FN uint texture_bits(int features, GRADUS_GLOBAL const uint *textures, GRADUS_GLOBAL const real *texture_reals,
-                            uint unit) {
+GRADUS_FN uint texture_bits(int features, uint first, GRADUS_GLOBAL const uint *textures,
+                            GRADUS_GLOBAL const real *texture_reals, uint unit) {
     uint bits = 0u;
     TEXTURES_UNROLLED
     for (uint n = 0; n < textures_counted(features); ++n) {
-#define NUMBER_BITS(field) bits |= textures[(size_t)n * texture_stride + texture_##field * (size_t)unit];
+#define NUMBER_BITS(field) bits |= textures[(size_t)(first + n) * texture_stride + texture_##field * (size_t)unit];
 #define REAL_BITS(field)                                                                                               \
-    bits |= as_uint((float)texture_reals[(size_t)n * texture_real_stride + texture_real_##field * (size_t)unit]);
+    bits |= as_uint(                                                                                                   \
+        (float)texture_reals[(size_t)(first + n) * texture_real_stride + texture_real_##field * (size_t)unit]);
 #define RGB_BITS(field) REAL_BITS(field##_r) REAL_BITS(field##_g) REAL_BITS(field##_b)
         NUMBER_BITS(flags)
         NUMBER_BITS(offset)
@@ -208,8 +205,8 @@ GRADUS_FN uint texture_bits(int features, GRADUS_GLOBAL const uint *textures, GR
     }
     return bits;
 }
-#define TEXTURE_NUMBER(field) texture_number_of(features, textures, texture, texture_##field *(size_t)unit)
-#define TEXTURE_REAL(field) texture_real_of(features, texture_reals, texture, texture_real_##field *(size_t)unit)
+#define TEXTURE_NUMBER(field) texture_number_of(features, first, textures, texture, texture_##field *(size_t)unit)
+#define TEXTURE_REAL(field) texture_real_of(features, first, texture_reals, texture, texture_real_##field *(size_t)unit)
 #define TEXTURE_RGB(field) rgb3(TEXTURE_REAL(field##_r), TEXTURE_REAL(field##_g), TEXTURE_REAL(field##_b))
 
 /* Where a texture is looked up. What `features` do not ask for costs nothing. */
@@ -270,8 +267,9 @@ GRADUS_FN rgb texture_of_mesh(GRADUS_GLOBAL const uint *texels, uint flags, uint
     return rgb3(r, g, b);
 }
 
-GRADUS_FN rgb texture_lookup(int features, GRADUS_GLOBAL const uint *textures, GRADUS_GLOBAL const real *texture_reals,
-                             GRADUS_GLOBAL const uint *texels, uint unit, uint texture, texture_point point) {
+GRADUS_FN rgb texture_lookup(int features, uint first, GRADUS_GLOBAL const uint *textures,
+                             GRADUS_GLOBAL const real *texture_reals, GRADUS_GLOBAL const uint *texels, uint unit,
+                             uint texture, texture_point point) {
     const real u = point.u, v = point.v;
     texture_place place;
     place.flags = TEXTURE_NUMBER(flags);

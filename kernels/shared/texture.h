@@ -131,8 +131,8 @@
 #define textured_normals_bump 2
 
 #define texture_none 0xFFFFFFFFu
-/* A bit beside the number of another texture of the same features: where there is none that one is looked up, since all
- * rows look up one, and what it is worth is not taken. */
+/* A bit beside the number of another texture of the same use: where there is none one is looked up all the same, since
+ * all rows look up one, and what it is worth is not taken. Which one the asker may choose. */
 #define texture_absent 0x80000000u
 #define texture_is_absent(number) (((number)&texture_absent) != 0u)
 #define texture_present(number) ((number) & ~texture_absent)
@@ -153,9 +153,10 @@
 #define textures_checkerboards 2048
 #define textures_turned 4096     /* to_uv mixes u and v */
 #define textures_bounded 8192    /* what is looked up may be brought into bounds, or these are not 0 and 1 */
-#define textures_of_srgb 16384   /* bytes that are sRGB */
+#define textures_of_srgb 16384   /* bytes that are sRGB: `texels` begins with what each of them stands for */
 #define textures_of_meshes 32768 /* mesh attributes */
-/* Above these bits how many textures the scene has, where these are few, else 0 (kernels/lib/texture_lookup.h). */
+#define texture_srgb_words 256u
+/* Above these bits how many textures there are, where these are few, else 0 (kernels/lib/texture_lookup.h). */
 #define textures_with_count(features, count) ((features) | (count) << 24)
 #define textures_counted(features) ((uint)(features) >> 24)
 

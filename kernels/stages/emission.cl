@@ -20,7 +20,7 @@ STAGE emission(uint count, uint unit, uint first, uint capacity, uint slots, __g
 ) {
     const size_t i = work_item();
 #if LIGHTS_HAVE_SURFACE_TEXTURES
-    if (!HAS_ROW(i, count, texture_bits(TRAIT_LIGHT_TEXTURES, textures, texture_reals, unit)))
+    if (!HAS_ROW(i, count, texture_bits(TRAIT_LIGHT_TEXTURES, 0u, textures, texture_reals, unit)))
 #else
     if (i >= count)
 #endif

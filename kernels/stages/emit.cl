@@ -19,7 +19,7 @@ STAGE emit(uint count, uint unit, uint capacity, uint first_row, uint first_slot
 ) {
     const size_t i = work_item();
 #if TRAIT_TEXTURED_LIGHTS
-    if (!HAS_ROW(i, count, texture_bits(TRAIT_LIGHT_TEXTURES, textures, texture_reals, unit)))
+    if (!HAS_ROW(i, count, texture_bits(TRAIT_LIGHT_TEXTURES, 0u, textures, texture_reals, unit)))
 #else
     if (i >= count)
 #endif

@@ -52,7 +52,7 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint stride, uint cap
 #if ESCAPED && TRAIT_LIGHT_ENVIRONMENT
     kept = ESCAPED_BITS(environment_light);
 #elif !ESCAPED && LIGHTS_HAVE_SURFACE_TEXTURES
-    kept = texture_bits(TRAIT_LIGHT_TEXTURES, textures, texture_reals, unit);
+    kept = texture_bits(TRAIT_LIGHT_TEXTURES, 0u, textures, texture_reals, unit);
 #endif
     if (!HAS_ROW(i, count, kept))
         return;

@@ -1,12 +1,18 @@
 /* material: reads the textures of what each ray met, before `classify`: leaves in its row of `surface` the textured
  * parameters of the material there, those of GRADUS_TEXTURED_PARAMETERS in TRAIT_TEXTURED. A parameter that this
- * material has as a constant is left as that. `traced` is a table of rays, of traced_rows rows like `surface`. Rays
- * that met nothing leave what nobody reads.
+ * material has as a constant is left as that. `traced` is a table of rays, of traced_rows rows like `surface`.
+ * Work-item i has the ray in row index[first + i].
+ *
+ * A kernel serves the materials of one class (runtime/scene/material_class.h). CLASS_TEXTURED, CLASS_LOOKUPS,
+ * CLASS_BLENDS and CLASS_NORMALS are to it what TRAIT_TEXTURED, TRAIT_LOOKUPS, TRAIT_BLENDS and TRAIT_TEXTURED_NORMALS
+ * are to the scene; the other traits of primitives and textures are those of the class. CLASS_ALL_TEXTURED has the
+ * parameters that all of its materials have as textures. parameter_texture, blend_texture and normal_texture are
+ * textures of the class, the first ones of their use.
  *
  * TRAIT_BLENDS: also the record that a blend has come to, chosen by a number of the path's key and depth, which its
  * offset paths share: so it is a coordinate of the paths that shifts keep. Of first vertices, where offset paths are
- * those of the neighbours, all pixels of a sample share it (TRAIT_SHARED_JITTER). Plane j has the rays of offset path
- * j, plane_rows rows further on each. OF_LIGHT_PATHS: rays of light paths.
+ * those of the neighbours, all pixels of a sample share it (TRAIT_SHARED_JITTER). Of offset path j there are the rows
+ * from j plane_rows on. OF_LIGHT_PATHS: rays of light paths.
  *
  * TRAIT_TEXTURED_NORMALS: also the normal that a map makes, as it is seen from the ray's side, and what goes with it
  * (kernels/lib/mapped_normal.h). */
@@ -27,49 +33,60 @@
 
 /* What texture number n of the material is worth here. */
 #define LOOKED_UP(n)                                                                                                   \
-    texture_lookup(TRAIT_TEXTURES, textures, texture_reals, texels, unit,                                              \
-                   (material_lookups + (n) * (size_t)unit)[(int)(record * (uint)TRAIT_LOOKUPS)], point)
+    texture_lookup(TRAIT_TEXTURES, parameter_texture, textures, texture_reals, texels, unit,                           \
+                   texture_or_first((material_lookups + (n) * (size_t)unit)[(int)(record * (uint)TRAIT_LOOKUPS)],      \
+                                    parameter_texture),                                                                \
+                   point)
+#define IS_IN(mask, name) ((((mask) >> parameter_##name) & 1) != 0)
+/* With a single lookup, which all materials take, there is nothing to ask. */
 #define LOOK_UP(name)                                                                                                  \
-    const uint number =                                                                                                \
-        (material_textures + parameter_##name * (size_t)unit)[(int)(record * (uint)textured_parameters)];              \
+    const int is_asked = CLASS_LOOKUPS > 1 || !IS_IN(CLASS_ALL_TEXTURED, name);                                        \
+    uint number = IS_IN(CLASS_TEXTURED, name) ? 0u : texture_none;                                                     \
+    if (IS_IN(CLASS_TEXTURED, name) && is_asked)                                                                       \
+        number = (material_textures + parameter_##name * (size_t)unit)[(int)(record * (uint)textured_parameters)];     \
     const int is_constant = number == texture_none;                                                                    \
     const int constants = (int)(record * (uint)material_stride);                                                       \
     CHOOSE_LOOKED_UP
-#if TRAIT_LOOKUPS == 1
+#if CLASS_LOOKUPS == 0
+#define CHOOSE_LOOKED_UP const rgb looked_up = rgb_gray(R(0));
+#elif CLASS_LOOKUPS == 1
 #define CHOOSE_LOOKED_UP const rgb looked_up = looked_up_0;
-#elif TRAIT_LOOKUPS == 2
+#elif CLASS_LOOKUPS == 2
 #define CHOOSE_LOOKED_UP const rgb looked_up = rgb_select(number == 1u, looked_up_1, looked_up_0);
-#elif TRAIT_LOOKUPS == 3
+#elif CLASS_LOOKUPS == 3
 #define CHOOSE_LOOKED_UP                                                                                               \
     const rgb looked_up = rgb_select(number == 2u, looked_up_2, rgb_select(number == 1u, looked_up_1, looked_up_0));
 #else
 /* Many: each where it is needed, so that they need not be kept. */
 #define CHOOSE_LOOKED_UP const rgb looked_up = LOOKED_UP(is_constant ? 0u : number);
 #endif
-#define LEAVE(field, value)                                                                                            \
+#define LEAVE(name, field, value)                                                                                      \
     surface[(size_t)textured_##field * traced_rows + row] =                                                            \
-        is_constant ? (materials + material_##field * (size_t)unit)[constants] : (value);
+        IS_IN(CLASS_ALL_TEXTURED, name)                                                                                \
+            ? (value)                                                                                                  \
+            : (is_constant ? (materials + material_##field * (size_t)unit)[constants] : (value));
 #define LEAVE_COLOR(with, name, value, text)                                                                           \
     if (IS_TEXTURED(name)) {                                                                                           \
         LOOK_UP(name)                                                                                                  \
-        LEAVE(name##_r, looked_up.r)                                                                                   \
-        LEAVE(name##_g, looked_up.g)                                                                                   \
-        LEAVE(name##_b, looked_up.b)                                                                                   \
+        LEAVE(name, name##_r, looked_up.r)                                                                             \
+        LEAVE(name, name##_g, looked_up.g)                                                                             \
+        LEAVE(name, name##_b, looked_up.b)                                                                             \
     }
 /* Of a coloured texture its luminance. */
 #define LEAVE_NUMBER(with, name, value, text)                                                                          \
     if (IS_TEXTURED(name)) {                                                                                           \
         LOOK_UP(name)                                                                                                  \
-        LEAVE(name, rgb_luminance(looked_up))                                                                          \
+        LEAVE(name, name, rgb_luminance(looked_up))                                                                    \
     }
 
-STAGE read_material(uint count, uint unit, uint traced_rows, __global const real *traced, __global real *surface,
-                    __global const real *triangles, __global const real *triangle_texcoords,
+STAGE read_material(uint count, uint unit, uint first, uint traced_rows, uint parameter_texture, uint blend_texture,
+                    uint normal_texture, __global const uint *index, __global const real *traced,
+                    __global real *surface, __global const real *triangles, __global const real *triangle_texcoords,
                     __global const real *spheres, __global const real *sphere_axes, uint triangle_count,
                     __global const uint *primitive_material, __global const real *materials,
                     __global const uint *material_textures, __global const uint *material_lookups,
                     __global const uint *textures, __global const real *texture_reals, __global const uint *texels
-#if TRAIT_TWO_FACED || TRAIT_TEXTURED_NORMALS
+#if TRAIT_TWO_FACED || CLASS_NORMALS
                     ,
                     __global const real *triangle_normals
 #endif
@@ -77,11 +94,11 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
                     ,
                     __global const uint *material_back
 #endif
-#if TRAIT_TEXTURED_NORMALS
+#if CLASS_NORMALS
                     ,
                     __global const uint *normal_maps, __global const real *bump_scales
 #endif
-#if TRAIT_BLENDS
+#if CLASS_BLENDS
                     ,
                     uint plane_rows, uint capacity, __global const uint *blends, __global const real *blend_weights
 #if OF_LIGHT_PATHS
@@ -96,19 +113,16 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
                     uint first_sample_low, uint first_sample_high, uint pixels_multiplier, uint pixels_shift,
                     uint seed_low, uint seed_high
 #endif
-#else
-                    ,
-                    uint plane_rows
 #endif
 ) {
     const size_t i = work_item();
-    const uint kept =
-        texture_bits(TRAIT_TEXTURES | TRAIT_BLEND_TEXTURES | TRAIT_NORMAL_TEXTURES, textures, texture_reals, unit);
+    const uint kept = texture_bits(TRAIT_TEXTURES, parameter_texture, textures, texture_reals, unit) |
+                      texture_bits(TRAIT_BLEND_TEXTURES, blend_texture, textures, texture_reals, unit) |
+                      texture_bits(TRAIT_NORMAL_TEXTURES, normal_texture, textures, texture_reals, unit);
     if (!HAS_ROW(i, count, kept))
         return;
-    const size_t row = (size_t)get_global_id(2) * plane_rows + i;
-    const uint met = AT_UINT(traced, primitive, row);
-    const uint primitive = met < ray_first_special ? met : 0u;
+    const int row = (int)index[first + i];
+    const uint primitive = AT_UINT(traced, primitive, row);
     const vec3 direction = AT_V3(traced, direction, row);
     const primitive_hit hit =
         primitive_hit_of(triangles, spheres, unit, triangle_count, primitive INSTANCE_IN(traced, traced, row),
@@ -125,48 +139,51 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
         sphere_place(sphere_axes, unit, sphere, v3_scale(hit.normal, FIELD_OF(sphere, spheres, sphere, facing)));
 #endif
     const texture_point point = hit_texture_point(triangle_texcoords, unit, triangle_count, primitive, hit, on_sphere);
-#if TRAIT_BLENDS
+#if CLASS_BLENDS
+    const uint base = row - plane_rows * ((uint)(row >= plane_rows) + (uint)(row >= 2u * plane_rows) +
+                                          (uint)(row >= 3u * plane_rows));
 #if OF_LIGHT_PATHS
-    const uint key_0 = AT_UINT(light_path, key_0, i), key_1 = AT_UINT(light_path, key_1, i);
-    const uint depth = AT_UINT(light_path, depth, i);
+    const uint key_0 = AT_UINT(light_path, key_0, base), key_1 = AT_UINT(light_path, key_1, base);
+    const uint depth = AT_UINT(light_path, depth, base);
     real choice = random_draw(key_0, key_1, random_dimension_blend(depth)).a;
 #else
-    const uint key_0 = AT_UINT(path, key_0, i), key_1 = AT_UINT(path, key_1, i);
-    const uint depth = AT_UINT(path, depth, i);
+    const uint key_0 = AT_UINT(path, key_0, base), key_1 = AT_UINT(path, key_1, base);
+    const uint depth = AT_UINT(path, depth, base);
     real choice = PATH_DRAW(key_0, key_1, random_dimension_blend(depth)).a;
 #endif
 #if TRAIT_SHARED_JITTER
     /* An additive sequence, as the places within the pixel are: what all pixels share does not average out. */
     const sample_place sample = sample_place_after(first_sample_low, first_sample_high,
-                                                   divide(AT_UINT(path, slot, i), pixels_multiplier, pixels_shift));
+                                                   divide(AT_UINT(path, slot, base), pixels_multiplier, pixels_shift));
     const random_bits start = random_key(seed_low, seed_high, 0xFFFFFFFDu, 0u, sample.high);
     const real shared = random_unit(start.x + sample.low * 2654435769u);
     choice = depth == 0u ? shared : choice;
 #endif
 #pragma unroll
-    for (uint level = 0; level < TRAIT_BLENDS; ++level) {
-        const uint first = FIELD_OF(blend, blends, record, first), second = FIELD_OF(blend, blends, record, second);
-        const int is_blend = first != blend_none;
+    for (uint level = 0; level < CLASS_BLENDS; ++level) {
+        const uint one = FIELD_OF(blend, blends, record, first), other = FIELD_OF(blend, blends, record, second);
+        const int is_blend = one != blend_none;
         real weight = blend_weights[record];
         if ((TRAIT_BLEND_LEVELS >> min(level, 30u)) & 1) {
             const uint number = FIELD_OF(blend, blends, record, weight_texture);
-            const real looked_up = rgb_luminance(texture_lookup(TRAIT_BLEND_TEXTURES, textures, texture_reals, texels,
-                                                                unit, texture_present(number), point));
+            const real looked_up =
+                rgb_luminance(texture_lookup(TRAIT_BLEND_TEXTURES, blend_texture, textures, texture_reals, texels, unit,
+                                             texture_or_first(number, blend_texture), point));
             weight = texture_is_absent(number) ? weight : looked_up;
         }
         /* What is left of the number decides on the next level. */
         const int takes_second = choice < weight;
         const real rest = takes_second ? choice / weight : (choice - weight) / (R(1) - weight);
-        record = is_blend ? (takes_second ? second : first) : record;
+        record = is_blend ? (takes_second ? other : one) : record;
         choice = is_blend ? r_min(rest, R(0.99999994)) : choice;
     }
 #endif
-#if TRAIT_LOOKUPS >= 1 && TRAIT_LOOKUPS <= 3
+#if CLASS_LOOKUPS >= 1 && CLASS_LOOKUPS <= 3
     const rgb looked_up_0 = LOOKED_UP(0u);
-#if TRAIT_LOOKUPS >= 2
+#if CLASS_LOOKUPS >= 2
     const rgb looked_up_1 = LOOKED_UP(1u);
 #endif
-#if TRAIT_LOOKUPS == 3
+#if CLASS_LOOKUPS == 3
     const rgb looked_up_2 = LOOKED_UP(2u);
 #endif
 #endif
@@ -174,7 +191,7 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
 #if TRAIT_BLENDS
     *(GRADUS_GLOBAL uint *)(surface + (size_t)surface_record * traced_rows + row) = record;
 #endif
-#if TRAIT_TEXTURED_NORMALS
+#if CLASS_NORMALS
     vec3 along_u = v3(R(0), R(0), R(0)), along_v = along_u;
 #if TRAIT_TRIANGLES
     const uint number = TRIANGLE_OF(primitive);
@@ -202,18 +219,18 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
     along_v = v3_select(is_sphere, v3_scale(meridian, half_turn), along_v);
 #endif
     const uint map_flags = FIELD_OF(normal_map, normal_maps, record, flags);
-    const uint map_texture = FIELD_OF(normal_map, normal_maps, record, texture);
+    const uint map_texture = texture_or_first(FIELD_OF(normal_map, normal_maps, record, texture), normal_texture);
     const textured_surface place = textured_surface_at(
         hit.normal, shading_normal_at(triangle_normals, unit, triangle_count, primitive, hit), along_u, along_v);
     vec3 mapped = place.shading;
-#if TRAIT_TEXTURED_NORMALS & textured_normals_given
-    const rgb map_color =
-        texture_lookup(TRAIT_NORMAL_TEXTURES, textures, texture_reals, texels, unit, map_texture, point);
+#if CLASS_NORMALS & textured_normals_given
+    const rgb map_color = texture_lookup(TRAIT_NORMAL_TEXTURES, normal_texture, textures, texture_reals, texels, unit,
+                                         map_texture, point);
     mapped = normal_of_color(place, map_color);
 #endif
-#if TRAIT_TEXTURED_NORMALS & textured_normals_bump
-    const texture_slope slope =
-        texture_gradient(TRAIT_NORMAL_TEXTURES, textures, texture_reals, texels, unit, map_texture, point.u, point.v);
+#if CLASS_NORMALS & textured_normals_bump
+    const texture_slope slope = texture_gradient(TRAIT_NORMAL_TEXTURES, normal_texture, textures, texture_reals, texels,
+                                                 unit, map_texture, point.u, point.v);
     const real bump_scale = bump_scales[record];
     const vec3 bumped = normal_of_height(place, bump_scale * slope.u, bump_scale * slope.v);
     mapped = v3_select((map_flags & normal_map_is_bump) != 0u, bumped, mapped);
@@ -228,5 +245,10 @@ STAGE read_material(uint count, uint unit, uint traced_rows, __global const real
     surface[(size_t)textured_normal_y * traced_rows + row] = mapped.y;
     surface[(size_t)textured_normal_z * traced_rows + row] = mapped.z;
     surface[(size_t)textured_normal_flags * traced_rows + row] = (real)(int)(map_flags & normal_map_of_vertex);
+#elif TRAIT_TEXTURED_NORMALS
+    surface[(size_t)textured_normal_x * traced_rows + row] = R(0);
+    surface[(size_t)textured_normal_y * traced_rows + row] = R(0);
+    surface[(size_t)textured_normal_z * traced_rows + row] = R(1);
+    surface[(size_t)textured_normal_flags * traced_rows + row] = R(0);
 #endif
 }

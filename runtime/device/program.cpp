@@ -164,6 +164,8 @@ std::string options_for(const DeviceDescription &device, const KernelRequest &re
     if (precision == Precision::relaxed && !request.strict)
         options += " -cl-fast-relaxed-math";
     for (const std::string &name : source.traits) {
+        if (request.definitions.contains(name))
+            continue; // this kernel's own
         const auto found = traits.find(name);
         options += fmt::format(" -D {}={}", name, found == traits.end() ? 0 : found->second);
     }

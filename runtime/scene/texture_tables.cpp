@@ -16,19 +16,25 @@ using namespace lib_float;
 namespace {
 
 void check_words(std::uint64_t words) {
-    if (words >= 0xFFFFFFFFu)
-        throw Error(ExitCode::device, "the scene's textures and mesh attributes have more than 16 GiB");
+    // Kernels name them by signed numbers, for which processors gather sixteen at once.
+    if (words > 0x7FFFFFFFu)
+        throw Error(ExitCode::device, "the scene's textures and mesh attributes have more than 8 GiB");
 }
 
 /// The pictures one after the other, each once. By picture: its first word.
 std::map<const Bitmap *, std::uint32_t> add_bitmaps(const Scene &scene, SceneTables &tables) {
     std::map<const Bitmap *, std::uint32_t> offsets;
-    std::uint64_t words = 0;
+    const bool has_srgb = std::any_of(scene.textures.begin(), scene.textures.end(), [](const Texture &texture) {
+        return (texture_features(texture) & textures_of_srgb) != 0;
+    });
+    std::uint64_t words = has_srgb ? texture_srgb_words : 0;
     for (const Texture &texture : scene.textures)
         if (texture.bitmap && offsets.emplace(texture.bitmap.get(), std::uint32_t(words)).second)
             words += texture.bitmap->words.size();
     check_words(words);
     tables.texels.resize(std::size_t(words) + 1); // one at least
+    for (std::uint32_t code = 0; has_srgb && code < texture_srgb_words; ++code)
+        tables.texels[code] = std::bit_cast<std::uint32_t>(float(srgb_to_linear_value(code / 255.0)));
     for (const auto &[bitmap, offset] : offsets)
         std::copy(bitmap->words.begin(), bitmap->words.end(), tables.texels.begin() + offset);
     return offsets;
@@ -130,35 +136,14 @@ std::uint32_t flags_of(const Texture &texture) {
     return flags | std::uint32_t(texture.bitmap->format) | (texture.bitmap->is_color ? texture_flag_color : 0);
 }
 
-/// Textures that stand where a material or a light has none: kernels are compiled for what textures of a use have, and
-/// look up one for all rows, so it must be one of that use.
-struct StandIns {
-    std::uint32_t parameter = 0, normal_map = 0, blend = 0;
-};
-
-StandIns stand_ins(const Scene &scene) {
-    StandIns found;
-    for_each_bsdf(scene, [&](const Bsdf &bsdf) {
-        for_each_textured_parameter(bsdf, [&](int, std::int32_t texture) { found.parameter = std::uint32_t(texture); });
-        if (bsdf.map.kind != NormalTexture::Kind::none)
-            found.normal_map = std::uint32_t(bsdf.map.texture);
-    });
-    for (const Shape &shape : scene.shapes)
-        for (const Bsdf *side : {&scene.materials[shape.material].front, &scene.materials[shape.material].back})
-            for_each_blend(scene, *side, [&](const Blend &blend, int) {
-                if (blend.weight.texture != no_texture)
-                    found.blend = std::uint32_t(blend.weight.texture);
-            });
-    return found;
-}
-
-void add_normal_map(const NormalTexture &map, std::uint32_t stand_in, SceneTables &tables) {
+void add_normal_map(const NormalTexture &map, SceneTables &tables) {
     std::uint32_t flags = 0;
     if (map.kind != NormalTexture::Kind::none)
         flags = normal_map_there | (map.turns_over ? normal_map_turns : 0) | (map.shadows ? normal_map_shadows : 0) |
                 (map.kind == NormalTexture::Kind::bump ? normal_map_is_bump : 0) |
                 (map.is_outside ? normal_map_is_outside : 0);
-    tables.normal_maps.insert(tables.normal_maps.end(), {flags, flags == 0 ? stand_in : std::uint32_t(map.texture)});
+    tables.normal_maps.insert(tables.normal_maps.end(),
+                              {flags, flags == 0 ? texture_absent : std::uint32_t(map.texture)});
     tables.bump_scales.push_back(map.scale);
 }
 
@@ -200,7 +185,6 @@ void add_textures(const Scene &scene, SceneTables &tables) {
             reals.insert(reals.end(), color->begin(), color->end());
     }
     const auto lookups = std::size_t(std::max(1, most_lookups(scene)));
-    const StandIns instead = stand_ins(scene);
     for (const Bsdf &bsdf : material_records(scene)) {
         const std::size_t first = tables.material_textures.size();
         tables.material_textures.resize(first + textured_parameters, texture_none);
@@ -209,9 +193,10 @@ void add_textures(const Scene &scene, SceneTables &tables) {
             tables.material_textures[first + std::size_t(number)] =
                 std::uint32_t(std::ranges::find(distinct, texture) - distinct.begin());
         });
-        distinct.resize(lookups, std::int32_t(instead.parameter));
-        tables.material_lookups.insert(tables.material_lookups.end(), distinct.begin(), distinct.end());
-        add_normal_map(bsdf.map, instead.normal_map, tables);
+        std::vector<std::uint32_t> numbers(distinct.begin(), distinct.end());
+        numbers.resize(lookups, texture_absent);
+        tables.material_lookups.insert(tables.material_lookups.end(), numbers.begin(), numbers.end());
+        add_normal_map(bsdf.map, tables);
     }
     if (scene.textures.empty()) { // kernels may ask for one, whatever they then take
         tables.textures.assign(texture_stride, 0);
@@ -222,16 +207,16 @@ void add_textures(const Scene &scene, SceneTables &tables) {
 void add_blends(const Scene &scene, SceneTables &tables) {
     const std::vector<Bsdf> records = material_records(scene);
     const auto parts = std::uint32_t(records.size() - scene.blended.size());
-    const std::uint32_t absent = texture_absent | stand_ins(scene).blend;
     for (const Bsdf &bsdf : records) {
         const auto kind = std::ranges::find(tables.kinds, bsdf_kind_name(bsdf));
         const bool is_blend = bsdf.blend != no_blend;
         tables.record_kind.push_back(
             is_blend || kind == tables.kinds.end() ? 0 : std::uint32_t(kind - tables.kinds.begin()));
         const Blend blend = is_blend ? scene.blends[std::size_t(bsdf.blend)] : Blend();
-        tables.blends.insert(tables.blends.end(),
-                             {is_blend ? parts + blend.first : blend_none, parts + blend.second,
-                              blend.weight.texture == no_texture ? absent : std::uint32_t(blend.weight.texture)});
+        tables.blends.insert(
+            tables.blends.end(),
+            {is_blend ? parts + blend.first : blend_none, parts + blend.second,
+             blend.weight.texture == no_texture ? texture_absent : std::uint32_t(blend.weight.texture)});
         tables.blend_weights.push_back(blend.weight.value);
     }
 }

@@ -3,6 +3,7 @@
 #include "runtime/error.h"
 #include "runtime/scene/instances.h"
 #include "runtime/trace/ray_packets.h"
+#include "runtime/trace/sphere_geometry.h"
 
 #include <fmt/format.h>
 #include <pmmintrin.h>
@@ -17,6 +18,10 @@
 namespace gradus {
 
 namespace {
+
+/// Up to here sixteen rays are tested against a sphere at once: in a scene of 4 spheres tracing takes 0.4 of the time
+/// of Embree's own ones, of 32 0.47, of 256 0.96, of 4096 1.3, where packets come apart.
+constexpr std::size_t most_spheres_by_packet = 256;
 
 /// Embree's filter of hits with what rays may pass.
 void drop_passed(const RTCFilterFunctionNArguments *hits) {
@@ -195,11 +200,20 @@ void EmbreeScene::add_spheres(const Scene &s, Geometry place) {
     for_each_sphere([&](const Shape &, std::uint32_t) { ++count; });
     if (count == 0)
         return;
-    RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_SPHERE_POINT);
-    auto *vertices = new_buffer<std::array<float, 4>>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, count);
+    const bool by_packet = place == opaque_spheres && count <= most_spheres_by_packet;
+    RTCGeometry geometry = nullptr;
+    TracedSphere *records = nullptr;
+    if (by_packet) {
+        traced_spheres_.resize(count);
+        records = traced_spheres_.data();
+        geometry = new_sphere_geometry(device_.get(), records, unsigned(count));
+    } else {
+        geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_SPHERE_POINT);
+        records = new_buffer<TracedSphere>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, count);
+    }
     for_each_sphere([&](const Shape &shape, std::uint32_t number) {
         const Sphere &sphere = s.spheres[shape.geometry];
-        *vertices++ = {sphere.center.x, sphere.center.y, sphere.center.z, sphere.radius};
+        *records++ = {{sphere.center.x, sphere.center.y, sphere.center.z}, sphere.radius};
         name(s, shape, 0, number, place);
     });
     attach(geometry, place);

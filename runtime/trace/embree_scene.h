@@ -4,6 +4,7 @@
 #include "runtime/scene/scene.h"
 #include "runtime/scene/scene_tables.h"
 #include "runtime/trace/opacity.h"
+#include "runtime/trace/sphere_geometry.h"
 
 #include <embree3/rtcore.h>
 #include <tbb/task_arena.h>
@@ -93,6 +94,7 @@ class EmbreeScene {
     std::uint32_t triangles_ = 0, spheres_ = 0;
     std::array<std::vector<std::uint32_t>, 2> numbers_; ///< of the opaque ones; empty: in the scene's order
     std::array<Opacity, 2> passable_;
+    std::vector<TracedSphere> traced_spheres_; ///< the opaque ones, where they are few
     bool some_are_passable_ = false;
     std::vector<Group> groups_;
     std::vector<std::uint32_t> group_of_; ///< by instance

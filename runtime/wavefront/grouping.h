@@ -1,7 +1,8 @@
 // Rows brought together by what they are, for tables that are no paths in flight.
 #pragma once
 
-#include "runtime/wavefront/wavefront.h"
+#include "runtime/wavefront/stage.h"
+#include "runtime/wavefront/table.h"
 
 #include <cstdint>
 #include <string>

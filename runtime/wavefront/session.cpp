@@ -17,6 +17,7 @@ namespace gradus {
 
 namespace {
 
+constexpr std::size_t most_material_classes = 8;
 constexpr std::size_t most_few_textures = 8;      // kernels/lib/texture_lookup.h
 constexpr std::uint32_t most_few_lights = 4;      // kernels/lib/light_sampling.h chooses among so many
 constexpr std::uint32_t least_many_lights = 4097; // 24 bits choose among fewer with an error of 2e-4 at most
@@ -164,6 +165,17 @@ std::vector<Buffer> make_scene_buffers(Device &device, const SceneTables &t, Pre
     return buffers;
 }
 
+/// Finds the classes, and puts the number of that of each material where kernels find it.
+void add_material_classes(const Scene &scene, Session &session) {
+    const bool all = session.options.all_traits;
+    MaterialClasses found = material_classes(scene, all ? 1 : most_material_classes);
+    if (all)
+        found.classes[0].on_triangles = found.classes[0].on_spheres = found.classes[0].two_faced = true;
+    session.scene_buffers.emplace_back(session.device, "material_class", found.of_material.data(),
+                                       found.of_material.size() * sizeof(found.of_material[0]));
+    session.material_classes = std::move(found.classes);
+}
+
 } // namespace
 
 Session::Session(Device &session_device, const Scene &s, const SessionOptions &session_options,
@@ -181,10 +193,11 @@ Session::Session(Device &session_device, const Scene &s, const SessionOptions &s
     traits["FEW_LIGHTS"] = has_few ? static_cast<int>(scene.light_count) : 0;
     const std::size_t textures = s.textures.size();
     const int few_textures = textures <= most_few_textures && !options.all_traits ? static_cast<int>(textures) : 0;
-    for (const char *name : {"TRAIT_TEXTURES", "TRAIT_BLEND_TEXTURES", "TRAIT_NORMAL_TEXTURES", "TRAIT_LIGHT_TEXTURES"})
-        if (traits[name] != 0)
-            traits[name] = textures_with_count(traits[name], few_textures);
+    if (traits["TRAIT_LIGHT_TEXTURES"] != 0)
+        traits["TRAIT_LIGHT_TEXTURES"] = textures_with_count(traits["TRAIT_LIGHT_TEXTURES"], few_textures);
     traits["MANY_LIGHTS"] = scene.light_count >= least_many_lights && !traits["TRAIT_LIGHT_TREE"];
+    if (traits["TRAIT_MATERIAL"] != 0)
+        add_material_classes(s, *this);
     numbers = {{"unit", 1},
                {"triangle_count", scene.triangle_count},
                {"light_count", scene.light_count},

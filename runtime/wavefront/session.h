@@ -4,6 +4,7 @@
 
 #include "runtime/device/buffer.h"
 #include "runtime/device/program.h"
+#include "runtime/scene/material_class.h"
 #include "runtime/scene/scene_tables.h"
 #include "runtime/scene/traits.h"
 #include "runtime/trace/tracer.h"
@@ -27,7 +28,8 @@ struct Session {
     FilmSettings film; ///< with its crop set
     TraitMap traits;
     SceneTables scene;
-    std::vector<Buffer> scene_buffers; ///< by the names of kernels' arguments
+    std::vector<Buffer> scene_buffers;           ///< by the names of kernels' arguments
+    std::vector<MaterialClass> material_classes; ///< where materials have textures, blends or maps
     Tracer tracer;
 
     /// What kernels may ask for by name, the same for all launches.

@@ -38,6 +38,15 @@ KernelRequest request_of(const StageDeclaration &declaration) {
     return request;
 }
 
+KernelRequest request_of(const StageDeclaration &declaration, std::size_t variant) {
+    KernelRequest request = request_of(declaration);
+    for (const auto &[name, value] : declaration.variants[variant])
+        request.definitions[name] = value;
+    if (declaration.variants.size() > 1)
+        request.name = fmt::format("{} {}", declaration.name, variant + 1);
+    return request;
+}
+
 /// For BSDF kind `kind`, and where that is a Dirac one, for all Dirac kinds of the scene.
 KernelRequest request_of(const StageDeclaration &declaration, std::string kind, const std::vector<std::string> &kinds) {
     KernelRequest request = request_of(declaration);
@@ -147,7 +156,13 @@ void Stages::build(Session &session, const Tables &tables) {
             continue;
         stage.tables_ = &tables;
         std::size_t count = 0, for_dirac = no_kernel;
-        for (std::size_t k = 0; k < (declaration.by_kind ? kinds.size() : 1); ++k) {
+        for (std::size_t variant = 0; variant < declaration.variants.size(); ++variant) {
+            requests.push_back(request_of(declaration, variant));
+            places.push_back({&stage, count});
+            stage.kernel_of_.push_back(count++);
+        }
+        const std::size_t others = declaration.by_kind ? kinds.size() : declaration.variants.empty() ? 1 : 0;
+        for (std::size_t k = 0; k < others; ++k) {
             const bool is_dirac = declaration.by_kind && bsdf_kind_is_dirac(kinds[k]);
             const bool is_left_out = is_dirac && declaration.dirac == DiracKinds::left_out;
             if (is_left_out || (is_dirac && for_dirac != no_kernel)) {

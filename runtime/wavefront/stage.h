@@ -33,8 +33,10 @@ struct StageDeclaration {
     /// True: a kernel for each BSDF kind of the scene, compiled with BSDF and BSDF_IS_DIRAC.
     bool by_kind = false;
     DiracKinds dirac = DiracKinds::chosen; ///< with by_kind
-    bool is_wanted = true;                 ///< false: nothing is built, and launches do nothing
-    bool strict = false;                   ///< never relaxed: what counts on rounding or on NaN
+    /// Where there are any, a kernel for each, compiled with these definitions too.
+    std::vector<std::map<std::string, std::string>> variants = {};
+    bool is_wanted = true; ///< false: nothing is built, and launches do nothing
+    bool strict = false;   ///< never relaxed: what counts on rounding or on NaN
     /// The arguments that each launch passes, `count` apart.
     std::vector<std::string> numbers = {};
     /// Arguments that are bound to tables of other names: argument, table at first.
@@ -54,7 +56,7 @@ class Stage {
     void run(std::uint32_t count, LaunchNumbers numbers = {}) { launch(0, count, 1, numbers); }
     /// Whether the kernel of BSDF kind `kind` serves no kind before it.
     bool is_first_of_kernel(std::size_t kind) const;
-    /// The kernel of BSDF kind `kind`, a place in SceneTables::kinds.
+    /// The kernel of BSDF kind `kind`, a place in SceneTables::kinds, or of that variant.
     void run_kind(std::size_t kind, std::uint32_t count, LaunchNumbers numbers = {}) {
         launch(kind, count, 1, numbers);
     }
@@ -72,7 +74,7 @@ class Stage {
     StageDeclaration declaration_;
     const Tables *tables_ = nullptr;
     std::vector<Kernel> kernels_;
-    std::vector<std::size_t> kernel_of_; ///< by kind; without kinds, one
+    std::vector<std::size_t> kernel_of_; ///< by kind or variant; else one
     std::vector<std::uint64_t> bound_;   ///< by kernel: Tables::version() when tables that change were bound last
     std::vector<std::vector<std::string>> changing_; ///< by kernel: its arguments that are such tables
 };

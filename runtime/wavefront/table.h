@@ -31,6 +31,12 @@ struct TableDeclaration {
 
 using TableList = std::vector<TableDeclaration>;
 
+/// Rows of a table, or places in the index of a partition.
+struct Range {
+    std::uint32_t first = 0, count = 0;
+    std::uint32_t end() const { return first + count; }
+};
+
 /// The numbers that sizes depend on.
 struct TableRows {
     std::uint32_t paths = 0;  ///< in flight: a batch

@@ -21,15 +21,6 @@ StageDeclaration partition_stage(const char *entry, const char *name, std::vecto
     return stage;
 }
 
-StageDeclaration material_stage(const Session &session, bool of_light_paths) {
-    return {.name = "material",
-            .entry = "read_material",
-            .definitions = {{"OF_LIGHT_PATHS", of_light_paths ? "1" : "0"}},
-            .is_wanted = session.surface_columns() > 0,
-            .numbers = {"traced_rows", "plane_rows"},
-            .tables = {{"traced", "ray"}}};
-}
-
 StageDeclaration classify_stage(const std::map<std::string, std::string> &definitions,
                                 const std::vector<std::string> &numbers) {
     StageDeclaration stage;
@@ -45,8 +36,7 @@ Wavefront::Wavefront(Session &session, Stages &stages, const BinLayout &layout,
                      const std::map<std::string, std::string> &definitions, const std::vector<std::string> &numbers,
                      bool of_light_paths)
     : session_(session), layout_(layout), fresh_are_alike_(!of_light_paths && !session.has("TRAIT_THIN_LENS")),
-      material_(stages.add(material_stage(session, of_light_paths))),
-      classify_(stages.add(classify_stage(definitions, numbers))),
+      materials_(session, stages, of_light_paths), classify_(stages.add(classify_stage(definitions, numbers))),
       count_(stages.add(partition_stage("partition_count", "partition count", {"bins", "rows"}))),
       scan_(stages.add(partition_stage("partition_scan", "partition scan", {"bins", "chunks"}))),
       scatter_(stages.add(partition_stage("partition_scatter", "partition scatter", {"bins", "rows"}))) {}
@@ -63,16 +53,22 @@ TableList Wavefront::tables() const {
 
 TableList Wavefront::ray_tables() const {
     const std::uint32_t bins = layout_.bins();
-    return {
-        {.name = "ray", .columns = session_.has("TRAIT_INSTANCES") ? ray_columns : ray_instance, .alternates = true},
-        {.name = "surface", .columns = session_.surface_columns()},
-        {.name = "bin", .is_uint = true},
-        {.name = "index", .is_uint = true},
-        {.name = "chunk_offset", .rows = RowsOf::chunk, .columns = bins, .is_uint = true},
-        {.name = "range", .rows = RowsOf::one, .columns = bins + 1, .is_uint = true}};
+    const std::uint32_t of_rays = session_.has("TRAIT_INSTANCES") ? ray_columns : ray_instance;
+    TableList list = {{.name = "ray", .columns = of_rays, .alternates = true},
+                      {.name = "surface", .columns = session_.surface_columns(), .is_cleared = true},
+                      {.name = "bin", .is_uint = true},
+                      {.name = "index", .is_uint = true},
+                      {.name = "chunk_offset", .rows = RowsOf::chunk, .columns = bins, .is_uint = true},
+                      {.name = "range", .rows = RowsOf::one, .columns = bins + 1, .is_uint = true}};
+    const TableList of_materials = materials_.tables();
+    list.insert(list.end(), of_materials.begin(), of_materials.end());
+    return list;
 }
 
-void Wavefront::attach(Tables &tables) { tables_ = &tables; }
+void Wavefront::attach(Tables &tables) {
+    tables_ = &tables;
+    materials_.attach(tables);
+}
 
 void Wavefront::begin_pass(std::uint32_t paths) {
     paths_ = paths;
@@ -101,17 +97,13 @@ void Wavefront::trace() {
         trace_segments(session_.tracer, tables_->precision(), ray, connections, session_.trace_seconds);
     session_.rays["extension"] += counts.extension;
     session_.rays["shadow"] += counts.shadow;
-    if (material_.is_wanted())
+    if (materials_.is_wanted())
         read_materials((*tables_)["ray"], this->rays(), 1, std::uint32_t(rows), (*tables_)["surface"]);
 }
 
 void Wavefront::read_materials(const Buffer &rays, std::uint32_t rows, std::uint32_t planes, std::uint32_t table_rows,
                                const Buffer &surface) {
-    if (!material_.is_wanted())
-        return;
-    material_.bind("traced", rays);
-    material_.bind("surface", surface);
-    material_.run_planes(0, rows, planes, {{"traced_rows", table_rows}, {"plane_rows", rows}});
+    materials_.read(rays, rows, planes, table_rows, surface);
 }
 
 const Hits &Wavefront::partition(LaunchNumbers numbers) {

@@ -2,6 +2,7 @@
 // those together that go on alike.
 #pragma once
 
+#include "runtime/wavefront/material_reader.h"
 #include "runtime/wavefront/session.h"
 #include "runtime/wavefront/stage.h"
 #include "runtime/wavefront/table.h"
@@ -10,12 +11,6 @@
 #include <vector>
 
 namespace gradus {
-
-/// Rows of a table, or places in the index of the partition.
-struct Range {
-    std::uint32_t first = 0, count = 0;
-    std::uint32_t end() const { return first + count; }
-};
 
 /// What a method keeps apart beside BSDF kinds and emission. A path tracer has one phase. The bins of `classify` are,
 /// in turn, `escaped` ones for paths that left the scene, then for each phase two for each BSDF kind: surfaces that do
@@ -110,7 +105,8 @@ class Wavefront {
     Session &session_;
     BinLayout layout_;
     bool fresh_are_alike_; ///< paths that begin: neighbours' rays lie side by side
-    Stage &material_, &classify_, &count_, &scan_, &scatter_;
+    MaterialReader materials_;
+    Stage &classify_, &count_, &scan_, &scatter_;
     Tables *tables_ = nullptr;
     Hits hits_;
     std::uint32_t paths_ = 0, begun_ = 0, vertices_ = 0, fresh_ = 0;

@@ -165,7 +165,7 @@ TEST(TextureLookup, IsTheHostsToRounding) {
                     continue;
                 const std::array<double, 3> expected = texture_value(texture, u, v);
                 const lib_float::rgb actual =
-                    lib_float::texture_lookup(all_features, tables.textures.data(), tables.texture_reals.data(),
+                    lib_float::texture_lookup(all_features, 0u, tables.textures.data(), tables.texture_reals.data(),
                                               tables.texels.data(), 1, std::uint32_t(i), {u, v, 0, 0, 0, 0, 0, 0});
                 const double scale = std::max({texture.scale[0], texture.scale[1], texture.scale[2]});
                 const double tolerance = (2 * rounding + 4 * 0x1p-24) * scale;
@@ -214,7 +214,7 @@ TEST(TextureGradient, IsThatOfTheTexture) {
         const double by_u = (height_at(texture, u + step, v) - height_at(texture, u - step, v)) / (2 * step);
         const double by_v = (height_at(texture, u, v + step) - height_at(texture, u, v - step)) / (2 * step);
         const lib_float::texture_slope slope =
-            lib_float::texture_gradient(all_features, tables.textures.data(), tables.texture_reals.data(),
+            lib_float::texture_gradient(all_features, 0u, tables.textures.data(), tables.texture_reals.data(),
                                         tables.texels.data(), 1, std::uint32_t(number), u, v);
         // Bilinear: central differences are exact but for rounding; shares of texels err by 2^-24 of 4 coordinates
         // times 9 texels, and slopes change by twice the texels' number along the other axis, here times 4.
@@ -335,7 +335,7 @@ TEST(TextureLookup, StaysWithinThePicture) {
             const float u = std::bit_cast<float>(std::uint32_t(random()));
             const float v = std::bit_cast<float>(std::uint32_t(random()));
             const lib_float::rgb value =
-                lib_float::texture_lookup(all_features, tables.textures.data(), tables.texture_reals.data(),
+                lib_float::texture_lookup(all_features, 0u, tables.textures.data(), tables.texture_reals.data(),
                                           tables.texels.data(), 1, 1, {u, v, 0, 0, 0, 0, 0, 0});
             ASSERT_EQ(value.g, 0.25f) << u << ", " << v;
         }

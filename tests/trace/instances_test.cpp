@@ -180,6 +180,31 @@ TEST(InstanceTracing, HitsAreWhereTheMapTakesThem) {
     }
 }
 
+// What is in no instance has the record that says so, though an instance behind it may have been met before.
+TEST(InstanceTracing, ASphereBeforeAnInstanceIsOfNone) {
+    Dice dice(5);
+    for (int i = 0; i < 50; ++i) {
+        Scene scene = placed_parallelogram(dice, {0, 0, 0}, {0, 0, 0}, 1);
+        const Matrix4 map = matrix_of(scene.instances[0]);
+        const Mesh &mesh = scene.meshes[0];
+        const Double3 target =
+            transform_point(map, scale(add(to_double(mesh.positions[0]), to_double(mesh.positions[2])), 0.5));
+        const Double3 way = dice.direction();
+        scene.spheres.push_back({to_float(add(target, scale(way, 3))), 1, false});
+        scene.shapes.emplace_back().kind = Shape::Kind::sphere;
+        Placed placed(scene);
+        Rays rays;
+        for (int ray = 0; ray < 32; ++ray)
+            rays.add(to_vec3(add(target, scale(way, ray % 2 == 0 ? 10 : 1.5))), to_vec3(scale(way, -1)));
+        rays.trace(placed.tracer);
+        for (std::size_t ray = 0; ray < 32; ++ray) {
+            const bool is_sphere = ray % 2 == 0;
+            EXPECT_EQ(rays.primitive[ray] == 2, is_sphere);
+            EXPECT_EQ(rays.instance[ray], is_sphere ? placed.tables.no_instance : placed.instance);
+        }
+    }
+}
+
 std::size_t resident_bytes() {
     std::size_t all = 0, resident = 0;
     std::ifstream("/proc/self/statm") >> all >> resident;
