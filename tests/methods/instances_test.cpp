@@ -54,8 +54,8 @@ void expect_same_paths(const char *method, std::uint64_t samples, double most) {
 // The paths of one seed are the same but where rounding, or the chance to pass a surface that is half open, which goes
 // by the instance, sends one another way. Light that went wrong everywhere would be as different as that of another
 // seed.
-TEST(Instances, HaveThePathsOfCopies) { expect_same_paths("pt", 64, 0.25); }
-TEST(Instances, HaveThePathsOfCopiesInGradients) { expect_same_paths("gpt", 16, 0.5); }
+TEST(FullInstances, HaveThePathsOfCopies) { expect_same_paths("pt", 64, 0.25); }
+TEST(FullInstances, HaveThePathsOfCopiesInGradients) { expect_same_paths("gpt", 16, 0.5); }
 TEST(FullInstances, HaveThePathsOfCopiesInGradientsOfManySamples) { expect_same_paths("gpt", 1024, 0.5); }
 TEST(FullInstances, HaveThePathsOfCopiesInPhotons) { expect_same_paths("sppm", 64, 0.5); }
 
