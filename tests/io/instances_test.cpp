@@ -9,28 +9,28 @@ namespace {
 
 using ::testing::HasSubstr;
 
-std::string group(const std::string &shapes, const std::string &id = "g") {
+std::string group_of(const std::string &shapes, const std::string &id = "g") {
     return "<shape type=\"shapegroup\" id=\"" + id + "\">" + shapes + "</shape>\n";
 }
 
-std::string instance(const std::string &transform, const std::string &id = "g") {
+std::string instance_of(const std::string &transform, const std::string &id = "g") {
     return "<shape type=\"instance\"><ref id=\"" + id + "\"/><transform name=\"to_world\">" + transform +
            "</transform></shape>\n";
 }
 
-Scene loaded(const std::string &body, InstanceChoice choice, std::uint64_t most_copied_bytes = 0,
-             const std::string &version = "3.0.0") {
+Scene loaded_as(const std::string &body, InstanceChoice choice, std::uint64_t most_copied_bytes = 0,
+                const std::string &version = "3.0.0") {
     LoadOptions options;
     options.instances = choice;
     options.most_copied_bytes = most_copied_bytes;
     return load_text(scene_around(body, version, ""), options).scene;
 }
 
-const std::string two_cubes =
-    group("<shape type=\"cube\"/>") + instance("<translate x=\"1\"/>") + instance("<scale x=\"-1\" y=\"2\" z=\"1\"/>");
+const std::string two_cubes = group_of("<shape type=\"cube\"/>") + instance_of("<translate x=\"1\"/>") +
+                              instance_of("<scale x=\"-1\" y=\"2\" z=\"1\"/>");
 
 TEST(KeptInstances, ShareTheirShapes) {
-    const Scene scene = loaded(two_cubes, InstanceChoice::kept);
+    const Scene scene = loaded_as(two_cubes, InstanceChoice::kept);
     ASSERT_EQ(scene.instances.size(), 2u);
     ASSERT_EQ(scene.shapes.size(), 1u);
     EXPECT_EQ(scene.meshes.size(), 1u);
@@ -45,37 +45,37 @@ TEST(KeptInstances, AreTheSameInFilesOfVersion0) {
     std::string old = two_cubes;
     for (std::size_t at; (at = old.find("to_world")) != std::string::npos;)
         old.replace(at, 8, "toWorld");
-    const Scene scene = loaded(old, InstanceChoice::kept, 0, "0.6.0");
+    const Scene scene = loaded_as(old, InstanceChoice::kept, 0, "0.6.0");
     ASSERT_EQ(scene.instances.size(), 2u);
-    EXPECT_EQ(scene.instances[0].to_world, loaded(two_cubes, InstanceChoice::kept).instances[0].to_world);
+    EXPECT_EQ(scene.instances[0].to_world, loaded_as(two_cubes, InstanceChoice::kept).instances[0].to_world);
 }
 
 TEST(KeptInstances, LieWhereCopiesDo) {
-    const Bounds kept = world_bounds(loaded(two_cubes, InstanceChoice::kept));
-    const Bounds copies = world_bounds(loaded(two_cubes, InstanceChoice::copies));
+    const Bounds kept = world_bounds(loaded_as(two_cubes, InstanceChoice::kept));
+    const Bounds copies = world_bounds(loaded_as(two_cubes, InstanceChoice::copies));
     EXPECT_EQ(kept.lower, copies.lower);
     EXPECT_EQ(kept.upper, copies.upper);
 }
 
 TEST(KeptInstances, AreThoseWhoseCopiesWouldBeLarge) {
-    EXPECT_EQ(loaded(two_cubes, InstanceChoice::automatic, 1u << 20).instances.size(), 0u);
-    const Scene kept = loaded(two_cubes, InstanceChoice::automatic, 100);
+    EXPECT_EQ(loaded_as(two_cubes, InstanceChoice::automatic, 1u << 20).instances.size(), 0u);
+    const Scene kept = loaded_as(two_cubes, InstanceChoice::automatic, 100);
     EXPECT_EQ(kept.instances.size(), 2u) << "the first, which was a copy, too";
     EXPECT_EQ(kept.copied_instances, 0u);
     EXPECT_EQ(kept.shapes.size(), 1u);
     EXPECT_EQ(kept.meshes.size(), 1u);
-    const Scene one = loaded(group("<shape type=\"cube\"/>") + instance(""), InstanceChoice::automatic, 0);
+    const Scene one = loaded_as(group_of("<shape type=\"cube\"/>") + instance_of(""), InstanceChoice::automatic, 0);
     EXPECT_EQ(one.instances.size(), 0u) << "there is nothing to share";
 }
 
 // Shapes around those that are taken back keep their meshes.
 TEST(KeptInstances, LeaveOtherShapesAsTheyWere) {
-    const std::string around = "<shape type=\"rectangle\" id=\"before\"/>" + group("<shape type=\"cube\"/>") +
-                               group("<shape type=\"disk\" id=\"single\"/>", "alone") + instance("", "alone") +
-                               instance("<translate x=\"1\"/>") + "<shape type=\"sphere\"/>" +
-                               "<shape type=\"disk\" id=\"between\"/>" + instance("<translate x=\"2\"/>") +
-                               instance("<translate x=\"3\"/>") + "<shape type=\"rectangle\" id=\"after\"/>";
-    const Scene scene = loaded(around, InstanceChoice::automatic, 0);
+    const std::string around = "<shape type=\"rectangle\" id=\"before\"/>" + group_of("<shape type=\"cube\"/>") +
+                               group_of("<shape type=\"disk\" id=\"single\"/>", "alone") + instance_of("", "alone") +
+                               instance_of("<translate x=\"1\"/>") + "<shape type=\"sphere\"/>" +
+                               "<shape type=\"disk\" id=\"between\"/>" + instance_of("<translate x=\"2\"/>") +
+                               instance_of("<translate x=\"3\"/>") + "<shape type=\"rectangle\" id=\"after\"/>";
+    const Scene scene = loaded_as(around, InstanceChoice::automatic, 0);
     EXPECT_EQ(scene.instances.size(), 3u);
     EXPECT_EQ(scene.copied_instances, 1u);
     std::string shapes;
@@ -89,11 +89,12 @@ TEST(KeptInstances, LeaveOtherShapesAsTheyWere) {
 }
 
 TEST(KeptInstances, CopyWhatTheyCannotBe) {
-    const std::string body = group("<shape type=\"cube\"/><shape type=\"sphere\"/><shape type=\"rectangle\"><emitter "
-                                   "type=\"area\"/></shape>") +
-                             instance("<translate x=\"1\"/>") + instance("<translate x=\"2\"/>") +
-                             instance("<scale z=\"1e-12\"/>", "flat") + group("<shape type=\"rectangle\"/>", "flat");
-    const Scene scene = loaded(body, InstanceChoice::kept);
+    const std::string body =
+        group_of("<shape type=\"cube\"/><shape type=\"sphere\"/><shape type=\"rectangle\"><emitter "
+                 "type=\"area\"/></shape>") +
+        instance_of("<translate x=\"1\"/>") + instance_of("<translate x=\"2\"/>") +
+        instance_of("<scale z=\"1e-12\"/>", "flat") + group_of("<shape type=\"rectangle\"/>", "flat");
+    const Scene scene = loaded_as(body, InstanceChoice::kept);
     EXPECT_EQ(scene.instances.size(), 2u);
     EXPECT_EQ(scene.spheres.size(), 2u);
     EXPECT_EQ(scene.emitters.size(), 2u);
@@ -106,12 +107,12 @@ TEST(KeptInstances, CopyWhatTheyCannotBe) {
 }
 
 TEST(KeptInstances, OfASingularMapAreErrorsWithTheirLine) {
-    const std::string body = group("<shape type=\"cube\"/>") + instance("\n<scale x=\"0\"/>");
+    const std::string body = group_of("<shape type=\"cube\"/>") + instance_of("\n<scale x=\"0\"/>");
     const std::string message = error_of_text(scene_around(body, "3.0.0", ""));
     EXPECT_THAT(message, HasSubstr("scene.xml:4"));
     EXPECT_THAT(message, HasSubstr("cannot be undone"));
-    EXPECT_THAT(error_of_text(scene_around(group("<shape type=\"cube\"/>") +
-                                           instance("\n<matrix value=\"1 0 0 0 0 1 0 0 0 0 nan 0 0 0 0 1\"/>"))),
+    EXPECT_THAT(error_of_text(scene_around(group_of("<shape type=\"cube\"/>") +
+                                           instance_of("\n<matrix value=\"1 0 0 0 0 1 0 0 0 0 nan 0 0 0 0 1\"/>"))),
                 HasSubstr("scene.xml:5"));
 }
 
