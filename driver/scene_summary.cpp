@@ -20,8 +20,8 @@ namespace {
 /// laid out by index it shares vertices and indices.
 constexpr std::uint64_t tree_bytes_per_triangle = 82, shared_tree_bytes_per_triangle = 64;
 
-/// Of an instance: its record, and what a process grows by as Embree takes it (tests/trace/instances_test.cpp).
-constexpr std::uint64_t table_bytes_per_instance = 64, tree_bytes_per_instance = 380;
+/// What a process grows by as Embree takes an instance (tests/trace/instances_test.cpp).
+constexpr std::uint64_t tree_bytes_per_instance = 380;
 
 std::string side_name(const Bsdf &bsdf) { return bsdf.blend == no_blend ? bsdf_kind_name(bsdf) : "blendbsdf"; }
 
@@ -145,8 +145,7 @@ SceneSummary summarize(const Scene &scene) {
     summary.seen_triangles = summary.triangles - summary.group_triangles;
     for (const Instance &instance : scene.instances)
         summary.seen_triangles += triangles_of_group[instance.group];
-    summary.instance_bytes =
-        scene.instances.size() * (sizeof(Instance) + table_bytes_per_instance + tree_bytes_per_instance);
+    summary.instance_bytes = scene.instances.size() * (sizeof(Instance) + tree_bytes_per_instance);
     const TraitMap traits = scene_traits(scene);
     summary.table_bytes = geometry_table_bytes(scene, traits);
     summary.tree_bytes =
