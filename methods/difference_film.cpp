@@ -22,7 +22,10 @@ DifferenceFilm::DifferenceFilm(Session &session, Stages &stages, const RenderOpt
       film_names_(session.has("TRAIT_HALVES") ? std::vector<std::string>{"gradient_film", "odd_gradient_film"}
                                               : std::vector<std::string>{"gradient_film"}),
       combine_(stages.add({.name = "gradient_combine", .strict = true})), film_(session, stages),
-      accumulate_(stages.add({.name = "gradient_accumulate", .strict = true, .numbers = {"first_slot", "frames"}})),
+      accumulate_(
+          stages.add({.name = "gradient_accumulate",
+                      .strict = true,
+                      .numbers = {"first_slot", "first_pixel", "first_above", "is_carried", "has_above", "frames"}})),
       carry_(stages.add({.name = "gradient_carry", .numbers = {"first_slot"}})) {
     check_guide(options);
     if (options.threads != 1)
@@ -86,9 +89,21 @@ void DifferenceFilm::add(std::uint32_t first, std::uint32_t rows, std::uint32_t 
         const auto first_frame = std::uint32_t((film + apart - number % apart) % apart);
         if (apart > 1)
             accumulate_.bind("gradient_film", (*tables_)[film_names_[film]]);
-        for (std::uint32_t frame = first_frame; frame < frames; frame += apart * accumulated_frames)
-            accumulate_.run(pixels, {{"first_slot", frame * pixels},
-                                     {"frames", std::min(accumulated_frames, (frames - frame + apart - 1) / apart)}});
+        for (std::uint32_t frame = first_frame; frame < frames; frame += apart * accumulated_frames) {
+            const std::uint32_t together = std::min(accumulated_frames, (frames - frame + apart - 1) / apart);
+            accumulate_.run(width, {{"first_slot", frame * pixels},
+                                    {"first_pixel", first * width},
+                                    {"first_above", ((first > 0 ? first : session_.film.crop_height) - 1) * width},
+                                    {"is_carried", 1},
+                                    {"has_above", first > 0},
+                                    {"frames", together}});
+            accumulate_.run(pixels - width, {{"first_slot", frame * pixels + width},
+                                             {"first_pixel", (first + 1) * width},
+                                             {"first_above", first * width},
+                                             {"is_carried", 0},
+                                             {"has_above", 1},
+                                             {"frames", together}});
+        }
     }
     if (first + rows < session_.film.crop_height)
         carry_.run(width, {{"first_slot", pixels - width}});

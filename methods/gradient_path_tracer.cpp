@@ -113,7 +113,8 @@ StageDeclaration count_stage() {
 GradientPathTracer::GradientPathTracer(Device &device, const Scene &scene, const RenderOptions &options)
     : options_(options), session_(device, scene, options, gradient_traits(scene, options)),
       phases_(phases_of(session_)), camera_(stages_.add(camera_stage())),
-      far_clip_(stages_.add(far_clip_stage(session_))), primary_(stages_.add({.name = "primary"})),
+      far_clip_(stages_.add(far_clip_stage(session_))),
+      primary_(stages_.add({.name = "primary", .numbers = {"first_slot"}})),
       begin_(stages_.add({.name = "gradient_begin", .numbers = {"first_row", "first_slot"}})),
       connect_(stages_.add(connect_stage())),
       gradient_connect_(
@@ -259,12 +260,13 @@ void GradientPathTracer::trace_primaries(const Strip &strip) {
     const std::uint32_t above = strip.first > 0, below = strip.first + strip.rows < session_.film.crop_height;
     paths_.begin_pass(strip.frames * (strip.rows + above + below) * width);
     for (;;) {
-        begin_camera_paths(camera_, paths_, (strip.first - above) * width, first_sample_ + done_ / session_.pixels());
+        const std::uint32_t slot = begin_camera_paths(camera_, paths_, (strip.first - above) * width,
+                                                      first_sample_ + done_ / session_.pixels());
         if (!paths_.is_alive())
             break;
         paths_.trace();
         far_clip_.run(paths_.rays());
-        primary_.run(paths_.rays());
+        primary_.run(paths_.rays(), {{"first_slot", slot}});
         paths_.drop();
     }
 }

@@ -46,7 +46,8 @@ TableRows table_rows(const Session &session, std::uint32_t batch, std::uint32_t 
     return {batch, slot_rows(slots), session.pixels(), session.film.crop_width, chunks_of(batch)};
 }
 
-void begin_camera_paths(Stage &camera, Wavefront &paths, std::uint32_t first_pixel, std::uint64_t first_sample) {
+std::uint32_t begin_camera_paths(Stage &camera, Wavefront &paths, std::uint32_t first_pixel,
+                                 std::uint64_t first_sample) {
     std::uint32_t slot;
     const Range fresh = paths.refill(slot);
     camera.run(fresh.count, {{"first_row", fresh.first},
@@ -54,6 +55,7 @@ void begin_camera_paths(Stage &camera, Wavefront &paths, std::uint32_t first_pix
                              {"first_pixel", first_pixel},
                              {"first_sample_low", static_cast<std::uint32_t>(first_sample)},
                              {"first_sample_high", static_cast<std::uint32_t>(first_sample >> 32)}});
+    return slot;
 }
 
 void run_on_places(Stage &stage, const Hits &hits, Range rows) {

@@ -23,8 +23,9 @@ TableList joined(TableList a, const TableList &b);
 TableRows table_rows(const Session &session, std::uint32_t batch, std::uint32_t slots);
 
 /// Begins what paths of the pass there is room for: those of the pixels from `first_pixel` on, which is in sample
-/// `first_sample` of the image.
-void begin_camera_paths(Stage &camera, Wavefront &paths, std::uint32_t first_pixel, std::uint64_t first_sample);
+/// `first_sample` of the image. Returns the slot of the first; the others follow.
+std::uint32_t begin_camera_paths(Stage &camera, Wavefront &paths, std::uint32_t first_pixel,
+                                 std::uint64_t first_sample);
 /// Runs a stage that reads the rows of before by the index, on those that take the new rows of the range.
 void run_on_places(Stage &stage, const Hits &hits, Range rows);
 /// The new vertices of one BSDF kind.

@@ -55,8 +55,8 @@ typedef struct {
 
 GRADUS_FN environment_texel environment_load(GRADUS_GLOBAL const uint *environment_texels, uint texel, uint unit,
                                              real before) {
-    const uint first = environment_texels[(size_t)texel * 2u];
-    const uint second = environment_texels[(size_t)texel * 2u + unit];
+    const int place = (int)(texel * 2u);
+    const uint first = environment_texels[place], second = (environment_texels + unit)[place];
     environment_texel t;
     t.importance = environment_number_after(second >> 16, before);
     t.radiance.r = environment_number_after(first & 0xFFFFu, t.importance);
@@ -158,10 +158,11 @@ GRADUS_FN environment_choice environment_sample(random4 u, real scale, uint unit
     const random_bits bits =
         random_hash(as_uint((float)u.a), (uint)(u.b * R(16777216)), as_uint((float)(u.c + R(1))), 0x656E7669u);
     const uint drawn = mul_hi(bits.x, environment_strip_count);
-    const uint limit = environment_strips[(size_t)drawn * 2u], other = environment_strips[(size_t)drawn * 2u + unit];
+    const int place = (int)(drawn * 2u);
+    const uint limit = environment_strips[place], other = (environment_strips + unit)[place];
     const uint strip = bits.y < limit ? drawn : other;
     const uint drawn_cell = bits.z >> 24;
-    const uint cell = environment_cells[(size_t)strip * environment_strip + drawn_cell];
+    const uint cell = environment_cells[(int)(strip * environment_strip + drawn_cell)];
     const uint in_strip = (bits.w >> 8) < (cell >> 8) ? drawn_cell : (cell & 255u);
     /* A division in real, for vector units have no other: exact, as there are fewer than 2^22 strips. */
     const uint strips_a_row = (environment_columns + environment_strip - 1u) / environment_strip;

@@ -48,7 +48,7 @@ GRADUS_FN uint gradient_neighbour(uint slot, uint j, film_pixel pixel, uint widt
 #define OWN_VERTEX __global const real *own_vertex, uint own_rows, uint at_first, uint primary_shift
 
 typedef struct {
-    uint row;     /* of own_vertex */
+    int row;      /* of own_vertex */
     int is_there; /* there is an offset path that has not failed */
     int is_own;   /* and it is not connected */
     real ratio;   /* as in `offset` */
@@ -74,8 +74,8 @@ GRADUS_FN own_vertex_state own_state(uint j, uint base_row, uint slot, film_pixe
                                      GRADUS_GLOBAL const real *offset) {
     own_vertex_state state;
     const uint neighbour = gradient_neighbour(slot, j, pixel, crop_width, crop_height);
-    const uint later = j * capacity + base_row;
-    state.row = at_first ? neighbour + primary_shift : later;
+    const int later = (int)(j * capacity + base_row);
+    state.row = at_first ? (int)(neighbour + primary_shift) : later;
     const uint kind = AT_UINT(own_vertex, kind, state.row);
     const real at_first_ratio = neighbour == slot   ? shift_absent
                                 : kind == kind_none ? shift_failed(outcome_failed_at_once)

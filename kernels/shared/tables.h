@@ -579,6 +579,12 @@ GRADUS_LIB_END
 #define AT(table, column, row) AT_IN(table, table, column, row)
 #define AT_UINT(table, column, row) AT_UINT_IN(table, table, column, row)
 
+/* Rows that a table or an index names. Signed, for processors gather sixteen elements at once by numbers of 32 bits,
+ * and by signed ones alone; by 64 bits eight. No table has 2^31 rows. */
+#define AT_ROW_IN(pointer, table, column, row) ((int)AT_UINT_IN(pointer, table, column, row))
+#define AT_ROW(table, column, row) AT_ROW_IN(table, table, column, row)
+#define AT_INDEX(place) ((int)index[place])
+
 /* Three columns at once, as vec3 or rgb; kernels/lib/vector.h must be included. */
 #define AT_V3_IN(pointer, table, column, row)                                                                          \
     v3(AT_IN(pointer, table, column##_x, row), AT_IN(pointer, table, column##_y, row),                                 \

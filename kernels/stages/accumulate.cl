@@ -1,6 +1,5 @@
-/* accumulate: adds one sample to each of `count` pixels: slots `first_slot` on, whose pixels follow `first_pixel`
- * cyclically. A sample with a NaN or an infinity is left out and counted. Samples of filters with negative lobes have a
- * weight. */
+/* accumulate: adds one sample to each of `count` pixels from `first_pixel` on: slots `first_slot` on. A sample with a
+ * NaN or an infinity is left out and counted. Samples of filters with negative lobes have a weight. */
 //! traits: TRAIT_AOV TRAIT_FILTER_SIGNED
 #include "kernels/lib/compensated.h"
 #include "kernels/lib/filter_weight.h"
@@ -31,9 +30,7 @@ STAGE accumulate(uint count, uint slots, uint pixels, uint first_slot, uint firs
     const size_t i = work_item();
     if (i >= count)
         return;
-    const uint slot = first_slot + (uint)i;
-    const uint unwrapped = first_pixel + (uint)i;
-    const uint pixel = unwrapped >= pixels ? unwrapped - pixels : unwrapped;
+    const size_t slot = (size_t)first_slot + i, pixel = (size_t)first_pixel + i;
     FILTER_WEIGHT(slot)
     rgb value = AT_RGB(radiance, value, slot);
     value = rgb3(WEIGHTED(value.r), WEIGHTED(value.g), WEIGHTED(value.b));

@@ -26,16 +26,17 @@ STAGE advance(uint count, uint unit, uint first, uint to, uint stride, uint capa
     const size_t i = work_item();
     if (i >= count)
         return;
-    const uint old = index[first + i];
+    const int old = AT_INDEX(first + i);
     const size_t row = to + i;
 #if TRAIT_APART
     const int is_rough = (AT_UINT(vertex, kind, row) & kind_is_rough) != 0u;
 #endif
 #pragma unroll
     for (uint j = 0; j < 4; ++j) {
-        const size_t from = (size_t)j * capacity + old, at = (size_t)j * capacity + row;
+        const int from = (int)(j * capacity) + old;
+        const size_t at = (size_t)j * capacity + row;
         const real ratio = AT_IN(offset_old, offset, ratio, from);
-        const int open = AT_UINT(link, open, (size_t)(4u + j) * stride + old) != 0u;
+        const int open = AT_UINT(link, open, (int)((4u + j) * stride) + old) != 0u;
         int holds = open;
 #if TRAIT_APART
         const uint state = AT_UINT_IN(offset_old, offset, state, from);
@@ -49,7 +50,7 @@ STAGE advance(uint count, uint unit, uint first, uint to, uint stride, uint capa
         const vec3 wi = AT_V3_IN(offset_old, offset, wi, from);
         SET_V3(offset, wi, at, wi);
 #if APART
-        const size_t sent = (size_t)j * stride + old;
+        const int sent = (int)(j * stride) + old;
         const uint primitive = AT_UINT(offset_ray, primitive, sent);
         const int is_hit = primitive < ray_first_special;
         const vec3 direction = AT_V3(offset_ray, direction, sent);

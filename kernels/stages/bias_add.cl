@@ -30,7 +30,7 @@ STAGE bias_add(uint count, uint first, uint gather_rows, uint pixels, uint first
 #if BY_SLOT
     const uint slot = (uint)row;
 #else
-    const uint slot = AT_UINT(gather, slot, row);
+    const int slot = AT_ROW(gather, slot, row);
 #endif
 #if TRAIT_FILTER_SIGNED
     more = rgb_scale(more, AT(filtered, weight, slot));

@@ -8,7 +8,7 @@ STAGE connect(uint count, uint first, uint capacity, uint slots, __global const 
     if (i >= count)
         return;
     const size_t row = first + i;
-    const uint slot = AT_UINT(path, slot, row);
+    const int slot = AT_ROW(path, slot, row);
     const int open = AT_UINT(shadow, open, row) != 0u;
     AT(radiance, value_r, slot) += open ? AT(shadow, value_r, row) : R(0);
     AT(radiance, value_g, slot) += open ? AT(shadow, value_g, row) : R(0);

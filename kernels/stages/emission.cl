@@ -25,8 +25,8 @@ STAGE emission(uint count, uint unit, uint first, uint capacity, uint slots, __g
     if (i >= count)
 #endif
         return;
-    const uint row = index[first + i];
-    const uint slot = AT_UINT(path, slot, row);
+    const int row = AT_INDEX(first + i);
+    const int slot = AT_ROW(path, slot, row);
     const uint primitive = AT_UINT(ray, primitive, row);
     const vec3 origin = AT_V3(ray, origin, row);
     const vec3 direction = AT_V3(ray, direction, row);

@@ -24,8 +24,8 @@ STAGE escape(uint count, uint unit, uint first, uint capacity, uint slots, __glo
 #endif
     if (!HAS_ROW(i, count, kept))
         return;
-    const uint row = index[first + i];
-    const uint slot = AT_UINT(path, slot, row);
+    const int row = AT_INDEX(first + i);
+    const int slot = AT_ROW(path, slot, row);
     vec3 direction = v3(R(0), R(0), R(1));
 #if TRAIT_LIGHT_ENVIRONMENT
     direction = AT_V3(ray, direction, row);

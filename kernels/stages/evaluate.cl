@@ -20,9 +20,9 @@ STAGE evaluate(uint count, uint unit, uint first, uint first_line, uint stride, 
     const size_t i = work_item();
     if (i >= count)
         return;
-    const uint row = first + (uint)i;
+    const size_t row = (size_t)first + i;
     const uint line = first_line + (uint)get_global_id(2), j = line & 3u;
-    const uint slot = AT_UINT(path, slot, row);
+    const int slot = AT_ROW(path, slot, row);
     const film_pixel pixel = PIXEL_OF(slot);
     const own_vertex_state own = OWN_STATE(j, row, slot, pixel);
     const uint kind = AT_UINT(own_vertex, kind, own.row);

@@ -31,7 +31,7 @@ STAGE gather(uint count, uint unit, uint first, uint to, uint capacity, uint gat
     const size_t i = work_item();
     if (i >= count)
         return;
-    const uint old = index[first + i];
+    const int old = AT_INDEX(first + i);
     const vec3 origin = AT_V3_IN(ray_old, ray, origin, old), direction = AT_V3_IN(ray_old, ray, direction, old);
     const uint depth = AT_UINT_IN(path_old, path, depth, old), slot = AT_UINT_IN(path_old, path, slot, old);
     const rgb throughput = AT_RGB_IN(path_old, path, throughput, old);

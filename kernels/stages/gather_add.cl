@@ -11,6 +11,6 @@ STAGE gather_add(uint count, uint first, uint gather_rows, uint slots, real flux
     const real distance = AT(gather, radius, row);
     const real scale = flux_scale / (distance * distance);
     const rgb gained = rgb_scale(rgb_mul(AT_RGB(gather, throughput, row), AT_RGB(gather, sum, row)), scale);
-    const uint slot = AT_UINT(gather, slot, row);
+    const int slot = AT_ROW(gather, slot, row);
     ADD_RGB(radiance, value, slot, gained);
 }

@@ -11,8 +11,7 @@ STAGE gradient_begin(uint count, uint unit, uint capacity, uint slots, __global 
     if (i >= count)
         return;
     const size_t row = first_row + i;
-    const uint slot = first_slot + (uint)i;
-    const size_t seen = (size_t)slot + primary_shift;
+    const size_t slot = (size_t)first_slot + i, seen = slot + primary_shift;
 #if TRAIT_CAMERA_ORIGINS
     const vec3 origin = AT_V3(primary, origin, seen);
 #else

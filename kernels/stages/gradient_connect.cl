@@ -10,7 +10,7 @@ STAGE gradient_connect(uint count, uint first, uint capacity, uint slots, __glob
     if (i >= count)
         return;
     const size_t row = first + i;
-    const uint slot = AT_UINT(path, slot, row);
+    const int slot = AT_ROW(path, slot, row);
     const int seen = AT_UINT(shadow, open, row) != 0u;
     /* Selected, not scaled: where nothing was asked nothing was written. */
     const rgb base = rgb_select(seen, AT_RGB(shadow, value, row), rgb_gray(R(0)));
@@ -19,7 +19,8 @@ STAGE gradient_connect(uint count, uint first, uint capacity, uint slots, __glob
     ADD_RGB(prefix, value, slot, alone);
 #pragma unroll
     for (uint j = 0; j < 4; ++j) {
-        const size_t at = (size_t)j * capacity + row, to = (size_t)j * slots + slot;
+        const size_t at = (size_t)j * capacity + row;
+        const int to = (int)(j * slots) + slot;
         const rgb offset = rgb_select(seen, AT_RGB(evaluation, value, at), rgb_gray(R(0)));
         const real offset_light = seen ? AT(shift, light_density, at) : R(0);
         const real offset_bsdf = seen ? AT(evaluation, pdf, at) : R(0);

@@ -15,8 +15,8 @@
 #if TRAIT_LIGHT_TREE && !ESCAPED
 #define OWN_CHOICE 1
 #define RECEIVER_OF(j, before)                                                                                         \
-    LIGHT_RECEIVER(AT_V3(link, origin, (size_t)(4u + (j)) * stride + row),                                             \
-                   AT_UINT(shift, receiver, (size_t)(j)*capacity + row), receivers.before.normal.z)
+    LIGHT_RECEIVER(AT_V3(link, origin, (int)((4u + (j)) * stride) + row),                                              \
+                   AT_UINT(shift, receiver, (int)((j)*capacity) + row), receivers.before.normal.z)
 #else
 #define OWN_CHOICE 0
 #endif
@@ -56,8 +56,8 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint stride, uint cap
 #endif
     if (!HAS_ROW(i, count, kept))
         return;
-    const uint row = index[first + i];
-    const uint slot = AT_UINT(path, slot, row);
+    const int row = AT_INDEX(first + i);
+    const int slot = AT_ROW(path, slot, row);
     const real bsdf_pdf = AT(path, pdf, row);
     const rgb throughput = AT_RGB(path, throughput, row);
 #if ESCAPED
@@ -105,8 +105,8 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint stride, uint cap
 #endif
 #pragma unroll
     for (uint j = 0; j < 4; ++j) {
-        const size_t at = (size_t)j * capacity + row, to_slot = (size_t)j * slots + slot;
-        const size_t segment = (size_t)(4u + j) * stride + row;
+        const int at = (int)(j * capacity) + row, to_slot = (int)(j * slots) + slot;
+        const int segment = (int)((4u + j) * stride) + row;
         const real ratio = AT(offset, ratio, at);
         const rgb so_far = AT_RGB(offset, value, at);
         int is_open = AT_UINT(link, open, segment) != 0u;
@@ -144,7 +144,7 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint stride, uint cap
 #if TRAIT_APART
         const int is_apart = state < connection_recent;
         const real own_pdf = AT(offset, pdf, at);
-        const size_t sent = (size_t)j * stride + row;
+        const int sent = (int)(j * stride) + row;
         const uint offset_primitive = AT_UINT(offset_ray, primitive, sent);
 #if ESCAPED
 #if TRAIT_LIGHT_ENVIRONMENT

@@ -33,7 +33,8 @@ STAGE join(uint count, uint unit, uint first, uint capacity, uint slots, uint ro
     if (i >= count)
         return;
     const size_t row = first + i;
-    const uint slot = AT_UINT(path, slot, row), depth = AT_UINT(path, depth, row);
+    const int slot = AT_ROW(path, slot, row);
+    const uint depth = AT_UINT(path, depth, row);
 #if !BSDF_IS_DIRAC
     const material m = VERTEX_MATERIAL(vertex, row);
     const vec3 world_wo = AT_V3(ray, direction, row);
@@ -131,7 +132,7 @@ STAGE join(uint count, uint unit, uint first, uint capacity, uint slots, uint ro
             AT(offset, ratio, at) = is_own ? ratio : merged_ratio;
         }
 #endif
-        const size_t to = (size_t)j * slots + slot;
+        const int to = (int)(j * slots) + slot;
 #if TRAIT_APART
         if (!keeps)
 #endif
@@ -176,7 +177,7 @@ STAGE join(uint count, uint unit, uint first, uint capacity, uint slots, uint ro
         SET_RGB(prefix, throughput, slot, rgb_scale(throughput, inverse));
 #pragma unroll
         for (uint j = 0; j < 4; ++j) {
-            const size_t to = (size_t)j * slots + slot;
+            const int to = (int)(j * slots) + slot;
             SCALE_RGB(difference, throughput, to, inverse);
         }
     }

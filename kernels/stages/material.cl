@@ -121,7 +121,7 @@ STAGE read_material(uint count, uint unit, uint first, uint traced_rows, uint pa
                       texture_bits(TRAIT_NORMAL_TEXTURES, normal_texture, textures, texture_reals, unit);
     if (!HAS_ROW(i, count, kept))
         return;
-    const int row = (int)index[first + i];
+    const int row = AT_INDEX(first + i);
     const uint primitive = AT_UINT(traced, primitive, row);
     const vec3 direction = AT_V3(traced, direction, row);
     const primitive_hit hit =

@@ -17,7 +17,7 @@ STAGE photon_arrive(uint count, uint unit, uint pairs, uint gather_rows, uint pa
     if (i >= count)
         return;
     const uint number = moved_index[i], j = moved_offset(number, pairs), pair = number - j * pairs;
-    const uint row = pair_gather[pair], at = row + (j + 1u) * strip_pixels;
+    const int row = (int)pair_gather[pair], at = row + (int)((j + 1u) * strip_pixels);
     const uint primitive = AT_UINT(moved, primitive, i);
     const int is_hit = primitive < ray_first_special;
     const vec3 direction = AT_V3(moved, direction, i);

@@ -9,7 +9,7 @@ STAGE photon_evaluate(uint count, uint unit, uint gather_rows, uint photon_rows,
     const size_t i = work_item();
     if (i >= count)
         return;
-    const uint row = pair_gather[i], from = pair_photon[i];
+    const int row = (int)pair_gather[i], from = (int)pair_photon[i];
     const material m = VERTEX_MATERIAL(gather, row);
     const rgb value = PHOTON_VALUE(row, m, AT_V3(photon_sorted, wi, from), AT_V3(photon_sorted, normal, from),
                                    AT_RGB(photon_sorted, power, from));

@@ -16,7 +16,7 @@ STAGE photon_project(uint count, uint unit, uint first, uint pairs, uint capacit
         return;
     const size_t to = first + i;
     const uint number = moved_index[to], j = moved_offset(number, pairs), pair = number - j * pairs;
-    const uint row = pair_gather[pair], from = pair_photon[pair], at = row + (j + 1u) * strip_pixels;
+    const int row = (int)pair_gather[pair], from = (int)pair_photon[pair], at = row + (int)((j + 1u) * strip_pixels);
     const photon_chain chain = photon_chain_of(light_vertex_marks, material_bin, chain_bin, most_inner, unit,
                                                AT_UINT(photon_sorted, before, from));
     const photon_disc base = PHOTON_DISC(row), offset = PHOTON_DISC(at);

@@ -17,7 +17,7 @@ STAGE photon_reconnect(uint count, uint unit, uint first, uint pairs, uint gathe
         return;
     const size_t to = first + i;
     const uint number = moved_index[to], j = moved_offset(number, pairs), pair = number - j * pairs;
-    const uint row = pair_gather[pair], from = pair_photon[pair];
+    const int row = (int)pair_gather[pair], from = (int)pair_photon[pair];
     const uint record = AT_UINT(photon_sorted, before, from);
     const vec3 position = VERTEX_V3(position), geometric = VERTEX_V3(geometric);
     const vec3 direction = v3_neg(AT_V3(photon_sorted, wi, from));

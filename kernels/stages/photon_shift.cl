@@ -20,7 +20,7 @@ STAGE photon_shift(uint count, uint unit, uint gather_rows, uint photon_rows, ui
     if (i >= count)
         return;
     const uint j = (uint)get_global_id(2);
-    const uint row = pair_gather[i], from = pair_photon[i];
+    const int row = (int)pair_gather[i], from = (int)pair_photon[i];
     const uint at = row + (j + 1u) * strip_pixels;
 
     const real base_radius = AT(gather, radius, row), inverse_base = R(1) / base_radius;

@@ -20,7 +20,7 @@ STAGE photon_walk(uint count, uint unit, uint first, uint pairs, uint capacity, 
         return;
     const size_t to = first + i;
     const uint number = moved_index[to], j = moved_offset(number, pairs), pair = number - j * pairs;
-    const uint row = pair_gather[pair], from = pair_photon[pair], at = row + (j + 1u) * strip_pixels;
+    const int row = (int)pair_gather[pair], from = (int)pair_photon[pair], at = row + (int)((j + 1u) * strip_pixels);
     const uint primitive = AT_UINT(moved, primitive, to);
     const int is_hit = primitive < ray_first_special;
     const surface_point point = surface_point_of(

@@ -1,21 +1,22 @@
 /* primary: keeps what the camera sees through each pixel of a strip and of the rows beside it, by slot, before the
  * paths begin: the first vertices of their own, and those of their neighbours' offset paths. Rows are those of
- * `camera`, after tracing. */
+ * `camera`, after tracing, and have the slots from `first_slot` on. */
 //! traits: TRAIT_CAMERA_ORIGINS TRAIT_INSTANCES
 #include "kernels/lib/surface_point.h"
 #include "kernels/lib/textured_material.h"
 #include "kernels/lib/vertex_frame.h"
 #include "kernels/shared/stage.h"
 
-STAGE primary(uint count, uint unit, uint capacity, uint slots, __global const real *ray, __global const real *path,
-              __global real *primary, __global real *primary_vertex, __global const real *triangles,
-              __global const real *triangle_normals, __global const real *triangle_tangents,
-              __global const real *spheres, uint triangle_count, __global const uint *primitive_material,
-              __global const uint *material_back, __global const uint *material_kind SURFACE_ARGUMENT) {
+STAGE primary(uint count, uint unit, uint capacity, uint slots, uint first_slot, __global const real *ray,
+              __global const real *path, __global real *primary, __global real *primary_vertex,
+              __global const real *triangles, __global const real *triangle_normals,
+              __global const real *triangle_tangents, __global const real *spheres, uint triangle_count,
+              __global const uint *primitive_material, __global const uint *material_back,
+              __global const uint *material_kind SURFACE_ARGUMENT) {
     const size_t row = work_item();
     if (row >= count)
         return;
-    const uint slot = AT_UINT(path, slot, row);
+    const size_t slot = (size_t)first_slot + row;
     const uint primitive = AT_UINT(ray, primitive, row);
     const vec3 direction = AT_V3(ray, direction, row);
     const int is_hit = primitive < ray_first_special;

@@ -44,10 +44,10 @@ STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint ma
     const size_t i = work_item();
     if (i >= count)
         return;
-    const uint old = index[first + i];
+    const int old = AT_INDEX(first + i);
     const size_t row = to + i;
     const vec3 from = AT_V3_IN(ray_old, ray, origin, old), direction = AT_V3_IN(ray_old, ray, direction, old);
-    const uint slot = AT_UINT_IN(light_path_old, light_path, slot, old);
+    const int slot = AT_ROW_IN(light_path_old, light_path, slot, old);
     const uint key_0 = AT_UINT_IN(light_path_old, light_path, key_0, old);
     const uint key_1 = AT_UINT_IN(light_path_old, light_path, key_1, old);
     const uint before = AT_UINT_IN(light_path_old, light_path, depth, old);

@@ -46,7 +46,7 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
 #endif
     if (!HAS_ROW(i, count, kept))
         return;
-    const int old = (int)index[first + i];
+    const int old = AT_INDEX(first + i);
     const size_t row = to + i;
     const vec3 from = AT_V3_IN(ray_old, ray, origin, old), direction = AT_V3_IN(ray_old, ray, direction, old);
     const uint key_0 = AT_UINT_IN(path_old, path, key_0, old), key_1 = AT_UINT_IN(path_old, path, key_1, old);

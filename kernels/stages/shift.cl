@@ -91,8 +91,8 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
 #endif
     if (!HAS_ROW(i, count, kept))
         return;
-    const uint row = first + (uint)i;
-    const uint slot = AT_UINT(path, slot, row);
+    const size_t row = (size_t)first + i;
+    const int slot = AT_ROW(path, slot, row);
     const film_pixel pixel = PIXEL_OF(slot);
     const vec3 base = AT_V3(vertex, position, row);
     const uint base_kind = AT_UINT(vertex, kind, row);

@@ -9,7 +9,7 @@ STAGE travel(uint count, uint unit, uint first, uint capacity, __global const ui
     const size_t i = work_item();
     if (i >= count)
         return;
-    const uint old = index[first + i];
+    const int old = AT_INDEX(first + i);
     const vec3 origin = AT_V3_IN(ray_old, ray, origin, old), direction = AT_V3_IN(ray_old, ray, direction, old);
     const uint depth = AT_UINT_IN(path_old, path, depth, old), slot = AT_UINT_IN(path_old, path, slot, old);
     const primitive_hit hit =

@@ -72,8 +72,8 @@ STAGE weigh(uint count, uint unit, uint first, uint stride, uint capacity, uint 
     const size_t i = work_item();
     if (i >= count)
         return;
-    const uint row = first + (uint)i;
-    const uint slot = AT_UINT(path, slot, row);
+    const size_t row = (size_t)first + i;
+    const int slot = AT_ROW(path, slot, row);
     const film_pixel pixel = PIXEL_OF(slot);
     const uint base_kind = AT_UINT(vertex, kind, row);
     const int is_lit = rgb_max(AT_RGB(event, arriving, row)) > R(0);
@@ -116,7 +116,7 @@ STAGE weigh(uint count, uint unit, uint first, uint stride, uint capacity, uint 
     for (uint j = 0; j < 4; ++j) {
         const size_t at = (size_t)j * capacity + row;
         const size_t step = (size_t)(4u + j) * capacity + row;
-        const size_t to = (size_t)j * slots + slot;
+        const int to = (int)(j * slots) + slot;
         const own_vertex_state own = OWN_STATE(j, row, slot, pixel);
         const uint kind = AT_UINT(own_vertex, kind, own.row);
         const int is_dirac = (kind & kind_is_dirac) != 0u;

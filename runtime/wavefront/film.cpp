@@ -48,18 +48,14 @@ void Film::clear() {
 }
 
 void Film::add(std::uint32_t count, std::uint32_t first_pixel, std::uint64_t first_sample) {
-    // One launch a sample of each pixel: within a launch no pixel occurs twice.
-    const std::uint32_t pixels = session_.pixels();
-    if (halves_) { // and all of a half
-        for (std::uint32_t slot = 0, done = 0; slot < count; slot += done, first_pixel = 0, ++first_sample) {
-            done = std::min(pixels - first_pixel, count - slot);
+    // One launch a sample of each pixel: within a launch no pixel occurs twice, and their rows lie side by side.
+    std::uint32_t done = 0;
+    for (std::uint32_t slot = 0; slot < count; slot += done, first_pixel = 0, ++first_sample) {
+        done = std::min(session_.pixels() - first_pixel, count - slot);
+        if (halves_)
             accumulate_.bind("film", (*tables_)[first_sample % 2 == 0 ? "film" : "odd_film"]);
-            accumulate_.run(done, {{"first_slot", slot}, {"first_pixel", first_pixel}});
-        }
-        return;
+        accumulate_.run(done, {{"first_slot", slot}, {"first_pixel", first_pixel}});
     }
-    for (std::uint32_t slot = 0; slot < count; slot += pixels)
-        accumulate_.run(std::min(pixels, count - slot), {{"first_slot", slot}, {"first_pixel", first_pixel}});
 }
 
 Image Film::image(std::uint64_t samples, std::uint64_t &non_finite, std::uint64_t light_paths) const {

@@ -137,6 +137,38 @@ INSTANTIATE_TEST_SUITE_P(Full, ByIndex,
                              return name;
                          });
 
+/// Materials read class by class, and all by one kernel that has what any of them needs.
+class MaterialClassesOf : public ::testing::TestWithParam<std::tuple<const char *, const char *>> {};
+
+TEST_P(MaterialClassesOf, ReadTheSameButForRounding) {
+    const auto [name, method] = GetParam();
+    Scene scene = own_scene(std::string(name) + ".xml", 64, 48);
+    scene.settings.samples_per_pixel = 4;
+    RenderOptions options;
+    options.aov = true; // the features: what is read of first vertices
+    const Image by_class = render(scene, options, method).image;
+    options.all_traits = true;
+    const Image by_one = render(scene, options, method).image;
+    std::size_t far = 0, count = 0;
+    for (const char *channel : {"albedo.R", "albedo.G", "albedo.B", "N.X", "N.Y", "N.Z"}) {
+        ASSERT_TRUE(by_class.find(channel) && by_one.find(channel)) << channel;
+        for (std::size_t i = 0; i < by_class.find(channel)->values.size(); ++i) {
+            const double a = by_class.find(channel)->values[i], b = by_one.find(channel)->values[i];
+            ++count;
+            far += std::fabs(a - b) > 1e-4 * std::max(0.1, std::fabs(a)) ? 1 : 0;
+        }
+    }
+    fmt::print("{} by {}: of {} values {} differ by more than 1e-4\n", name, method, count, far);
+    EXPECT_LE(far, count / 100);
+}
+
+INSTANTIATE_TEST_SUITE_P(Full, MaterialClassesOf,
+                         ::testing::Combine(::testing::Values("textures", "relief"),
+                                            ::testing::Values("pt", "gpt", "sppm")),
+                         [](const auto &parameter) {
+                             return std::string(std::get<0>(parameter.param)) + "_" + std::get<1>(parameter.param);
+                         });
+
 INSTANTIATE_TEST_SUITE_P(Image, Invariance, ::testing::Values("cornell-box", "plates", "materials"), name_of_scene);
 
 TEST(PartialImage, DividesEachPixelByItsOwnCount) {
