@@ -65,8 +65,12 @@ std::string summary_text(const Scene &scene, const SceneSummary &summary, const 
     text += fmt::format("scene       {}\n", scene.path);
     text += fmt::format("shapes      {} meshes, {} spheres; {} triangles, {} vertices\n", summary.meshes,
                         summary.spheres, summary.triangles, summary.vertices);
-    if (scene.instances > 0)
-        text += fmt::format("instances   {}, whose copies the shapes hold\n", scene.instances);
+    if (!scene.instances.empty())
+        text += fmt::format(
+            "instances   {} of {} groups, which have {} triangles; {} triangles as often as they are seen\n",
+            scene.instances.size(), scene.groups, summary.group_triangles, summary.seen_triangles);
+    if (scene.copied_instances > 0)
+        text += fmt::format("copies      {} instances, which are among the shapes\n", scene.copied_instances);
     text += fmt::format("bounds      ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})\n", low[0], low[1], low[2],
                         high[0], high[1], high[2]);
     text += fmt::format("materials   {}\n", counts(summary.materials));
@@ -86,6 +90,8 @@ std::string summary_text(const Scene &scene, const SceneSummary &summary, const 
                         scene.settings.integrator.empty() ? "" : ", integrator " + scene.settings.integrator);
     text += fmt::format("memory      geometry {}, its tables {}, ", mebibytes(summary.geometry_bytes),
                         mebibytes(summary.table_bytes));
+    if (summary.instance_bytes > 0)
+        text += fmt::format("instances {}, ", mebibytes(summary.instance_bytes));
     if (summary.texture_bytes > 0)
         text += fmt::format("textures and maps {}, ", mebibytes(summary.texture_bytes));
     text += fmt::format("ray tracing about {}, film {}; a render adds its batch\n", mebibytes(summary.tree_bytes),
@@ -107,7 +113,10 @@ std::string summary_json(const Scene &scene, const SceneSummary &summary, const 
         {"scene", scene.path},
         {"meshes", summary.meshes},
         {"spheres", summary.spheres},
-        {"instances", scene.instances},
+        {"instances", scene.instances.size() + scene.copied_instances},
+        {"kept_instances", scene.instances.size()},
+        {"groups", scene.groups},
+        {"seen_triangles", summary.seen_triangles},
         {"triangles", summary.triangles},
         {"vertices", summary.vertices},
         {"bounds", {{"lower", summary.lower}, {"upper", summary.upper}}},
@@ -130,6 +139,7 @@ std::string summary_json(const Scene &scene, const SceneSummary &summary, const 
         {"memory",
          {{"geometry_bytes", summary.geometry_bytes},
           {"table_bytes", summary.table_bytes},
+          {"instance_bytes", summary.instance_bytes},
           {"texture_bytes", summary.texture_bytes},
           {"tree_bytes_estimated", summary.tree_bytes},
           {"film_bytes", summary.film_bytes}}},

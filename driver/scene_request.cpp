@@ -86,6 +86,13 @@ void add_scene_options(CLI::App &command, SceneRequest &request) {
         .add_flag("--ignore-media", request.ignore_media,
                   "Render a scene with participating media as if these were empty")
         ->group(group);
+    command
+        .add_option("--instances", request.instances,
+                    "Instances of groups: as shapes of their own where that is small, always (copies), never (kept)")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, InstanceChoice>{
+            {"auto", InstanceChoice::automatic}, {"copies", InstanceChoice::copies}, {"kept", InstanceChoice::kept}}))
+        ->option_text("auto|copies|kept [auto]")
+        ->group(group);
     CLI::Option *const confined =
         command
             .add_flag("--confined", request.confined,
@@ -161,6 +168,7 @@ Scene load_requested_scene(const SceneRequest &request, const Services &services
     options.strict = request.strict;
     options.confined = request.confined;
     options.ignore_media = request.ignore_media;
+    options.instances = request.instances;
     options.allowed_folders.assign(request.allowed_folders.begin(), request.allowed_folders.end());
     options.limits = LoadLimits().times(request.limits);
     for (const std::string &definition : request.definitions) {

@@ -22,6 +22,7 @@ struct SceneRequest {
     bool strict = false;
     bool confined = false;
     bool ignore_media = false;
+    InstanceChoice instances = InstanceChoice::automatic;
     std::vector<std::string> allowed_folders;
     std::uint64_t limits = 1; ///< all limits of what a scene's files may take are so many times as high
     std::optional<std::array<std::uint32_t, 2>> size; ///< width, height

@@ -1,7 +1,7 @@
 #include "driver/scene_summary.h"
 
-#include "runtime/scene/bounds.h"
 #include "runtime/scene/environment_map.h"
+#include "runtime/scene/instances.h"
 #include "runtime/scene/mesh_builder.h"
 #include "runtime/scene/texture.h"
 #include "runtime/scene/traits.h"
@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <set>
 
 namespace gradus {
@@ -18,6 +19,9 @@ namespace {
 /// monitor says 79 to 82 bytes on grids of ten thousand to a million triangles, 100 on one of 200. Of those that are
 /// laid out by index it shares vertices and indices.
 constexpr std::uint64_t tree_bytes_per_triangle = 82, shared_tree_bytes_per_triangle = 64;
+
+/// What a process grows by as Embree takes an instance (tests/trace/instances_test.cpp).
+constexpr std::uint64_t tree_bytes_per_instance = 380;
 
 std::string side_name(const Bsdf &bsdf) { return bsdf.blend == no_blend ? bsdf_kind_name(bsdf) : "blendbsdf"; }
 
@@ -125,16 +129,23 @@ const char *name_of(Camera::FovAxis axis) {
 
 SceneSummary summarize(const Scene &scene) {
     SceneSummary summary;
-    Bounds bounds;
+    std::vector<std::uint64_t> triangles_of_group(scene.groups);
     for (const Shape &shape : scene.shapes) {
+        if (shape.group != no_group)
+            triangles_of_group[std::size_t(shape.group)] += scene.meshes[shape.geometry].triangles.size();
         ++(shape.kind == Shape::Kind::sphere ? summary.spheres : summary.meshes);
-        bounds.add(bounds_of(scene, shape));
     }
+    const Bounds bounds = world_bounds(scene);
     for (const Mesh &mesh : scene.meshes) {
         summary.triangles += mesh.triangles.size();
         summary.vertices += mesh.positions.size();
         summary.geometry_bytes += mesh_bytes(mesh);
     }
+    summary.group_triangles = std::accumulate(triangles_of_group.begin(), triangles_of_group.end(), std::uint64_t(0));
+    summary.seen_triangles = summary.triangles - summary.group_triangles;
+    for (const Instance &instance : scene.instances)
+        summary.seen_triangles += triangles_of_group[instance.group];
+    summary.instance_bytes = scene.instances.size() * (sizeof(Instance) + tree_bytes_per_instance);
     const TraitMap traits = scene_traits(scene);
     summary.table_bytes = geometry_table_bytes(scene, traits);
     summary.tree_bytes =

@@ -18,6 +18,9 @@ struct SceneSummary {
     std::array<double, 3> lower{}, upper{};         ///< of all shapes, world space; 0 without any
     std::uint64_t geometry_bytes = 0;               ///< vertices and indices
     std::uint64_t table_bytes = 0;                  ///< what of triangles and spheres is laid out for kernels
+    std::uint64_t group_triangles = 0;              ///< of those, what instances share
+    std::uint64_t seen_triangles = 0;               ///< as often as they are seen
+    std::uint64_t instance_bytes = 0;               ///< what instances take beside records among the tables
     std::uint64_t texture_bytes = 0;                ///< pictures, each once, and the environment's map
     std::uint64_t tree_bytes = 0;                   ///< the ray tracer's tree and vertices, estimated
     std::uint64_t film_bytes = 0;                   ///< one sum and one count of each pixel

@@ -177,7 +177,9 @@ TableList GradientPathTracer::tables() const {
     return {
         {.name = "primary",
          .rows = RowsOf::slot,
-         .columns = primary_columns - (session_.has("TRAIT_CAMERA_ORIGINS") ? 0u : 3u)},
+         .columns = session_.has("TRAIT_INSTANCES")        ? primary_columns
+                    : session_.has("TRAIT_CAMERA_ORIGINS") ? primary_instance
+                                                           : primary_origin_x},
         {.name = "primary_vertex", .rows = RowsOf::slot, .columns = session_.vertex_columns(primary_vertex_columns)},
         {.name = "vertex", .columns = session_.vertex_columns(vertex_columns)},
         {.name = "event", .columns = has_tree ? event_columns : event_light},
@@ -190,7 +192,9 @@ TableList GradientPathTracer::tables() const {
          .multiple = 4,
          .columns = with("TRAIT_APART", int(session_.vertex_columns(offset_vertex_columns))),
          .is_cleared = true},
-        {.name = "offset_ray", .multiple = 4, .columns = with("TRAIT_APART", offset_ray_columns)},
+        {.name = "offset_ray",
+         .multiple = 4,
+         .columns = with("TRAIT_APART", session_.has("TRAIT_INSTANCES") ? offset_ray_columns : offset_ray_instance)},
         {.name = "offset_surface",
          .multiple = 4,
          .columns = with("TRAIT_APART", int(session_.surface_columns())),
@@ -345,6 +349,8 @@ void GradientPathTracer::step_offset_paths() {
     if (tables_->has("offset_ray"))
         rays = {&(*tables_)["offset_ray"], 4 * capacity,         4 * stride, offset_ray_origin_x,
                 offset_ray_direction_x,    offset_ray_primitive, stride};
+    if (session_.has("TRAIT_INSTANCES"))
+        rays.instance = offset_ray_instance;
     const TraceCounts counts = trace_segments(session_.tracer, options_.precision, rays, links, session_.trace_seconds);
     session_.rays["offset"] += counts.extension + counts.shadow;
     if (tables_->has("offset_surface"))

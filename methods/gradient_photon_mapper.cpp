@@ -80,6 +80,9 @@ std::string reason_against_gpm(const Scene &scene) {
     // Shifted photons leave vertices again whose textures nobody has kept.
     if (needs_material_stage(scene))
         return "gpm knows no textures of BSDFs, no blends and no normal maps yet; pt, gpt and sppm do";
+    // Walks would have to know how normals of an instance change.
+    if (!scene.instances.empty())
+        return "gpm knows no instances; pt, gpt and sppm do, and --instances copies makes shapes of them";
     // They must leave by the lobe that their light path sampled there, which no record tells.
     std::string mixed;
     for_each_bsdf(scene, [&](const Bsdf &bsdf) {

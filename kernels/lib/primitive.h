@@ -2,7 +2,7 @@
  * computing them here makes a result independent of how rays were packed, and exact for spheres. */
 #ifndef GRADUS_LIB_PRIMITIVE_H
 #define GRADUS_LIB_PRIMITIVE_H
-//! traits: TRAIT_INDEXED
+//! traits: TRAIT_INDEXED TRAIT_INSTANCES
 #include "kernels/lib/vector.h"
 #include "kernels/shared/scene_records.h"
 
@@ -14,6 +14,9 @@ typedef struct {
     real u, v;   /* triangles: barycentric weights of the second and third vertex */
 #if TRAIT_INDEXED
     uint corner_0, corner_1, corner_2; /* triangles: their vertices */
+#endif
+#if TRAIT_INSTANCES
+    uint instance;
 #endif
 } primitive_hit;
 

@@ -1,7 +1,8 @@
 /* A triangle of the scene: of a record of its own, or of vertices that it shares with others. */
 #ifndef GRADUS_LIB_SCENE_TRIANGLE_H
 #define GRADUS_LIB_SCENE_TRIANGLE_H
-//! traits: TRAIT_INDEXED
+//! traits: TRAIT_INDEXED TRAIT_INSTANCES
+#include "kernels/lib/instance.h"
 #include "kernels/lib/ordered.h"
 #include "kernels/lib/vector.h"
 #include "kernels/shared/scene_records.h"
@@ -28,7 +29,8 @@ typedef struct {
     ((GRADUS_GLOBAL const uint *)(array) + (corner) * (size_t)unit)[(int)(3u * (uint)(triangle))]
 #endif
 
-GRADUS_FN scene_triangle scene_triangle_of(GRADUS_GLOBAL const real *triangles, uint unit, uint triangle) {
+GRADUS_FN scene_triangle scene_triangle_of(GRADUS_GLOBAL const real *triangles, uint unit,
+                                           uint triangle INSTANCE_PARAMETER) {
     scene_triangle found;
 #if TRAIT_INDEXED
     found.corner_0 = CORNER_OF(triangles, triangle, 0);
@@ -37,6 +39,12 @@ GRADUS_FN scene_triangle scene_triangle_of(GRADUS_GLOBAL const real *triangles, 
     found.p0 = OF_VERTEX_V3(triangles, found.corner_0, 0);
     found.e1 = v3_sub(OF_VERTEX_V3(triangles, found.corner_1, 0), found.p0);
     found.e2 = v3_sub(OF_VERTEX_V3(triangles, found.corner_2, 0), found.p0);
+#if TRAIT_INSTANCES
+    const instance_map map = instance_map_of(triangles, unit, instance);
+    found.p0 = placed_point(map, found.p0);
+    found.e1 = placed_vector(map, found.e1);
+    found.e2 = placed_vector(map, found.e2);
+#endif
 #else
     found.p0 = FIELD_V3(triangle, triangles, triangle, p0);
     found.e1 = FIELD_V3(triangle, triangles, triangle, e1);

@@ -1,7 +1,7 @@
 /* What a ray finds of a surface: where, and how it faces. */
 #ifndef GRADUS_LIB_SURFACE_POINT_H
 #define GRADUS_LIB_SURFACE_POINT_H
-//! traits: TRAIT_SHADING_NORMALS TRAIT_ANISOTROPIC TRAIT_TWO_SIDED TRAIT_TWO_FACED
+//! traits: TRAIT_SHADING_NORMALS TRAIT_ANISOTROPIC TRAIT_TWO_SIDED TRAIT_TWO_FACED TRAIT_INSTANCES
 #include "kernels/lib/material_side.h"
 #include "kernels/lib/surface_side.h"
 
@@ -57,7 +57,7 @@ GRADUS_FN surface_point surface_point_at(GRADUS_GLOBAL const real *triangles,
     point.along = v3(-hit.normal.y, hit.normal.x, R(0)); /* spheres: around the z axis */
 #if TRAIT_ANISOTROPIC
 #if TRAIT_INDEXED
-    const scene_triangle triangle = scene_triangle_of(triangles, unit, TRIANGLE_OF(primitive));
+    const scene_triangle triangle = scene_triangle_of(triangles, unit, TRIANGLE_OF(primitive) INSTANCE_OF_HIT);
     const vec3 of_triangle = tangent_of_corners(triangle_tangents, unit, triangle);
 #else
     const vec3 of_triangle = FIELD_V3(triangle_tangent, triangle_tangents, TRIANGLE_OF(primitive), along);
@@ -67,8 +67,8 @@ GRADUS_FN surface_point surface_point_at(GRADUS_GLOBAL const real *triangles,
     point.position = hit.position;
     point.geometric = geometric;
     point.shading = shading;
-    point.offset =
-        offset_at(hit.position, hit.normal, primitive_offset(triangles, spheres, unit, triangle_count, primitive));
+    point.offset = offset_at(hit.position, hit.normal,
+                             primitive_offset(triangles, spheres, unit, triangle_count, primitive HIT_ARGUMENT(hit)));
     point.material = material_index;
     return point;
 }
@@ -77,12 +77,13 @@ GRADUS_FN surface_point surface_point_of(GRADUS_GLOBAL const real *triangles,
                                          GRADUS_GLOBAL const real *triangle_normals,
                                          GRADUS_GLOBAL const real *triangle_tangents, GRADUS_GLOBAL const real *spheres,
                                          uint unit, uint triangle_count, GRADUS_GLOBAL const uint *primitive_material,
-                                         GRADUS_GLOBAL const uint *material_back, uint primitive, vec3 origin,
-                                         vec3 direction) {
-    return surface_point_at(triangles, triangle_normals, triangle_tangents, spheres, unit, triangle_count,
-                            primitive_material, material_back, primitive,
-                            primitive_hit_of(triangles, spheres, unit, triangle_count, primitive, origin, direction),
-                            direction);
+                                         GRADUS_GLOBAL const uint *material_back, uint primitive INSTANCE_PARAMETER,
+                                         vec3 origin, vec3 direction) {
+    return surface_point_at(
+        triangles, triangle_normals, triangle_tangents, spheres, unit, triangle_count, primitive_material,
+        material_back, primitive,
+        primitive_hit_of(triangles, spheres, unit, triangle_count, primitive INSTANCE_ARGUMENT, origin, direction),
+        direction);
 }
 
 GRADUS_LIB_END

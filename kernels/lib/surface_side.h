@@ -2,7 +2,7 @@
  * scene. */
 #ifndef GRADUS_LIB_SURFACE_SIDE_H
 #define GRADUS_LIB_SURFACE_SIDE_H
-//! traits: TRAIT_SHADING_NORMALS
+//! traits: TRAIT_SHADING_NORMALS TRAIT_INSTANCES
 #include "kernels/lib/scene_hit.h"
 
 GRADUS_LIB_BEGIN
@@ -35,7 +35,10 @@ GRADUS_FN vec3 shading_normal_at(GRADUS_GLOBAL const real *triangle_normals, uin
     (void)triangle_normals, (void)unit, (void)triangle_count, (void)primitive;
 #if TRAIT_SHADING_NORMALS
     const vertex_normals n = vertex_normals_of(triangle_normals, unit, TRIANGLE_OF(primitive), hit);
-    const vec3 sum = v3_mad(v3_mad(v3_scale(n.n0, R(1) - hit.u - hit.v), hit.u, n.n1), hit.v, n.n2);
+    vec3 sum = v3_mad(v3_mad(v3_scale(n.n0, R(1) - hit.u - hit.v), hit.u, n.n1), hit.v, n.n2);
+#if TRAIT_INSTANCES
+    sum = placed_normal(instance_map_of(triangle_normals, unit, hit.instance), sum);
+#endif
 #if TRAIT_INDEXED
     const vec3 interpolated = v3_select(v3_dot(sum, sum) > R(0), v3_normalize(sum), shading);
 #else
@@ -54,11 +57,12 @@ GRADUS_FN int is_met_from_behind(GRADUS_GLOBAL const real *triangle_normals, uin
 
 /* The same of the ray's primitive that the tracer named. */
 GRADUS_FN int primitive_is_behind(GRADUS_GLOBAL const real *triangles, GRADUS_GLOBAL const real *triangle_normals,
-                                  GRADUS_GLOBAL const real *spheres, uint unit, uint triangle_count, uint primitive,
-                                  vec3 origin, vec3 direction) {
-    return is_met_from_behind(triangle_normals, unit, triangle_count, primitive,
-                              primitive_hit_of(triangles, spheres, unit, triangle_count, primitive, origin, direction),
-                              direction);
+                                  GRADUS_GLOBAL const real *spheres, uint unit, uint triangle_count,
+                                  uint primitive INSTANCE_PARAMETER, vec3 origin, vec3 direction) {
+    return is_met_from_behind(
+        triangle_normals, unit, triangle_count, primitive,
+        primitive_hit_of(triangles, spheres, unit, triangle_count, primitive INSTANCE_ARGUMENT, origin, direction),
+        direction);
 }
 
 GRADUS_LIB_END

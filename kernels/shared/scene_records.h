@@ -54,6 +54,26 @@
     FIELD(surface_of, back_bin, "the same of primitive_back_bin")                                                      \
     FIELD(surface_of, lag, "how far the numbers of its lights are behind those of its primitives, or no_light")
 
+/* Where an instance of a group stands, only with TRAIT_INSTANCES: behind the vertices in `triangles`. The first is that
+ * of whatever is in no group, and leaves all where it is. */
+#define GRADUS_INSTANCE_FIELDS(FIELD)                                                                                  \
+    FIELD(instance, x_x, "where the group's x axis goes")                                                              \
+    FIELD(instance, x_y, "")                                                                                           \
+    FIELD(instance, x_z, "")                                                                                           \
+    FIELD(instance, y_x, "")                                                                                           \
+    FIELD(instance, y_y, "")                                                                                           \
+    FIELD(instance, y_z, "")                                                                                           \
+    FIELD(instance, z_x, "")                                                                                           \
+    FIELD(instance, z_y, "")                                                                                           \
+    FIELD(instance, z_z, "")                                                                                           \
+    FIELD(instance, origin_x, "where its origin goes")                                                                 \
+    FIELD(instance, origin_y, "")                                                                                      \
+    FIELD(instance, origin_z, "")                                                                                      \
+    FIELD(instance, facing, "-1: the map mirrors; 1: it does not")                                                     \
+    FIELD(instance, rounding_x, "how far rounding in the map may move points of the group, along world axes")          \
+    FIELD(instance, rounding_y, "")                                                                                    \
+    FIELD(instance, rounding_z, "")
+
 #define GRADUS_SPHERE_FIELDS(FIELD)                                                                                    \
     FIELD(sphere, center_x, "")                                                                                        \
     FIELD(sphere, center_y, "")                                                                                        \
@@ -131,6 +151,7 @@ enum triangle_field { GRADUS_TRIANGLE_FIELDS(GRADUS_RECORD_INDEX) triangle_strid
 enum normals_field { GRADUS_TRIANGLE_NORMALS_FIELDS(GRADUS_RECORD_INDEX) normals_stride };
 enum triangle_tangent_field { GRADUS_TRIANGLE_TANGENT_FIELDS(GRADUS_RECORD_INDEX) triangle_tangent_stride };
 enum surface_of_field { GRADUS_SURFACE_FIELDS(GRADUS_RECORD_INDEX) surface_of_stride };
+enum instance_field { GRADUS_INSTANCE_FIELDS(GRADUS_RECORD_INDEX) instance_stride };
 enum sphere_field { GRADUS_SPHERE_FIELDS(GRADUS_RECORD_INDEX) sphere_stride };
 enum light_field { GRADUS_LIGHT_FIELDS(GRADUS_RECORD_INDEX) light_stride };
 enum emission_field { GRADUS_EMISSION_FIELDS(GRADUS_RECORD_INDEX) emission_stride };

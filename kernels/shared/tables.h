@@ -19,7 +19,8 @@
     REAL(ray, direction_x, "unit vector")                                                                              \
     REAL(ray, direction_y, "")                                                                                         \
     REAL(ray, direction_z, "")                                                                                         \
-    UINT(ray, primitive, "before tracing: ray_pending or ray_none; after: the primitive hit, ray_escaped, ray_none")
+    UINT(ray, primitive, "before tracing: ray_pending or ray_none; after: the primitive hit, ray_escaped, ray_none")   \
+    UINT(ray, instance, "only with TRAIT_INSTANCES: record of the instance that was hit, if anything was")
 
 /* The connection of a path's vertex to a light point, from origin along direction to distance 1. */
 #define GRADUS_SHADOW_COLUMNS(REAL, UINT)                                                                              \
@@ -245,7 +246,8 @@
     REAL(primary, direction_z, "")                                                                                     \
     REAL(primary, origin_x, "of the ray; these three only where the camera's rays have several")                       \
     REAL(primary, origin_y, "")                                                                                        \
-    REAL(primary, origin_z, "")
+    REAL(primary, origin_z, "")                                                                                        \
+    UINT(primary, instance, "only with TRAIT_INSTANCES: as in `ray`")
 #define GRADUS_PRIMARY_VERTEX_COLUMNS(REAL, UINT) GRADUS_SURFACE_VERTEX_COLUMNS(primary_vertex, REAL, UINT)
 
 /* The newest vertex of a base path while it has offset paths of its own. */
@@ -283,7 +285,8 @@
     REAL(offset_ray, direction_x, "")                                                                                  \
     REAL(offset_ray, direction_y, "")                                                                                  \
     REAL(offset_ray, direction_z, "")                                                                                  \
-    UINT(offset_ray, primitive, "")
+    UINT(offset_ray, primitive, "")                                                                                    \
+    UINT(offset_ray, instance, "only with TRAIT_INSTANCES")
 
 /* Rays that are traced, as an argument: those of any table of rays. */
 #define GRADUS_TRACED_COLUMNS(REAL, UINT)                                                                              \
@@ -293,7 +296,8 @@
     REAL(traced, direction_x, "")                                                                                      \
     REAL(traced, direction_y, "")                                                                                      \
     REAL(traced, direction_z, "")                                                                                      \
-    UINT(traced, primitive, "")
+    UINT(traced, primitive, "")                                                                                        \
+    UINT(traced, instance, "only with TRAIT_INSTANCES")
 
 /* The state of offset paths. All values are over the density of the base path. Two of these tables alternate. */
 #define GRADUS_OFFSET_COLUMNS(REAL, UINT)                                                                              \

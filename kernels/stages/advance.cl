@@ -56,7 +56,8 @@ STAGE advance(uint count, uint unit, uint first, uint to, uint stride, uint capa
         const vec3 direction = AT_V3(offset_ray, direction, sent);
         const surface_point point =
             CHOSEN_POINT(surface_point_of(triangles, triangle_normals, triangle_tangents, spheres, unit, triangle_count,
-                                          primitive_material, material_back, is_hit ? primitive : 0u,
+                                          primitive_material, material_back,
+                                          is_hit ? primitive : 0u INSTANCE_IN(offset_ray, offset_ray, sent),
                                           AT_V3(offset_ray, origin, sent), direction),
                          4u * capacity, sent);
         const int is_own = is_hit & (ratio >= R(0)) & (state < connection_recent);

@@ -58,8 +58,9 @@ STAGE classify(uint count, uint unit, uint capacity, __global const real *ray, _
     uint hit_bin = OF_PRIMITIVE(primitive_bin, bin, present);
 #if TRAIT_TWO_FACED
     /* The two sides may be of different kinds. */
-    const int behind = primitive_is_behind(triangles, triangle_normals, spheres, unit, triangle_count, present,
-                                           AT_V3(ray, origin, row), AT_V3(ray, direction, row));
+    const int behind =
+        primitive_is_behind(triangles, triangle_normals, spheres, unit, triangle_count,
+                            present INSTANCE_IN(ray, ray, row), AT_V3(ray, origin, row), AT_V3(ray, direction, row));
     const uint back_bin = OF_PRIMITIVE(primitive_back_bin, back_bin, present);
     hit_bin = behind ? back_bin : hit_bin;
 #endif

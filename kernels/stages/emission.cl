@@ -30,7 +30,8 @@ STAGE emission(uint count, uint unit, uint first, uint capacity, uint slots, __g
     const uint primitive = AT_UINT(ray, primitive, row);
     const vec3 origin = AT_V3(ray, origin, row);
     const vec3 direction = AT_V3(ray, direction, row);
-    const primitive_hit hit = primitive_hit_of(triangles, spheres, unit, triangle_count, primitive, origin, direction);
+    const primitive_hit hit = primitive_hit_of(triangles, spheres, unit, triangle_count,
+                                               primitive INSTANCE_IN(ray, ray, row), origin, direction);
     const light_found found = light_found_at(primitive_light, lights, light_count, unit, triangle_count, primitive, hit,
                                              origin, direction LIGHT_TEXTURE_ARGUMENTS);
 #if TRAIT_LIGHT_TREE

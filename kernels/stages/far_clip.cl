@@ -13,8 +13,8 @@ STAGE far_clip(uint count, uint unit, uint capacity, __global real *ray, __globa
     const uint primitive = AT_UINT(ray, primitive, row);
     const vec3 origin = AT_V3(ray, origin, row), direction = AT_V3(ray, direction, row);
     const int is_hit = primitive < ray_first_special;
-    const primitive_hit hit =
-        primitive_hit_of(triangles, spheres, unit, triangle_count, is_hit ? primitive : 0u, origin, direction);
+    const primitive_hit hit = primitive_hit_of(triangles, spheres, unit, triangle_count,
+                                               is_hit ? primitive : 0u INSTANCE_IN(ray, ray, row), origin, direction);
     real depth = v3_dot(v3_sub(hit.position, origin), FIELD_V3(camera, camera, 0, forward));
 #if TRAIT_NEAR_CLIP
     depth += FIELD_OF(camera, camera, 0, near_clip);

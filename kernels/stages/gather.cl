@@ -35,11 +35,11 @@ STAGE gather(uint count, uint unit, uint first, uint to, uint capacity, uint gat
     const vec3 origin = AT_V3_IN(ray_old, ray, origin, old), direction = AT_V3_IN(ray_old, ray, direction, old);
     const uint depth = AT_UINT_IN(path_old, path, depth, old), slot = AT_UINT_IN(path_old, path, slot, old);
     const rgb throughput = AT_RGB_IN(path_old, path, throughput, old);
-    const surface_point point =
-        CHOSEN_POINT(surface_point_of(triangles, triangle_normals, triangle_tangents, spheres, unit, triangle_count,
-                                      primitive_material, material_back, AT_UINT_IN(ray_old, ray, primitive, old),
-                                      origin, direction),
-                     capacity, old);
+    const surface_point point = CHOSEN_POINT(
+        surface_point_of(triangles, triangle_normals, triangle_tangents, spheres, unit, triangle_count,
+                         primitive_material, material_back,
+                         AT_UINT_IN(ray_old, ray, primitive, old) INSTANCE_IN(ray_old, ray, old), origin, direction),
+        capacity, old);
 #if BY_SLOT
     (void)to;
     const size_t row = slot;

@@ -1,6 +1,6 @@
 /* gradient_begin: begins one base path a row from what the camera saw: its first ray, already traced. Its sums are
  * begun where its first vertex is lit (`weigh`), or here where there is none. */
-//! traits: TRAIT_CAMERA_ORIGINS
+//! traits: TRAIT_CAMERA_ORIGINS TRAIT_INSTANCES
 #include "kernels/lib/begin_path.h"
 
 STAGE gradient_begin(uint count, uint unit, uint capacity, uint slots, __global real *ray, __global real *path,
@@ -22,6 +22,9 @@ STAGE gradient_begin(uint count, uint unit, uint capacity, uint slots, __global 
     SET_V3(ray, origin, row, origin);
     SET_V3(ray, direction, row, direction);
     AT_UINT(ray, primitive, row) = primitive;
+#if TRAIT_INSTANCES
+    AT_UINT(ray, instance, row) = AT_UINT(primary, instance, seen);
+#endif
     BEGIN_PATH(row, slot, AT_UINT(primary, key_0, seen), AT_UINT(primary, key_1, seen))
     SET_RGB(radiance, value, slot, rgb_gray(R(0)));
     SET_RGB_IN(direct, radiance, value, slot, rgb_gray(R(0)));

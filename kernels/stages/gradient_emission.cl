@@ -69,7 +69,8 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint stride, uint cap
 #else
     const uint primitive = AT_UINT(ray, primitive, row);
     const vec3 origin = AT_V3(ray, origin, row), direction = AT_V3(ray, direction, row);
-    const primitive_hit hit = primitive_hit_of(triangles, spheres, unit, triangle_count, primitive, origin, direction);
+    const primitive_hit hit = primitive_hit_of(triangles, spheres, unit, triangle_count,
+                                               primitive INSTANCE_IN(ray, ray, row), origin, direction);
     light_found found = light_found_at(primitive_light, lights, light_count, unit, triangle_count, primitive, hit,
                                        origin, direction LIGHT_TEXTURE_ARGUMENTS);
 #if OWN_CHOICE
@@ -159,10 +160,11 @@ STAGE gradient_emission(uint count, uint unit, uint first, uint stride, uint cap
 #else
         const uint present = offset_primitive < ray_first_special ? offset_primitive : 0u;
         const vec3 own_origin = AT_V3(offset_ray, origin, sent), own_direction = AT_V3(offset_ray, direction, sent);
-        light_found own = light_found_at(
-            primitive_light, lights, light_count, unit, triangle_count, present,
-            primitive_hit_of(triangles, spheres, unit, triangle_count, present, own_origin, own_direction), own_origin,
-            own_direction LIGHT_TEXTURE_ARGUMENTS);
+        light_found own = light_found_at(primitive_light, lights, light_count, unit, triangle_count, present,
+                                         primitive_hit_of(triangles, spheres, unit, triangle_count,
+                                                          present INSTANCE_IN(offset_ray, offset_ray, sent), own_origin,
+                                                          own_direction),
+                                         own_origin, own_direction LIGHT_TEXTURE_ARGUMENTS);
 #if OWN_CHOICE
         const light_receiver own_receiver = LIGHT_RECEIVER(own_origin, AT_UINT(shift, receiver, at), ratio);
         own.pdf *= light_tree_path(light_nodes, TRAIT_LIGHT_TREE, unit, light_leaf[(int)own.light], own_receiver);

@@ -125,7 +125,8 @@ STAGE read_material(uint count, uint unit, uint first, uint traced_rows, uint pa
     const uint primitive = AT_UINT(traced, primitive, row);
     const vec3 direction = AT_V3(traced, direction, row);
     const primitive_hit hit =
-        primitive_hit_of(triangles, spheres, unit, triangle_count, primitive, AT_V3(traced, origin, row), direction);
+        primitive_hit_of(triangles, spheres, unit, triangle_count, primitive INSTANCE_IN(traced, traced, row),
+                         AT_V3(traced, origin, row), direction);
     uint record = material_record(OF_PRIMITIVE(primitive_material, material, primitive));
 #if TRAIT_TWO_FACED
     const int behind = is_met_from_behind(triangle_normals, unit, triangle_count, primitive, hit, direction);
@@ -194,7 +195,7 @@ STAGE read_material(uint count, uint unit, uint first, uint traced_rows, uint pa
     vec3 along_u = v3(R(0), R(0), R(0)), along_v = along_u;
 #if TRAIT_TRIANGLES
     const uint number = TRIANGLE_OF(primitive);
-    const scene_triangle triangle = scene_triangle_of(triangles, unit, number);
+    const scene_triangle triangle = scene_triangle_of(triangles, unit, number INSTANCE_OF_HIT);
     const triangle_uv uv = HIT_UV(triangle_texcoords, unit, number, hit);
     const real u_1 = uv.u_1 - uv.u_0, v_1 = uv.v_1 - uv.v_0, u_2 = uv.u_2 - uv.u_0, v_2 = uv.v_2 - uv.v_0;
     const vec3 e1 = triangle.e1, e2 = triangle.e2;

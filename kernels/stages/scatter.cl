@@ -56,7 +56,8 @@ STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint ma
     const real beginning = AT_IN(light_path_old, light_path, start, old);
     const surface_point point = CHOSEN_POINT(
         surface_point_of(triangles, triangle_normals, triangle_tangents, spheres, unit, triangle_count,
-                         primitive_material, material_back, AT_UINT_IN(ray_old, ray, primitive, old), from, direction),
+                         primitive_material, material_back,
+                         AT_UINT_IN(ray_old, ray, primitive, old) INSTANCE_IN(ray_old, ray, old), from, direction),
         capacity, old);
     const material m = HIT_MATERIAL(point.material, capacity, old);
 #if TRAIT_TEXTURED_NORMALS

@@ -57,7 +57,8 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
 #endif
     const surface_point point = CHOSEN_POINT(
         surface_point_of(triangles, triangle_normals, triangle_tangents, spheres, unit, triangle_count,
-                         primitive_material, material_back, AT_UINT_IN(ray_old, ray, primitive, old), from, direction),
+                         primitive_material, material_back,
+                         AT_UINT_IN(ray_old, ray, primitive, old) INSTANCE_IN(ray_old, ray, old), from, direction),
         capacity, old);
     const material m = HIT_MATERIAL(point.material, capacity, old);
     const bsdf_frame place = HIT_FRAME(point, m, v3_neg(direction), capacity, old);

@@ -104,10 +104,12 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
     const int is_escaped = TRAIT_ENVIRONMENT && primitive == ray_escaped;
     const uint present = is_hit ? primitive : 0u;
     const primitive_hit hit =
-        primitive_hit_of(triangles, spheres, unit, triangle_count, present, AT_V3(ray, origin, row), base_direction);
+        primitive_hit_of(triangles, spheres, unit, triangle_count, present INSTANCE_IN(ray, ray, row),
+                         AT_V3(ray, origin, row), base_direction);
     const real base_side = v3_dot(hit.normal, v3_sub(base, hit.position));
     const real end_offset =
-        offset_at(hit.position, hit.normal, primitive_offset(triangles, spheres, unit, triangle_count, present));
+        offset_at(hit.position, hit.normal,
+                  primitive_offset(triangles, spheres, unit, triangle_count, present HIT_ARGUMENT(hit)));
     const vec3 end_normal = v3_scale(hit.normal, r_copysign1(base_side));
     const real pdf = AT(event, pdf, row);
     const int goes_on = (is_hit | is_escaped) & (pdf > R(0));

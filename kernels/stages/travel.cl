@@ -12,8 +12,9 @@ STAGE travel(uint count, uint unit, uint first, uint capacity, __global const ui
     const int old = AT_INDEX(first + i);
     const vec3 origin = AT_V3_IN(ray_old, ray, origin, old), direction = AT_V3_IN(ray_old, ray, direction, old);
     const uint depth = AT_UINT_IN(path_old, path, depth, old), slot = AT_UINT_IN(path_old, path, slot, old);
-    const primitive_hit hit = primitive_hit_of(triangles, spheres, unit, triangle_count,
-                                               AT_UINT_IN(ray_old, ray, primitive, old), origin, direction);
+    const primitive_hit hit =
+        primitive_hit_of(triangles, spheres, unit, triangle_count,
+                         AT_UINT_IN(ray_old, ray, primitive, old) INSTANCE_IN(ray_old, ray, old), origin, direction);
     const vec3 step = v3_sub(hit.position, origin);
     const real before = travelled[slot];
     travelled[slot] = r_sqrt(v3_dot(step, step)) + (depth > 0u ? before : R(0));

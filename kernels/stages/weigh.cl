@@ -96,7 +96,8 @@ STAGE weigh(uint count, uint unit, uint first, uint stride, uint capacity, uint 
     int base_is_behind = 0;
 #if TRAIT_TWO_FACED
     base_is_behind = primitive_is_behind(triangles, triangle_normals, spheres, unit, triangle_count,
-                                         is_hit ? primitive : 0u, AT_V3(ray, origin, row), AT_V3(ray, direction, row));
+                                         is_hit ? primitive : 0u INSTANCE_IN(ray, ray, row), AT_V3(ray, origin, row),
+                                         AT_V3(ray, direction, row));
 #endif
 #if TRAIT_BLENDS
     const uint next_kind = material_kind[is_hit ? surface_record_at(surface, capacity, row) : 0u];
@@ -171,8 +172,9 @@ STAGE weigh(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         const uint met = meets ? offset_primitive : 0u;
         int is_behind = 0;
 #if TRAIT_TWO_FACED
-        is_behind = primitive_is_behind(triangles, triangle_normals, spheres, unit, triangle_count, met,
-                                        AT_V3(offset_ray, origin, sent), AT_V3(offset_ray, direction, sent));
+        is_behind = primitive_is_behind(triangles, triangle_normals, spheres, unit, triangle_count,
+                                        met INSTANCE_IN(offset_ray, offset_ray, sent), AT_V3(offset_ray, origin, sent),
+                                        AT_V3(offset_ray, direction, sent));
 #endif
 #if TRAIT_BLENDS
         const uint met_kind =
@@ -182,9 +184,10 @@ STAGE weigh(uint count, uint unit, uint first, uint stride, uint capacity, uint 
 #endif
         int would_reconnect = is_reconnectable(met_kind, LIGHT_OF_PRIMITIVE(primitive_light, met));
 #if TRAIT_SHIFT_DISTANCE
-        const vec3 met_position = primitive_hit_of(triangles, spheres, unit, triangle_count, met,
-                                                   AT_V3(offset_ray, origin, sent), AT_V3(offset_ray, direction, sent))
-                                      .position;
+        const vec3 met_position =
+            primitive_hit_of(triangles, spheres, unit, triangle_count, met INSTANCE_IN(offset_ray, offset_ray, sent),
+                             AT_V3(offset_ray, origin, sent), AT_V3(offset_ray, direction, sent))
+                .position;
         would_reconnect &= is_far(AT_V3(vertex, position, row), AT_V3(own_vertex, position, own.row), met_position,
                                   LIGHT_OF_PRIMITIVE(primitive_light, met), shift_distance);
 #endif

@@ -8,6 +8,7 @@
 #include <pugixml.hpp>
 
 #include <algorithm>
+#include <iterator>
 #include <string_view>
 
 namespace gradus {
@@ -28,6 +29,7 @@ struct File {
     std::shared_ptr<const std::string> name;
     fs::path path;
     std::vector<std::size_t> line_starts;
+    std::string text; ///< which `xml` is parsed in
     pugi::xml_document xml;
     int version = 3;
 
@@ -66,7 +68,7 @@ class Reader {
     bool open_include(const File &file, const pugi::xml_node &node, int depth, bool last_chance);
     void read_deferred_includes();
     Element convert(const File &file, const pugi::xml_node &node, int depth);
-    void convert_children(const File &file, const pugi::xml_node &parent, Element &element, int depth);
+    void convert_children(const File &file, pugi::xml_node parent, Element &element, int depth);
     void add_folder(const File &file, const pugi::xml_node &node, const std::string &value);
 
     struct Deferred {
@@ -98,14 +100,15 @@ std::unique_ptr<File> Reader::open(const std::string &name, const fs::path &path
     if (!not_there && (size > limits_.xml_bytes || xml_bytes_ > limits_.xml_bytes))
         fail(whole, "the scene's files have more than " + std::to_string(limits_.xml_bytes >> 20) + " MiB of XML" +
                         limits_hint);
-    const std::optional<std::string> text = read_whole_file(path);
+    std::optional<std::string> text = read_whole_file(path);
     if (!text)
         fail(whole, "cannot read this scene file");
     file->line_starts.push_back(0);
     for (std::size_t i = 0; i < text->size(); ++i)
         if ((*text)[i] == '\n')
             file->line_starts.push_back(i + 1);
-    const pugi::xml_parse_result result = file->xml.load_buffer(text->data(), text->size());
+    file->text = std::move(*text);
+    const pugi::xml_parse_result result = file->xml.load_buffer_inplace(file->text.data(), file->text.size());
     if (!result)
         fail(file->locate(result.offset), std::string("not well-formed XML: ") + result.description());
     const pugi::xml_node root = file->xml.document_element();
@@ -221,14 +224,23 @@ Element Reader::convert(const File &file, const pugi::xml_node &node, int depth)
     element.tag = node.name();
     element.location = location;
     element.version = file.version;
+    element.attributes.reserve(std::size_t(std::distance(node.attributes_begin(), node.attributes_end())));
     for (const pugi::xml_attribute &attribute : node.attributes())
         element.attributes.emplace_back(attribute.name(), parameters_.expand(attribute.value(), location));
     convert_children(file, node, element, depth);
     return element;
 }
 
-void Reader::convert_children(const File &file, const pugi::xml_node &parent, Element &element, int depth) {
-    for (pugi::xml_node child : parent.children()) {
+/// What has been converted is taken out of the XML tree: of millions of elements both would be the most that a scene
+/// ever takes.
+void Reader::convert_children(const File &file, pugi::xml_node parent, Element &element, int depth) {
+    element.children.reserve(element.children.size() +
+                             std::size_t(std::distance(parent.children().begin(), parent.children().end())));
+    pugi::xml_node done;
+    for (pugi::xml_node child = parent.first_child(); child; child = child.next_sibling()) {
+        if (done)
+            parent.remove_child(done);
+        done = child;
         if (child.type() == pugi::node_pcdata || child.type() == pugi::node_cdata) {
             diagnostics_.unknown(file.locate(child),
                                  "stray text \"" + std::string(trimmed(child.value())).substr(0, 40) + "\" is ignored");

@@ -9,9 +9,9 @@
 namespace gradus {
 
 struct LoadLimits {
-    std::uint64_t xml_bytes = 64u << 20;      ///< of scene files; an included one counts as often as it is included
+    std::uint64_t xml_bytes = 512u << 20;     ///< of scene files; an included one counts as often as it is included
     std::uint64_t includes = 1000;            ///< <include> elements that are followed
-    std::uint64_t elements = 4'000'000;       ///< of all scene files together
+    std::uint64_t elements = 8'000'000;       ///< of all scene files together
     std::uint64_t value_bytes = 1u << 20;     ///< of one attribute in which a $parameter stands
     std::uint64_t expanded_bytes = 64u << 20; ///< of all text that $parameters stand for
     std::uint64_t mesh_bytes = 4ull << 30;    ///< of mesh files, as often as shapes read them; compressed ones unfolded

@@ -26,9 +26,9 @@ SceneBuilder::SceneBuilder(const Document &document, const LoadOptions &options,
     : document_(document), limits_(options.limits), ignore_media_(options.ignore_media), phases_(options.phases),
       finder_(finder), diagnostics_(diagnostics),
       resolve_([this](const Element &reference) -> const Element & { return resolve(reference); }),
-      read_texture_([this](const Element &element, double lowest, double highest) {
-          return texture(element, lowest, highest);
-      }) {}
+      read_texture_(
+          [this](const Element &element, double lowest, double highest) { return texture(element, lowest, highest); }),
+      instance_choice_(options.instances), most_copied_bytes_(options.most_copied_bytes) {}
 
 /// Reports tags that mean nothing, in every object.
 void SceneBuilder::check_children(const Element &element) {
@@ -177,6 +177,7 @@ Scene SceneBuilder::build() {
         std::vector<const Element *> shapes;
         each("shape", [&](const Element &element) { shapes.push_back(&element); });
         build_shapes(shapes, nullptr);
+        settle_instances();
         each("bsdf", [&](const Element &element) { check_unused_bsdf(element); });
         check_media(root);
         scene.report_unknown();

@@ -97,14 +97,32 @@ class SceneBuilder {
     struct Prototype {
         const Element *element;
         std::variant<BuiltMesh, Sphere> geometry;
+        bool can_be_kept = false; ///< in instances: a mesh that does not emit
+    };
+    /// A shapegroup, once one of its instances is met.
+    struct KnownGroup {
+        std::vector<Prototype> prototypes;
+        std::uint64_t bytes = 0;        ///< of an instance's copies of those that could be kept
+        std::uint64_t instances = 0;    ///< so far
+        std::int32_t number = no_group; ///< in the scene
+    };
+    /// What could be kept, and as which shapes of the scene it is copied.
+    struct Copied {
+        KnownGroup *group;
+        Instance instance;
+        std::vector<std::size_t> shapes;
     };
     void build_shapes(const std::vector<const Element *> &elements, std::vector<Prototype> *group);
     void put_in_line(const Element &element, bool in_group, std::vector<const Element *> &parents,
                      std::deque<ShapeInLine> &line);
     void build_line(std::deque<ShapeInLine> &line, std::vector<Prototype> *group);
     void finish(ShapeInLine &shape, std::vector<Prototype> *group);
-    void add_shape(const Element &element, std::variant<BuiltMesh, Sphere> geometry);
+    void add_shape(const Element &element, std::variant<BuiltMesh, Sphere> geometry, std::int32_t group = no_group);
+    KnownGroup &known_group(const Element &element);
     void add_instance(const Element &element, const ShapeGroup &instance);
+    void copy_prototype(const Element &element, const Prototype &prototype, const Matrix4 &to_world);
+    void add_group(KnownGroup &group);
+    void settle_instances();
     void check_media(const Element &element);
     std::uint32_t boundary_material();
     void build_emitter(const Element &element);
@@ -142,7 +160,11 @@ class SceneBuilder {
     std::vector<const Element *> open_; ///< objects that are being built, outermost first
     std::shared_ptr<MeshFile> shared_file_;
     std::uint64_t mesh_bytes_ = 0, geometry_bytes_ = 0, shapes_in_line_ = 0, texture_bytes_ = 0;
-    std::map<const Element *, std::vector<Prototype>> groups_; ///< by shapegroup
+    const InstanceChoice instance_choice_;
+    const std::uint64_t most_copied_bytes_;
+    std::map<const Element *, KnownGroup> groups_; ///< by shapegroup
+    std::vector<Copied> copied_;                   ///< that may still become instances
+    std::uint64_t copied_bytes_ = 0;               ///< up to most_copied_bytes_
 };
 
 } // namespace gradus

@@ -18,8 +18,6 @@ namespace {
 constexpr std::size_t longest_line = 256;
 /// Of mesh files in a line: what is read at once lies in memory beside what is built.
 constexpr std::uint64_t most_line_bytes = 256u << 20;
-/// What an instance of a shape takes beside its mesh.
-constexpr std::uint64_t instance_bytes = 256;
 
 /// A surface that all light passes as if it were not there.
 bool is_never_met(const Material &material) {
@@ -186,8 +184,9 @@ void SceneBuilder::finish(ShapeInLine &shape, std::vector<Prototype> *group) {
         add_shape(*shape.element, std::move(geometry));
 }
 
-void SceneBuilder::add_shape(const Element &element, std::variant<BuiltMesh, Sphere> geometry) {
+void SceneBuilder::add_shape(const Element &element, std::variant<BuiltMesh, Sphere> geometry, std::int32_t group) {
     Shape shape;
+    shape.group = group;
     shape.name = element.attribute_or("id", element.attribute_or("type", "") + " at " + element.location.text());
     if (auto *built = std::get_if<BuiltMesh>(&geometry)) {
         settle_attributes(built->mesh, shape.name, element.location);
@@ -226,44 +225,6 @@ void SceneBuilder::add_shape(const Element &element, std::variant<BuiltMesh, Sph
         scene_.meshes.push_back(std::move(std::get<BuiltMesh>(geometry).mesh));
     }
     scene_.shapes.push_back(std::move(shape));
-}
-
-/// Instances are copies. `element`: the instance.
-void SceneBuilder::add_instance(const Element &element, const ShapeGroup &instance) {
-    auto known = groups_.find(instance.instanced);
-    if (known == groups_.end()) {
-        known = groups_.emplace(instance.instanced, std::vector<Prototype>()).first;
-        std::vector<Prototype> prototypes;
-        build_shapes(instance.shapes, &prototypes);
-        known->second = std::move(prototypes);
-    }
-    for (const Prototype &prototype : known->second) {
-        count_geometry(instance_bytes, element.location);
-        if (const auto *sphere = std::get_if<Sphere>(&prototype.geometry)) {
-            const double factor = uniform_scale(instance.to_world);
-            if (!(factor > 0))
-                throw SceneError(element.location,
-                                 "an instance with a sphere in it must scale all directions alike: no "
-                                 "other scale, no shear");
-            Sphere placed = *sphere;
-            placed.center = to_float(transform_point(instance.to_world, to_double(sphere->center)));
-            placed.radius = float(sphere->radius * factor);
-            if (!std::isnormal(placed.radius) || !std::isfinite(placed.center.x + placed.center.y + placed.center.z))
-                throw SceneError(element.location, "a sphere in this instance is out of range");
-            add_shape(*prototype.element, placed);
-            continue;
-        }
-        const auto &mesh = std::get<BuiltMesh>(prototype.geometry).mesh;
-        if (geometry_bytes_ + mesh_bytes(mesh) > limits_.geometry_bytes) // before it takes the memory
-            count_geometry(mesh_bytes(mesh), element.location);
-        MeshOptions options;
-        options.front_from_local_winding = true;
-        options.compute_normals = false;
-        BuiltMesh placed = build_mesh(mesh, instance.to_world, options);
-        placed.degenerate += std::get<BuiltMesh>(prototype.geometry).degenerate;
-        add_shape(*prototype.element, std::move(placed));
-    }
-    ++scene_.instances;
 }
 
 } // namespace gradus

@@ -1,5 +1,6 @@
 #include "runtime/scene/camera_clips.h"
 
+#include "runtime/scene/instances.h"
 #include "runtime/scene/transform.h"
 
 #include "runtime/scene/camera_record.h"
@@ -109,7 +110,26 @@ CameraClips camera_clips(const Scene &scene) {
         if (!clips.far_clip && high > far_at)
             clips.far_clip = is_shown_within({ahead.normal, ahead.offset + far_at});
     };
+    // Of instances their boxes.
+    const std::vector<Bounds> of_groups = group_bounds(scene);
+    for (const Instance &instance : scene.instances) {
+        const Bounds box = placed_bounds(of_groups[instance.group], matrix_of(instance));
+        const Double3 center = scale(add(box.lower, box.upper), 0.5), half = scale(subtract(box.upper, box.lower), 0.5);
+        const auto reach = [&](const HalfSpace &space) {
+            return std::fabs(space.normal[0]) * half[0] + std::fabs(space.normal[1]) * half[1] +
+                   std::fabs(space.normal[2]) * half[2];
+        };
+        const double depth = ahead.depth(center), deep = reach(ahead);
+        look_at(depth - deep, depth + deep, [&](const std::vector<HalfSpace> &spaces) {
+            return std::ranges::all_of(spaces,
+                                       [&](const HalfSpace &space) { return space.depth(center) > -reach(space); });
+        });
+        if (clips.near_clip && clips.far_clip)
+            return clips;
+    }
     for (const Shape &shape : scene.shapes) {
+        if (shape.group != no_group)
+            continue;
         if (shape.kind == Shape::Kind::sphere) {
             const Sphere &sphere = scene.spheres.at(shape.geometry);
             const Double3 center = to_double(sphere.center);

@@ -37,12 +37,14 @@ void transform_positions(Mesh &mesh, const Matrix4 &to_world) {
 }
 
 /// Normals that are zero or not finite become (0, 0, 0), which settle_normals() replaces.
-void transform_normals(Mesh &mesh, const Matrix4 &to_world) {
+void transform_normals(Mesh &mesh, const Matrix4 &to_world, bool keeps_proportions) {
     const NormalMap map(to_world);
+    const double common = keeps_proportions ? std::pow(std::fabs(determinant(to_world)), -2.0 / 3) : 0;
     for_each_in_parallel(mesh.normals.size(), [&](std::size_t i) {
         const Double3 mapped = map(to_double(mesh.normals[i]));
         const double size = length(mapped);
-        mesh.normals[i] = std::isfinite(size) && size > 0 ? to_float(scale(mapped, 1 / size)) : Vector3{};
+        mesh.normals[i] =
+            std::isfinite(size) && size > 0 ? to_float(scale(mapped, common > 0 ? common : 1 / size)) : Vector3{};
     });
 }
 
@@ -179,7 +181,7 @@ BuiltMesh build_mesh(Mesh mesh, const Matrix4 &to_world, const MeshOptions &opti
     if (options.face_normals)
         mesh.normals.clear();
     transform_positions(mesh, to_world);
-    transform_normals(mesh, to_world);
+    transform_normals(mesh, to_world, options.normals_keep_proportions);
     built.degenerate = drop_degenerate(mesh);
     hide_unused(mesh);
 

@@ -13,6 +13,9 @@ struct MeshOptions {
     /// The front is where the local geometric normal points, mapped as normals are (rectangle, cube). False for
     /// files: there the vertex normals tell the front if there are any, else the order of the vertices in world space.
     bool front_from_local_winding = false;
+    /// Mapped normals are as long as the map makes them, over what it makes a volume's faces in the mean: interpolated
+    /// they are then what the map makes of interpolated ones, as of an instance. Else they are unit vectors.
+    bool normals_keep_proportions = false;
     bool compute_normals = true; ///< smooth vertex normals where the mesh brings none
 };
 

@@ -2,10 +2,12 @@
 
 #include "runtime/error.h"
 #include "runtime/scene/bounds.h"
+#include "runtime/scene/instances.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
+#include <vector>
 
 namespace gradus {
 namespace {
@@ -24,17 +26,25 @@ double bring_to_own_scale(Scene &scene) {
     Bounds all;
     double least = INFINITY, most = 0;
     const Shape *smallest = nullptr, *largest = nullptr;
-    for (const Shape &shape : scene.shapes) {
-        const Bounds bounds = bounds_of(scene, shape);
+    const auto add = [&](const Bounds &bounds, const Shape &shape) {
         const double extent = bounds.extent();
         if (extent <= 0)
-            continue;
+            return;
         all.add(bounds);
         if (extent < least)
             least = extent, smallest = &shape;
         if (extent > most)
             most = extent, largest = &shape;
-    }
+    };
+    std::vector<const Shape *> of_group(scene.groups); // one of each, for its name
+    for (const Shape &shape : scene.shapes)
+        if (shape.group == no_group)
+            add(bounds_of(scene, shape), shape);
+        else
+            of_group[std::size_t(shape.group)] = &shape;
+    const std::vector<Bounds> of_groups = group_bounds(scene);
+    for (const Instance &instance : scene.instances)
+        add(placed_bounds(of_groups[instance.group], matrix_of(instance)), *of_group[instance.group]);
     if (!smallest)
         return 1;
     const double extent = all.extent();
@@ -55,6 +65,9 @@ double bring_to_own_scale(Scene &scene) {
     for (Mesh &mesh : scene.meshes)
         for (Vector3 &p : mesh.positions)
             multiply(p, float(factor));
+    for (Instance &instance : scene.instances)
+        for (const std::size_t axis : {3u, 7u, 11u})
+            instance.to_world[axis] *= float(factor);
     for (Sphere &sphere : scene.spheres) {
         multiply(sphere.center, float(factor));
         sphere.radius *= float(factor);

@@ -69,7 +69,8 @@ struct MeshAttribute {
 /// that mirrors or flips a mesh reorders its indices so that this holds.
 struct Mesh {
     std::vector<Vector3> positions;
-    std::vector<Vector3> normals; ///< shading normals by vertex, unit length; empty: use the geometric normal
+    std::vector<Vector3> normals;                ///< shading normals by vertex, interpolated before they are made unit
+                                                 ///< vectors, of about that length; empty: use the geometric normal
     std::vector<std::array<float, 2>> texcoords; ///< by vertex; may be empty
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::vector<MeshAttribute> attributes = {}; ///< those that textures of the scene name
@@ -93,6 +94,8 @@ struct Sphere {
     std::array<Vector3, 3> axes{Vector3{1, 0, 0}, Vector3{0, 1, 0}, Vector3{0, 0, 1}};
 };
 
+constexpr std::int32_t no_group = -1;
+
 /// A mesh or a sphere, with its material and what it emits.
 struct Shape {
     enum class Kind { mesh, sphere };
@@ -101,6 +104,17 @@ struct Shape {
     std::uint32_t material = 0; ///< index into Scene::materials
     std::int32_t emitter = -1;  ///< index into Scene::emitters, or -1
     std::string name;           ///< its id in the file, or a description of where it came from
+    /// A mesh of that group, in its frame: seen where instances of the group are, and neither emits. Else it is seen
+    /// where it is.
+    std::int32_t group = no_group;
+};
+
+/// A group of shapes once more.
+struct Instance {
+    std::uint32_t group = 0;
+    /// Rows of the map from the group's frame to the world. It can be undone; normals go as normals, so that a mirror
+    /// turns no front (NormalMap).
+    std::array<float, 12> to_world{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 };
 
 /// GRADUS_BSDF_KINDS. A kind's place is its number in kernels.
@@ -245,7 +259,9 @@ struct Scene {
     Camera camera;
     FilmSettings film;
     RenderSettings settings;
-    std::uint64_t instances = 0; ///< of groups of shapes, which are copies by now; informative
+    std::vector<Instance> instances;
+    std::uint32_t groups = 0;           ///< Shape::group is below
+    std::uint64_t copied_instances = 0; ///< of groups of shapes, which are shapes by now; informative
 };
 
 } // namespace gradus

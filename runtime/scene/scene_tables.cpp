@@ -7,6 +7,7 @@
 #include "runtime/scene/attribute_light.h"
 #include "runtime/scene/camera_record.h"
 #include "runtime/scene/environment_map.h"
+#include "runtime/scene/instances.h"
 #include "runtime/scene/light_builder.h"
 #include "runtime/scene/texture_tables.h"
 #include "runtime/scene/vertex_table.h"
@@ -43,7 +44,7 @@ void put(float *record, int field, Vector3 v) {
     record[field + 2] = v.z;
 }
 
-struct Bounds {
+struct SceneBox {
     Vector3 low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
     void add(Vector3 p, float r = 0) {
         low = {std::min(low.x, p.x - r), std::min(low.y, p.y - r), std::min(low.z, p.z - r)};
@@ -53,9 +54,17 @@ struct Bounds {
     double radius() const { return high.x >= low.x ? std::max(0.5 * length(high - low), 1e-6) : 1; }
 };
 
-Bounds scene_bounds(const Scene &scene) {
-    Bounds bounds;
+SceneBox scene_bounds(const Scene &scene) {
+    SceneBox bounds;
+    const std::vector<Bounds> of_groups = group_bounds(scene);
+    for (const Instance &instance : scene.instances) {
+        const Bounds placed = placed_bounds(of_groups[instance.group], matrix_of(instance));
+        bounds.add(to_float(placed.lower));
+        bounds.add(to_float(placed.upper));
+    }
     for (const Shape &shape : scene.shapes) {
+        if (shape.group != no_group)
+            continue;
         if (shape.kind == Shape::Kind::mesh)
             for (Vector3 p : scene.meshes[shape.geometry].positions)
                 bounds.add(p);
@@ -395,7 +404,7 @@ SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits, const 
         if (shape.kind == Shape::Kind::sphere)
             add_sphere(scene, shape, tables, primitives, lights);
     primitives.finish();
-    const Bounds bounds = scene_bounds(scene);
+    const SceneBox bounds = scene_bounds(scene);
     const double radius = bounds.radius();
     tables.scene_diameter = static_cast<float>(2.02 * radius);
     tables.scene_center = {bounds.center().x, bounds.center().y, bounds.center().z};

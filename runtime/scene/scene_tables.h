@@ -54,15 +54,20 @@ struct SceneTables {
     std::shared_ptr<const EnvironmentMap> environment; ///< where the environment is a map, or kernels expect one
     std::vector<std::string> kinds; ///< the BSDF kinds of the scene: kind k has the bins 1 + 2 k and 2 + 2 k
     std::uint32_t primitive_count = 0, triangle_count = 0, light_count = 0, environment_light = 0;
-    /// With TRAIT_INDEXED how many numbers a vertex has, and the number of the first; else 0.
-    std::uint32_t vertex_numbers = 0, first_vertex = 0;
+    /// With TRAIT_INDEXED how many numbers a vertex has, the number of the first, and that past the last; else 0.
+    std::uint32_t vertex_numbers = 0, first_vertex = 0, end_vertex = 0;
+    /// With TRAIT_INSTANCES the record of what is in no instance, in `triangles`; those of Scene::instances follow.
+    std::uint32_t no_instance = 0;
     float scene_diameter = 1;               ///< longer than any segment within the scene; of a sphere that holds it
     std::array<float, 3> scene_center = {}; ///< of that sphere
     CameraClips camera_clips;
     Camera::Kind camera_kind = Camera::Kind::perspective;
 
     bool is_indexed() const { return vertex_numbers > 0; }
+    /// In its group's frame where it is of one.
     TableTriangle triangle(std::uint32_t number) const;
+    /// A triangle of an instance, by the record of that.
+    TableTriangle triangle(std::uint32_t number, std::uint32_t instance) const;
     /// u and v of its corners, where there are textures.
     std::array<float, 6> texcoords(std::uint32_t triangle) const;
     /// What kernels know by LIGHT_OF_PRIMITIVE.

@@ -23,6 +23,7 @@ constexpr TraitText descriptions[] = {
     {"TRAIT_TRIANGLES", "triangle meshes"},
     {"TRAIT_SPHERES", "spheres"},
     {"TRAIT_INDEXED", "triangles by index, for they are many: how many numbers a vertex has"},
+    {"TRAIT_INSTANCES", "groups of shapes that are at several places"},
     {"TRAIT_SHADING_NORMALS", "interpolated normals"},
     {"TRAIT_ANISOTROPIC", "anisotropic roughness, which needs tangents"},
     {"TRAIT_TWO_SIDED", "materials seen alike from both sides"},
@@ -364,6 +365,7 @@ TraitMap scene_traits(const Scene &scene) {
     traits["TRAIT_NEAR_CLIP"] = clips.near_clip;
     traits["TRAIT_FAR_CLIP"] = clips.far_clip;
     traits["TRAIT_CAMERA_ORIGINS"] = scene.camera.kind != Camera::Kind::perspective || clips.near_clip;
+    traits["TRAIT_INSTANCES"] = !scene.instances.empty();
     std::size_t triangles = 0;
     for (const Shape &shape : scene.shapes)
         if (shape.kind == Shape::Kind::mesh)
@@ -389,12 +391,13 @@ std::string trait_description(const std::string &name) {
 
 TraitMap with_all_traits(TraitMap traits) {
     for (auto &[name, value] : traits) {
-        // The filter and hidden emitters change the picture, TRAIT_INDEXED how tables lie; the rest only makes room for
-        // what is not there.
+        // The filter and hidden emitters change the picture, TRAIT_INDEXED and TRAIT_INSTANCES how tables lie; the rest
+        // only makes room for what is not there.
         const bool setting = name.starts_with("TRAIT_FILTER") || name == "TRAIT_HIDE_EMITTERS" ||
-                             name == "TRAIT_INDEXED" || name.starts_with("TRAIT_TEXTURE") || name == "TRAIT_MATERIAL" ||
-                             name == "TRAIT_LOOKUPS" || name == "TRAIT_NORMAL_TEXTURES" ||
-                             name == "TRAIT_LIGHT_TEXTURES" || name.starts_with("TRAIT_BLEND");
+                             name == "TRAIT_INDEXED" || name == "TRAIT_INSTANCES" ||
+                             name.starts_with("TRAIT_TEXTURE") || name == "TRAIT_MATERIAL" || name == "TRAIT_LOOKUPS" ||
+                             name == "TRAIT_NORMAL_TEXTURES" || name == "TRAIT_LIGHT_TEXTURES" ||
+                             name.starts_with("TRAIT_BLEND");
         if (!setting)
             value = 1;
     }

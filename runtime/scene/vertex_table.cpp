@@ -1,6 +1,7 @@
 #include "runtime/scene/vertex_table.h"
 
 #include "runtime/error.h"
+#include "runtime/scene/instances.h"
 #include "runtime/scene/scene_tables.h"
 
 #include <tbb/blocked_range.h>
@@ -11,6 +12,7 @@
 #include <limits>
 
 // After all others: its short macro names are not for library headers.
+#include "kernels/lib/instance.h"
 #include "kernels/shared/scene_records.h"
 #include "kernels/shared/texture.h"
 
@@ -66,7 +68,7 @@ MeshCount count_meshes(const Scene &scene) {
 } // namespace
 
 int indexed_trait(const TraitMap &traits, std::size_t triangles) {
-    if (triangles <= most_dense_triangles)
+    if (triangles <= most_dense_triangles && traits.at("TRAIT_INSTANCES") == 0)
         return 0;
     return 3 + (traits.at("TRAIT_SHADING_NORMALS") ? 3 : 0) + (has_uv(traits) ? 2 : 0);
 }
@@ -89,7 +91,8 @@ std::uint64_t geometry_table_bytes(const Scene &scene, const TraitMap &traits) {
     const std::uint64_t primitives = triangles + scene.spheres.size();
     const std::uint64_t of_spheres = scene.spheres.size() * (sphere_stride + (has_uv(traits) ? sphere_axes_stride : 0));
     if (const auto numbers = std::uint64_t(traits.at("TRAIT_INDEXED")))
-        return 4 * (of_spheres + 3 * triangles + vertices * numbers + primitives);
+        return 4 * (of_spheres + 3 * triangles + vertices * numbers + primitives +
+                    scene.instances.size() * std::uint64_t(instance_stride));
     const bool has_textures = traits.at("TRAIT_MATERIAL") || traits.at("TRAIT_TEXTURED_LIGHTS");
     const std::uint64_t a_triangle = triangle_stride + (traits.at("TRAIT_SHADING_NORMALS") ? normals_stride : 0) +
                                      (traits.at("TRAIT_ANISOTROPIC") ? triangle_tangent_stride : 0) +
@@ -104,12 +107,21 @@ void add_vertices(const Scene &scene, int numbers, SceneTables &tables) {
     triangles += is_empty;
     vertices += is_empty;
     const std::size_t first = (3 * triangles + places.numbers - 1) / places.numbers;
-    if ((first + vertices) * places.numbers > std::size_t(std::numeric_limits<std::int32_t>::max()))
-        throw Error(ExitCode::device, "the scene has more triangles and vertices than kernels can address");
+    // One number more, for the tracer reads four numbers of a position.
+    std::size_t end = (first + vertices) * places.numbers + 1;
+    const std::size_t first_instance = (end + instance_stride - 1) / instance_stride;
+    if (!scene.instances.empty())
+        end = (first_instance + 1 + scene.instances.size()) * instance_stride;
+    if (end > std::size_t(std::numeric_limits<std::int32_t>::max()))
+        throw Error(ExitCode::device, "the scene has more triangles, vertices and instances than kernels can address");
     tables.vertex_numbers = std::uint32_t(numbers);
     tables.first_vertex = std::uint32_t(first);
-    // One more, for the tracer reads four numbers of a position.
-    tables.triangles.resize((first + vertices) * places.numbers + 1);
+    tables.end_vertex = std::uint32_t(first + vertices);
+    tables.triangles.resize(end);
+    if (!scene.instances.empty()) {
+        tables.no_instance = std::uint32_t(first_instance);
+        put_instances(scene, &tables.triangles[first_instance * instance_stride]);
+    }
     float *corners = tables.triangles.data();
     std::size_t vertex = first;
     if (is_empty)
@@ -187,6 +199,22 @@ TableTriangle SceneTables::triangle(std::uint32_t number) const {
         found.e1[axis] = vertex(1)[axis] - vertex(0)[axis];
         found.e2[axis] = vertex(2)[axis] - vertex(0)[axis];
     }
+    return found;
+}
+
+TableTriangle SceneTables::triangle(std::uint32_t number, std::uint32_t instance) const {
+    TableTriangle found = triangle(number);
+    if (no_instance == 0)
+        return found;
+    constexpr std::uint32_t unit = 1;
+    const instance_map map = instance_map_of(triangles.data(), unit, instance);
+    const auto place = [](std::array<float, 3> &v, auto placed) {
+        const vec3 to = placed(v3(v[0], v[1], v[2]));
+        v = {to.x, to.y, to.z};
+    };
+    place(found.p0, [&](vec3 p) { return placed_point(map, p); });
+    place(found.e1, [&](vec3 v) { return placed_vector(map, v); });
+    place(found.e2, [&](vec3 v) { return placed_vector(map, v); });
     return found;
 }
 

@@ -20,9 +20,10 @@ struct SceneTables;
 constexpr std::size_t most_dense_triangles = 1u << 16;
 
 /// TRAIT_INDEXED of a scene that has these other traits and so many triangles: how many numbers a vertex has.
+/// Scenes with instances have them by index in any case.
 int indexed_trait(const TraitMap &traits, std::size_t triangles);
 
-/// Lays out the indices and vertices of all meshes, in the order of the shapes.
+/// Lays out the indices and vertices of all meshes, in the order of the shapes, and instances behind them.
 void add_vertices(const Scene &scene, int numbers, SceneTables &tables);
 
 /// Where (u, v) is read of a mesh that has none, each triangle has those of the unit triangle, and so vertices of its

@@ -31,6 +31,7 @@ class CameraRays {
         for (std::vector<float> &column : columns_)
             column.resize(count);
         primitive_.assign(count, ray_pending);
+        instance_.assign(count, tables.no_instance);
         tracer.in_parallel(count, [&](std::size_t begin, std::size_t end) {
             using namespace lib_float;
             const float *camera = tables.camera.data();
@@ -49,6 +50,7 @@ class CameraRays {
             columns.direction[axis] = columns_[3 + axis].data();
         }
         columns.primitive = primitive_.data();
+        columns.instance = instance_.data();
         const std::uint64_t traced = tracer.trace(columns, count, ShadowColumns{}, 0).extension;
         if (tables.camera_clips.far_clip)
             clip(tables, count);
@@ -67,7 +69,7 @@ class CameraRays {
         using namespace lib_float;
         const std::uint32_t number = primitive_[ray];
         if (number < tables.triangle_count) {
-            const TableTriangle t = tables.triangle(number);
+            const TableTriangle t = tables.triangle(number, instance_[ray]);
             const auto vector = [](const std::array<float, 3> &a) { return v3(a[0], a[1], a[2]); };
             return triangle_hit(vector(t.p0), vector(t.e1), vector(t.e2), origin(ray), direction(ray));
         }
@@ -95,7 +97,7 @@ class CameraRays {
     static constexpr std::uint32_t unit = 1; // of FIELD_OF
 
     std::vector<float> columns_[6];
-    std::vector<std::uint32_t> primitive_;
+    std::vector<std::uint32_t> primitive_, instance_;
 };
 
 } // namespace gradus

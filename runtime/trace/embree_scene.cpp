@@ -1,6 +1,8 @@
 #include "runtime/trace/embree_scene.h"
 
 #include "runtime/error.h"
+#include "runtime/scene/instances.h"
+#include "runtime/trace/ray_packets.h"
 #include "runtime/trace/sphere_geometry.h"
 
 #include <fmt/format.h>
@@ -37,6 +39,11 @@ void drop_passed(const RTCFilterFunctionNArguments *hits) {
     }
 }
 
+/// A ray of the world that a filter is asked about within an instance.
+Vector3 axis_values(const float *const (&columns)[3], std::size_t at) {
+    return {columns[0][at], columns[1][at], columns[2][at]};
+}
+
 /// Calls visit(shape, number of its first primitive) for the shapes of that kind that are passable, or those that
 /// aren't.
 template <class Visit>
@@ -44,7 +51,7 @@ void for_each_shape(const Scene &s, Shape::Kind kind, std::uint32_t first, bool 
     for (const Shape &shape : s.shapes) {
         if (shape.kind != kind)
             continue;
-        if (is_passable(s, shape) == are_passable)
+        if (shape.group == no_group && is_passable(s, shape) == are_passable)
             visit(shape, first);
         first += kind == Shape::Kind::sphere ? 1u : std::uint32_t(s.meshes[shape.geometry].triangles.size());
     }
@@ -74,8 +81,10 @@ EmbreeScene::EmbreeScene(const Scene &s, int threads, tbb::task_arena &arena, co
         &bytes_);
     scene_.reset(rtcNewScene(device_.get()));
     rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_HIGH);
-    add_geometry(s, tables);
-    arena.execute([&] { rtcCommitScene(scene_.get()); });
+    arena.execute([&] {
+        add_geometry(s, tables);
+        rtcCommitScene(scene_.get());
+    });
     check("building the acceleration structure");
     RTCBounds bounds;
     rtcGetSceneBounds(scene_.get(), &bounds);
@@ -115,7 +124,7 @@ void EmbreeScene::attach(RTCGeometry geometry, Geometry place) {
 void EmbreeScene::name(const Scene &s, const Shape &shape, std::size_t triangle, std::uint32_t number, Geometry place) {
     if (place >= passable_triangles)
         passable_[place - passable_triangles].add(s, shape, triangle, number);
-    else if (some_are_passable_)
+    else if (some_are_passable_ || !groups_.empty())
         numbers_[place].push_back(number);
 }
 
@@ -162,7 +171,7 @@ void EmbreeScene::add_shared_triangles(const Scene &s, const SceneTables &tables
     RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
     const std::size_t numbers = tables.vertex_numbers;
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, tables.triangles.data(), 0,
-                               numbers * sizeof(float), tables.triangles.size() / numbers);
+                               numbers * sizeof(float), tables.end_vertex);
     using Corners = std::array<std::uint32_t, 3>;
     if (triangle_count == triangles_) {
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, tables.triangles.data(), 0,
@@ -175,7 +184,7 @@ void EmbreeScene::add_shared_triangles(const Scene &s, const SceneTables &tables
         });
     }
     check("sharing geometry");
-    if (some_are_passable_)
+    if (some_are_passable_ || !groups_.empty())
         for_each_mesh([&](const Shape &shape, std::size_t count, std::uint32_t first) {
             for (std::size_t i = 0; i < count; ++i)
                 name(s, shape, i, first + std::uint32_t(i), place);
@@ -210,10 +219,100 @@ void EmbreeScene::add_spheres(const Scene &s, Geometry place) {
     attach(geometry, place);
 }
 
+RTCGeometry EmbreeScene::new_triangles(const Mesh &mesh, std::uint32_t first, const SceneTables *tables) {
+    using Corners = std::array<std::uint32_t, 3>;
+    RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    if (tables && tables->is_indexed()) {
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, tables->triangles.data(), 0,
+                                   tables->vertex_numbers * sizeof(float), tables->end_vertex);
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, tables->triangles.data(),
+                                   first * sizeof(Corners), sizeof(Corners), mesh.triangles.size());
+        check("sharing geometry");
+        return geometry;
+    }
+    auto *vertices = new_buffer<Vector3>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh.positions.size());
+    std::copy(mesh.positions.begin(), mesh.positions.end(), vertices);
+    auto *indices = new_buffer<Corners>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.triangles.size());
+    std::copy(mesh.triangles.begin(), mesh.triangles.end(), indices);
+    return geometry;
+}
+
+/// As drop_passed, of shapes in groups.
+void EmbreeScene::drop_passed_in_instance(const RTCFilterFunctionNArguments *hits) {
+    const auto &shape = *static_cast<const PassableShape *>(hits->geometryUserPtr);
+    const auto &context = *reinterpret_cast<const TraceContext *>(hits->context);
+    for (unsigned lane = 0; lane < hits->N; ++lane) {
+        if (hits->valid[lane] == 0)
+            continue;
+        const unsigned ray = RTCRayN_id(hits->ray, hits->N, lane);
+        const std::size_t row = context.rows ? context.rows[ray] : ray;
+        const unsigned instance = RTCHitN_instID(hits->hit, hits->N, lane, 0) - first_instance;
+        if (!shape.opacity.is_met(RTCHitN_primID(hits->hit, hits->N, lane), axis_values(context.origin, row),
+                                  axis_values(context.direction, row), instance + 1,
+                                  matrix_of(shape.scene->instances_[instance])))
+            hits->valid[lane] = 0;
+    }
+}
+
+/// Acceleration structures of groups, in their own frames.
+void EmbreeScene::add_groups(const Scene &s, const SceneTables *tables) {
+    std::uint32_t first = 0;
+    for (Group &group : groups_) {
+        group.scene.reset(rtcNewScene(device_.get()));
+        rtcSetSceneBuildQuality(group.scene.get(), RTC_BUILD_QUALITY_HIGH);
+    }
+    for (const Shape &shape : s.shapes) {
+        if (shape.kind != Shape::Kind::mesh)
+            continue;
+        const Mesh &mesh = s.meshes[shape.geometry];
+        if (shape.group != no_group) {
+            Group &group = groups_[std::size_t(shape.group)];
+            RTCGeometry geometry = new_triangles(mesh, first, tables);
+            rtcSetGeometryMask(geometry, 0xFFFFFFFFu);
+            if (is_passable(s, shape)) {
+                group.passable.push_back(std::make_unique<PassableShape>(PassableShape{this, {}}));
+                for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+                    group.passable.back()->opacity.add(s, shape, i, first + std::uint32_t(i));
+                rtcSetGeometryUserData(geometry, group.passable.back().get());
+                rtcSetGeometryIntersectFilterFunction(geometry, drop_passed_in_instance);
+                rtcSetGeometryOccludedFilterFunction(geometry, drop_passed_in_instance);
+            }
+            rtcCommitGeometry(geometry);
+            rtcAttachGeometryByID(group.scene.get(), geometry, unsigned(group.first.size()));
+            rtcReleaseGeometry(geometry);
+            check("building geometry");
+            group.first.push_back(first);
+        }
+        first += std::uint32_t(mesh.triangles.size());
+    }
+    for (Group &group : groups_) {
+        rtcCommitScene(group.scene.get());
+        check("building the acceleration structure of a group");
+    }
+}
+
+void EmbreeScene::add_instances(const Scene &s) {
+    group_of_.reserve(s.instances.size());
+    for (const Instance &instance : s.instances) {
+        RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE);
+        rtcSetGeometryInstancedScene(geometry, groups_[instance.group].scene.get());
+        rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, instance.to_world.data());
+        rtcSetGeometryMask(geometry, 0xFFFFFFFFu);
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometryByID(scene_.get(), geometry, first_instance + unsigned(group_of_.size()));
+        rtcReleaseGeometry(geometry);
+        group_of_.push_back(instance.group);
+    }
+    check("adding instances");
+}
+
 void EmbreeScene::add_geometry(const Scene &s, const SceneTables *tables) {
+    groups_.resize(s.groups);
+    bool some_are_passable_in_groups = false;
     std::size_t vertex_count = 0, triangle_count = 0;
     for (const Shape &shape : s.shapes) {
         some_are_passable_ |= is_passable(s, shape);
+        some_are_passable_in_groups |= shape.group != no_group && is_passable(s, shape);
         if (shape.kind == Shape::Kind::mesh) {
             vertex_count += s.meshes[shape.geometry].positions.size();
             triangle_count += s.meshes[shape.geometry].triangles.size();
@@ -233,6 +332,13 @@ void EmbreeScene::add_geometry(const Scene &s, const SceneTables *tables) {
     add_spheres(s, opaque_spheres);
     add_meshes(passable_triangles);
     add_spheres(s, passable_spheres);
+    if (s.instances.empty())
+        return;
+    no_instance_ = tables ? tables->no_instance : 0;
+    if (some_are_passable_in_groups)
+        instances_ = s.instances;
+    add_groups(s, tables);
+    add_instances(s);
 }
 
 } // namespace gradus

@@ -29,13 +29,21 @@ class EmbreeScene {
 
     RTCScene handle() const { return scene_.get(); }
     /// Which primitive of the scene was hit, by the geometry and the number that Embree knows it by.
-    std::uint32_t primitive_of(unsigned geometry, unsigned number) const {
+    std::uint32_t primitive_of(unsigned instance, unsigned geometry, unsigned number) const {
+        if (instance != RTC_INVALID_GEOMETRY_ID)
+            return groups_[group_of_[instance - first_instance]].first[geometry] + number;
         if (geometry >= passable_triangles)
             return passable_[geometry - passable_triangles].primitive(number);
         const std::vector<std::uint32_t> &named = numbers_[geometry];
         return !named.empty() ? named[number] : geometry == opaque_triangles ? number : triangles_ + number;
     }
-    std::size_t primitives() const { return triangles_ + spheres_; }
+    /// RayColumns::instance
+    std::uint32_t instance_record(unsigned instance) const {
+        return instance == RTC_INVALID_GEOMETRY_ID ? no_instance_ : no_instance_ + 1 + (instance - first_instance);
+    }
+    /// Instances counted as those of the scene.
+    std::size_t primitives() const { return triangles_ + spheres_ + group_of_.size(); }
+    bool has_instances() const { return !group_of_.empty(); }
     /// Whether rays may pass any of them.
     bool some_are_passable() const { return some_are_passable_; }
     /// Opposite corners of a box around all.
@@ -45,7 +53,7 @@ class EmbreeScene {
 
   private:
     /// Those that rays may pass have geometries of their own, so that hits with all others are not asked about.
-    enum Geometry : unsigned { opaque_triangles, opaque_spheres, passable_triangles, passable_spheres };
+    enum Geometry : unsigned { opaque_triangles, opaque_spheres, passable_triangles, passable_spheres, first_instance };
     struct Release {
         void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
         void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
@@ -63,6 +71,22 @@ class EmbreeScene {
     /// Says which primitive of the scene comes next in a geometry.
     void name(const Scene &s, const Shape &shape, std::size_t triangle, std::uint32_t number, Geometry place);
     void attach(RTCGeometry geometry, Geometry place);
+    void add_groups(const Scene &s, const SceneTables *tables);
+    RTCGeometry new_triangles(const Mesh &mesh, std::uint32_t first, const SceneTables *tables);
+    void add_instances(const Scene &s);
+    static void drop_passed_in_instance(const RTCFilterFunctionNArguments *hits);
+
+    /// A shape of a group that rays may pass.
+    struct PassableShape {
+        const EmbreeScene *scene;
+        Opacity opacity;
+    };
+    /// Shapes are geometries, with their numbers: the first primitive of each is known.
+    struct Group {
+        std::unique_ptr<RTCSceneTy, Release> scene;
+        std::vector<std::uint32_t> first;
+        std::vector<std::unique_ptr<PassableShape>> passable;
+    };
 
     std::atomic<long long> bytes_{0}; ///< which Embree counts until it is released
     std::unique_ptr<RTCDeviceTy, Release> device_;
@@ -72,6 +96,10 @@ class EmbreeScene {
     std::array<Opacity, 2> passable_;
     std::vector<TracedSphere> traced_spheres_; ///< the opaque ones, where they are few
     bool some_are_passable_ = false;
+    std::vector<Group> groups_;
+    std::vector<std::uint32_t> group_of_; ///< by instance
+    std::vector<Instance> instances_;     ///< where groups have what rays may pass
+    std::uint32_t no_instance_ = 0;
     std::array<float, 3> low_{}, high_{};
 };
 

@@ -2,6 +2,7 @@
 
 #include "kernels/lib/primitive.h"
 #include "kernels/lib/random.h"
+#include "runtime/scene/transform.h"
 
 #include <bit>
 
@@ -73,10 +74,29 @@ bool Opacity::is_met(std::size_t i, const Vector3 &origin, const Vector3 &direct
     const float opacity = primitive.textured < 0
                               ? primitive.opacity
                               : opacity_of(triangles_[std::size_t(primitive.textured)], origin, direction);
+    return decide(primitive, opacity, origin, direction, 0);
+}
+
+bool Opacity::is_met(std::size_t i, const Vector3 &origin, const Vector3 &direction, std::uint32_t instance,
+                     const Matrix4 &to_world) const {
+    const Primitive &primitive = primitives_[i];
+    float opacity = primitive.opacity;
+    if (primitive.textured >= 0) {
+        TexturedTriangle placed = triangles_[std::size_t(primitive.textured)];
+        placed.p0 = to_float(transform_point(to_world, to_double(placed.p0)));
+        placed.e1 = to_float(transform_vector(to_world, to_double(placed.e1)));
+        placed.e2 = to_float(transform_vector(to_world, to_double(placed.e2)));
+        opacity = opacity_of(placed, origin, direction);
+    }
+    return decide(primitive, opacity, origin, direction, instance);
+}
+
+bool Opacity::decide(const Primitive &primitive, float opacity, const Vector3 &origin, const Vector3 &direction,
+                     std::uint32_t instance) const {
     const auto bits = [](float value) { return std::bit_cast<std::uint32_t>(value); };
     const random_bits first = random_hash(bits(origin.x), bits(origin.y), bits(origin.z), primitive.number);
-    const random_bits both =
-        random_hash(first.x ^ bits(direction.x), first.y ^ bits(direction.y), first.z ^ bits(direction.z), first.w);
+    const random_bits both = random_hash(first.x ^ bits(direction.x), first.y ^ bits(direction.y),
+                                         first.z ^ bits(direction.z), first.w ^ instance);
     return random_unit(both.x) < opacity;
 }
 

@@ -29,6 +29,10 @@ class Opacity {
     std::uint32_t primitive(std::size_t i) const { return primitives_[i].number; }
     /// Whether the ray meets the i-th primitive, which lies in its way.
     bool is_met(std::size_t i, const Vector3 &origin, const Vector3 &direction) const;
+    /// The same of an instance of the group that the primitive is of, by its number from 1 on and where it stands. Each
+    /// instance decides anew.
+    bool is_met(std::size_t i, const Vector3 &origin, const Vector3 &direction, std::uint32_t instance,
+                const Matrix4 &to_world) const;
 
   private:
     /// Where the opacity is a texture: what tells (u, v).
@@ -44,6 +48,8 @@ class Opacity {
         std::int64_t textured; ///< index into triangles_, or -1
     };
     float opacity_of(const TexturedTriangle &triangle, const Vector3 &origin, const Vector3 &direction) const;
+    bool decide(const Primitive &primitive, float opacity, const Vector3 &origin, const Vector3 &direction,
+                std::uint32_t instance) const;
 
     std::vector<Primitive> primitives_;
     std::vector<TexturedTriangle> triangles_;

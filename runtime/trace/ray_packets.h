@@ -33,7 +33,7 @@ void prepare_packet(Ray &ray) {
         ray.tnear[lane] = 0;
         ray.time[lane] = 0;
         ray.mask[lane] = 0xFFFFFFFFu;
-        ray.id[lane] = 0;
+        ray.id[lane] = unsigned(lane); // TraceContext
         ray.flags[lane] = 0;
     }
 }
@@ -60,6 +60,25 @@ inline RTCIntersectContext new_context(bool beams) {
     rtcInitIntersectContext(&context);
     context.flags = beams ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     return context;
+}
+
+/// What is known to filters of hits. Within an instance Embree hands them the ray in the frame of its group; that of
+/// the world is ray `id` of these.
+struct TraceContext {
+    RTCIntersectContext embree; ///< first: filters are given its address
+    const float *origin[3], *direction[3];
+    const std::uint32_t *rows = nullptr; ///< of ray `id`; null: that number itself
+
+    TraceContext(bool beams, const SegmentColumns &rays) : embree(new_context(beams)) {
+        std::copy_n(rays.origin, 3, origin);
+        std::copy_n(rays.direction, 3, direction);
+    }
+};
+
+/// Rays of a packet that is kept elsewhere, as columns.
+template <class Ray>
+SegmentColumns columns_of(const Ray &ray) {
+    return {{ray.org_x, ray.org_y, ray.org_z}, {ray.dir_x, ray.dir_y, ray.dir_z}};
 }
 
 /// Calls visit(rows, lanes) for packet after packet of the sorted rows. `rows` has 16 elements, the last repeated past

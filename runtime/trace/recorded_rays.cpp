@@ -26,32 +26,32 @@ std::uint64_t RecordedRays::count() const {
 }
 
 void trace_again(RTCScene scene, const RecordedRays &rays, bool extension_beams, bool shadow_beams, bool single) {
-    RTCIntersectContext context = new_context(extension_beams);
     for (std::size_t i = 0; i < rays.extension.size(); ++i) {
         const int lanes = rays.extension_lanes[i];
+        TraceContext context(extension_beams, columns_of(rays.extension[i].ray));
         if (single) {
             for (int lane = 0; lane < lanes; ++lane) {
                 RTCRayHit ray;
                 ray.ray = ray_of(rays.extension[i].ray, lane);
                 ray.hit.geomID = ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-                rtcIntersect1(scene, &context, &ray);
+                rtcIntersect1(scene, &context.embree, &ray);
             }
         } else {
             alignas(64) RTCRayHit16 packet = rays.extension[i];
-            rtcIntersect16(first_lanes(lanes).lane, scene, &context, &packet);
+            rtcIntersect16(first_lanes(lanes).lane, scene, &context.embree, &packet);
         }
     }
-    context = new_context(shadow_beams);
     for (std::size_t i = 0; i < rays.shadow.size(); ++i) {
         const int lanes = rays.shadow_lanes[i];
+        TraceContext context(shadow_beams, columns_of(rays.shadow[i]));
         if (single) {
             for (int lane = 0; lane < lanes; ++lane) {
                 RTCRay ray = ray_of(rays.shadow[i], lane);
-                rtcOccluded1(scene, &context, &ray);
+                rtcOccluded1(scene, &context.embree, &ray);
             }
         } else {
             alignas(64) RTCRay16 packet = rays.shadow[i];
-            rtcOccluded16(first_lanes(lanes).lane, scene, &context, &packet);
+            rtcOccluded16(first_lanes(lanes).lane, scene, &context.embree, &packet);
         }
     }
 }

@@ -85,10 +85,12 @@ void intersect(const RTCIntersectFunctionNArguments *arguments) {
         return;
     RTCHitN *hits = RTCRayHitN_HitN(arguments->rayhit, width);
     unsigned *primitive = &RTCHitN_primID(hits, width, 0), *geometry = &RTCHitN_geomID(hits, width, 0);
+    unsigned *instance = &RTCHitN_instID(hits, width, 0, 0); // what was met before may be of one
     for (unsigned i = 0; i < width; ++i) {
         rays.far[i] = found[i];
         primitive[i] = is_met[i] != 0 ? arguments->primID : primitive[i];
         geometry[i] = is_met[i] != 0 ? arguments->geomID : geometry[i];
+        instance[i] = is_met[i] != 0 ? arguments->context->instID[0] : instance[i];
     }
 }
 

@@ -24,6 +24,8 @@ namespace {
 constexpr std::size_t chunk = 4096; // rows a task: small enough to balance, large enough to sort
 // Embree's coherent traversal tests a packet as one beam. On sorted rays it is twice as fast as the other in a scene of
 // some dozens of primitives, where a cell of origins sees few of them, and half as fast in one of thousands.
+// Nor is it for instances: Embree 3.13 then loops for ever on some packets of shadow rays (tests/methods/
+// instances_test.cpp, by gpt).
 constexpr std::size_t beam_limit = 256;
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
@@ -51,7 +53,7 @@ class Chunks {
 struct Tracer::Implementation {
     Implementation(const Scene &s, int threads, const SceneTables *tables)
         : arena(threads > 0 ? threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()))),
-          scene(s, threads, arena, tables), coherent(scene.primitives() <= beam_limit) {}
+          scene(s, threads, arena, tables), coherent(scene.primitives() <= beam_limit && !scene.has_instances()) {}
 
     tbb::task_arena arena;
     EmbreeScene scene;
@@ -80,7 +82,7 @@ struct Tracer::Implementation {
     }
     bool beams(RayOrder order) const { return coherent && order != RayOrder::none; }
     /// Rays of a camera are alike in whatever scene, and in order as they come but for their octants.
-    bool camera_beams() const { return !coherent && !scene.some_are_passable(); }
+    bool camera_beams() const { return !coherent && !scene.some_are_passable() && !scene.has_instances(); }
 };
 
 Tracer::Tracer(const Scene &s, int threads, const SceneTables *tables)
@@ -105,27 +107,30 @@ std::uint64_t Tracer::Implementation::trace_extension(const RayColumns &ray, con
     const std::vector<std::uint32_t> &rows =
         ordering.sort(ray, ray.primitive, ray_pending, chunk_rows, of_camera ? RayOrder::octant : extension_order);
     const bool as_beams = of_camera || beams(extension_order);
-    RTCIntersectContext context = new_context(as_beams);
+    TraceContext context(as_beams, ray);
     if (record)
         record->of_camera = of_camera;
     alignas(64) RTCRayHit16 packet;
     prepare_packet(packet.ray);
-    for (int lane = 0; lane < packet_width; ++lane)
-        packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
     for_each_packet(rows, ordering.groups(), as_beams, [&](const std::uint32_t *row, int lanes) {
         fill_packet(packet.ray, ray, row, std::numeric_limits<float>::infinity());
         for (int lane = 0; lane < packet_width; ++lane)
-            packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+            packet.hit.geomID[lane] = packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+        context.rows = row;
         if (record) {
             record->extension.push_back(packet);
             record->extension_lanes.push_back(lanes);
         }
         const ValidLanes valid = first_lanes(lanes);
-        rtcIntersect16(valid.lane, scene.handle(), &context, &packet);
-        for (int lane = 0; lane < lanes; ++lane)
-            ray.primitive[row[lane]] = packet.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID
+        rtcIntersect16(valid.lane, scene.handle(), &context.embree, &packet);
+        for (int lane = 0; lane < lanes; ++lane) {
+            const unsigned geometry = packet.hit.geomID[lane], instance = packet.hit.instID[0][lane];
+            ray.primitive[row[lane]] = geometry == RTC_INVALID_GEOMETRY_ID
                                            ? ray_escaped
-                                           : scene.primitive_of(packet.hit.geomID[lane], packet.hit.primID[lane]);
+                                           : scene.primitive_of(instance, geometry, packet.hit.primID[lane]);
+            if (ray.instance && geometry != RTC_INVALID_GEOMETRY_ID)
+                ray.instance[row[lane]] = scene.instance_record(instance);
+        }
     });
     return rows.size();
 }
@@ -134,7 +139,7 @@ std::uint64_t Tracer::Implementation::trace_shadow(const ShadowColumns &shadow, 
                                                    RecordedRays *record) {
     RayOrdering &ordering = orderings.local();
     const std::vector<std::uint32_t> &rows = ordering.sort(shadow, shadow.open, 1, chunk_rows, shadow_order);
-    RTCIntersectContext context = new_context(beams(shadow_order));
+    TraceContext context(beams(shadow_order), shadow);
     alignas(64) RTCRay16 packet;
     prepare_packet(packet);
     for_each_packet(rows, ordering.groups(), beams(shadow_order), [&](const std::uint32_t *row, int lanes) {
@@ -144,7 +149,8 @@ std::uint64_t Tracer::Implementation::trace_shadow(const ShadowColumns &shadow, 
             record->shadow_lanes.push_back(lanes);
         }
         const ValidLanes valid = first_lanes(lanes);
-        rtcOccluded16(valid.lane, scene.handle(), &context, &packet);
+        context.rows = row;
+        rtcOccluded16(valid.lane, scene.handle(), &context.embree, &packet);
         for (int lane = 0; lane < lanes; ++lane)
             shadow.open[row[lane]] = packet.tfar[lane] >= 0 ? 1u : 0u; // Embree writes -infinity
     });

@@ -15,6 +15,8 @@ namespace gradus {
 /// The host's view of the columns of a ray table: see GRADUS_RAY_COLUMNS.
 struct RayColumns : SegmentColumns {
     std::uint32_t *primitive = nullptr; ///< in: ray_pending or ray_none; out: what was hit, or ray_escaped
+    /// Out, of what was hit: the record of its instance (SceneTables::no_instance); null where there are none.
+    std::uint32_t *instance = nullptr;
 };
 
 /// The host's view of the columns of a shadow table: see GRADUS_SHADOW_COLUMNS.

@@ -26,6 +26,8 @@ class Segments {
                 columns.direction[axis] = reals + (places.direction + axis) * capacity;
             }
             answer = reinterpret_cast<std::uint32_t *>(reals + places.answer * capacity);
+            if (places.instance >= 0)
+                instance = reinterpret_cast<std::uint32_t *>(reals + places.instance * capacity);
             return;
         }
         const double *reals = view_.as<double>();
@@ -38,16 +40,25 @@ class Segments {
         for (std::size_t row = 0; row < rows; ++row)
             answer_[row] = wide_answer_[2 * row];
         answer = answer_.data();
+        if (places.instance >= 0) {
+            wide_instance_ = view_.as<std::uint32_t>() + 2 * places.instance * capacity;
+            instance_.resize(rows);
+            for (std::size_t row = 0; row < rows; ++row)
+                instance_[row] = wide_instance_[2 * row];
+            instance = instance_.data();
+        }
     }
     ~Segments() {
         for (std::size_t row = 0; row < answer_.size(); ++row)
             wide_answer_[2 * row] = answer_[row];
+        for (std::size_t row = 0; row < instance_.size(); ++row)
+            wide_instance_[2 * row] = instance_[row];
     }
     Segments(const Segments &) = delete;
     Segments &operator=(const Segments &) = delete;
 
     SegmentColumns columns{};
-    std::uint32_t *answer;
+    std::uint32_t *answer, *instance = nullptr;
 
   private:
     const float *copy(std::vector<float> &to, const double *from) const {
@@ -57,8 +68,8 @@ class Segments {
     Buffer::Mapping view_;
     std::size_t rows_;
     std::vector<float> origin_[3], direction_[3];
-    std::vector<std::uint32_t> answer_;
-    std::uint32_t *wide_answer_ = nullptr; ///< of a double table: every other one
+    std::vector<std::uint32_t> answer_, instance_;
+    std::uint32_t *wide_answer_ = nullptr, *wide_instance_ = nullptr; ///< of a double table: every other one
 };
 
 } // namespace
@@ -70,7 +81,7 @@ TraceCounts trace_segments(Tracer &tracer, Precision precision, const SegmentTab
     ShadowColumns segment{};
     if (rays.count > 0) {
         ray_view.emplace(rays, precision, segments.count > 0 ? Wait::later : Wait::now);
-        ray = {ray_view->columns, ray_view->answer};
+        ray = {ray_view->columns, ray_view->answer, ray_view->instance};
     }
     if (segments.count > 0) {
         segment_view.emplace(segments, precision, Wait::now);

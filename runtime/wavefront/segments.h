@@ -20,6 +20,7 @@ struct SegmentTable {
     std::uint32_t line = 0;                    ///< SegmentColumns::line
     /// SegmentColumns::alike_from
     std::size_t alike_from = std::numeric_limits<std::size_t>::max();
+    int instance = -1; ///< the column of the second answer, where there are instances: RayColumns::instance
 };
 
 /// Finds what `rays` meet first (their answers: ray_pending before, a primitive or ray_escaped after), and whether

@@ -53,7 +53,8 @@ TableList Wavefront::tables() const {
 
 TableList Wavefront::ray_tables() const {
     const std::uint32_t bins = layout_.bins();
-    TableList list = {{.name = "ray", .columns = ray_columns, .alternates = true},
+    const std::uint32_t of_rays = session_.has("TRAIT_INSTANCES") ? ray_columns : ray_instance;
+    TableList list = {{.name = "ray", .columns = of_rays, .alternates = true},
                       {.name = "surface", .columns = session_.surface_columns(), .is_cleared = true},
                       {.name = "bin", .is_uint = true},
                       {.name = "index", .is_uint = true},
@@ -90,6 +91,8 @@ void Wavefront::trace() {
     SegmentTable ray{&(*tables_)["ray"], rows, rays(), ray_origin_x, ray_direction_x, ray_primitive};
     if (fresh_are_alike_)
         ray.alike_from = vertices_;
+    if (session_.has("TRAIT_INSTANCES"))
+        ray.instance = ray_instance;
     const TraceCounts counts =
         trace_segments(session_.tracer, tables_->precision(), ray, connections, session_.trace_seconds);
     session_.rays["extension"] += counts.extension;

@@ -190,7 +190,7 @@ TEST(Instance, AreCopiesWithMaterialsAndLights) {
                                              "value=\"2\"/><translate y=\"1\"/></transform><ref id=\"g\"/></shape>") +
                                  group + "<shape type=\"instance\"><ref id=\"g\"/></shape>");
     ASSERT_EQ(scene.shapes.size(), 4u);
-    EXPECT_EQ(scene.instances, 2u);
+    EXPECT_EQ(scene.copied_instances, 2u);
     EXPECT_EQ(scene.emitters.size(), 2u);
     const Mesh &mesh = scene.meshes.at(0);
     EXPECT_NEAR(signed_volume(mesh), 64, 1e-4);

@@ -73,11 +73,10 @@ Scene own_scene(const std::string &file, std::uint32_t width, std::uint32_t heig
     return scene;
 }
 
-ReferenceScene own_reference(const std::string &name) {
+ReferenceScene own_reference(const std::string &name, LoadOptions options) {
     const fs::path folder = root / "tests" / "references";
     std::ifstream file(folder / (name + ".json"));
     const nlohmann::json json = nlohmann::json::parse(file);
-    LoadOptions options;
     for (const auto &[key, value] : json.at("parameters").items())
         options.parameters[key] = value.is_string() ? value.get<std::string>() : value.dump();
     ReferenceScene reference;

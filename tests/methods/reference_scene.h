@@ -3,6 +3,7 @@
 
 #include "runtime/film/block_test.h"
 #include "runtime/film/image.h"
+#include "runtime/io/load_options.h"
 #include "runtime/scene/scene.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +23,7 @@ struct ReferenceScene {
 };
 
 /// One of the project's own, as tests/references/NAME.json says. Throws where any part of it is missing.
-ReferenceScene own_reference(const std::string &name);
+ReferenceScene own_reference(const std::string &name, LoadOptions options = {});
 
 /// One of ../shared/references, by its name, scene file and what its README says of it.
 struct SharedReference {

@@ -113,7 +113,7 @@ TEST(Traits, AllOnLeavesThePictureAlone) {
     for (const auto &[name, value] : general)
         EXPECT_EQ(value, name.starts_with("TRAIT_FILTER") || name == "TRAIT_HIDE_EMITTERS" ||
                                  name.starts_with("TRAIT_TEXTURE") || name == "TRAIT_MATERIAL" ||
-                                 name == "TRAIT_LOOKUPS" || name == "TRAIT_INDEXED" ||
+                                 name == "TRAIT_LOOKUPS" || name == "TRAIT_INDEXED" || name == "TRAIT_INSTANCES" ||
                                  name == "TRAIT_NORMAL_TEXTURES" || name == "TRAIT_LIGHT_TEXTURES" ||
                                  name.starts_with("TRAIT_BLEND")
                              ? special.at(name)

@@ -33,10 +33,10 @@ struct PendingMesh {
 
 /// Shapes in a shape.
 struct ShapeGroup {
-    std::vector<const Element *> shapes;
-    const Element *instanced = nullptr; ///< the shapegroup that they are of, which is built once; else they stand here
-    Matrix4 to_world = {};              ///< of an instance
-    Location location = {};
+    std::vector<const Element *> shapes; ///< not of an instance
+    const Element *instanced = nullptr;  ///< the shapegroup that is seen once more
+    Matrix4 to_world = {};               ///< of the instance
+    Location location = {};              ///< of what says so
 };
 
 using ShapeGeometry = std::variant<BuiltMesh, Sphere, PendingMesh, ShapeGroup>;

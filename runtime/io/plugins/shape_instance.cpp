@@ -5,13 +5,14 @@
 namespace gradus {
 
 Declaration declare_shape_instance() {
-    return {"the shapes of a shapegroup, nested or by `<ref>`, once more; copies in memory. None in groups",
+    return {"the shapes of a shapegroup, nested or by `<ref>`, once more; kept as instances where copies would "
+            "be large. None in groups",
             {{"to_world", Takes::transform, nullptr,
               "after those of the shapes; normals are mapped as normals, so that a mirror turns no front"},
              {"shape", Takes::objects, nullptr, "the shapegroup"}}};
 }
 
-ShapeGeometry shape_instance(Properties &properties, SceneBuilder &builder) {
+ShapeGeometry shape_instance(Properties &properties, SceneBuilder &) {
     const std::vector<NestedObject> shapes = properties.objects("shape");
     if (shapes.size() != 1)
         throw SceneError(properties.location(), "an instance needs one shapegroup");
@@ -20,11 +21,9 @@ ShapeGeometry shape_instance(Properties &properties, SceneBuilder &builder) {
         throw SceneError(shapes.front().location,
                          "an instance is of a shapegroup, not of a shape of type \"" + type_of(instanced) + "\"");
     ShapeGroup group;
-    for (const NestedObject &shape : nested_objects(instanced, "shape", builder.resolver()))
-        group.shapes.push_back(shape.element);
     group.instanced = &instanced;
     group.to_world = properties.transform("to_world");
-    group.location = properties.location();
+    group.location = properties.location_of("to_world");
     return group;
 }
 

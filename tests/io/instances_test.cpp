@@ -1,0 +1,129 @@
+// Which instances of a scene file become copies, and which are kept.
+#include "runtime/scene/instances.h"
+#include "tests/io/scene_text.h"
+
+#include <fmt/format.h>
+
+namespace gradus {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string group_of(const std::string &shapes, const std::string &id = "g") {
+    return "<shape type=\"shapegroup\" id=\"" + id + "\">" + shapes + "</shape>\n";
+}
+
+std::string instance_of(const std::string &transform, const std::string &id = "g") {
+    return "<shape type=\"instance\"><ref id=\"" + id + "\"/><transform name=\"to_world\">" + transform +
+           "</transform></shape>\n";
+}
+
+Scene loaded_as(const std::string &body, InstanceChoice choice, std::uint64_t most_copied_bytes = 0,
+                const std::string &version = "3.0.0") {
+    LoadOptions options;
+    options.instances = choice;
+    options.most_copied_bytes = most_copied_bytes;
+    return load_text(scene_around(body, version, ""), options).scene;
+}
+
+const std::string two_cubes = group_of("<shape type=\"cube\"/>") + instance_of("<translate x=\"1\"/>") +
+                              instance_of("<scale x=\"-1\" y=\"2\" z=\"1\"/>");
+
+TEST(KeptInstances, ShareTheirShapes) {
+    const Scene scene = loaded_as(two_cubes, InstanceChoice::kept);
+    ASSERT_EQ(scene.instances.size(), 2u);
+    ASSERT_EQ(scene.shapes.size(), 1u);
+    EXPECT_EQ(scene.meshes.size(), 1u);
+    EXPECT_EQ(scene.shapes[0].group, 0);
+    EXPECT_EQ(scene.groups, 1u);
+    EXPECT_EQ(scene.instances[0].to_world[3], 1);
+    EXPECT_EQ(scene.instances[1].to_world[5], 2);
+    EXPECT_LT(determinant(matrix_of(scene.instances[1])), 0);
+}
+
+TEST(KeptInstances, AreTheSameInFilesOfVersion0) {
+    std::string old = two_cubes;
+    for (std::size_t at; (at = old.find("to_world")) != std::string::npos;)
+        old.replace(at, 8, "toWorld");
+    const Scene scene = loaded_as(old, InstanceChoice::kept, 0, "0.6.0");
+    ASSERT_EQ(scene.instances.size(), 2u);
+    EXPECT_EQ(scene.instances[0].to_world, loaded_as(two_cubes, InstanceChoice::kept).instances[0].to_world);
+}
+
+TEST(KeptInstances, LieWhereCopiesDo) {
+    const Bounds kept = world_bounds(loaded_as(two_cubes, InstanceChoice::kept));
+    const Bounds copies = world_bounds(loaded_as(two_cubes, InstanceChoice::copies));
+    EXPECT_EQ(kept.lower, copies.lower);
+    EXPECT_EQ(kept.upper, copies.upper);
+}
+
+TEST(KeptInstances, AreThoseWhoseCopiesWouldBeLarge) {
+    EXPECT_EQ(loaded_as(two_cubes, InstanceChoice::automatic, 1u << 20).instances.size(), 0u);
+    const Scene kept = loaded_as(two_cubes, InstanceChoice::automatic, 100);
+    EXPECT_EQ(kept.instances.size(), 2u) << "the first, which was a copy, too";
+    EXPECT_EQ(kept.copied_instances, 0u);
+    EXPECT_EQ(kept.shapes.size(), 1u);
+    EXPECT_EQ(kept.meshes.size(), 1u);
+    const Scene one = loaded_as(group_of("<shape type=\"cube\"/>") + instance_of(""), InstanceChoice::automatic, 0);
+    EXPECT_EQ(one.instances.size(), 0u) << "there is nothing to share";
+}
+
+// Shapes around those that are taken back keep their meshes.
+TEST(KeptInstances, LeaveOtherShapesAsTheyWere) {
+    const std::string around = "<shape type=\"rectangle\" id=\"before\"/>" + group_of("<shape type=\"cube\"/>") +
+                               group_of("<shape type=\"disk\" id=\"single\"/>", "alone") + instance_of("", "alone") +
+                               instance_of("<translate x=\"1\"/>") + "<shape type=\"sphere\"/>" +
+                               "<shape type=\"disk\" id=\"between\"/>" + instance_of("<translate x=\"2\"/>") +
+                               instance_of("<translate x=\"3\"/>") + "<shape type=\"rectangle\" id=\"after\"/>";
+    const Scene scene = loaded_as(around, InstanceChoice::automatic, 0);
+    EXPECT_EQ(scene.instances.size(), 3u);
+    EXPECT_EQ(scene.copied_instances, 1u);
+    std::string shapes;
+    for (const Shape &shape : scene.shapes) {
+        const std::size_t triangles =
+            shape.kind == Shape::Kind::mesh ? scene.meshes.at(shape.geometry).triangles.size() : 0;
+        shapes += fmt::format("{}{} ", triangles, shape.group == no_group ? "" : " shared");
+    }
+    EXPECT_EQ(shapes, "2 256 0 256 12 shared 2 ") << "rectangle, disk, sphere, disk, cube, rectangle";
+    EXPECT_EQ(scene.meshes.size(), 5u);
+}
+
+TEST(KeptInstances, CopyWhatTheyCannotBe) {
+    const std::string body =
+        group_of("<shape type=\"cube\"/><shape type=\"sphere\"/><shape type=\"rectangle\"><emitter "
+                 "type=\"area\"/></shape>") +
+        instance_of("<translate x=\"1\"/>") + instance_of("<translate x=\"2\"/>") +
+        instance_of("<scale z=\"1e-12\"/>", "flat") + group_of("<shape type=\"rectangle\"/>", "flat");
+    const Scene scene = loaded_as(body, InstanceChoice::kept);
+    EXPECT_EQ(scene.instances.size(), 2u);
+    EXPECT_EQ(scene.spheres.size(), 2u);
+    EXPECT_EQ(scene.emitters.size(), 2u);
+    std::size_t shared = 0;
+    for (const Shape &shape : scene.shapes) {
+        shared += shape.group != no_group;
+        EXPECT_TRUE(shape.group == no_group || shape.emitter < 0);
+    }
+    EXPECT_EQ(shared, 1u);
+}
+
+TEST(KeptInstances, OfASingularMapAreErrorsWithTheirLine) {
+    const std::string body = group_of("<shape type=\"cube\"/>") + instance_of("\n<scale x=\"0\"/>");
+    const std::string message = error_of_text(scene_around(body, "3.0.0", ""));
+    EXPECT_THAT(message, HasSubstr("scene.xml:4"));
+    EXPECT_THAT(message, HasSubstr("cannot be undone"));
+    EXPECT_THAT(error_of_text(scene_around(group_of("<shape type=\"cube\"/>") +
+                                           instance_of("\n<matrix value=\"1 0 0 0 0 1 0 0 0 0 nan 0 0 0 0 1\"/>"))),
+                HasSubstr("scene.xml:5"));
+}
+
+TEST(KeptInstances, CountAgainstTheLimits) {
+    LoadOptions options;
+    options.instances = InstanceChoice::copies;
+    options.limits.geometry_bytes = 1500;
+    const std::string body = scene_around(two_cubes, "3.0.0", "");
+    EXPECT_THAT(error_of_text(body, options), HasSubstr("scene.xml:5"));
+    EXPECT_THAT(error_of_text(body, options), HasSubstr("--limits 10"));
+}
+
+} // namespace
+} // namespace gradus
