@@ -87,9 +87,10 @@ struct Tracer::Implementation {
 
 Tracer::Tracer(const Scene &s, int threads, const SceneTables *tables)
     : implementation_(std::make_unique<Implementation>(s, threads, tables)) {
-    // Where packets are no beams, sorting gained nothing on the scenes measured, so they stay as they come.
+    // Where packets are no beams, cells gain nothing; octants 1 to 5 % of a render in scenes of a thousand triangles,
+    // nothing in larger ones.
     if (!implementation_->coherent)
-        set_order(RayOrder::none, RayOrder::none);
+        set_order(RayOrder::octant, RayOrder::octant);
 }
 
 Tracer::~Tracer() = default;
