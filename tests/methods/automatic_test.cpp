@@ -354,7 +354,7 @@ Scene lamp_in_glass(bool is_point) {
     return maker.scene;
 }
 
-TEST(Automatic, TakesGpmWhereLightComesThroughGlass) {
+TEST(FullAutomatic, TakesGpmWhereLightComesThroughGlass) {
     for (const bool is_point : {false, true}) {
         const Scene scene = lamp_in_glass(is_point);
         RenderOptions options;
@@ -373,7 +373,7 @@ TEST(Automatic, TakesGpmWhereLightComesThroughGlass) {
 }
 
 /// Glass is there, and what lights the floor does not come through it.
-TEST(Automatic, LeavesPhotonsWherePathsFindAll) {
+TEST(FullAutomatic, LeavesPhotonsWherePathsFindAll) {
     SceneMaker maker(24, 96);
     maker.look({0, 3, 3}, {0, 0, 0}, 30);
     maker.scene.settings.max_depth = 8;

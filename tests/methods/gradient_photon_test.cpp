@@ -125,8 +125,8 @@ TEST_P(GradientPhotonsOf, HaveThePrimalOfPhotonMapping) {
     EXPECT_LT(error, 1e-9); // float's rounding, squared, at some hundred sums
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, GradientPhotonsOf, ::testing::Values("cornell-box", "materials", "lamp-in-egg"),
-                         name_of_scene);
+INSTANTIATE_TEST_SUITE_P(Methods, GradientPhotonsOf, ::testing::Values("cornell-box", "lamp-in-egg"), name_of_scene);
+INSTANTIATE_TEST_SUITE_P(Full, GradientPhotonsOf, ::testing::Values("materials"), name_of_scene);
 
 /// What the reconstruction gains where surfaces are diffuse, with the radii of the defaults.
 TEST(GradientPhotonImage, HasFarLessErrorThanPhotonMapping) {

@@ -89,7 +89,8 @@ TEST_P(PhotonInvariance, ToTheCropAndToLayers) {
     EXPECT_EQ(different, 0u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Photons, PhotonInvariance, ::testing::Values("cornell-box", "materials"), name_of_scene);
+INSTANTIATE_TEST_SUITE_P(Photons, PhotonInvariance, ::testing::Values("cornell-box"), name_of_scene);
+INSTANTIATE_TEST_SUITE_P(Full, PhotonInvariance, ::testing::Values("materials"), name_of_scene);
 
 } // namespace
 } // namespace gradus::testing

@@ -120,7 +120,7 @@ TEST(VeryFarAway, CornellBoxKeepsItsLight) {
 // Ten times further a float keeps eleven bits for the scene. In either precision vertices have these alone, and rays
 // start off surfaces by some hundredths of the scene, since Embree takes origins in float. Only points on surfaces and
 // what is computed from them are exact in double, so it gains little here; it must not lose.
-TEST(VeryFarAway, DoubleIsNoWorseThanFloat) {
+TEST(FullVeryFarAway, DoubleIsNoWorseThanFloat) {
     if (!shared_device().description().has_double)
         GTEST_SKIP() << shared_device().description().name << " has no double precision";
     const ReferenceScene reference = moved(10'000);

@@ -14,7 +14,7 @@ Scene small_room() {
     return scene;
 }
 
-TEST(Tuner, TriesOnlyWhatHasTheSameImage) {
+TEST(FullTuner, TriesOnlyWhatHasTheSameImage) {
     TuningOptions options;
     options.turns = 3;
     options.seconds_a_turn = 0.005;
