@@ -43,8 +43,8 @@ SOLVE guide_lost(GRID, real share, real least, real dim, __global const float *f
 #define LINE_AT(down)                                                                                                  \
     ((int)y + 1 + (down) < 0 ? 0 : (int)y + 1 + (down) > (int)height + 1 ? (int)height + 1 : (int)y + 1 + (down))
 
-/* Sums over five pixels that lie (across, down) from each other, with the weights of a cubic spline, less where they are
- * of another brightness. */
+/* Sums over five pixels that lie (across, down) from each other, with the weights of a cubic spline, less where they
+ * are of another brightness. */
 SOLVE guide_light_pass(GRID, uint across, uint down, uint unit, __global const real *brightness,
                        __global const real *lost, __global real *smoothed) {
     SOLVER_PLACE_OF_ALL_CHANNELS
