@@ -142,7 +142,7 @@ class MaterialClassesOf : public ::testing::TestWithParam<std::tuple<const char 
 
 TEST_P(MaterialClassesOf, ReadTheSameButForRounding) {
     const auto [name, method] = GetParam();
-    Scene scene = own_scene(std::string(name) + ".xml", 64, 48);
+    Scene scene = own_reference(name).scene;
     scene.settings.samples_per_pixel = 4;
     RenderOptions options;
     options.aov = true; // the features: what is read of first vertices
@@ -150,7 +150,7 @@ TEST_P(MaterialClassesOf, ReadTheSameButForRounding) {
     options.all_traits = true;
     const Image by_one = render(scene, options, method).image;
     std::size_t far = 0, count = 0;
-    for (const char *channel : {"albedo.R", "albedo.G", "albedo.B", "N.X", "N.Y", "N.Z"}) {
+    for (const char *channel : {"albedo.R", "albedo.G", "albedo.B", "normal.X", "normal.Y", "normal.Z"}) {
         ASSERT_TRUE(by_class.find(channel) && by_one.find(channel)) << channel;
         for (std::size_t i = 0; i < by_class.find(channel)->values.size(); ++i) {
             const double a = by_class.find(channel)->values[i], b = by_one.find(channel)->values[i];
