@@ -94,10 +94,12 @@ RowPilot assumed_pilot(const Scene &scene, const RenderOptions &options) {
     return pilot;
 }
 
+bool sees_only_lights(const RenderSettings &settings) { return settings.max_depth == 0 || settings.max_depth == 1; }
+
 MethodChoice choose_by_rule(const Scene &scene, const RenderOptions &options, double pixels) {
     const RenderSettings &settings = scene.settings;
     MethodChoice choice;
-    if (settings.max_depth == 0 || settings.max_depth == 1) {
+    if (sees_only_lights(settings)) {
         choice.method = "pt";
         choice.reason = "paths see nothing but lights, which are not reconstructed";
         return choice;
@@ -110,11 +112,6 @@ MethodChoice choose_by_rule(const Scene &scene, const RenderOptions &options, do
                     "less error then",
                     choice.method);
     return choice;
-}
-
-std::uint64_t pixels_of(const Scene &scene) {
-    const auto [width, height] = image_size(scene.film);
-    return std::uint64_t(width) * height;
 }
 
 } // namespace
@@ -180,12 +177,12 @@ std::unique_ptr<Method> make_automatic_method(Device &device, const Scene &scene
     const auto chosen = [&](const MethodChoice &choice, std::unique_ptr<Method> method) {
         return std::make_unique<ChosenMethod>(std::move(method), choice);
     };
-    const std::uint64_t samples = scene.settings.samples_per_pixel, pixels = pixels_of(scene);
     const auto [width, height] = image_size(scene.film);
+    const std::uint64_t samples = scene.settings.samples_per_pixel, pixels = std::uint64_t(width) * height;
     // gpm does not tell its error.
     const bool asks_for_photons = has_room_for_halves(samples) && !options.error && may_ask_for_photons(scene, options);
     const std::uint32_t rows = rows_of_pilot(width, height, samples, asks_for_photons);
-    if (rows == 0 || scene.settings.max_depth == 0 || scene.settings.max_depth == 1) {
+    if (rows == 0 || sees_only_lights(scene.settings)) {
         const MethodChoice choice = choose_by_rule(scene, options, double(pixels));
         return chosen(choice, make_method(choice.method, device, scene, options));
     }

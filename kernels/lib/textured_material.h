@@ -13,7 +13,9 @@
 
 GRADUS_LIB_BEGIN
 
-#define IS_TEXTURED(name) (((TRAIT_TEXTURED >> parameter_##name) & 1) != 0)
+/* Whether a mask, as TRAIT_TEXTURED is one, has a parameter. */
+#define HAS_PARAMETER(mask, name) ((((mask) >> parameter_##name) & 1) != 0)
+#define IS_TEXTURED(name) HAS_PARAMETER(TRAIT_TEXTURED, name)
 
 /* The columns: three for a colour, one for a number, none for what is not textured. */
 #define GRADUS_COLOR_COLUMNS(with, name, value, text)                                                                  \

@@ -37,12 +37,11 @@
                    texture_or_first((material_lookups + (n) * (size_t)unit)[(int)(record * (uint)TRAIT_LOOKUPS)],      \
                                     parameter_texture),                                                                \
                    point)
-#define IS_IN(mask, name) ((((mask) >> parameter_##name) & 1) != 0)
 /* With a single lookup, which all materials take, there is nothing to ask. */
 #define LOOK_UP(name)                                                                                                  \
-    const int is_asked = CLASS_LOOKUPS > 1 || !IS_IN(CLASS_ALL_TEXTURED, name);                                        \
-    uint number = IS_IN(CLASS_TEXTURED, name) ? 0u : texture_none;                                                     \
-    if (IS_IN(CLASS_TEXTURED, name) && is_asked)                                                                       \
+    const int is_asked = CLASS_LOOKUPS > 1 || !HAS_PARAMETER(CLASS_ALL_TEXTURED, name);                                \
+    uint number = HAS_PARAMETER(CLASS_TEXTURED, name) ? 0u : texture_none;                                             \
+    if (HAS_PARAMETER(CLASS_TEXTURED, name) && is_asked)                                                               \
         number = (material_textures + parameter_##name * (size_t)unit)[(int)(record * (uint)textured_parameters)];     \
     const int is_constant = number == texture_none;                                                                    \
     const int constants = (int)(record * (uint)material_stride);                                                       \
@@ -62,7 +61,7 @@
 #endif
 #define LEAVE(name, field, value)                                                                                      \
     surface[(size_t)textured_##field * traced_rows + row] =                                                            \
-        IS_IN(CLASS_ALL_TEXTURED, name)                                                                                \
+        HAS_PARAMETER(CLASS_ALL_TEXTURED, name)                                                                        \
             ? (value)                                                                                                  \
             : (is_constant ? (materials + material_##field * (size_t)unit)[constants] : (value));
 #define LEAVE_COLOR(with, name, value, text)                                                                           \

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <optional>
 #include <tuple>
 
 // After all others: its short macro names are not for library headers.
@@ -82,6 +83,19 @@ MaterialClass class_of(const Scene &scene, const Material &material) {
     return one;
 }
 
+/// Of each material that a shape has.
+std::vector<std::optional<MaterialClass>> classes_by_material(const Scene &scene) {
+    std::vector<std::optional<MaterialClass>> found(scene.materials.size());
+    for (const Shape &shape : scene.shapes) {
+        std::optional<MaterialClass> &one = found[shape.material];
+        if (!one)
+            one = class_of(scene, scene.materials[shape.material]);
+        one->on_triangles |= shape.kind == Shape::Kind::mesh;
+        one->on_spheres |= shape.kind == Shape::Kind::sphere;
+    }
+    return found;
+}
+
 /// Puts class b with class a.
 void merge(MaterialClasses &found, std::size_t a, std::size_t b) {
     found.classes[a] = both(found.classes[a], found.classes[b]);
@@ -92,30 +106,29 @@ void merge(MaterialClasses &found, std::size_t a, std::size_t b) {
 
 } // namespace
 
+MaterialClass class_of_all_materials(const Scene &scene) {
+    MaterialClass all;
+    for (const std::optional<MaterialClass> &one : classes_by_material(scene))
+        if (one)
+            all = both(all, *one);
+    return all;
+}
+
 MaterialClasses material_classes(const Scene &scene, std::size_t most) {
-    std::vector<MaterialClass> of_material(scene.materials.size());
-    std::vector<bool> is_used(scene.materials.size());
-    for (const Shape &shape : scene.shapes) {
-        MaterialClass &one = of_material[shape.material];
-        const bool on_triangles = one.on_triangles, on_spheres = one.on_spheres;
-        if (!is_used[shape.material])
-            one = class_of(scene, scene.materials[shape.material]);
-        is_used[shape.material] = true;
-        one.on_triangles = on_triangles || shape.kind == Shape::Kind::mesh;
-        one.on_spheres = on_spheres || shape.kind == Shape::Kind::sphere;
-    }
+    const std::vector<std::optional<MaterialClass>> of_material = classes_by_material(scene);
     MaterialClasses found;
-    found.of_material.resize(scene.materials.size());
+    found.of_material.resize(of_material.size());
     for (std::size_t i = 0; i < of_material.size(); ++i) {
-        if (!is_used[i])
+        if (!of_material[i])
             continue;
+        const MaterialClass &one = *of_material[i];
         const auto like = std::ranges::find_if(
-            found.classes, [&](const MaterialClass &other) { return kind_of(other) == kind_of(of_material[i]); });
+            found.classes, [&](const MaterialClass &other) { return kind_of(other) == kind_of(one); });
         found.of_material[i] = std::uint32_t(like - found.classes.begin());
         if (like == found.classes.end())
-            found.classes.push_back(of_material[i]);
+            found.classes.push_back(one);
         else
-            *like = both(*like, of_material[i]);
+            *like = both(*like, one);
     }
     while (found.classes.size() > most) {
         std::size_t best_a = 0, best_b = 1;

@@ -37,6 +37,9 @@ struct MaterialClasses {
 /// The classes of the materials that shapes have, at most `most` of them: those that are most alike go together.
 MaterialClasses material_classes(const Scene &scene, std::size_t most);
 
+/// Of all of these materials: what the scene's own traits say.
+MaterialClass class_of_all_materials(const Scene &scene);
+
 /// What the kernel of a class is compiled with (kernels/stages/material.cl).
 std::map<std::string, std::string> definitions_of(const MaterialClass &one);
 

@@ -3,6 +3,7 @@
 #include "kernels/shared/texture.h"
 #include "runtime/scene/camera_clips.h"
 #include "runtime/scene/filter_table.h"
+#include "runtime/scene/material_class.h"
 #include "runtime/scene/vertex_table.h"
 
 #include <algorithm>
@@ -254,32 +255,16 @@ namespace {
 
 /// Of textures, blends and normal maps.
 void add_material_traits(const Scene &scene, TraitMap &traits) {
-    for (const Shape &shape : scene.shapes) {
-        const Material &material = scene.materials[shape.material];
-        for (const Bsdf *side : {&material.front, &material.back}) {
-            traits["TRAIT_BLENDS"] = std::max(traits["TRAIT_BLENDS"], blend_depth(scene, *side));
-            for_each_blend(scene, *side, [&](const Blend &blend, int level) {
-                if (blend.weight.texture == no_texture)
-                    return;
-                traits["TRAIT_BLEND_TEXTURES"] |= texture_features(scene.textures[std::size_t(blend.weight.texture)]);
-                traits["TRAIT_BLEND_LEVELS"] |= 1 << std::min(level, 30);
-            });
-        }
-    }
-    for_each_bsdf(scene, [&](const Bsdf &bsdf) {
-        for_each_textured_parameter(bsdf, [&](int number, std::int32_t texture) {
-            traits["TRAIT_TEXTURED"] |= 1 << number;
-            traits["TRAIT_TEXTURES"] |= texture_features(scene.textures[std::size_t(texture)]);
-        });
-        if (bsdf.map.kind != NormalTexture::Kind::none) {
-            traits["TRAIT_TEXTURED_NORMALS"] |=
-                bsdf.map.kind == NormalTexture::Kind::bump ? textured_normals_bump : textured_normals_given;
-            traits["TRAIT_NORMAL_TEXTURES"] |= texture_features(scene.textures[std::size_t(bsdf.map.texture)]);
-        }
-    });
-    traits["TRAIT_LOOKUPS"] = most_lookups(scene);
-    traits["TRAIT_MATERIAL"] =
-        traits["TRAIT_TEXTURED"] != 0 || traits["TRAIT_TEXTURED_NORMALS"] != 0 || traits["TRAIT_BLENDS"] > 0;
+    const MaterialClass all = class_of_all_materials(scene);
+    traits["TRAIT_TEXTURED"] = all.textured;
+    traits["TRAIT_TEXTURES"] = all.parameter.features;
+    traits["TRAIT_LOOKUPS"] = all.lookups;
+    traits["TRAIT_BLENDS"] = all.blends;
+    traits["TRAIT_BLEND_TEXTURES"] = all.blend.features;
+    traits["TRAIT_BLEND_LEVELS"] = all.blend_levels;
+    traits["TRAIT_TEXTURED_NORMALS"] = all.normals;
+    traits["TRAIT_NORMAL_TEXTURES"] = all.normal.features;
+    traits["TRAIT_MATERIAL"] = all.textured != 0 || all.normals != 0 || all.blends > 0;
 }
 
 /// Of lights with textures.

@@ -79,6 +79,21 @@ TEST_P(Invariance, NotToTheSeed) {
     EXPECT_FALSE(equal_bits(image, render(small_scene(), high).image));
 }
 
+/// How many values of two images differ, and how many by more than rounding.
+struct Differences {
+    std::size_t count = 0, different = 0, far = 0;
+
+    void add(const Image &first, const Image &second, const std::string &channel) {
+        const std::vector<float> &values = first.find(channel)->values, &others = second.find(channel)->values;
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            const double a = values[i], b = others[i];
+            ++count;
+            different += a != b ? 1 : 0;
+            far += std::fabs(a - b) > 1e-4 * std::max(0.1, std::fabs(a)) ? 1 : 0;
+        }
+    }
+};
+
 // Kernels with every trait on, with triangles by index too, compute the same, but a compiler may join multiplications
 // and additions otherwise. What that changes in the last bits sends a path another way now and then: past an edge, or
 // on with Russian roulette.
@@ -87,17 +102,12 @@ TEST_P(Invariance, ToSpecialisationButForRounding) {
     const Image special = render(small_scene(), options).image;
     options.all_traits = options.by_index = true;
     const Image general = render(small_scene(), options).image;
-    std::size_t different = 0, far = 0, count = 0;
+    Differences found;
     for (const Channel &channel : special.channels)
-        for (std::size_t i = 0; i < channel.values.size(); ++i) {
-            const double a = channel.values[i], b = general.find(channel.name)->values[i];
-            ++count;
-            different += a != b ? 1 : 0;
-            far += std::fabs(a - b) > 1e-4 * std::max(0.1, std::fabs(a)) ? 1 : 0;
-        }
+        found.add(special, general, channel.name);
     fmt::print("{}: of {} values {} differ between specialised and general kernels, {} by more than 1e-4\n", GetParam(),
-               count, different, far);
-    EXPECT_LE(far, count / 100);
+               found.count, found.different, found.far);
+    EXPECT_LE(found.far, found.count / 100);
 }
 
 /// Triangles by index, in all methods: normals, anisotropy, lights, walks and photons. Offsets of rays are computed in
@@ -112,19 +122,14 @@ TEST_P(ByIndex, IsTheSameButForRounding) {
     const Image by_record = render(scene, options, method).image;
     options.by_index = true;
     const Image by_index = render(scene, options, method).image;
-    std::size_t far = 0, count = 0;
+    Differences found;
     // Before a reconstruction, which shows one path in many pixels.
     for (const char *color : {"R", "G", "B"}) {
         const std::string layer = std::string("primal.") + color;
-        const std::string channel = by_record.find(layer) ? layer : color;
-        for (std::size_t i = 0; i < by_record.find(channel)->values.size(); ++i) {
-            const double a = by_record.find(channel)->values[i], b = by_index.find(channel)->values[i];
-            ++count;
-            far += std::fabs(a - b) > 1e-4 * std::max(0.1, std::fabs(a)) ? 1 : 0;
-        }
+        found.add(by_record, by_index, by_record.find(layer) ? layer : color);
     }
-    fmt::print("{} by {}: of {} values {} differ by more than 1e-4\n", name, method, count, far);
-    EXPECT_LE(far, count / 20);
+    fmt::print("{} by {}: of {} values {} differ by more than 1e-4\n", name, method, found.count, found.far);
+    EXPECT_LE(found.far, found.count / 20);
 }
 
 INSTANTIATE_TEST_SUITE_P(Full, ByIndex,
@@ -149,17 +154,13 @@ TEST_P(MaterialClassesOf, ReadTheSameButForRounding) {
     const Image by_class = render(scene, options, method).image;
     options.all_traits = true;
     const Image by_one = render(scene, options, method).image;
-    std::size_t far = 0, count = 0;
+    Differences found;
     for (const char *channel : {"albedo.R", "albedo.G", "albedo.B", "normal.X", "normal.Y", "normal.Z"}) {
         ASSERT_TRUE(by_class.find(channel) && by_one.find(channel)) << channel;
-        for (std::size_t i = 0; i < by_class.find(channel)->values.size(); ++i) {
-            const double a = by_class.find(channel)->values[i], b = by_one.find(channel)->values[i];
-            ++count;
-            far += std::fabs(a - b) > 1e-4 * std::max(0.1, std::fabs(a)) ? 1 : 0;
-        }
+        found.add(by_class, by_one, channel);
     }
-    fmt::print("{} by {}: of {} values {} differ by more than 1e-4\n", name, method, count, far);
-    EXPECT_LE(far, count / 100);
+    fmt::print("{} by {}: of {} values {} differ by more than 1e-4\n", name, method, found.count, found.far);
+    EXPECT_LE(found.far, found.count / 100);
 }
 
 INSTANTIATE_TEST_SUITE_P(Full, MaterialClassesOf,
