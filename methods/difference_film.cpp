@@ -6,7 +6,9 @@
 #include "methods/path_stages.h"
 #include "methods/reconstruction_inputs.h"
 #include "runtime/seconds_since.h"
-#include "solver/halves.h"
+#include "runtime/wavefront/sample_parts.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
@@ -17,10 +19,20 @@ namespace gradus {
 
 using namespace lib_float;
 
+namespace {
+
+std::vector<std::string> film_names(std::uint32_t parts) {
+    std::vector<std::string> names = {"gradient_film"};
+    for (std::uint32_t part = 1; part < parts; ++part)
+        names.push_back(fmt::format("gradient_film_{}", part));
+    return names;
+}
+
+} // namespace
+
 DifferenceFilm::DifferenceFilm(Session &session, Stages &stages, const RenderOptions &options, const char *counts)
     : session_(session), options_(options), counts_(counts),
-      film_names_(session.has("TRAIT_HALVES") ? std::vector<std::string>{"gradient_film", "odd_gradient_film"}
-                                              : std::vector<std::string>{"gradient_film"}),
+      film_names_(film_names(1u << session.traits.at("TRAIT_PART_BITS"))),
       combine_(stages.add({.name = "gradient_combine", .strict = true})), film_(session, stages),
       accumulate_(
           stages.add({.name = "gradient_accumulate",
@@ -82,10 +94,10 @@ void DifferenceFilm::clear_slots() {
 void DifferenceFilm::add(std::uint32_t first, std::uint32_t rows, std::uint32_t frames, std::uint64_t number) {
     const std::uint32_t width = session_.film.crop_width, pixels = rows * width;
     combine_.run(frames * pixels);
-    film_.add(frames * pixels, first * width);
+    film_.add(frames * pixels, first * width, number);
     const auto apart = std::uint32_t(film_names_.size()); // frames of a film
     for (std::uint32_t film = 0; film < apart; ++film) {
-        // Of a half the first frame of its own, and every other one from there.
+        // Of a part the first frame of its own, and from there on each that is as many further as there are parts.
         const auto first_frame = std::uint32_t((film + apart - number % apart) % apart);
         if (apart > 1)
             accumulate_.bind("gradient_film", (*tables_)[film_names_[film]]);
@@ -112,13 +124,14 @@ void DifferenceFilm::add(std::uint32_t first, std::uint32_t rows, std::uint32_t 
 Image DifferenceFilm::image(std::uint64_t samples, bool layers, bool last, std::uint64_t &non_finite) {
     const auto keep_films_and = [&](std::vector<std::string> kept) {
         kept.insert(kept.end(), film_names_.begin(), film_names_.end());
+        kept.push_back(counts_);
         tables_->release_all_but(kept);
     };
     if (last) // what a pass needs and the films do not
-        keep_films_and({counts_, "film", "feature_film"});
+        keep_films_and(film_.table_names());
     Image whole = film_.image(samples, non_finite);
     if (last)
-        keep_films_and({counts_});
+        keep_films_and({});
     if (solver_compiled_.valid())
         solver_compiled_.get();
     if (!solver_)
@@ -139,10 +152,11 @@ Image DifferenceFilm::image(std::uint64_t samples, bool layers, bool last, std::
 }
 
 GradientFilms DifferenceFilm::films(std::uint64_t samples) const {
-    GradientFilms films;
-    for (std::size_t i = 0; i < film_names_.size(); ++i)
-        films.add((*tables_)[film_names_[i]], session_.film.crop_width, session_.film.crop_height, options_.precision,
-                  film_names_.size() > 1 ? samples_of_half(samples, session_.pixels(), int(i)) : samples);
+    GradientFilms films(keeps_halves(options_), has_replicates(session_.options));
+    const auto parts = std::uint32_t(film_names_.size());
+    for (std::uint32_t part = 0; part < parts; ++part)
+        films.add((*tables_)[film_names_[part]], session_.film.crop_width, session_.film.crop_height,
+                  options_.precision, samples_of_part(samples, session_.pixels(), part, parts));
     return films;
 }
 

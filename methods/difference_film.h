@@ -36,7 +36,7 @@ class DifferenceFilm {
     /// Zero in all slots, for images without paths.
     void clear_slots();
     /// Adds the samples of `frames` frames of the image's rows [first, first + rows), slot by slot. `number`: of the
-    /// first of these frames; where options need halves, even ones and odd ones have films of their own.
+    /// first of these frames, which says of which part of the samples they are.
     void add(std::uint32_t first, std::uint32_t rows, std::uint32_t frames, std::uint64_t number);
     /// After `samples` samples; those left out are added to `non_finite`. `last`: lets go of batches and films as soon
     /// as they have been read.
@@ -59,7 +59,7 @@ class DifferenceFilm {
     Session &session_;
     const RenderOptions &options_;
     const std::string counts_;
-    const std::vector<std::string> film_names_; ///< the tables of the sums: one, or those of both halves
+    const std::vector<std::string> film_names_; ///< the tables of the sums: one, or one for each part of the samples
     Stage &combine_;
     Film film_;
     Stage &accumulate_, &carry_;

@@ -28,8 +28,8 @@ class GradientFilm {
     double count(Layer layer, std::size_t pixel) const {
         return double(frames_ + (pixel + (layer == dy ? width_ : 0) < more_ ? 1 : 0));
     }
-    /// The variance of their mean; 0 where there is but one.
-    double variance(Layer layer, std::uint32_t color, std::size_t pixel) const;
+    /// The sum of their squares.
+    double squares(Layer layer, std::uint32_t color, std::size_t pixel) const;
 
   private:
     HostTable table_;
@@ -38,17 +38,23 @@ class GradientFilm {
     std::uint64_t more_;   ///< pixels that have one more
 };
 
-/// The film of a render, or those of its halves.
+/// The film of a render, or those of the parts of its samples: of part p modulo their number, in this order.
 class GradientFilms {
   public:
+    /// `halves`: the even parts and the odd ones are two halves, which may be known apart. `replicates`: the spread of
+    /// the parts, more than two, tells the variance; else that of the samples does.
+    explicit GradientFilms(bool halves = false, bool replicates = false)
+        : has_halves_(halves), has_replicates_(replicates) {}
+
     /// As GradientFilm has it.
     void add(const Buffer &film, std::uint32_t width, std::uint32_t height, Precision precision,
              std::uint64_t samples) {
         films_.push_back(std::make_shared<const GradientFilm>(film, width, height, precision, samples));
     }
 
-    bool are_halves() const { return films_.size() == 2; }
-    /// One of them by itself, the same film.
+    bool are_halves() const { return has_halves_; }
+    /// One of them by itself, the same films. Its variances, of which weights are made, are those of
+    /// variance_of_samples(): half of the replicates know too little.
     GradientFilms half(int number) const;
     std::size_t pixels() const { return films_.front()->pixels(); }
     std::uint64_t samples() const;
@@ -58,11 +64,15 @@ class GradientFilms {
     /// The mean of all samples, or the variance of that mean, as they are read while this is there.
     PlaneSource mean(GradientFilm::Layer layer) const;
     PlaneSource variance(GradientFilm::Layer layer) const;
+    /// That of samples that are independent in each half; 0 where there is but one. Of others it is mostly more than
+    /// the variance.
+    PlaneSource variance_of_samples(GradientFilm::Layer layer) const;
     /// Those of all layers.
     ImageSources images() const;
 
   private:
     std::vector<std::shared_ptr<const GradientFilm>> films_;
+    bool has_halves_, has_replicates_;
 };
 
 } // namespace gradus

@@ -6,6 +6,7 @@
 #include "methods/gradient_stages.h"
 #include "methods/path_stages.h"
 #include "runtime/seconds_since.h"
+#include "runtime/wavefront/sample_parts.h"
 #include "runtime/wavefront/segments.h"
 
 #include <fmt/format.h>
@@ -31,7 +32,7 @@ TraitMap gradient_traits(const Scene &scene, const RenderOptions &options) {
             {"TRAIT_APART", apart},
             {"TRAIT_SHIFT_DISTANCE", distance},
             {"TRAIT_AOV", options.all_traits || needs_features(options)},
-            {"TRAIT_HALVES", keeps_halves(options)}};
+            {"TRAIT_PART_BITS", part_bits(options, keeps_halves(options))}};
 }
 
 /// Whether lights throw pictures.

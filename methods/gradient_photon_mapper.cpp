@@ -5,6 +5,7 @@
 #include "methods/path_stages.h"
 #include "runtime/error.h"
 #include "runtime/seconds_since.h"
+#include "runtime/wavefront/sample_parts.h"
 #include "runtime/wavefront/segments.h"
 
 #include <fmt/format.h>
@@ -51,7 +52,7 @@ TraitMap light_vertex_traits(const Scene &scene, const RenderOptions &options) {
             {"TRAIT_ONLY_CHAINS", options.only_chains},
             {"TRAIT_LOBE_LEVELS", options.sampler == RenderOptions::Sampler::sobol},
             {"TRAIT_AOV", options.all_traits || needs_features(options)},
-            {"TRAIT_HALVES", needs_halves(options.reconstruction)}};
+            {"TRAIT_PART_BITS", part_bits(options, needs_halves(options.reconstruction))}};
 }
 
 const Scene &checked(const Scene &scene) {
@@ -98,8 +99,9 @@ std::string reason_against_gpm(const Scene &scene) {
 GradientPhotonMapper::GradientPhotonMapper(Device &device, const Scene &scene, const RenderOptions &options)
     : options_(options),
       session_(device, checked_for_gathering(checked(scene), options), options, light_vertex_traits(scene, options)),
-      paths_(session_, stages_, scene, options, true), photons_(session_, stages_, scene, options, 0.5),
-      pairs_(stages_, true), bin_(stages_.add({.name = "gather_bin"})),
+      paths_(session_, stages_, scene, options, true),
+      photons_(session_, stages_, scene, options, 0.5, needs_halves(options.reconstruction)), pairs_(stages_, true),
+      bin_(stages_.add({.name = "gather_bin"})),
       order_(stages_, "gather", first_kind_bin + std::uint32_t(session_.scene.kinds.size()), RowsOf::slot),
       evaluate_(stages_.add({.name = "photon_evaluate", .by_kind = true, .dirac = DiracKinds::left_out})),
       shift_(stages_.add({.name = "photon_shift", .by_kind = true, .dirac = DiracKinds::left_out})),

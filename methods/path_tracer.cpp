@@ -4,6 +4,7 @@
 #include "methods/path_stages.h"
 #include "methods/reconstruction_inputs.h"
 #include "runtime/seconds_since.h"
+#include "runtime/wavefront/sample_parts.h"
 #include "solver/guide/guided_reconstruction.h"
 
 #include <fmt/format.h>
@@ -16,9 +17,9 @@
 namespace gradus {
 
 PathTracer::PathTracer(Device &device, const Scene &scene, const RenderOptions &options)
-    : options_(options),
-      session_(device, scene, options,
-               {{"TRAIT_AOV", options.all_traits || needs_features(options)}, {"TRAIT_HALVES", keeps_halves()}}),
+    : options_(options), session_(device, scene, options,
+                                  {{"TRAIT_AOV", options.all_traits || needs_features(options)},
+                                   {"TRAIT_PART_BITS", part_bits(options, keeps_halves())}}),
       camera_(stages_.add(camera_stage())), far_clip_(stages_.add(far_clip_stage(session_))),
       connect_(stages_.add(connect_stage())),
       paths_(session_, stages_, {.kinds = std::uint32_t(session_.scene.kinds.size())}),

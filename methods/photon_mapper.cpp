@@ -20,7 +20,8 @@ using namespace lib_float;
 PhotonMapper::PhotonMapper(Device &device, const Scene &scene, const RenderOptions &options)
     : options_(options), session_(device, checked_for_gathering(scene, options), options,
                                   {{"TRAIT_LOBE_LEVELS", options.sampler == RenderOptions::Sampler::sobol}}),
-      paths_(session_, stages_, scene, options, false), photons_(session_, stages_, scene, options, 2), pairs_(stages_),
+      paths_(session_, stages_, scene, options, false), photons_(session_, stages_, scene, options, 2, false),
+      pairs_(stages_),
       evaluate_(stages_.add({.name = "photon_evaluate", .by_kind = true, .dirac = DiracKinds::left_out})),
       add_(stages_.add({.name = "gather_add", .numbers = {"first"}})), bias_(session_, stages_, pairs_, options, false),
       film_(session_, stages_) {
@@ -71,7 +72,7 @@ bool PhotonMapper::render_batch() {
         photons_.begin(pass);
         paths_.trace(paths, first_pixel, pass, [&](const Hits &hits) { gather_photons(hits, first_pixel, pass); });
     }
-    film_.add(paths, first_pixel);
+    film_.add(paths, first_pixel, pass);
     finish(session_.device);
     count_radii(statistics_, pass, first_pixel == 0,
                 {statistics_.gather_points - points_before, pairs_.radius_sum() - radii_before});

@@ -71,7 +71,7 @@ class BlockReader {
     std::size_t pixels() const { return primal_.size() / 3; }
     static std::vector<float> planes(const GradientFilms &films, GradientFilm::Layer layer) {
         std::vector<float> values(3 * films.pixels());
-        const PlaneSource variance = films.variance(layer);
+        const PlaneSource variance = films.variance_of_samples(layer);
         for (std::uint32_t c = 0; c < 3; ++c)
             variance(c, values.data() + c * films.pixels());
         return values;

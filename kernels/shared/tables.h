@@ -101,21 +101,21 @@
     REAL(film, correction_b, "")                                                                                       \
     UINT(film, rejected, "samples left out because they were NaN or infinite")
 
-/* More sums, only with --aov. */
+/* More sums, only with --aov; the squares not with replicates, whose spread tells the variance (sample_number.h). */
 #define GRADUS_FEATURE_FILM_COLUMNS(REAL, UINT)                                                                        \
-    REAL(feature_film, square_r, "sum of squares, for the variance")                                                   \
-    REAL(feature_film, square_g, "")                                                                                   \
-    REAL(feature_film, square_b, "")                                                                                   \
-    REAL(feature_film, square_correction_r, "")                                                                        \
-    REAL(feature_film, square_correction_g, "")                                                                        \
-    REAL(feature_film, square_correction_b, "")                                                                        \
     REAL(feature_film, albedo_r, "sums of the columns of `feature`")                                                   \
     REAL(feature_film, albedo_g, "")                                                                                   \
     REAL(feature_film, albedo_b, "")                                                                                   \
     REAL(feature_film, normal_x, "")                                                                                   \
     REAL(feature_film, normal_y, "")                                                                                   \
     REAL(feature_film, normal_z, "")                                                                                   \
-    REAL(feature_film, depth, "")
+    REAL(feature_film, depth, "")                                                                                      \
+    REAL(feature_film, square_r, "sums of squares, for the variance")                                                  \
+    REAL(feature_film, square_g, "")                                                                                   \
+    REAL(feature_film, square_b, "")                                                                                   \
+    REAL(feature_film, square_correction_r, "")                                                                        \
+    REAL(feature_film, square_correction_g, "")                                                                        \
+    REAL(feature_film, square_correction_b, "")
 
 /* What paths add to pixels that are not their own. The pixel is in a table of uints of its own, by which they are
  * sorted. The sums are those of `film`, in a table `splat_film` of the same columns. */

@@ -1,6 +1,7 @@
 /* accumulate: adds one sample to each of `count` pixels from `first_pixel` on: slots `first_slot` on. A sample with a
- * NaN or an infinity is left out and counted. Samples of filters with negative lobes have a weight. */
-//! traits: TRAIT_AOV TRAIT_FILTER_SIGNED
+ * NaN or an infinity is left out and counted. Samples of filters with negative lobes have a weight. Squares are summed
+ * where the spread of the samples is to tell the variance: not where replicates do, the films of which are many. */
+//! traits: TRAIT_AOV TRAIT_FILTER_SIGNED TRAIT_PART_BITS
 #include "kernels/lib/compensated.h"
 #include "kernels/lib/filter_weight.h"
 #include "kernels/lib/finite.h"
@@ -46,10 +47,12 @@ STAGE accumulate(uint count, uint slots, uint pixels, uint first_slot, uint firs
     ADD(film, sum_g, correction_g, value.g)
     ADD(film, sum_b, correction_b, value.b)
     AT_UINT(film, rejected, pixel) += finite ? 0u : 1u;
-#if TRAIT_AOV
+#if TRAIT_AOV && TRAIT_PART_BITS < 2
     ADD(feature_film, square_r, square_correction_r, value.r * value.r)
     ADD(feature_film, square_g, square_correction_g, value.g * value.g)
     ADD(feature_film, square_b, square_correction_b, value.b * value.b)
+#endif
+#if TRAIT_AOV
     AT(feature_film, albedo_r, pixel) += WEIGHTED(albedo.r);
     AT(feature_film, albedo_g, pixel) += WEIGHTED(albedo.g);
     AT(feature_film, albedo_b, pixel) += WEIGHTED(albedo.b);

@@ -74,14 +74,15 @@ STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ra
 #if TRAIT_SHARED_JITTER
     /* All pixels of a sample share their place within the pixel. Places follow each other in a sequence that fills the
      * pixel evenly: what all pixels share does not average out over the image. */
-    const random_bits start = random_key(seed_low, seed_high, 0xFFFFFFFFu, 0u, place.high);
-    const point2 jitter = additive_sequence(start.x, start.y, place.low);
+    const sample_place shared = shared_number_at(place);
+    const random_bits start = random_key(seed_low, seed_high, 0xFFFFFFFFu, 0u, shared.high);
+    const point2 jitter = additive_sequence(start.x, start.y, shared.low);
     random4 u;
     u.a = jitter.x;
     u.b = jitter.y;
 #if TRAIT_THIN_LENS
     /* And their point of the lens: so base and offset paths are each other's first segments. */
-    const random4 lens = stratified_draw(start.z, place.low, random_dimension_camera);
+    const random4 lens = stratified_draw(start.z, shared.low, random_dimension_camera);
     u.c = lens.a;
     u.d = lens.b;
 #else

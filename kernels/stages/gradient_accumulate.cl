@@ -8,16 +8,12 @@
  * `first_above` on; the first row of all has none, and adds nothing to the last row (`has_above` 0), where nobody else
  * adds.
  *
- * TRAIT_HALVES: frames are those of one half of the samples, every other one from `first_slot` on. */
-//! traits: TRAIT_HALVES
+ * TRAIT_PART_BITS: frames are those of one part of the samples, from `first_slot` on each 2^TRAIT_PART_BITS-th one. */
+//! traits: TRAIT_PART_BITS
 #include "kernels/lib/compensated.h"
 #include "kernels/lib/gradient.h"
 
-#if TRAIT_HALVES
-#define NEXT_FRAME (2u * strip_pixels)
-#else
-#define NEXT_FRAME strip_pixels
-#endif
+#define NEXT_FRAME (strip_pixels << TRAIT_PART_BITS)
 /* `sample` is that of slot `at`, for pixel `to` of the film. */
 #define ADD(number, to, sample)                                                                                        \
     {                                                                                                                  \

@@ -25,7 +25,7 @@
 #include "kernels/lib/material_side.h"
 #include "kernels/lib/normal_map.h"
 #include "kernels/lib/path_draw.h"
-#include "kernels/lib/sample_place.h"
+#include "kernels/lib/sample_number.h"
 #include "kernels/lib/surface_side.h"
 #include "kernels/lib/texture_gradient.h"
 #include "kernels/lib/textured_material.h"
@@ -152,8 +152,9 @@ STAGE read_material(uint count, uint unit, uint first, uint traced_rows, uint pa
 #endif
 #if TRAIT_SHARED_JITTER
     /* An additive sequence, as the places within the pixel are: what all pixels share does not average out. */
-    const sample_place sample = sample_place_after(first_sample_low, first_sample_high,
-                                                   divide(AT_UINT(path, slot, base), pixels_multiplier, pixels_shift));
+    const sample_place sample =
+        shared_number_at(sample_place_after(first_sample_low, first_sample_high,
+                                            divide(AT_UINT(path, slot, base), pixels_multiplier, pixels_shift)));
     const random_bits start = random_key(seed_low, seed_high, 0xFFFFFFFDu, 0u, sample.high);
     const real shared = random_unit(start.x + sample.low * 2654435769u);
     choice = depth == 0u ? shared : choice;

@@ -80,8 +80,8 @@ const Scene &checked_for_gathering(const Scene &scene, const RenderOptions &opti
 }
 
 PassPhotons::PassPhotons(Session &session, Stages &stages, const Scene &scene, const RenderOptions &options,
-                         double pixel_widths)
-    : options_(options), has_halves_(session.has("TRAIT_HALVES")), stages_(stages),
+                         double pixel_widths, bool halves)
+    : options_(options), has_halves_(halves), stages_(stages),
       light_paths_(session, stages, scene, options, direct_of(options)),
       map_(session, stages, photon_rows(light_paths_)) {
     if (session.scene.light_count == 0)

@@ -26,10 +26,11 @@ const Scene &checked_for_gathering(const Scene &scene, const RenderOptions &opti
 
 class PassPhotons {
   public:
-    /// pixel_widths: the radius where the options say none. Throws Error(ExitCode::usage) where there is no light. Sets
-    /// the reals that `gather` reads (`radius_slope`...) and `flux_scale`.
-    PassPhotons(Session &session, Stages &stages, const Scene &scene, const RenderOptions &options,
-                double pixel_widths);
+    /// pixel_widths: the radius where the options say none. `halves`: each half of the passes has radii of its own.
+    /// Throws Error(ExitCode::usage) where there is no light. Sets the reals that `gather` reads (`radius_slope`...)
+    /// and `flux_scale`.
+    PassPhotons(Session &session, Stages &stages, const Scene &scene, const RenderOptions &options, double pixel_widths,
+                bool halves);
 
     TableList tables() const;
     /// To be called once these are allocated and before the stages are built,

@@ -1,10 +1,15 @@
 #include "runtime/wavefront/film.h"
 
 #include "kernels/shared/tables.h"
+#include "runtime/film/replicates.h"
 #include "runtime/wavefront/host_table.h"
+#include "runtime/wavefront/sample_parts.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <deque>
 #include <optional>
 
 namespace gradus {
@@ -18,22 +23,85 @@ double film_sum(const HostTable &table, int color, std::size_t pixel) {
     return table.real(film_sum_r + color, pixel) + table.real(film_correction_r + color, pixel);
 }
 
+/// The table of a part of the samples.
+std::string film_name(std::uint32_t part) { return part == 0 ? "film" : fmt::format("film_{}", part); }
+
+/// The sums of all parts, on the host, and how many samples they are of.
+class FilmSums {
+  public:
+    FilmSums(const Tables &tables, std::uint32_t parts, std::size_t pixels, std::uint64_t samples)
+        : pixels_(pixels), samples_(samples) {
+        for (std::uint32_t part = 0; part < parts; ++part)
+            films_.emplace_back(tables[film_name(part)], pixels, tables.precision());
+    }
+
+    std::uint32_t rejected(std::size_t pixel) const {
+        std::uint32_t rejected = 0;
+        for (const HostTable &film : films_)
+            rejected += film.uint(film_rejected, pixel);
+        return rejected;
+    }
+    /// What parts have of a pixel, for one of R, G and B: `step` apart, from `first` on.
+    Replicate sum(int color, std::size_t pixel, std::uint32_t first = 0, std::uint32_t step = 1) const {
+        Replicate all;
+        for (std::uint32_t part = first; part < films_.size(); part += step) {
+            const Replicate one = part_of(color, pixel, part);
+            all.sum += one.sum;
+            all.count += one.count;
+        }
+        return all;
+    }
+    double variance(int color, std::size_t pixel) const {
+        std::array<Replicate, 1 << replicate_bits> replicates;
+        for (std::uint32_t part = 0; part < films_.size(); ++part)
+            replicates[part] = part_of(color, pixel, part);
+        return variance_of_mean(replicates);
+    }
+
+  private:
+    Replicate part_of(int color, std::size_t pixel, std::uint32_t part) const {
+        const HostTable &film = films_[part];
+        const std::uint64_t all = samples_ / pixels_ + (pixel < samples_ % pixels_ ? 1 : 0);
+        const auto parts = static_cast<std::uint32_t>(films_.size());
+        return {film_sum(film, color, pixel),
+                double(count_of_part(all, part, parts)) - film.uint(film_rejected, pixel)};
+    }
+    std::deque<HostTable> films_;
+    std::size_t pixels_;
+    std::uint64_t samples_;
+};
+
+double mean_of(const Replicate &all) { return all.count > 0 ? all.sum / all.count : 0.0; }
+
 } // namespace
 
 Film::Film(Session &session, Stages &stages, bool halves)
     : session_(session),
       accumulate_(stages.add({.name = "accumulate", .strict = true, .numbers = {"first_slot", "first_pixel"}})),
-      halves_(halves) {}
+      parts_(gradus::has_replicates(session.options) ? 1u << replicate_bits
+             : halves                                ? 2
+                                                     : 1) {}
+
+std::vector<std::string> Film::table_names() const {
+    std::vector<std::string> names;
+    for (std::uint32_t part = 0; part < parts_; ++part)
+        names.push_back(film_name(part));
+    names.emplace_back("feature_film");
+    return names;
+}
 
 TableList Film::tables() const {
     const bool aov = session_.has("TRAIT_AOV");
+    const int feature_sums = has_replicates() ? feature_film_square_r : feature_film_columns; // squares are the last
     const auto with_aov = [&](int columns) { return aov ? std::uint32_t(columns) : 0u; };
-    return {{.name = "radiance", .rows = RowsOf::slot, .columns = radiance_columns},
-            {.name = "filtered", .rows = RowsOf::slot, .columns = session_.has("TRAIT_FILTER_SIGNED") ? 1u : 0u},
-            {.name = "feature", .rows = RowsOf::slot, .columns = with_aov(feature_columns)},
-            {.name = "film", .rows = RowsOf::pixel, .columns = film_columns},
-            {.name = "odd_film", .rows = RowsOf::pixel, .columns = halves_ ? std::uint32_t(film_columns) : 0u},
-            {.name = "feature_film", .rows = RowsOf::pixel, .columns = with_aov(feature_film_columns)}};
+    TableList list = {
+        {.name = "radiance", .rows = RowsOf::slot, .columns = radiance_columns},
+        {.name = "filtered", .rows = RowsOf::slot, .columns = session_.has("TRAIT_FILTER_SIGNED") ? 1u : 0u},
+        {.name = "feature", .rows = RowsOf::slot, .columns = with_aov(feature_columns)},
+        {.name = "feature_film", .rows = RowsOf::pixel, .columns = with_aov(feature_sums)}};
+    for (std::uint32_t part = 0; part < parts_; ++part)
+        list.push_back({.name = film_name(part), .rows = RowsOf::pixel, .columns = film_columns});
+    return list;
 }
 
 void Film::attach(Tables &tables) {
@@ -42,7 +110,9 @@ void Film::attach(Tables &tables) {
 }
 
 void Film::clear() {
-    for (const char *name : {"film", "odd_film", "feature_film", "splat_film"})
+    std::vector<std::string> names = table_names();
+    names.emplace_back("splat_film");
+    for (const std::string &name : names)
         if (tables_->has(name))
             (*tables_)[name].clear();
 }
@@ -52,46 +122,33 @@ void Film::add(std::uint32_t count, std::uint32_t first_pixel, std::uint64_t fir
     std::uint32_t done = 0;
     for (std::uint32_t slot = 0; slot < count; slot += done, first_pixel = 0, ++first_sample) {
         done = std::min(session_.pixels() - first_pixel, count - slot);
-        if (halves_)
-            accumulate_.bind("film", (*tables_)[first_sample % 2 == 0 ? "film" : "odd_film"]);
+        if (parts_ > 1)
+            accumulate_.bind("film", (*tables_)[film_name(static_cast<std::uint32_t>(first_sample % parts_))]);
         accumulate_.run(done, {{"first_slot", slot}, {"first_pixel", first_pixel}});
     }
 }
 
 Image Film::image(std::uint64_t samples, std::uint64_t &non_finite, std::uint64_t light_paths) const {
     const std::size_t count = session_.pixels();
-    const HostTable film((*tables_)["film"], count, tables_->precision());
-    std::optional<HostTable> odd, splats;
-    if (halves_)
-        odd.emplace((*tables_)["odd_film"], count, tables_->precision());
+    const FilmSums films(*tables_, parts_, count, samples);
+    std::optional<HostTable> splats;
     if (light_paths > 0 && tables_->has("splat_film"))
         splats.emplace((*tables_)["splat_film"], count, tables_->precision());
     Image image;
     image.width = session_.film.crop_width;
     image.height = session_.film.crop_height;
-    const auto rejected = [&](std::size_t pixel) {
-        return film.uint(film_rejected, pixel) + (odd ? odd->uint(film_rejected, pixel) : 0);
-    };
     for (std::size_t pixel = 0; pixel < count; ++pixel)
-        non_finite += rejected(pixel) + (splats ? splats->uint(film_rejected, pixel) : 0);
-    const std::uint64_t of_all = samples / count, with_one_more = samples % count;
-    const auto taken = [&](std::size_t pixel) {
-        return double(of_all + (pixel < with_one_more ? 1 : 0)) - rejected(pixel);
-    };
+        non_finite += films.rejected(pixel) + (splats ? splats->uint(film_rejected, pixel) : 0);
     const auto add = [&](const std::string &name, auto mean) {
         Channel channel{name, std::vector<float>(count)};
         for (std::size_t pixel = 0; pixel < count; ++pixel)
             channel.values[pixel] = static_cast<float>(mean(pixel));
         image.channels.push_back(std::move(channel));
     };
-    const auto over_taken = [&](double sum, std::size_t pixel) { return taken(pixel) > 0 ? sum / taken(pixel) : 0.0; };
-    const auto mean_color = [&](int channel, std::size_t pixel) {
-        return over_taken(film_sum(film, channel, pixel) + (odd ? film_sum(*odd, channel, pixel) : 0.0), pixel);
-    };
     const char *const colors[3] = {"R", "G", "B"};
     for (int c = 0; c < 3; ++c)
         add(colors[c], [&](std::size_t pixel) {
-            const double mean = mean_color(c, pixel);
+            const double mean = mean_of(films.sum(c, pixel));
             return splats ? mean + film_sum(*splats, c, pixel) / double(light_paths) : mean;
         });
     if (!session_.has("TRAIT_AOV"))
@@ -100,7 +157,7 @@ Image Film::image(std::uint64_t samples, std::uint64_t &non_finite, std::uint64_
     const HostTable features((*tables_)["feature_film"], count, tables_->precision());
     const char *const axes[3] = {"X", "Y", "Z"};
     const auto mean_feature = [&](int column, std::size_t pixel) {
-        return over_taken(features.real(column, pixel), pixel);
+        return mean_of({features.real(column, pixel), films.sum(0, pixel).count});
     };
     for (int c = 0; c < 3; ++c)
         add(std::string("albedo.") + colors[c],
@@ -109,26 +166,24 @@ Image Film::image(std::uint64_t samples, std::uint64_t &non_finite, std::uint64_
         add(std::string("normal.") + axes[c],
             [&](std::size_t pixel) { return mean_feature(feature_film_normal_x + c, pixel); });
     add("depth.Z", [&](std::size_t pixel) { return mean_feature(feature_film_depth, pixel); });
-    // The variance of the pixel's mean, without bias: (mean of squares - square of mean) / (n - 1).
+    // The variance of the pixel's mean. Of independent samples (mean of squares - square of mean) / (n - 1).
     for (int c = 0; c < 3; ++c)
         add(std::string("variance.") + colors[c], [&](std::size_t pixel) {
-            const double mean = mean_color(c, pixel);
-            const double square = over_taken(features.real(feature_film_square_r + c, pixel) +
-                                                 features.real(feature_film_square_correction_r + c, pixel),
-                                             pixel);
-            return taken(pixel) > 1 ? std::max(0.0, square - mean * mean) / (taken(pixel) - 1) : 0.0;
+            if (has_replicates())
+                return films.variance(c, pixel);
+            const Replicate all = films.sum(c, pixel);
+            const double mean = mean_of(all), square = features.real(feature_film_square_r + c, pixel) +
+                                                       features.real(feature_film_square_correction_r + c, pixel);
+            return all.count > 1 ? std::max(0.0, square / all.count - mean * mean) / (all.count - 1) : 0.0;
         });
     return image;
 }
 
 void Film::half_mean(int half, std::uint64_t samples, int color, float *plane) const {
     const std::size_t count = session_.pixels();
-    const HostTable film((*tables_)[half == 0 ? "film" : "odd_film"], count, tables_->precision());
-    for (std::size_t pixel = 0; pixel < count; ++pixel) {
-        const std::uint64_t all = samples / count + (pixel < samples % count ? 1 : 0);
-        const double taken = double((all + (half == 0 ? 1 : 0)) / 2) - film.uint(film_rejected, pixel);
-        plane[pixel] = static_cast<float>(taken > 0 ? film_sum(film, color, pixel) / taken : 0.0);
-    }
+    const FilmSums films(*tables_, parts_, count, samples);
+    for (std::size_t pixel = 0; pixel < count; ++pixel)
+        plane[pixel] = static_cast<float>(mean_of(films.sum(color, pixel, static_cast<std::uint32_t>(half), 2)));
 }
 
 } // namespace gradus

@@ -7,12 +7,15 @@
 #include "runtime/wavefront/table.h"
 
 #include <cstdint>
+#include <string>
+#include <vector>
 
 namespace gradus {
 
 class Film {
   public:
-    /// Declares the stage `accumulate`. `halves`: even and odd samples of a pixel are also known apart.
+    /// Declares the stage `accumulate`. `halves`: even and odd samples of a pixel are also known apart. Replicates are,
+    /// where the session has them.
     Film(Session &session, Stages &stages, bool halves = false);
 
     TableList tables() const;
@@ -20,7 +23,7 @@ class Film {
     void attach(Tables &tables);
 
     /// Adds the samples of slots [0, count), which belong to the pixels from `first_pixel` on, cyclically.
-    /// `first_sample`: which sample of its pixel the first is, where halves are kept.
+    /// `first_sample`: which sample of its pixel the first is.
     void add(std::uint32_t count, std::uint32_t first_pixel, std::uint64_t first_sample = 0);
 
     /// The means after `samples` samples: the first `samples` modulo pixels have one more than the rest. Where there
@@ -34,10 +37,15 @@ class Film {
     /// All zero again, splats too.
     void clear();
 
+    /// The tables that image() reads, but for splats.
+    std::vector<std::string> table_names() const;
+
   private:
+    bool has_replicates() const { return parts_ > 2; }
+
     Session &session_;
     Stage &accumulate_;
-    bool halves_;
+    std::uint32_t parts_; ///< of the samples, each with a table of its own
     Tables *tables_ = nullptr;
 };
 

@@ -6,6 +6,7 @@
 #include "runtime/scene/environment_map.h"
 #include "runtime/scene/vertex_table.h"
 #include "runtime/wavefront/invariant_division.h"
+#include "runtime/wavefront/sample_parts.h"
 
 #include <fmt/format.h>
 
@@ -36,7 +37,7 @@ TraitMap traits_for(const Scene &scene, const SessionOptions &options, const Tra
     traits["TRAIT_SHARED_JITTER"] = 0;
     traits["TRAIT_STRATIFIED"] = options.sampler == SessionOptions::Sampler::sobol;
     traits["TRAIT_LOBE_LEVELS"] = 0;
-    traits["TRAIT_HALVES"] = 0;
+    traits["TRAIT_PART_BITS"] = part_bits(options, false);
     traits["TRAIT_GRADIENT"] = 0;
     traits["TRAIT_LIGHT_VERTICES"] = 0;
     traits["TRAIT_LIGHT_STARTS"] = 0;

@@ -95,7 +95,7 @@ TEST(KernelTraits, AreThoseThatAMethodKnows) {
                                    "SAMPLES_LIGHTS",     "FEW_LIGHTS",
                                    "MANY_LIGHTS",        "STRATEGY",
                                    "SOLVER_CHANNELS",    "SOLVER_WEIGHTED",
-                                   "SOLVER_JOINT",       "TRAIT_HALVES",
+                                   "SOLVER_JOINT",       "TRAIT_PART_BITS",
                                    "TRAIT_LIGHT_TREE"};
     for (const auto &[name, value] : scene_traits(Scene{}))
         known.insert(name);
