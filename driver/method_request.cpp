@@ -67,7 +67,14 @@ void add_method_options(CLI::App &command, const Services &services, MethodReque
         ->check(CLI::IsMember({"auto", "tree", "power"}))
         ->default_str("auto")
         ->group(group);
-    command.add_flag("--aov", request.options.aov, "Also write albedo, normal, depth and variance layers")
+    CLI::Option *aov =
+        command.add_flag("--aov", request.options.aov, "Also write albedo, normal, depth and variance layers")
+            ->group(group);
+    command
+        .add_flag("!--no-variance", request.options.variance,
+                  "With --aov: no layers of variances. For these the samples of a pixel are four sequences in place of "
+                  "one, unless they are independent, and the image has a little more noise")
+        ->needs(aov)
         ->group(group);
     command
         .add_flag("--error", request.options.error,

@@ -3,6 +3,7 @@
 #include "methods/error_layer.h"
 #include "methods/gradient_error.h"
 #include "methods/reconstruction_inputs.h"
+#include "runtime/wavefront/sample_parts.h"
 #include "solver/guide/guided_reconstruction.h"
 #include "solver/weighted_reconstruction.h"
 
@@ -165,7 +166,7 @@ Image reconstruct(Device &device, PoissonSolver &solver, Image whole, GradientFi
     take_primal_off(whole, films, edges);
     std::vector<Channel> more;
     if (layers)
-        more = layers_of(whole, films, options.aov);
+        more = layers_of(whole, films, tells_variance(options));
     SquaredErrors errors;
     const bool tells_error = relative_error && films.are_halves() && films.frames() >= 2;
     if (needs_halves(options.reconstruction) && halves_have_variances(films.samples(), films.pixels()))

@@ -166,6 +166,8 @@ Image Film::image(std::uint64_t samples, std::uint64_t &non_finite, std::uint64_
         add(std::string("normal.") + axes[c],
             [&](std::size_t pixel) { return mean_feature(feature_film_normal_x + c, pixel); });
     add("depth.Z", [&](std::size_t pixel) { return mean_feature(feature_film_depth, pixel); });
+    if (!tells_variance(session_.options))
+        return image;
     // The variance of the pixel's mean. Of independent samples (mean of squares - square of mean) / (n - 1).
     for (int c = 0; c < 3; ++c)
         add(std::string("variance.") + colors[c], [&](std::size_t pixel) {

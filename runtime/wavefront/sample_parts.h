@@ -13,9 +13,12 @@ namespace gradus {
 /// docs/design.md, "Samples".
 constexpr int replicate_bits = 2;
 
+/// Whether an image tells its variance.
+inline bool tells_variance(const SessionOptions &options) { return options.aov && options.variance; }
+
 /// Whether the samples are replicates: where variances are asked for, and samples not independent.
 inline bool has_replicates(const SessionOptions &options) {
-    return options.aov && options.sampler == SessionOptions::Sampler::sobol;
+    return tells_variance(options) && options.sampler == SessionOptions::Sampler::sobol;
 }
 
 /// The trait TRAIT_PART_BITS: the logarithm of the number of parts. `halves`: two are needed, even and odd samples; the

@@ -22,7 +22,8 @@ struct SessionOptions {
     std::uint32_t batch_size = 0;            ///< paths in flight; 0: the device's default
     std::uint32_t work_group_size = 0;       ///< of the renderer's kernels; 0: the default
     Precision precision = Precision::single; ///< of the kernels; rays are always traced in float
-    bool aov = false;                        ///< also albedo, normal, depth, variance
+    bool aov = false;                        ///< also albedo, normal, depth and, with `variance`, variances
+    bool variance = true;                    ///< for which the samples of a sequence are taken apart (sample_parts.h)
     bool all_traits = false; ///< for measuring: compile the kernels for everything, as if the scene had it
     bool by_index = false;   ///< for tests: triangles by index, however few
     /// How the samples of a pixel draw: each by itself, or together from a Sobol sequence, scrambled by pixel and

@@ -20,10 +20,10 @@ TEST_F(CommandLine, HelpAndVersion) {
     const Outcome render = run({"render", "--help"});
     EXPECT_EQ(render.exit_code, 0);
     for (const char *option :
-         {"--method",       "--spp",        "--time",     "--seed",   "--size",       "--crop",
-          "--max-depth",    "--rr-depth",   "--nthreads", "--device", "--batch-size", "--define",
-          "--strict",       "--quiet",      "--stats",    "--aov",    "--png",        "--write-partial",
-          "--dump-kernels", "--all-traits", "--strategy", "--error",  "--until-error"})
+         {"--method",       "--spp",        "--time",     "--seed",   "--size",        "--crop",
+          "--max-depth",    "--rr-depth",   "--nthreads", "--device", "--batch-size",  "--define",
+          "--strict",       "--quiet",      "--stats",    "--aov",    "--png",         "--write-partial",
+          "--dump-kernels", "--all-traits", "--strategy", "--error",  "--until-error", "--no-variance"})
         EXPECT_THAT(render.out, HasSubstr(option));
     const Outcome solve = run({"solve", "--help"});
     for (const char *option : {"--primal",

@@ -63,6 +63,7 @@ TEST_P(Invariance, ToTheCrop) {
 TEST_P(Invariance, ToLayers) {
     RenderOptions options;
     options.aov = true;
+    options.variance = false; // for which samples are drawn otherwise
     const Image plain = render(small_scene()).image, layered = render(small_scene(), options).image;
     EXPECT_GT(layered.channels.size(), plain.channels.size());
     for (const Channel &channel : plain.channels)

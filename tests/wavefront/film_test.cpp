@@ -1,6 +1,7 @@
 // The film: sums that lose nothing, samples that are not finite, and which pixel gets which sample.
 #include "runtime/wavefront/film.h"
 
+#include "runtime/film/replicates.h"
 #include "tests/support/small_scenes.h"
 
 #include <gtest/gtest.h>
@@ -23,8 +24,10 @@ class FilmTest : public ::testing::Test {
 
 /// A film with the radiance of its samples, and nothing that renders them.
 struct FilmUnderTest {
-    FilmUnderTest(Device &device, std::uint32_t slots, std::uint32_t width, std::uint32_t height, bool aov)
-        : session(device, scene_of(width, height), options_with(aov), {}), film(session, stages),
+    using Sampler = SessionOptions::Sampler;
+    FilmUnderTest(Device &device, std::uint32_t slots, std::uint32_t width, std::uint32_t height, bool aov,
+                  Sampler sampler = Sampler::independent)
+        : session(device, scene_of(width, height), options_with(aov, sampler), {}), film(session, stages),
           tables(device, film.tables(), {64, slots, session.pixels(), width, 1}, Precision::single) {
         session.numbers["slots"] = slots;
         stages.build(session, tables);
@@ -36,8 +39,9 @@ struct FilmUnderTest {
         maker.scene.film.height = height;
         return maker.scene;
     }
-    static SessionOptions options_with(bool aov) {
+    static SessionOptions options_with(bool aov, Sampler sampler) {
         SessionOptions options;
+        options.sampler = sampler;
         options.aov = aov;
         return options;
     }
@@ -141,6 +145,46 @@ TEST_F(FilmTest, KnowsTheVarianceOfItsMean) {
     // Sample variance 5/3, over 4.
     EXPECT_FLOAT_EQ(image.find("variance.R")->values[0], float(5.0 / 12));
     EXPECT_FLOAT_EQ(image.find("variance.B")->values[0], float(9 * 5.0 / 12));
+}
+
+/// Of five samples and a pixel that has four, the first is one that the fifth is like: sample s is of replicate s
+/// modulo 4, whatever the batches.
+TEST_F(FilmTest, KnowsTheVarianceOfReplicates) {
+    constexpr std::uint32_t pixels = 2, samples = 9;
+    const double values[] = {1, 4, 2, 8, 7};
+    for (const std::uint32_t batch : {1u, 2u, 3u, 9u}) {
+        FilmUnderTest test(device, 64, 2, 1, true, SessionOptions::Sampler::sobol);
+        test.tables["feature"].clear();
+        for (std::uint32_t done = 0; done < samples; done += batch) {
+            test.set_radiance(std::min(batch, samples - done),
+                              [&](std::uint32_t slot, int c) { return (c + 1) * values[(done + slot) / pixels]; });
+            test.film.add(std::min(batch, samples - done), done % pixels, done / pixels);
+        }
+        std::uint64_t non_finite = 0;
+        const Image image = test.film.image(samples, non_finite);
+        // Pixel 0: (1 + 7) / 2, 4, 2 and 8; all in all 22 / 5. Pixel 1: 1, 4, 2 and 8.
+        const double first = variance_of_mean(std::vector<Replicate>{{8, 2}, {4, 1}, {2, 1}, {8, 1}}),
+                     second = (2.75 * 2.75 + 0.25 * 0.25 + 1.75 * 1.75 + 4.25 * 4.25) / 12;
+        EXPECT_FLOAT_EQ(image.find("R")->values[0], float(22.0 / 5));
+        EXPECT_FLOAT_EQ(image.find("variance.R")->values[0], float(first)) << batch;
+        EXPECT_FLOAT_EQ(image.find("variance.G")->values[0], float(4 * first)) << batch;
+        EXPECT_FLOAT_EQ(image.find("variance.B")->values[1], float(9 * second)) << batch;
+    }
+}
+
+/// A replicate of which a sample was left out has fewer.
+TEST_F(FilmTest, KnowsTheVarianceOfReplicatesWithoutWhatIsNotFinite) {
+    FilmUnderTest test(device, 64, 1, 1, true, SessionOptions::Sampler::sobol);
+    test.tables["feature"].clear();
+    const double values[] = {1, 4, 2, 8, std::numeric_limits<double>::infinity(), 6, 3, 5};
+    test.set_radiance(8, [&](std::uint32_t slot, int) { return values[slot]; });
+    test.film.add(8, 0);
+    std::uint64_t non_finite = 0;
+    const Image image = test.film.image(8, non_finite);
+    EXPECT_EQ(non_finite, 1u);
+    EXPECT_FLOAT_EQ(image.find("R")->values[0], float(29.0 / 7));
+    EXPECT_FLOAT_EQ(image.find("variance.G")->values[0],
+                    float(variance_of_mean(std::vector<Replicate>{{1, 1}, {10, 2}, {5, 2}, {13, 2}})));
 }
 
 } // namespace
