@@ -59,7 +59,7 @@ class Renderer:
         output = self.folder / f"{name.replace(':', '-')}.exr"
         method, options = renders.split_variant("pt" if name == "denoised" else name)
         record = renders.render(self.arguments.gradus, self.scene, method, seed, output, samples=samples,
-                                aov=name == "denoised", options=options)
+                                aov=name == "denoised", variance=False, options=options)
         seconds = record["render_seconds"]
         if name == "denoised":
             made = output.with_suffix(".denoised.exr")

@@ -114,11 +114,11 @@ def box_filter(scene):
     return ["-D", "rfilter=box"] if "$rfilter" in scene.file.read_text() else []
 
 
-def render(gradus, scene, method, seed, output, samples=None, seconds=None, aov=False, png=False, layers=True,
-           options=()):
+def render(gradus, scene, method, seed, output, samples=None, seconds=None, aov=False, variance=True, png=False,
+           layers=True, options=()):
     """Renders so many samples a pixel, or so long, to `output` (.exr) and returns the statistics. layers: the image of
-    `gpt` has those that it was reconstructed from. aov: with the layers albedo, normal, depth and variance; png: a
-    picture beside it, tone-mapped; options: more of `gradus render`."""
+    `gpt` has those that it was reconstructed from. aov: with the layers albedo, normal, depth and, where
+    `variance` is, variance, for which samples are drawn otherwise; png: a picture beside it, tone-mapped; options: more of `gradus render`."""
     record = pathlib.Path(output).with_suffix(".json")
     command = [gradus, "render", scene.file, "-o", output, "--stats", record, "--quiet", "--method", method]
     command += [*(["--layers"] if layers else []), "--seed", seed, "--size", f"{scene.width}x{scene.height}"]
@@ -128,7 +128,8 @@ def render(gradus, scene, method, seed, output, samples=None, seconds=None, aov=
     if scene.max_depth is not None:
         command += ["--max-depth", scene.max_depth]
     command += ["--spp", samples] if samples is not None else ["--time", seconds]
-    run(*command, *(["--aov"] if aov else []), *(["--png"] if png else []), *options)
+    command += [*(["--aov"] if aov else []), *(["--no-variance"] if aov and not variance else [])]
+    run(*command, *(["--png"] if png else []), *options)
     return json.loads(record.read_text())
 
 
