@@ -67,8 +67,8 @@ class Measurement:
         name = variant.replace(":", "-")
         image = self.folder / f"{name}{'-aov' if aov else ''}-{seed}-{budget[0]}-{budget[1]}.exr"
         method, options = renders.split_variant(variant)
-        record = renders.render(self.arguments.gradus, self.scene, method, seed, image, aov=aov, variance=False, options=options,
-                                **dict([budget]))
+        record = renders.render(self.arguments.gradus, self.scene, method, seed, image, aov=aov, variance=False,
+                                 options=options, **dict([budget]))
         self.device = record["device"]
         return image, record
 

@@ -117,8 +117,9 @@ def box_filter(scene):
 def render(gradus, scene, method, seed, output, samples=None, seconds=None, aov=False, variance=True, png=False,
            layers=True, options=()):
     """Renders so many samples a pixel, or so long, to `output` (.exr) and returns the statistics. layers: the image of
-    `gpt` has those that it was reconstructed from. aov: with the layers albedo, normal, depth and, where
-    `variance` is, variance, for which samples are drawn otherwise; png: a picture beside it, tone-mapped; options: more of `gradus render`."""
+    `gpt` has those that it was reconstructed from. aov: with the layers albedo, normal, depth and, unless
+    `variance` is False, variance, for which samples are drawn otherwise; png: a picture beside it, tone-mapped; options:
+    more of `gradus render`."""
     record = pathlib.Path(output).with_suffix(".json")
     command = [gradus, "render", scene.file, "-o", output, "--stats", record, "--quiet", "--method", method]
     command += [*(["--layers"] if layers else []), "--seed", seed, "--size", f"{scene.width}x{scene.height}"]
