@@ -83,8 +83,8 @@ TEST(Variances, LeaveTheImageUnbiased) {
     RenderOptions independent;
     independent.sampler = RenderOptions::Sampler::independent;
     for (const std::uint64_t samples : {1u, 6u})
-        EXPECT_TRUE(agree(fmt::format("replicates-{}", samples), render_seeds(strips(samples), 24, with_aov()),
-                          render_seeds(strips(samples), 24, independent, 1000), double(samples)));
+        EXPECT_TRUE(agree(fmt::format("replicates-{}", samples), render_seeds(strips(samples), 48, with_aov()),
+                          render_seeds(strips(samples), 48, independent, 1000), double(samples)));
 }
 
 TEST(Variances, OfOneSampleAreNone) {
