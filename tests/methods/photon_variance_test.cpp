@@ -28,5 +28,16 @@ TEST(FullPhotonVariances, AreThoseOfOtherSeeds) {
     expect_right(told_over_true(images, "", "variance"), 0.2, "sppm");
 }
 
+/// Photons are those of all pixels of a pass, so that their noise is alike in neighbours.
+TEST(FullPhotonVariances, OfGradientsAreThoseOfOtherSeeds) {
+    RenderOptions options = with_aov();
+    options.photons = 500;
+    const std::vector<Image> images = render_seeds(lit_corner(), 64, options, 1, "gpm");
+    expect_right(told_over_true(images, "primal", "variance"), 0.6, "gpm: the mean");
+    for (const char *layer : {"primal", "dx", "dy"})
+        expect_right(told_over_true(images, layer, std::string(layer) + "_variance", 1), 0.6,
+                     std::string("gpm: ") + layer);
+}
+
 } // namespace
 } // namespace gradus::testing
