@@ -63,6 +63,8 @@ inline ToldOverTrue told_over_true(const std::vector<Image> &images, const std::
     return {spread_of(told_sums).mean / truth, spread_of(differences).standard_error / truth};
 }
 
+/// `most`: the limit must be under it. What goes wrong with sequences is a factor of 1.7 and more (the spread of all
+/// samples) or all of the variance (scrambled alike).
 inline void expect_right(const ToldOverTrue &found, double most, const std::string &what) {
     std::printf("%s: variance told over true %.3f, limit %.3f\n", what.c_str(), found.ratio, found.limit());
     EXPECT_NEAR(found.ratio, 1, found.limit()) << what;
