@@ -11,11 +11,14 @@ namespace {
 constexpr std::size_t seeds = 8;
 constexpr std::uint64_t samples_per_pixel = 16;
 
-/// A scene, and the least way over which offset paths reconnect.
+/// A scene, the least way over which offset paths reconnect, and samples a pixel.
 struct ReferenceCase {
     const char *scene;
     double distance = 0;
+    std::uint64_t samples = samples_per_pixel;
 };
+
+void PrintTo(const ReferenceCase &c, std::ostream *out) { *out << c.scene; }
 
 std::string name_of_reference(const ::testing::TestParamInfo<ReferenceCase> &info) {
     return test_name(info.param.scene) + (info.param.distance > 0 ? "_near" : "");
@@ -25,7 +28,7 @@ class GradientReference : public ::testing::TestWithParam<ReferenceCase> {
   protected:
     void SetUp() override {
         reference_ = own_reference(GetParam().scene);
-        reference_.scene.settings.samples_per_pixel = samples_per_pixel;
+        reference_.scene.settings.samples_per_pixel = GetParam().samples;
         options_.shift_distance = GetParam().distance;
         images_ = render_seeds(reference_.scene, seeds, options_, 1, "gpt");
     }
@@ -36,7 +39,7 @@ class GradientReference : public ::testing::TestWithParam<ReferenceCase> {
 };
 
 TEST_P(GradientReference, IsMetByPrimalAndDifferences) {
-    expect_gradients(reference_, images_, double(samples_per_pixel), options_);
+    expect_gradients(reference_, images_, double(GetParam().samples), options_);
 
     // The reconstruction may not lose light, nor add noise.
     const double noise_left = noise_left_by_reconstruction(reference_, images_);
@@ -58,9 +61,14 @@ TEST_P(GradientReference, IsMetByPrimalAndDifferences) {
 }
 
 #ifdef GRADUS_MANY_KINDS
+/// Paths find most of the light by chance: of eight seeds of 16 samples too few meet what makes the variance, and
+/// scores have longer tails than their limits know. So many as path tracing has in image_test.cpp.
+constexpr ReferenceCase by_chance(const char *scene) { return {scene, 0, 64}; }
 INSTANTIATE_TEST_SUITE_P(Image, GradientReference,
                          ::testing::Values(ReferenceCase{"plastics"}, ReferenceCase{"relief"},
-                                           ReferenceCase{"instances"}),
+                                           ReferenceCase{"instances"}, by_chance("metal-ring-soft"),
+                                           by_chance("torus-smooth-glass-soft"), by_chance("slab-and-ball-soft"),
+                                           by_chance("lamp-in-egg-soft")),
                          name_of_reference);
 #else
 INSTANTIATE_TEST_SUITE_P(Image, GradientReference,
@@ -74,9 +82,7 @@ INSTANTIATE_TEST_SUITE_P(Full, GradientReference,
                                            ReferenceCase{"sundial"}, ReferenceCase{"door-ajar"},
                                            ReferenceCase{"orthographic"}, ReferenceCase{"clipped"},
                                            ReferenceCase{"clipped-mitchell"}, ReferenceCase{"cornell-box-glossy"},
-                                           ReferenceCase{"lanterns"}, ReferenceCase{"metal-ring-soft"},
-                                           ReferenceCase{"torus-smooth-glass-soft"},
-                                           ReferenceCase{"slab-and-ball-soft"}, ReferenceCase{"lamp-in-egg-soft"}),
+                                           ReferenceCase{"lanterns"}),
                          name_of_reference);
 #endif
 
