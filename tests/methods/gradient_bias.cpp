@@ -34,11 +34,52 @@ std::vector<double> values_of_both(const Image &right, const Image &down) {
     return values;
 }
 
+/// For values_of_both(): the sum of both pixels of a difference, of the primal layer; 0 at the border.
+std::vector<double> sums_of_both(const Image &image) {
+    const auto sums = [&](bool right) {
+        return image_of(image.width, image.height, [&](int c, std::uint32_t x, std::uint32_t y) {
+            const std::uint32_t to_x = right ? x + 1 : x, to_y = right ? y : y + 1;
+            return to_x < image.width && to_y < image.height
+                       ? layer(image, "primal", c, to_x, to_y) + layer(image, "primal", c, x, y)
+                       : 0.0;
+        });
+    };
+    return values_of_both(sums(true), sums(false));
+}
+
+/// Twice the share of the residuals that is of each pattern's kind, by seed: that of all other seeds, so that noise of
+/// both is independent.
+Spread share_of(const std::vector<std::vector<double>> &estimates, const std::vector<std::vector<double>> &truths,
+                const std::vector<std::vector<double>> &patterns) {
+    const double magnitude = mean_product(patterns).first;
+    std::vector<double> sum(patterns[0].size(), 0.0), shares;
+    for (const std::vector<double> &pattern : patterns)
+        std::transform(pattern.begin(), pattern.end(), sum.begin(), sum.begin(), std::plus<>());
+    for (std::size_t seed = 0; seed < patterns.size(); ++seed) {
+        double product = 0;
+        for (std::size_t i = 0; i < sum.size(); ++i)
+            product += (estimates[seed][i] - truths[seed][i]) * (sum[i] - patterns[seed][i]);
+        shares.push_back(2 * product / double(patterns.size() - 1) / magnitude);
+    }
+    return spread_of(shares);
+}
+
 } // namespace
+
+bool OffsetError::is_none() const {
+    return std::fabs(one_way.mean) <= 9.4 * one_way.standard_error + 1e-5 &&
+           std::fabs(both_ways.mean) <= 9.4 * both_ways.standard_error + 1e-5;
+}
+
+double OffsetError::at_most() const { return std::fabs(one_way.mean) + 4 * one_way.standard_error; }
+
+double BiasEstimate::found() const { return std::sqrt(std::max(squared, 0.0) / magnitude); }
 
 double BiasEstimate::at_most() const { return std::sqrt((std::max(squared, 0.0) + 4 * standard_error) / magnitude); }
 
 double GradientBias::at_most() const { return std::max(primal.at_most(), differences.at_most()); }
+
+double GradientBias::found() const { return std::max(primal.found(), differences.found()); }
 
 BiasEstimate estimate_bias(const std::vector<std::vector<double>> &estimates,
                            const std::vector<std::vector<double>> &truths) {
@@ -66,7 +107,7 @@ GradientBias gradient_bias(const Scene &scene, const Scene &path_traced, const G
     Scene with_gradients = scene, without = path_traced;
     with_gradients.settings.samples_per_pixel = samples.gradient_domain;
     without.settings.samples_per_pixel = samples.path_tracing;
-    std::vector<std::vector<double>> primal, change, true_primal, true_change;
+    std::vector<std::vector<double>> primal, change, true_primal, true_change, carried_sums, carried_changes;
     RenderOptions unweighted; // of all samples; the reconstruction is not looked at
     unweighted.reconstruction = Reconstruction::l1;
     RenderOptions of_truth;
@@ -77,12 +118,18 @@ GradientBias gradient_bias(const Scene &scene, const Scene &path_traced, const G
     for (const Image &image : render_seeds(with_gradients, samples.seeds, unweighted, 1, "gpt")) {
         primal.push_back(values_of(whole(image)));
         change.push_back(values_of_both(whole_differences(image, true), whole_differences(image, false)));
+        // What the camera sees of lights is carried by no offset path.
+        carried_sums.push_back(sums_of_both(image));
+        carried_changes.push_back(
+            values_of_both(differences(image, "primal", true), differences(image, "primal", false)));
     }
     for (const Image &image : render_seeds(without, samples.seeds, of_truth, 1 + samples.seeds, "pt")) {
         true_primal.push_back(values_of(image));
         true_change.push_back(values_of_both(differences(image, "", true), differences(image, "", false)));
     }
-    return {estimate_bias(primal, true_primal), estimate_bias(change, true_change)};
+    return {estimate_bias(primal, true_primal),
+            estimate_bias(change, true_change),
+            {share_of(change, true_change, carried_sums), share_of(change, true_change, carried_changes)}};
 }
 
 void expect_no_bias(const GradientBias &bias, const GradientRow &row) {
@@ -91,7 +138,16 @@ void expect_no_bias(const GradientBias &bias, const GradientRow &row) {
                     estimate.squared / estimate.standard_error, estimate.at_most());
         EXPECT_TRUE(estimate.is_none()) << name;
     }
-    record_stability({row.area, row.failure, row.provoked_by, row.contract, "bias at most", bias.at_most(), row.limit});
+    const OffsetError &offsets = bias.offsets;
+    std::printf("offset paths off by %.5f +- %.5f one way, %.5f +- %.5f both ways\n", offsets.one_way.mean,
+                offsets.one_way.standard_error, offsets.both_ways.mean, offsets.both_ways.standard_error);
+    EXPECT_TRUE(offsets.is_none());
+    StabilityRow recorded{row.area,       row.failure,    row.provoked_by, row.contract,
+                          "bias at most", bias.at_most(), row.limit};
+    recorded.found = bias.found();
+    recorded.also = StabilityMeasure{"offset paths off by at most", offsets.at_most(), row.offset_limit,
+                                     std::fabs(offsets.one_way.mean)};
+    record_stability(recorded);
 }
 
 } // namespace gradus::testing

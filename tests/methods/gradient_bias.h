@@ -3,6 +3,7 @@
 #pragma once
 
 #include "runtime/scene/scene.h"
+#include "tests/support/render.h"
 #include "tests/support/small_scenes.h"
 
 #include <cstdint>
@@ -22,6 +23,24 @@ struct BiasEstimate {
     bool is_none() const { return squared <= 4 * standard_error + 1e-10 * magnitude; }
     /// The relative bias that cannot be excluded: a biased method shows, and noise that would hide one does, too.
     double at_most() const;
+    /// The root of the estimate, relatively: what a planted defect makes.
+    double found() const;
+};
+
+/// How far off offset paths are, by what two defects would make of the truth. Where they carry 1 + e of their value to
+/// the right and downwards and 1 - e back, as with a wrong Jacobian, differences are off by e / 2 of the sum of both
+/// pixels; where 1 + e both ways, by e / 2 of themselves. (Less where shifts fail. What the camera sees of lights is
+/// left out, since no offset path carries it.) Both are sums over all values that are linear in the residuals, so that
+/// noise averages out, as it does not in squares.
+struct OffsetError {
+    Spread one_way, both_ways; ///< e, over seeds
+
+    /// Eight means have a Student's t distribution of 7 degrees of freedom: by chance one in 30 000 is 9.4 standard
+    /// errors off, and fewer of more seeds; rounding may do 1e-5.
+    bool is_none() const;
+    /// What four standard errors cannot exclude, one way: differences are small beside values, so that what is off both
+    /// ways is known far less.
+    double at_most() const;
 };
 
 /// From vectors of equal size: estimates and truths, an entry for each seed.
@@ -30,7 +49,9 @@ BiasEstimate estimate_bias(const std::vector<std::vector<double>> &estimates,
 
 struct GradientBias {
     BiasEstimate primal, differences; ///< of all channels; differences to the right and downwards
+    OffsetError offsets;
     double at_most() const;
+    double found() const;
 };
 
 struct GradientSamples {
@@ -51,10 +72,12 @@ GradientBias gradient_bias(const Scene &scene, const Scene &path_traced, const G
 struct GradientRow {
     const char *area;
     std::string failure, provoked_by, contract;
-    double limit; ///< of the bias
+    double limit;                ///< of the bias
+    double offset_limit = 0.025; ///< of OffsetError
 };
 
-/// Expects that there is no bias, and records what cannot be excluded.
+/// Expects that there is no bias, and records what cannot be excluded, and what is found: tests/stability/power.py
+/// plants defects and takes that.
 void expect_no_bias(const GradientBias &bias, const GradientRow &row);
 
 } // namespace gradus::testing

@@ -1,7 +1,6 @@
 // Gradient-domain path tracing: what it estimates. Its primal image and its differences have the means that a reference
 // of another renderer says, block by block, on every scene of ours; and its reconstruction has less noise.
-#include "runtime/film/metrics.h"
-#include "tests/methods/reference_scene.h"
+#include "tests/methods/gradient_reference.h"
 #include "tests/support/gradient_layers.h"
 #include "tests/support/stability.h"
 #include "tests/support/test_name.h"
@@ -12,11 +11,14 @@ namespace {
 constexpr std::size_t seeds = 8;
 constexpr std::uint64_t samples_per_pixel = 16;
 
-/// A scene, and the least way over which offset paths reconnect.
+/// A scene, the least way over which offset paths reconnect, and samples a pixel.
 struct ReferenceCase {
     const char *scene;
     double distance = 0;
+    std::uint64_t samples = samples_per_pixel;
 };
+
+void PrintTo(const ReferenceCase &c, std::ostream *out) { *out << c.scene; }
 
 std::string name_of_reference(const ::testing::TestParamInfo<ReferenceCase> &info) {
     return test_name(info.param.scene) + (info.param.distance > 0 ? "_near" : "");
@@ -26,39 +28,9 @@ class GradientReference : public ::testing::TestWithParam<ReferenceCase> {
   protected:
     void SetUp() override {
         reference_ = own_reference(GetParam().scene);
-        reference_.scene.settings.samples_per_pixel = samples_per_pixel;
+        reference_.scene.settings.samples_per_pixel = GetParam().samples;
         options_.shift_distance = GetParam().distance;
         images_ = render_seeds(reference_.scene, seeds, options_, 1, "gpt");
-    }
-
-    /// The differences against those of the reference, times the sign that they have in a third, independent image: a
-    /// shift whose differences are too small everywhere shows in every block.
-    ::testing::AssertionResult differences_agree(bool right) {
-        Scene scene = reference_.scene;
-        scene.settings.samples_per_pixel = 64;
-        RenderOptions options = options_;
-        options.seed = 4711;
-        const Image signs = differences(render(scene, options).image, "", right);
-        const auto signed_by = [&](const Image &image) {
-            return image_of(image.width, image.height, [&](int c, std::uint32_t x, std::uint32_t y) {
-                return layer(image, "", c, x, y) * (layer(signs, "", c, x, y) < 0 ? -1 : 1);
-            });
-        };
-        std::vector<Image> ours;
-        for (const Image &image : images_)
-            ours.push_back(signed_by(whole_differences(image, right)));
-        ReferenceScene expected = reference_;
-        expected.name += right ? "-dx" : "-dy";
-        expected.mean = signed_by(differences(reference_.mean, "", right));
-        const Image &variance = reference_.variance;
-        expected.variance = image_of(variance.width, variance.height, [&](int c, std::uint32_t x, std::uint32_t y) {
-            const std::uint32_t to_x = right ? x + 1 : x, to_y = right ? y : y + 1;
-            return to_x < variance.width && to_y < variance.height
-                       ? layer(variance, "", c, to_x, to_y) + layer(variance, "", c, x, y)
-                       : 0.0;
-        });
-        expected.samples_per_pixel = 0; // the noise of differences is none of the reference's
-        return agrees(ours, double(samples_per_pixel), expected);
     }
 
     ReferenceScene reference_;
@@ -67,47 +39,37 @@ class GradientReference : public ::testing::TestWithParam<ReferenceCase> {
 };
 
 TEST_P(GradientReference, IsMetByPrimalAndDifferences) {
-    std::vector<Image> primals;
-    for (const Image &image : images_)
-        primals.push_back(whole(image));
-    ReferenceScene expected = reference_;
-    expected.name += "-primal";
-    EXPECT_TRUE(agrees(primals, double(samples_per_pixel), expected));
-    EXPECT_TRUE(differences_agree(true));
-    EXPECT_TRUE(differences_agree(false));
+    expect_gradients(reference_, images_, double(GetParam().samples), options_);
 
     // The reconstruction may not lose light, nor add noise.
-    double ratio = 0, ours = 0, plain = 0;
-    for (const Image &image : images_) {
-        const Image final = image_of(image.width, image.height, [&](int c, std::uint32_t x, std::uint32_t y) {
-            return layer(image, "", c, x, y);
-        });
-        ratio += compare_means(final, whole(image)).ratio / double(seeds);
-        ours += relative_mse(final, reference_.mean) / double(seeds);
-        plain += relative_mse(whole(image), reference_.mean) / double(seeds);
-    }
-    std::printf("%s: relMSE of %d samples reconstructed %.2e, primal %.2e: %.1f times less; mean over the primal's "
-                "%.5f\n",
-                GetParam().scene, int(samples_per_pixel), ours, plain, plain / ours, ratio);
-    EXPECT_NEAR(ratio, 1, 0.01);
+    const double noise_left = noise_left_by_reconstruction(reference_, images_);
     const std::string scene = GetParam().scene;
     if (reference_.scene.path.find("tests/scenes") != std::string::npos)
         return; // of plugins, not of what gradients are hard for
     const bool is_holes = scene.starts_with("holes");
     record_stability({"Gradients",
                       is_holes ? "dense occluders: visibility differs from pixel to pixel and differences are noise"
-                               : "a reconstruction that adds noise or loses light",
+                      : scene == "textures"
+                          ? "edges of textures, which no geometry tells: each offset path reads its own place"
+                          : "a reconstruction that adds noise or loses light",
                       is_holes                  ? "scenes/holes.xml with " + scene.substr(6) + " holes a side"
                       : GetParam().distance > 0 ? "scenes/" + scene + ".xml, no reconnections over short ways"
                                                 : "scenes/" + scene + ".xml",
                       is_holes ? "alpha from the variances: the gain fades, and is never a loss"
                                : "primal and differences agree with another renderer's reference, block by block",
-                      "relMSE of the reconstruction over the primal's, 16 samples a pixel", ours / plain, 1.1});
+                      "relMSE of the reconstruction over the primal's, 16 samples a pixel", noise_left, 1.1});
 }
 
 #ifdef GRADUS_MANY_KINDS
+/// Paths find most of the light by chance: of eight seeds of 16 samples too few meet what makes the variance, and
+/// scores have longer tails than their limits know. So many as path tracing has in image_test.cpp.
+constexpr ReferenceCase by_chance(const char *scene) { return {scene, 0, 64}; }
 INSTANTIATE_TEST_SUITE_P(Image, GradientReference,
-                         ::testing::Values(ReferenceCase{"plastics"}, ReferenceCase{"relief"}), name_of_reference);
+                         ::testing::Values(ReferenceCase{"plastics"}, ReferenceCase{"relief"},
+                                           ReferenceCase{"instances"}, by_chance("metal-ring-soft"),
+                                           by_chance("torus-smooth-glass-soft"), by_chance("slab-and-ball-soft"),
+                                           by_chance("lamp-in-egg-soft")),
+                         name_of_reference);
 #else
 INSTANTIATE_TEST_SUITE_P(Image, GradientReference,
                          ::testing::Values(ReferenceCase{"cornell-box"}, ReferenceCase{"torus-rough-glass", 0.02},
@@ -118,7 +80,9 @@ INSTANTIATE_TEST_SUITE_P(Image, GradientReference,
 INSTANTIATE_TEST_SUITE_P(Full, GradientReference,
                          ::testing::Values(ReferenceCase{"lamps"}, ReferenceCase{"torus-rough-glass"},
                                            ReferenceCase{"sundial"}, ReferenceCase{"door-ajar"},
-                                           ReferenceCase{"orthographic"}, ReferenceCase{"clipped"}),
+                                           ReferenceCase{"orthographic"}, ReferenceCase{"clipped"},
+                                           ReferenceCase{"clipped-mitchell"}, ReferenceCase{"cornell-box-glossy"},
+                                           ReferenceCase{"lanterns"}),
                          name_of_reference);
 #endif
 

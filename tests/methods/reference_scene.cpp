@@ -84,6 +84,8 @@ ReferenceScene own_reference(const std::string &name, LoadOptions options) {
     reference.scene = load_scene((root / json.at("scene").get<std::string>()).string(), options).scene;
     if (json.at("filter") == "box") // the reference's, whatever the file's
         use_box_filter(reference.scene, json.at("width"), json.at("height"));
+    reference.scene.film.width = json.at("width");
+    reference.scene.film.height = json.at("height");
     reference.scene.settings.max_depth = json.at("max_depth");
     reference.mean = read_image((folder / (name + "-mean.exr")).string());
     reference.variance = read_image((folder / (name + "-variance.exr")).string());
@@ -115,7 +117,7 @@ ReferenceScene shared_reference(const SharedReference &from) {
 
 double largest_score(const std::vector<Image> &seeds, double samples_per_pixel, const ReferenceScene &reference) {
     const BlockTest blocks = block_z_test(seeds, reference.mean, reference.variance, samples_per_pixel,
-                                          reference.samples_per_pixel, 16, reference_batches);
+                                          reference.samples_per_pixel, reference.block, reference_batches);
     return blocks.largest / blocks.largest_limit;
 }
 

@@ -39,12 +39,12 @@ ReferenceScene shared_reference(const SharedReference &reference);
 /// A file of the project's own scenes, at a size, with the box filter.
 Scene own_scene(const std::string &file, std::uint32_t width, std::uint32_t height);
 
-/// Blocks of 16 x 16 pixels and the whole image, each at the limits that an unbiased renderer fails once in a
+/// The reference's blocks and the whole image, each at the limits that an unbiased renderer fails once in a
 /// thousand tests. On failure writes mean, error and picture of the error to the folder failed-images and says so.
 ::testing::AssertionResult agrees(const std::vector<Image> &seeds, double samples_per_pixel,
                                   const ReferenceScene &reference);
 
-/// The largest score of the blocks of 16 x 16 pixels, over its limit in agrees().
+/// The largest score of the blocks, over its limit in agrees().
 double largest_score(const std::vector<Image> &seeds, double samples_per_pixel, const ReferenceScene &reference);
 
 /// As agrees(), for two sets of images of one size, of `samples_per_pixel` each, neither of which is a reference.

@@ -46,6 +46,9 @@ REFERENCES = {
     "metal-ring": ("metal-ring.xml", 96, {}, 65536),
     "sundial": ("sundial.xml", 96, {}, 16384),
     "lanterns": ("lanterns.xml", 96, {}, 16384),
+    # Small ones, of filters: the outermost pixels see less than theirs.
+    "cornell-box-gaussian": ("cornell-box.xml", 64, {"rfilter": "gaussian"}, 16384),
+    "cornell-box-tent": ("cornell-box.xml", 64, {"rfilter": "tent"}, 16384),
     # Small ones, of plugins.
     "thin-lens": ("../tests/scenes/thin-lens.xml", 48, {}, 16384),
     "orthographic": ("../tests/scenes/orthographic.xml", 48, {}, 16384),
