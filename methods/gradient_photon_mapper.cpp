@@ -54,8 +54,8 @@ TraitMap light_vertex_traits(const Scene &scene, const RenderOptions &options) {
             {"TRAIT_HALVES", needs_halves(options.reconstruction)}};
 }
 
-const Scene &checked(const Scene &scene) {
-    if (const std::string reason = reason_against_gpm(scene); !reason.empty())
+const Scene &checked(const Scene &scene, const RenderOptions &options) {
+    if (const std::string reason = reason_against_gpm(scene, options); !reason.empty())
         throw Error(ExitCode::usage, reason);
     return scene;
 }
@@ -76,28 +76,33 @@ const std::vector<std::string> chain_numbers = {"first", "pairs", "chain_rows", 
 
 } // namespace
 
-std::string reason_against_gpm(const Scene &scene) {
-    // Shifted photons leave vertices again whose textures nobody has kept.
-    if (needs_material_stage(scene))
-        return "gpm knows no textures of BSDFs, no blends and no normal maps yet; pt, gpt and sppm do";
+std::string reason_against_gpm(const Scene &scene, const RenderOptions &options) {
     // Walks would have to know how normals of an instance change.
     if (!scene.instances.empty())
         return "gpm knows no instances; pt, gpt and sppm do, and --instances copies makes shapes of them";
-    // They must leave by the lobe that their light path sampled there, which no record tells.
-    std::string mixed;
+    bool has_maps = false, has_textured_mirrors = false;
     for_each_bsdf(scene, [&](const Bsdf &bsdf) {
-        if (bsdf_kind_traits(bsdf.kind).is_mixed)
-            mixed = bsdf_kind_name(bsdf);
+        has_maps = has_maps || bsdf.map.kind != NormalTexture::Kind::none;
+        has_textured_mirrors =
+            has_textured_mirrors || (bsdf_kind_traits(bsdf.kind).is_dirac && !distinct_textures(bsdf).empty());
     });
-    return mixed.empty() ? ""
-                         : fmt::format("gpm does not know how to move photons that come from {}, a mirror beside a "
-                                       "rough lobe; sppm and gpt do, and rough{} is near it",
-                                       mixed, mixed);
+    // Photons that are moved would leave, and walks pass, surfaces whose normal a texture turns.
+    if (has_maps)
+        return "gpm knows no normal maps; pt, gpt and sppm do";
+    // Nobody reads textures where walks pass.
+    if (has_textured_mirrors)
+        return "gpm knows no textures of mirrors and glass; pt, gpt and sppm do";
+    // Of a blend nobody tells which part a photon meets that has been moved there.
+    if (!blends_gather_alike(scene, options.gather_roughness))
+        return fmt::format("gpm knows no blends of surfaces where photons are gathered (roughness {} or more), on one "
+                           "side or on both, with others; pt, gpt and sppm do",
+                           options.gather_roughness);
+    return "";
 }
 
 GradientPhotonMapper::GradientPhotonMapper(Device &device, const Scene &scene, const RenderOptions &options)
-    : options_(options),
-      session_(device, checked_for_gathering(checked(scene), options), options, light_vertex_traits(scene, options)),
+    : options_(options), session_(device, checked_for_gathering(checked(scene, options), options), options,
+                                  light_vertex_traits(scene, options)),
       paths_(session_, stages_, scene, options, true), photons_(session_, stages_, scene, options, 0.5),
       pairs_(stages_, true), bin_(stages_.add({.name = "gather_bin"})),
       order_(stages_, "gather", first_kind_bin + std::uint32_t(session_.scene.kinds.size()), RowsOf::slot),

@@ -1,8 +1,9 @@
 /* Light paths that leave a vertex in another direction than they did. */
 #ifndef GRADUS_LIB_LIGHT_VERTEX_LEAVE_H
 #define GRADUS_LIB_LIGHT_VERTEX_LEAVE_H
-//! traits: TRAIT_SHADING_NORMALS TRAIT_ANISOTROPIC
+//! traits: TRAIT_SHADING_NORMALS TRAIT_ANISOTROPIC TRAIT_TEXTURED
 #include "kernels/lib/bsdf.h"
+#include "kernels/lib/textured_material.h"
 #include "kernels/lib/vertex_frame.h"
 #include "kernels/shared/light_vertex.h"
 #include "kernels/shared/stage.h"
@@ -37,13 +38,13 @@ GRADUS_FN frame light_vertex_frame(GRADUS_GLOBAL const real *light_vertices, uin
 GRADUS_FN light_leaving light_vertex_leave(GRADUS_GLOBAL const real *light_vertices,
                                            GRADUS_GLOBAL const uint *light_vertex_marks,
                                            GRADUS_GLOBAL const real *materials, uint record, uint unit, vec3 direction,
-                                           vec3 towards) {
+                                           vec3 towards LIGHT_VERTEX_TEXTURES_ARGUMENT) {
     const vec3 geometric = VERTEX_V3(geometric);
     const real cosine = v3_dot(geometric, direction), cosine_offset = v3_dot(geometric, towards);
     const uint marked = FIELD_OF(light_vertex_mark, light_vertex_marks, record, material);
     real turned = R(1);
 #if LAST_IS_LIGHT
-    (void)materials;
+    (void)materials LIGHT_VERTEX_TEXTURES;
     const int is_point = marked == light_vertex_at_point;
     const int same_side = is_point | ((cosine > R(0)) & (cosine_offset > R(0)));
     bsdf_value f;
@@ -51,7 +52,12 @@ GRADUS_FN light_leaving light_vertex_leave(GRADUS_GLOBAL const real *light_verti
     f.value = rgb_gray(f.pdf);
 #else
     const int same_side = cosine * cosine_offset > R(0);
+#if TRAIT_TEXTURED
+    const material m = material_with_textures(material_load(materials, marked, unit), light_vertex_textures, unit,
+                                              record * (uint)textured_columns);
+#else
     const material m = material_load(materials, marked, unit);
+#endif
     const frame axes = light_vertex_frame(light_vertices, record, unit, m);
     const vec3 back = VERTEX_V3(wi);
     const vec3 wi = frame_to_local(axes, back), wo = frame_to_local(axes, towards);

@@ -5,7 +5,8 @@
 
 typedef struct {
     uint start; /* record of the vertex that stays */
-    uint inner; /* how many there are; 0 where there are too many, or light comes from afar */
+    uint inner; /* how many there are; 0 where there are too many, or light comes from afar or was mirrored by a
+                 * material that scatters as well */
     GRADUS_NOT_IN_REGISTERS
 } photon_chain;
 
@@ -22,7 +23,8 @@ GRADUS_FN photon_chain photon_chain_of(GRADUS_GLOBAL const uint *light_vertex_ma
         const int is_specular = !light_vertex_is_light(material) &&
                                 material_bin[light_vertex_is_light(material) ? 0u : material] == chain_bin;
         if (!is_specular) {
-            chain.inner = material == light_vertex_far ? 0u : found;
+            const int is_fixed = material != light_vertex_far && !LIGHT_VERTEX_MIRRORS(chain.start);
+            chain.inner = is_fixed ? found : 0u;
             break;
         }
         ++found;

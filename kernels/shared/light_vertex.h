@@ -2,7 +2,7 @@
  * their own, each of which knows the one before. They are accessed at random, so these are records and not columns. */
 #ifndef GRADUS_SHARED_LIGHT_VERTEX_H
 #define GRADUS_SHARED_LIGHT_VERTEX_H
-//! traits: TRAIT_SHADING_NORMALS TRAIT_ANISOTROPIC
+//! traits: TRAIT_SHADING_NORMALS TRAIT_ANISOTROPIC TRAIT_TEXTURED TRAIT_MIXED_LOBES
 #include "kernels/shared/scene_records.h"
 
 #define GRADUS_LIGHT_VERTEX_FIELDS(FIELD)                                                                              \
@@ -34,7 +34,7 @@
     FIELD(light_vertex_mark, material, "record of the material on this side, or light_vertex_on_surface...")           \
     FIELD(light_vertex_mark, primitive, "")                                                                            \
     FIELD(light_vertex_mark, before, "the record of the vertex before; light_vertex_none for the light itself")        \
-    FIELD(light_vertex_mark, padding, "to 16 bytes")
+    FIELD(light_vertex_mark, mirrors, "only with TRAIT_MIXED_LOBES: whether the path goes on so")
 
 GRADUS_LIB_BEGIN
 
@@ -56,7 +56,25 @@ enum light_vertex_mark_field { GRADUS_LIGHT_VERTEX_MARKS(GRADUS_RECORD_INDEX) li
 #define light_vertex_far 0xFFFFFFFCu
 #define light_vertex_is_light(material) ((material) >= light_vertex_far)
 
+/* Whether a path goes on by the mirror of a material that scatters as well: no walk moves such a vertex, and the value
+ * of its BSDF says nothing of the mirror. */
+#if TRAIT_MIXED_LOBES
+#define LIGHT_VERTEX_MIRRORS(record) (FIELD_OF(light_vertex_mark, light_vertex_marks, record, mirrors) != 0u)
+#else
+#define LIGHT_VERTEX_MIRRORS(record) 0
+#endif
+
 GRADUS_LIB_END
+
+/* What textures are worth at a vertex: records of textured_columns numbers (kernels/lib/textured_material.h), in a
+ * table that only scenes with textures have. */
+#if TRAIT_TEXTURED
+#define LIGHT_VERTEX_TEXTURES_ARGUMENT , __global const real *light_vertex_textures
+#define LIGHT_VERTEX_TEXTURES , light_vertex_textures
+#else
+#define LIGHT_VERTEX_TEXTURES_ARGUMENT
+#define LIGHT_VERTEX_TEXTURES
+#endif
 
 #define SET_FIELD_V3(record, array, index, field, value)                                                               \
     FIELD_OF(record, array, index, field##_x) = (value).x;                                                             \

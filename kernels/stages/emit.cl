@@ -65,6 +65,9 @@ STAGE emit(uint count, uint unit, uint capacity, uint first_row, uint first_slot
     FIELD_OF(light_vertex_mark, light_vertex_marks, record, material) = emitted.is_far ? light_vertex_far : of_near;
     FIELD_OF(light_vertex_mark, light_vertex_marks, record, primitive) = 0u;
     FIELD_OF(light_vertex_mark, light_vertex_marks, record, before) = light_vertex_none;
+#if TRAIT_MIXED_LOBES
+    FIELD_OF(light_vertex_mark, light_vertex_marks, record, mirrors) = 0u;
+#endif
     AT_UINT(light_path, vertex, row) = record;
 #endif
     photon_place[slot] = 0u;

@@ -5,6 +5,7 @@
 #include "kernels/lib/moved_photon.h"
 #include "kernels/lib/photon_value.h"
 #include "kernels/lib/surface_point.h"
+#include "kernels/lib/textured_material.h"
 
 STAGE photon_arrive(uint count, uint unit, uint pairs, uint gather_rows, uint pair_rows, uint strip_pixels,
                     __global const uint *moved_index, __global const uint *pair_gather, __global const real *gather,
@@ -31,7 +32,7 @@ STAGE photon_arrive(uint count, uint unit, uint pairs, uint gather_rows, uint pa
     const int arrives = is_hit & is_photon & photon_counts(offset_disc, point.position, point.geometric) &
                         !photon_counts(base_disc, point.position, point.geometric);
 
-    const material m = material_load(materials, AT_UINT(gather, material, at), unit);
+    const material m = VERTEX_MATERIAL(gather, at);
     const real inverse = R(1) / offset_disc.radius;
     const rgb offset =
         rgb_scale(rgb_mul(PHOTON_VALUE(at, m, v3_neg(direction), point.geometric, AT_RGB(moved, power, i)),

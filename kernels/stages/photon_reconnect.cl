@@ -11,7 +11,8 @@ STAGE photon_reconnect(uint count, uint unit, uint first, uint pairs, uint gathe
                        uint pair_rows, uint strip_pixels, __global const uint *moved_index,
                        __global const uint *pair_gather, __global const uint *pair_photon, __global const real *gather,
                        __global const real *photon_sorted, __global const real *light_vertices,
-                       __global const uint *light_vertex_marks, __global const real *materials, __global real *moved) {
+                       __global const uint *light_vertex_marks, __global const real *materials,
+                       __global real *moved LIGHT_VERTEX_TEXTURES_ARGUMENT) {
     const size_t i = work_item();
     if (i >= count)
         return;
@@ -26,8 +27,8 @@ STAGE photon_reconnect(uint count, uint unit, uint first, uint pairs, uint gathe
                                                      PHOTON_DISC(row + (j + 1u) * strip_pixels));
     const vec3 way = v3_sub(shifted.target, origin);
     const vec3 towards = v3_scale(way, R(1) / r_sqrt(r_max(v3_dot(way, way), R(1e-30))));
-    const light_leaving leaving =
-        light_vertex_leave(light_vertices, light_vertex_marks, materials, record, unit, direction, towards);
+    const light_leaving leaving = light_vertex_leave(light_vertices, light_vertex_marks, materials, record, unit,
+                                                     direction, towards LIGHT_VERTEX_TEXTURES);
     const rgb power = rgb_scale(leaving.power, shifted.jacobian);
     SET_V3(moved, origin, to, origin);
     SET_V3(moved, direction, to, towards);

@@ -9,6 +9,7 @@
  * Differences are without flux_scale. */
 #include "kernels/lib/photon_value.h"
 #include "kernels/lib/shift_photon.h"
+#include "kernels/lib/textured_material.h"
 #include "kernels/shared/light_vertex.h"
 
 STAGE photon_shift(uint count, uint unit, uint gather_rows, uint photon_rows, uint pair_rows, uint strip_pixels,
@@ -27,9 +28,7 @@ STAGE photon_shift(uint count, uint unit, uint gather_rows, uint photon_rows, ui
     const rgb base =
         rgb_scale(rgb_mul(AT_RGB(pair_value, value, i), AT_RGB(gather, throughput, row)), inverse_base * inverse_base);
     const real offset_radius = AT(gather, radius, at);
-    const uint own_material = AT_UINT(gather, material, row);
     const int is_there = offset_radius > R(0);
-    const uint offset_material = is_there ? AT_UINT(gather, material, at) : own_material;
     const uint kind = AT_UINT(gather, kind, at);
     const vec3 photon = AT_V3(photon_sorted, position, from), photon_normal = AT_V3(photon_sorted, normal, from);
     const int may_count = is_there & (kind_number(kind) == PASTE(bsdf_kind_, BSDF)) &
@@ -37,7 +36,8 @@ STAGE photon_shift(uint count, uint unit, uint gather_rows, uint photon_rows, ui
     const photon_disc disc = photon_disc_of(AT_V3(gather, position, at), AT_V3(gather, geometric, at), offset_radius);
     const int is_shared = may_count & photon_counts(disc, photon, photon_normal);
 
-    const material m = material_load(materials, offset_material, unit);
+    const uint there = is_there ? at : (uint)row;
+    const material m = VERTEX_MATERIAL(gather, there);
     const real inverse = R(1) / (is_there ? offset_radius : R(1));
     const rgb offset = rgb_scale(
         rgb_mul(PHOTON_VALUE(at, m, AT_V3(photon_sorted, wi, from), photon_normal, AT_RGB(photon_sorted, power, from)),
@@ -55,6 +55,6 @@ STAGE photon_shift(uint count, uint unit, uint gather_rows, uint photon_rows, ui
     const int is_light = light_vertex_is_light(last);
     const uint kind_bin = material_bin[is_light ? 0u : last];
     const uint bin = is_light ? (last == light_vertex_far ? bin_none : light_bin) : kind_bin;
-    const int is_moved = may_count & !is_shared & is_known;
+    const int is_moved = may_count & !is_shared & is_known & !LIGHT_VERTEX_MIRRORS(record);
     moved_bin[(size_t)j * count + i] = is_moved ? bin : bin_none;
 }

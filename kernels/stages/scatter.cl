@@ -16,6 +16,7 @@
  *
  * TRAIT_ONLY_CHAINS: leaves a photon only where the vertex before is too smooth to gather at. */
 //! traits: TRAIT_SHADING_NORMALS TRAIT_ANISOTROPIC TRAIT_LIGHT_VERTICES TRAIT_ONLY_CHAINS TRAIT_TEXTURED_NORMALS
+//! traits: TRAIT_TEXTURED TRAIT_MIXED_LOBES
 #include "kernels/lib/bsdf.h"
 #include "kernels/lib/bsdf_frame.h"
 #include "kernels/lib/random.h"
@@ -39,6 +40,10 @@ STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint ma
 #if TRAIT_LIGHT_VERTICES
               ,
               __global real *light_vertices, __global uint *light_vertex_marks, uint to_vertex
+#if TRAIT_TEXTURED
+              ,
+              __global real *light_vertex_textures
+#endif
 #endif
 ) {
     const size_t i = work_item();
@@ -154,6 +159,19 @@ STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint ma
     FIELD_OF(light_vertex_mark, light_vertex_marks, record, material) = point.material;
     FIELD_OF(light_vertex_mark, light_vertex_marks, record, primitive) = AT_UINT_IN(ray_old, ray, primitive, old);
     FIELD_OF(light_vertex_mark, light_vertex_marks, record, before) = vertex_before;
+#if TRAIT_MIXED_LOBES
+#if BSDF_IS_MIXED
+    FIELD_OF(light_vertex_mark, light_vertex_marks, record, mirrors) = s.is_specular ? 1u : 0u;
+#else
+    FIELD_OF(light_vertex_mark, light_vertex_marks, record, mirrors) = 0u;
+#endif
+#endif
+#if TRAIT_TEXTURED
+#pragma unroll
+    for (uint c = 0; c < (uint)textured_columns; ++c)
+        (light_vertex_textures + c * (size_t)unit)[record * (uint)textured_columns] =
+            surface[(size_t)c * capacity + old];
+#endif
     AT_UINT(light_path, vertex, row) = record;
 #endif
     AT_UINT(light_path, slot, row) = slot;

@@ -7,6 +7,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
+#include <string_view>
+#include <utility>
 
 namespace gradus {
 
@@ -35,12 +38,18 @@ std::uint64_t film_pixels(const Session &session) { return std::uint64_t(session
 
 bool has_vertices(const Session &session) { return session.has("TRAIT_LIGHT_VERTICES"); }
 
+std::uint32_t gathers_at(const Bsdf &bsdf, double roughness) {
+    return !gathers_photons(bsdf, roughness)       ? gathers_nowhere
+           : bsdf_kind_traits(bsdf.kind).transmits ? gathers_around
+                                                   : gathers_in_front;
+}
+
 std::vector<std::uint32_t> gathers_by_material(const Scene &scene, double roughness) {
     std::vector<std::uint32_t> gathers;
-    for (const Bsdf &bsdf : material_records(scene))
-        gathers.push_back(!gathers_photons(bsdf, roughness)       ? gathers_nowhere
-                          : bsdf_kind_traits(bsdf.kind).transmits ? gathers_around
-                                                                  : gathers_in_front);
+    for (const Bsdf &bsdf : material_records(scene)) {
+        gathers.push_back(gathers_nowhere);
+        for_each_part(scene, bsdf, [&](const Bsdf &part) { gathers.back() = gathers_at(part, roughness); });
+    }
     return gathers;
 }
 
@@ -52,10 +61,23 @@ StageDeclaration photons_stage(const char *step, std::vector<std::string> number
             .numbers = std::move(numbers)};
 }
 
+/// The records of vertices, and how many elements each has in these tables (kernels/shared/light_vertex.h).
+std::vector<std::pair<const char *, std::uint32_t>> vertex_tables(const Session &session) {
+    std::vector<std::pair<const char *, std::uint32_t>> tables;
+    if (!session.has("TRAIT_LIGHT_VERTICES"))
+        return tables;
+    tables = {{"light_vertices", light_vertex_stride}, {"light_vertex_marks", light_vertex_mark_stride}};
+    if (session.has("TRAIT_TEXTURED"))
+        tables.emplace_back("light_vertex_textures", session.textured_columns());
+    return tables;
+}
+
 /// Vertices and photons go to tables of the consumers, which are not known yet.
 StageDeclaration with_vertices(StageDeclaration stage) {
     stage.numbers.push_back("to_vertex");
-    stage.tables = {{"light_vertices", "light_path"}, {"light_vertex_marks", "photon_place"}};
+    stage.tables = {{"light_vertices", "light_path"},
+                    {"light_vertex_marks", "photon_place"},
+                    {"light_vertex_textures", "light_path"}};
     return stage;
 }
 
@@ -115,6 +137,20 @@ TableList own_tables(const Session &session, const Wavefront &paths) {
 
 } // namespace
 
+bool blends_gather_alike(const Scene &scene, double roughness) {
+    bool alike = true;
+    const auto visit = [&](const Bsdf &bsdf) {
+        std::set<std::uint32_t> parts;
+        for_each_part(scene, bsdf, [&](const Bsdf &part) { parts.insert(gathers_at(part, roughness)); });
+        alike = alike && parts.size() == 1;
+    };
+    for (const Shape &shape : scene.shapes) {
+        visit(scene.materials[shape.material].front);
+        visit(scene.materials[shape.material].back);
+    }
+    return alike;
+}
+
 double photons_a_pass(std::uint64_t film_pixels) {
     return std::clamp(photons_a_pixel * double(film_pixels), least_photons, largest_photons);
 }
@@ -157,13 +193,12 @@ LightPaths::LightPaths(Session &session, Stages &consumers, const Scene &scene, 
 TableList LightPaths::tables() const {
     const double usual = 1.1 * photons_a_pass(film_pixels(session_)),
                  rows = wanted_ ? std::min(double(wanted_), usual) : usual;
-    const bool with_vertices = has_vertices(session_);
     const auto photons = slot_rows(std::uint32_t(rows));
     TableList list = {
         {.name = "photon",
          .rows = RowsOf::one,
          .multiple = photons,
-         .columns = std::uint32_t(with_vertices ? photon_columns : photon_before),
+         .columns = std::uint32_t(has_vertices(session_) ? photon_columns : photon_before),
          .grows = true},
         {.name = "photon_origin",
          .rows = RowsOf::one,
@@ -171,17 +206,12 @@ TableList LightPaths::tables() const {
          .columns = photon_origin_columns,
          .grows = true},
         {.name = "photon_order", .rows = RowsOf::one, .multiple = photons, .is_uint = true, .grows = true}};
-    if (with_vertices) { // records: one column
-        list.push_back({.name = "light_vertices",
+    for (const auto &[name, elements] : vertex_tables(session_)) // records: one column
+        list.push_back({.name = name,
                         .rows = RowsOf::one,
-                        .multiple = 3 * photons * light_vertex_stride,
+                        .multiple = 3 * photons * elements,
+                        .is_uint = std::string_view(name) == "light_vertex_marks",
                         .grows = true});
-        list.push_back({.name = "light_vertex_marks",
-                        .rows = RowsOf::one,
-                        .multiple = 3 * photons * light_vertex_mark_stride,
-                        .is_uint = true,
-                        .grows = true});
-    }
     return list;
 }
 
@@ -199,10 +229,9 @@ void LightPaths::bind_tables() {
     for (Stage *stage : {&scatter_, &order_})
         stage->bind("photon_origin", (*tables_)["photon_origin"]);
     order_.bind("photon_order", (*tables_)["photon_order"]);
-    if (has_vertices(session_))
-        for (Stage *stage : {&emit_, &scatter_, &scatter_first_})
-            for (const char *table : {"light_vertices", "light_vertex_marks"})
-                stage->bind(table, (*tables_)[table]);
+    for (Stage *stage : {&emit_, &scatter_, &scatter_first_})
+        for (const auto &[name, elements] : vertex_tables(session_))
+            stage->bind(name, (*tables_)[name]);
 }
 
 std::uint32_t LightPaths::paths_a_pass() {
@@ -301,13 +330,16 @@ void LightPaths::make_room(std::uint64_t rows) {
 void LightPaths::make_room_for_vertices(std::uint64_t records) {
     if (!has_vertices(session_))
         return;
-    if (records * light_vertex_stride > most_photons)
+    std::uint64_t largest = 0;
+    for (const auto &[name, elements] : vertex_tables(session_))
+        largest = std::max<std::uint64_t>(largest, elements);
+    if (records * largest > most_photons)
         throw Error(ExitCode::device, "light paths have more vertices than there can be; ask for fewer of them");
     if (records * light_vertex_stride <= tables_->rows_of("light_vertices"))
         return;
     const auto more = std::uint32_t(records + records / 2);
-    tables_->grow("light_vertices", more * light_vertex_stride);
-    tables_->grow("light_vertex_marks", more * light_vertex_mark_stride);
+    for (const auto &[name, elements] : vertex_tables(session_))
+        tables_->grow(name, more * elements);
     bind_tables();
 }
 

@@ -1,11 +1,14 @@
 // Gradient-domain photon mapping: its differences have the means that those of its primal image have, its primal is
 // photon mapping's image, and neither batches nor threads show.
+#include "runtime/error.h"
 #include "tests/methods/reference_scene.h"
 #include "tests/support/gradient_layers.h"
 #include "tests/support/small_scenes.h"
 #include "tests/support/test_name.h"
+#include "tests/support/textures.h"
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 
 namespace gradus::testing {
 namespace {
@@ -31,24 +34,20 @@ RenderOptions few_photons(bool direct_photons = false) {
     return options;
 }
 
-class GradientPhotons : public ::testing::TestWithParam<PhotonCase> {
-  protected:
-    /// Of one render, the differences less those of its primal, times the sign that these have in an independent image:
-    /// differences that are too small everywhere show in every block.
-    static Image deviations(const Image &image, const Image &signs, bool right) {
-        const Image primal = differences(image, "primal", right);
-        return image_of(image.width, image.height, [&](int c, std::uint32_t x, std::uint32_t y) {
-            const double deviation = layer(image, right ? "dx" : "dy", c, x, y) - layer(primal, "", c, x, y);
-            return deviation * (layer(signs, "", c, x, y) < 0 ? -1 : 1);
-        });
-    }
-};
+/// Of one render, the differences less those of its primal, times the sign that these have in an independent image:
+/// differences that are too small everywhere show in every block.
+Image deviations(const Image &image, const Image &signs, bool right) {
+    const Image primal = differences(image, "primal", right);
+    return image_of(image.width, image.height, [&](int c, std::uint32_t x, std::uint32_t y) {
+        const double deviation = layer(image, right ? "dx" : "dy", c, x, y) - layer(primal, "", c, x, y);
+        return deviation * (layer(signs, "", c, x, y) < 0 ? -1 : 1);
+    });
+}
 
-TEST_P(GradientPhotons, DifferencesAreThoseOfThePrimal) {
-    Scene scene = own_scene(fmt::format("{}.xml", GetParam().scene), 32, 24);
+void expect_differences_of_the_primal(const std::string &name, Scene scene, RenderOptions options,
+                                      std::size_t seeds = image_seeds) {
     scene.settings.samples_per_pixel = passes;
-    RenderOptions options = few_photons(GetParam().direct_photons);
-    const std::vector<Image> images = render_seeds(scene, image_seeds, options, 1, "gpm");
+    const std::vector<Image> images = render_seeds(scene, seeds, options, 1, "gpm");
     options.seed = 4711;
     const Image other = render(scene, options, "gpm").image;
     double noise = 0, plain = 0;
@@ -58,19 +57,62 @@ TEST_P(GradientPhotons, DifferencesAreThoseOfThePrimal) {
         for (const Image &image : images)
             ours.push_back(deviations(image, signs, right));
         ReferenceScene nothing;
-        nothing.name = fmt::format("gpm-{}-{}", GetParam().scene, right ? "dx" : "dy");
+        nothing.name = fmt::format("gpm-{}-{}", name, right ? "dx" : "dy");
         nothing.mean = image_of(scene.film.width, scene.film.height, [](auto...) { return 0.0; });
         nothing.variance = nothing.mean;
         EXPECT_TRUE(agrees(ours, double(passes), nothing));
         for (int c = 0; c < 3; ++c) // of the first two seeds
             for (std::uint32_t y = 0; y + 1 < scene.film.height; ++y)
                 for (std::uint32_t x = 0; x + 1 < scene.film.width; ++x) {
-                    const char *const name = right ? "dx" : "dy";
-                    noise += std::pow(layer(images[0], name, c, x, y) - layer(images[1], name, c, x, y), 2);
+                    const char *const d = right ? "dx" : "dy";
+                    noise += std::pow(layer(images[0], d, c, x, y) - layer(images[1], d, c, x, y), 2);
                     plain += std::pow(layer(images[0], "primal", c, x, y) - layer(images[1], "primal", c, x, y), 2);
                 }
     }
-    std::printf("%s: variance of the differences over the primal's: %.4f\n", GetParam().scene, noise / plain);
+    std::printf("%s: variance of the differences over the primal's: %.4f\n", name.c_str(), noise / plain);
+}
+
+class GradientPhotons : public ::testing::TestWithParam<PhotonCase> {};
+
+TEST_P(GradientPhotons, DifferencesAreThoseOfThePrimal) {
+    expect_differences_of_the_primal(GetParam().scene, own_scene(fmt::format("{}.xml", GetParam().scene), 32, 24),
+                                     few_photons(GetParam().direct_photons));
+}
+
+/// A floor that all photons come to from three walls. Gather points are small, so that most photons of a pixel do not
+/// count in the next one and are moved.
+void expect_differences_under_walls(const std::string &name, SceneMaker maker, const Bsdf &side, const Bsdf &back) {
+    maker.look({0, 2.5, 1.5}, {0, 0, 0}, 40);
+    maker.scene.settings.max_depth = 3;
+    maker.parallelogram({-1, 0, 1}, {0, 0, -2}, {0, 2, 0}, maker.material(two_sided(side)));
+    maker.parallelogram({1, 0, -1}, {0, 0, 2}, {0, 2, 0}, maker.material(two_sided(side)));
+    maker.parallelogram({-1, 0, -1}, {2, 0, 0}, {0, 2, 0}, maker.material(two_sided(back)));
+    maker.point_light({1, 1, 1}, {0.2f, 1, 0});
+    RenderOptions options = few_photons();
+    options.radius->value = 0.5;
+    expect_differences_of_the_primal(name, maker.scene, options, 48);
+}
+
+/// What textures replace is far from what they are worth.
+TEST(GradientPhotonImage, HasDifferencesOfThePrimalUnderTexturedWalls) {
+    SceneMaker maker(24, passes);
+    maker.scene.textures = {random_texture(3, 3, Bitmap::Format::word), random_texture(4, 3, Bitmap::Format::word)};
+    maker.scene.textures[0].scale = {0.2f, 0.2f, 0.2f};
+    Bsdf floor = diffuse(0.3), textured = diffuse(0.9), blend;
+    floor.reflectance.texture = 1;
+    textured.reflectance.texture = 0;
+    maker.scene.blended = {diffuse(0.02), textured};
+    maker.scene.blends = {{0, 1, 0.8f}};
+    blend.blend = 0;
+    maker.floor(-1, 1, 1, maker.material(floor));
+    expect_differences_under_walls("textured-walls", maker, textured, blend);
+}
+
+/// Walls that mirror some photons and scatter others.
+TEST(GradientPhotonImage, HasDifferencesOfThePrimalUnderWallsOfPlastic) {
+    SceneMaker maker(24, passes);
+    maker.floor(-1, 1, 1, maker.material(diffuse(0.5)));
+    expect_differences_under_walls("plastic-walls", maker, plastic(0.2, 2.2), plastic(0.5, 1.5));
 }
 
 INSTANTIATE_TEST_SUITE_P(Image, GradientPhotons,
@@ -79,7 +121,8 @@ INSTANTIATE_TEST_SUITE_P(Image, GradientPhotons,
                          name_of);
 INSTANTIATE_TEST_SUITE_P(Full, GradientPhotons,
                          ::testing::Values(PhotonCase{"torus-rough-glass"}, PhotonCase{"plates"},
-                                           PhotonCase{"door-ajar"}, PhotonCase{"materials"}, PhotonCase{"lamp-in-egg"}),
+                                           PhotonCase{"door-ajar"}, PhotonCase{"materials"}, PhotonCase{"lamp-in-egg"},
+                                           PhotonCase{"textures"}, PhotonCase{"plastics"}, PhotonCase{"sundial"}),
                          name_of);
 
 class GradientPhotonsOf : public ::testing::TestWithParam<const char *> {
@@ -126,7 +169,8 @@ TEST_P(GradientPhotonsOf, HaveThePrimalOfPhotonMapping) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, GradientPhotonsOf, ::testing::Values("cornell-box", "lamp-in-egg"), name_of_scene);
-INSTANTIATE_TEST_SUITE_P(Full, GradientPhotonsOf, ::testing::Values("materials"), name_of_scene);
+INSTANTIATE_TEST_SUITE_P(Full, GradientPhotonsOf, ::testing::Values("materials", "textures", "plastics"),
+                         name_of_scene);
 
 /// What the reconstruction gains where surfaces are diffuse, with the radii of the defaults.
 TEST(GradientPhotonImage, HasFarLessErrorThanPhotonMapping) {
@@ -138,6 +182,35 @@ TEST(GradientPhotonImage, HasFarLessErrorThanPhotonMapping) {
     const double plain = relative_mse(render(reference.scene, options, "sppm").image, reference.mean);
     std::printf("relMSE of 4 passes: gpm %.2e, sppm %.2e\n", ours, plain);
     EXPECT_LT(ours, 0.5 * plain);
+}
+
+/// Scenes that it does not render end with an error that says what it is that it does not know.
+TEST(GradientPhotonImage, SaysWhatItDoesNotKnow) {
+    const auto error_of = [](Bsdf bsdf, const std::vector<Bsdf> &blended) -> std::string {
+        SceneMaker maker(8, 1);
+        maker.look({0, 3, 3}, {0, 0, 0}, 20);
+        maker.scene.textures = {random_texture()};
+        maker.scene.blended = blended;
+        maker.scene.blends = {{0, 1, 0.5f}};
+        bsdf.blend = blended.empty() ? no_blend : 0;
+        maker.floor(-1, 1, 1, maker.material(diffuse(0.5)));
+        maker.sphere({0, 1, 0}, 0.5f, maker.material(bsdf));
+        maker.point_light({1, 1, 1}, {0, 3, 0});
+        try {
+            render(maker.scene, few_photons(), "gpm");
+        } catch (const Error &error) {
+            EXPECT_EQ(error.code, ExitCode::usage);
+            return error.what();
+        }
+        return "";
+    };
+    Bsdf painted_glass = glass(1.5), mapped = diffuse(0.5);
+    painted_glass.specular_transmittance.texture = 0;
+    mapped.map = {.kind = NormalTexture::Kind::bump, .texture = 0};
+    EXPECT_THAT(error_of(painted_glass, {}), ::testing::HasSubstr("textures of mirrors and glass"));
+    EXPECT_THAT(error_of(mapped, {}), ::testing::HasSubstr("normal maps"));
+    EXPECT_THAT(error_of(diffuse(0.5), {diffuse(0.5), mirror()}), ::testing::HasSubstr("blends"));
+    EXPECT_EQ(error_of(diffuse(0.5), {diffuse(0.5), rough_metal(0.3)}), "");
 }
 
 /// All light on a floor comes through a ball of glass, from a point in it: chains alone make the very same image. In a

@@ -1,5 +1,4 @@
 // Gradient-domain path tracing where a surface has a mirror beside a rough lobe, and the lobe is part of the path.
-#include "runtime/scene/coating.h"
 #include "tests/methods/gradient_bias.h"
 #include "tests/support/small_scenes.h"
 
@@ -7,14 +6,6 @@
 
 namespace gradus::testing {
 namespace {
-
-Bsdf plastic(double albedo, double ior) {
-    Bsdf bsdf = diffuse(albedo);
-    bsdf.kind = BsdfKind::plastic;
-    bsdf.ior = float(ior);
-    set_coating(bsdf);
-    return bsdf;
-}
 
 // A room of plastic that mirrors much, so that paths come to vertices by either lobe and leave by the other one; a ball
 // of plastic and a mirror before it, whose neighbours are of other kinds.

@@ -1,6 +1,7 @@
 // Materials built in code, for small scenes.
 #pragma once
 
+#include "runtime/scene/coating.h"
 #include "runtime/scene/scene.h"
 
 namespace gradus::testing {
@@ -40,6 +41,15 @@ inline Bsdf rough_glass(double roughness, double ior) {
     Bsdf bsdf = rough_metal(roughness);
     bsdf.kind = BsdfKind::roughdielectric_ggx;
     bsdf.ior = float(ior);
+    return bsdf;
+}
+
+/// A diffuse base under a smooth coat; ior: inside over outside.
+inline Bsdf plastic(double albedo, double ior) {
+    Bsdf bsdf = diffuse(albedo);
+    bsdf.kind = BsdfKind::plastic;
+    bsdf.ior = float(ior);
+    set_coating(bsdf);
     return bsdf;
 }
 

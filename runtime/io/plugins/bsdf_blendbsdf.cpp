@@ -17,7 +17,8 @@ Bsdf back_of(const Material &material) {
 } // namespace
 
 Declaration declare_bsdf_blendbsdf() {
-    return {"a mixture of two BSDFs, each of which may be a mixture again. Not with `gpm`",
+    return {"a mixture of two BSDFs, each of which may be a mixture again. With `gpm` of parts where photons are "
+            "gathered, or of parts where none are",
             {Parameter{"weight", Takes::textured_number, "0.5", "share of the second"}.at_least(0).at_most(1),
              {"bsdf", Takes::objects, nullptr, "the first and the second"}}};
 }

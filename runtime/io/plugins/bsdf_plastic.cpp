@@ -5,8 +5,7 @@
 namespace gradus {
 
 Declaration declare_bsdf_plastic() {
-    return {"a diffuse base under a smooth dielectric coat. Not with `gpm`",
-            joined({parameters_of_plastic(), roughness_left_over()})};
+    return {"a diffuse base under a smooth dielectric coat", joined({parameters_of_plastic(), roughness_left_over()})};
 }
 
 Material bsdf_plastic(Properties &properties, SceneBuilder &) {

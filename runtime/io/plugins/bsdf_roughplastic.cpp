@@ -5,9 +5,8 @@
 namespace gradus {
 
 Declaration declare_bsdf_roughplastic() {
-    return {
-        "a diffuse base under a rough dielectric coat, as rough along both axes, and not by a texture. Not with `gpm`",
-        joined({parameters_of_plastic(), parameters_of_roughness()})};
+    return {"a diffuse base under a rough dielectric coat, as rough along both axes, and not by a texture",
+            joined({parameters_of_plastic(), parameters_of_roughness()})};
 }
 
 Material bsdf_roughplastic(Properties &properties, SceneBuilder &) {
