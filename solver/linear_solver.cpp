@@ -162,9 +162,10 @@ void LinearSolver::improve(Kernels &kernels, Request request, Planes group, cons
 
 void LinearSolver::copy(Kernels &kernels, const Buffer &from, const Buffer &to, Planes planes) {
     const Grid &grid = multigrid_.system().grid;
-    // The kernel counts planes from the first of the buffer.
-    kernels.copy.bind("from", make_.some(from, grid, planes));
-    kernels.copy.bind("to", make_.some(to, grid, planes));
+    // The kernel counts planes from the first of the buffer; parts of buffers must be there when it is launched.
+    const Buffer some_from = make_.some(from, grid, planes), some_to = make_.some(to, grid, planes);
+    kernels.copy.bind("from", some_from);
+    kernels.copy.bind("to", some_to);
     grid.launch(kernels.copy, planes);
 }
 
