@@ -226,6 +226,8 @@ std::vector<Kernel> KernelLibrary::build(const std::vector<KernelRequest> &reque
         opencl_call("making kernel " + requests[i].name, [&] {
             try {
                 handle->kernel = cl::Kernel(programs[i]->program, requests[i].entry.c_str());
+            } catch (const cl::Error &) {
+                throw;
             } catch (...) {
                 // Never released: runtime/device/program_code.cpp says why.
                 static_cast<void>(new auto(programs[i]));

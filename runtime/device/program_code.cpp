@@ -32,13 +32,16 @@ KernelArguments arguments_of(const cl::Program &program) {
     return found;
 }
 
-/// Calls use(). Where that fails the program is never released: PoCL 3.1 keeps one locked that it could not build, or
-/// make a kernel of, for lack of memory, when LLVM's std::bad_alloc flies through it, and who releases it waits for
-/// ever.
+/// Calls use(). Where an exception flies through the OpenCL implementation, as LLVM's std::bad_alloc does through PoCL
+/// 3.1, the program is never released: it is still locked then, and who releases it waits for ever.
 template <class Use>
 auto with_program(cl::Program &program, const Use &use) {
     try {
         return use();
+    } catch (const cl::Error &) {
+        throw;
+    } catch (const Error &) {
+        throw;
     } catch (...) {
         program() = nullptr;
         throw;
