@@ -10,8 +10,10 @@
 #include <algorithm>
 #include <fstream>
 #include <limits>
+#include <malloc.h>
 #include <string>
 #include <sys/resource.h>
+#include <thread>
 #include <unistd.h>
 
 namespace gradus {
@@ -45,16 +47,26 @@ std::uint64_t container_bytes() {
     return most == unlimited || used == unlimited ? unlimited : most - std::min(most, used);
 }
 
-std::uint64_t address_space_bytes() {
+/// Of the process; `unlimited` where there is none.
+std::uint64_t address_space_limit() {
     struct rlimit limit = {};
-    if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+    return getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY ? unlimited : limit.rlim_cur;
+}
+
+std::uint64_t address_space_bytes(int threads) {
+    const std::uint64_t limit = address_space_limit();
+    if (limit == unlimited)
         return unlimited;
     const std::uint64_t pages = number_in("/proc/self/statm");
     const std::uint64_t used = pages == unlimited ? 0 : pages * std::uint64_t(::sysconf(_SC_PAGESIZE));
     // Threads, PoCL and the compiler in it take this much; they end the process, or wait for ever, where they do not
     // get it (found by trying with PoCL 3.1).
     constexpr std::uint64_t implementation = 900u << 20;
-    return limit.rlim_cur - std::min<std::uint64_t>(limit.rlim_cur, used + implementation);
+    // Beyond two; PoCL's, TBB's and Embree's have a stack each. With 8 threads 1560 MB in all are enough, with 32 of
+    // them 2150.
+    constexpr std::uint64_t a_thread = 3 * (8u << 20);
+    const auto all = std::uint64_t(threads > 0 ? threads : int(std::max(1u, std::thread::hardware_concurrency())));
+    return limit - std::min(limit, used + implementation + a_thread * (all - std::min<std::uint64_t>(all, 2)));
 }
 
 } // namespace
@@ -78,7 +90,7 @@ std::uint64_t least_render_bytes(const Scene &scene, const RenderOptions &option
 
 void check_memory(const Scene &scene, const RenderOptions &options) {
     const std::uint64_t needed = least_render_bytes(scene, options);
-    const std::uint64_t there = std::min({system_bytes(), container_bytes(), address_space_bytes()});
+    const std::uint64_t there = std::min({system_bytes(), container_bytes(), address_space_bytes(options.threads)});
     if (needed <= there)
         return;
     const auto [width, height] = image_size(scene.film);
@@ -87,6 +99,12 @@ void check_memory(const Scene &scene, const RenderOptions &options) {
         fmt::format("not enough memory: rendering {}x{} pixels takes {} MB at the least, and {} MB are left; try "
                     "a smaller --size, or a --crop",
                     width, height, (needed + (1 << 20) - 1) >> 20, there >> 20));
+}
+
+void spare_address_space() {
+    // glibc reserves 64 MB for each thread that allocates, and next to nothing of it is used.
+    if (address_space_limit() != unlimited)
+        mallopt(M_ARENA_MAX, 1);
 }
 
 } // namespace gradus

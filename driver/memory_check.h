@@ -16,4 +16,7 @@ std::uint64_t least_render_bytes(const Scene &scene, const RenderOptions &option
 /// much left.
 void check_memory(const Scene &scene, const RenderOptions &options);
 
+/// Before threads start: where the address space is limited none of them reserves a part of it for its own use.
+void spare_address_space();
+
 } // namespace gradus

@@ -1,6 +1,7 @@
 #include "driver/program.h"
 
 #include "driver/commands.h"
+#include "driver/memory_check.h"
 #include "driver/standard_streams.h"
 #include "runtime/error.h"
 
@@ -69,6 +70,7 @@ int run_program(int argc, const char *const *argv, const Services &services) {
     // A file over the size limit and a reader that went away shall be errors of the call, not the end of the process.
     std::signal(SIGXFSZ, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);
+    spare_address_space();
 
     std::function<int()> chosen;
     try {

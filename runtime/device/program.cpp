@@ -223,8 +223,17 @@ std::vector<Kernel> KernelLibrary::build(const std::vector<KernelRequest> &reque
         handle->is_observed = static_cast<bool>(d.observer);
         if (handle->is_observed)
             handle->traits = traits_;
-        opencl_call("making kernel " + requests[i].name,
-                    [&] { handle->kernel = cl::Kernel(programs[i]->program, requests[i].entry.c_str()); });
+        opencl_call("making kernel " + requests[i].name, [&] {
+            try {
+                handle->kernel = cl::Kernel(programs[i]->program, requests[i].entry.c_str());
+            } catch (const cl::Error &) {
+                throw;
+            } catch (...) {
+                // Never released: runtime/device/program_code.cpp says why.
+                static_cast<void>(new auto(programs[i]));
+                throw;
+            }
+        });
         cl_uint index = 0;
         for (const KernelArgument &argument : programs[i]->kernels.at(requests[i].entry)) {
             handle->arguments[argument.name] = index++;

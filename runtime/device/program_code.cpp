@@ -32,19 +32,39 @@ KernelArguments arguments_of(const cl::Program &program) {
     return found;
 }
 
+/// Calls use(). Where an exception flies through the OpenCL implementation, as LLVM's std::bad_alloc does through PoCL
+/// 3.1, the program is never released: it is still locked then, and who releases it waits for ever.
+template <class Use>
+auto with_program(cl::Program &program, const Use &use) {
+    try {
+        return use();
+    } catch (const cl::Error &) {
+        throw;
+    } catch (const Error &) {
+        throw;
+    } catch (...) {
+        program() = nullptr;
+        throw;
+    }
+}
+
 } // namespace
 
 BuiltProgram build_source(const cl::Context &context, const cl::Device &device, const ProgramSource &source) {
     cl::Program program(context, source.text);
-    try {
-        program.build({device}, source.options.c_str());
-    } catch (const cl::Error &) {
-        throw Error(ExitCode::device, fmt::format("kernel {} does not compile for {}:\n{}", source.name,
-                                                  without_end(device.getInfo<CL_DEVICE_NAME>()),
-                                                  program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device)));
-    }
-    KernelArguments kernels = arguments_of(program);
-    return {std::move(program), std::move(kernels)};
+    return with_program(program, [&] {
+        try {
+            program.build({device}, source.options.c_str());
+        } catch (const cl::Error &error) {
+            if (error.err() != CL_BUILD_PROGRAM_FAILURE)
+                throw;
+            throw Error(ExitCode::device, fmt::format("kernel {} does not compile for {}:\n{}", source.name,
+                                                      without_end(device.getInfo<CL_DEVICE_NAME>()),
+                                                      program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device)));
+        }
+        KernelArguments kernels = arguments_of(program);
+        return BuiltProgram{std::move(program), std::move(kernels)};
+    });
 }
 
 BuiltProgram load_image(const cl::Context &context, const cl::Device &device, const ProgramImage &image,
@@ -54,10 +74,12 @@ BuiltProgram load_image(const cl::Context &context, const cl::Device &device, co
     cl::Program program(context, {device}, binaries);
     // How it is run is not in the code: PoCL flushes denormal numbers for programs that were built so.
     const char *const flush = "-cl-denorms-are-zero";
-    program.build({device}, options.find(flush) != std::string::npos ? flush : "");
-    for (const auto &[name, arguments] : image.kernels)
-        if (cl::Kernel(program, name.c_str()).getInfo<CL_KERNEL_NUM_ARGS>() != arguments.size())
-            throw cl::Error(CL_INVALID_BINARY, "clCreateKernel");
+    with_program(program, [&] {
+        program.build({device}, options.find(flush) != std::string::npos ? flush : "");
+        for (const auto &[name, arguments] : image.kernels)
+            if (cl::Kernel(program, name.c_str()).getInfo<CL_KERNEL_NUM_ARGS>() != arguments.size())
+                throw cl::Error(CL_INVALID_BINARY, "clCreateKernel");
+    });
     return {std::move(program), image.kernels};
 }
 

@@ -2,15 +2,14 @@
 
 #include "runtime/error.h"
 #include "runtime/io/exr_header.h"
+#include "runtime/io/picture_input.h"
 
-#include <OpenImageIO/imageio.h>
 #include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <filesystem>
 #include <optional>
 #include <vector>
 
@@ -52,12 +51,11 @@ OIIO::TypeDesc type_of(Bitmap::Format format) {
 }
 
 /// Before anything is allocated.
-void check_size(const std::string &path, const OIIO::ImageSpec &spec, std::uint64_t limits) {
+void check_size(const OpenFile &file, const OIIO::ImageSpec &spec, std::uint64_t limits) {
+    const std::string path = file.name().string();
     if (spec.deep || spec.depth > 1 || spec.width <= 0 || spec.height <= 0)
         refuse(path, "it is not a plane of pixels");
-    std::error_code not_there;
-    const std::uintmax_t size = std::filesystem::file_size(path, not_there);
-    const double most = (double(always_bytes) + double(unfolding) * (not_there ? 0 : double(size))) * double(limits);
+    const double most = (double(always_bytes) + double(unfolding) * double(file.bytes())) * double(limits);
     const double bytes = double(spec.width) * spec.height * spec.nchannels * double(spec.format.size());
     if (bytes > most)
         refuse(path,
@@ -66,15 +64,14 @@ void check_size(const std::string &path, const OIIO::ImageSpec &spec, std::uint6
                            bytes / 0x1p20, most / 0x1p20));
 }
 
-void check_exr(const std::string &path, std::uint64_t limits) {
-    std::error_code not_there;
-    const std::uintmax_t size = std::filesystem::file_size(path, not_there);
-    const std::optional<ExrSize> declared = exr_size(path);
-    if (!declared || not_there)
+void check_exr(const OpenFile &file, std::uint64_t limits) {
+    const std::string path = file.name().string();
+    const std::optional<ExrSize> declared = exr_size(file.library_name());
+    if (!declared)
         return;
-    if (!declared->is_whole || declared->blocks > size / 8)
+    if (!declared->is_whole || declared->blocks > file.bytes() / 8)
         refuse(path, "it is truncated or damaged: its header and its size do not agree");
-    if (double(declared->bytes) > (double(always_bytes) + double(unfolding) * double(size)) * double(limits))
+    if (double(declared->bytes) > (double(always_bytes) + double(unfolding) * double(file.bytes())) * double(limits))
         refuse(path, "it declares far more pixels than a file of its size holds");
 }
 
@@ -109,7 +106,7 @@ std::vector<int> channels_of(const std::string &path, const OIIO::ImageSpec &spe
 
 /// Calls use(y, row) for each row of the file.
 template <class Value, class Use>
-void for_each_row(OIIO::ImageInput &input, const std::string &path, OIIO::TypeDesc type, Use use) {
+void for_each_row(OIIO::ImageInput &input, const OpenFile &file, OIIO::TypeDesc type, Use use) {
     const OIIO::ImageSpec spec = input.spec();
     const int step = spec.tile_width > 0 ? spec.height : std::min(spec.height, 64); // tiles are read as a whole
     const std::size_t line = std::size_t(spec.width) * std::size_t(spec.nchannels);
@@ -120,7 +117,7 @@ void for_each_row(OIIO::ImageInput &input, const std::string &path, OIIO::TypeDe
                                               : input.read_scanlines(0, 0, spec.y + begin, spec.y + end, spec.z, 0,
                                                                      spec.nchannels, type, rows.data());
         if (!done)
-            refuse(path, input.geterror());
+            refuse(file.name().string(), named_in(input.geterror(), file));
         for (int y = begin; y < end; ++y)
             use(std::uint32_t(y), rows.data() + line * std::size_t(y - begin));
     }
@@ -128,15 +125,17 @@ void for_each_row(OIIO::ImageInput &input, const std::string &path, OIIO::TypeDe
 
 } // namespace
 
-ReadBitmap read_bitmap(const std::string &path, const BitmapRequest &request) {
-    check_exr(path, request.limits);
+ReadBitmap read_bitmap(const OpenFile &file, const BitmapRequest &request) {
+    const std::string path = file.name().string();
+    check_exr(file, request.limits);
     OIIO::ImageSpec wishes;
     wishes.attribute("oiio:UnassociatedAlpha", 1); // colours as they are stored, not times alpha
-    const auto input = OIIO::ImageInput::open(path, &wishes);
-    if (!input)
-        refuse(path, OIIO::geterror());
-    const OIIO::ImageSpec spec = input->spec();
-    check_size(path, spec, request.limits);
+    const PictureInput opened = open_picture(file, &wishes);
+    if (!opened.input)
+        refuse(path, opened.error);
+    OIIO::ImageInput &input = *opened.input;
+    const OIIO::ImageSpec spec = input.spec();
+    check_size(file, spec, request.limits);
     const std::vector<int> channels = channels_of(path, spec, request.channel);
     const bool is_alpha = channels.size() == 1 && channels[0] == spec.alpha_channel;
     ReadBitmap read;
@@ -158,7 +157,7 @@ ReadBitmap read_bitmap(const std::string &path, const BitmapRequest &request) {
     const auto as_stored = [](auto value) { return std::uint32_t(value); };
     switch (stored) {
     case Bitmap::Format::byte:
-        for_each_row<std::uint8_t>(*input, path, type_of(stored), [&](std::uint32_t y, const std::uint8_t *row) {
+        for_each_row<std::uint8_t>(input, file, type_of(stored), [&](std::uint32_t y, const std::uint8_t *row) {
             if (!bitmap.is_color)
                 return copy(row, y, as_stored);
             // What large pictures are: a word each.
@@ -168,7 +167,7 @@ ReadBitmap read_bitmap(const std::string &path, const BitmapRequest &request) {
         });
         break;
     case Bitmap::Format::word:
-        for_each_row<std::uint16_t>(*input, path, type_of(stored), [&](std::uint32_t y, const std::uint16_t *row) {
+        for_each_row<std::uint16_t>(input, file, type_of(stored), [&](std::uint32_t y, const std::uint16_t *row) {
             if (unfolds)
                 copy(row, y, [](std::uint16_t value) {
                     return std::bit_cast<std::uint32_t>(float(srgb_to_linear_value(value / 65535.0)));
@@ -178,7 +177,7 @@ ReadBitmap read_bitmap(const std::string &path, const BitmapRequest &request) {
         });
         break;
     case Bitmap::Format::half:
-        for_each_row<std::uint16_t>(*input, path, type_of(stored), [&](std::uint32_t y, const std::uint16_t *row) {
+        for_each_row<std::uint16_t>(input, file, type_of(stored), [&](std::uint32_t y, const std::uint16_t *row) {
             copy(row, y, [&](std::uint16_t bits) {
                 const bool is_number = (bits & 0x7c00u) != 0x7c00u;
                 read.not_numbers += !is_number;
@@ -187,7 +186,7 @@ ReadBitmap read_bitmap(const std::string &path, const BitmapRequest &request) {
         });
         break;
     case Bitmap::Format::real:
-        for_each_row<float>(*input, path, type_of(stored), [&](std::uint32_t y, const float *row) {
+        for_each_row<float>(input, file, type_of(stored), [&](std::uint32_t y, const float *row) {
             copy(row, y, [&](float value) {
                 const bool is_number = std::isfinite(value);
                 read.not_numbers += !is_number;

@@ -1,6 +1,7 @@
 // Pictures of any format that OpenImageIO knows, as textures hold them.
 #pragma once
 
+#include "runtime/io/open_file.h"
 #include "runtime/scene/texture.h"
 
 #include <cstdint>
@@ -24,6 +25,6 @@ struct ReadBitmap {
 /// Decodes a file: 8 bits stay 8, 16 bits 16 and half precision half precision; but 16 bits of sRGB become linear
 /// floats. Gray with or without alpha has one channel, colour three; alpha is left out. Throws Error(ExitCode::image),
 /// also for a file that declares more pixels than its size accounts for (read_image()).
-ReadBitmap read_bitmap(const std::string &path, const BitmapRequest &request);
+ReadBitmap read_bitmap(const OpenFile &file, const BitmapRequest &request);
 
 } // namespace gradus

@@ -49,7 +49,7 @@ class Reader {
           diagnostics_(diagnostics) {}
 
     Document read(const std::string &path) {
-        const auto main = open(path, fs::path(path), 0);
+        const auto main = open(OpenFile::open(path), path, 0);
         folders_.insert(folders_.begin(), main->path.parent_path());
         collect_parameters(*main, main->xml.document_element(), 0);
         read_deferred_includes();
@@ -62,7 +62,7 @@ class Reader {
     }
 
   private:
-    std::unique_ptr<File> open(const std::string &name, const fs::path &path, int version);
+    std::unique_ptr<File> open(const std::shared_ptr<const OpenFile> &opened, const fs::path &path, int version);
     void check_root(const File &file, const pugi::xml_node &root, bool is_main) const;
     void collect_parameters(const File &file, const pugi::xml_node &node, int depth);
     bool open_include(const File &file, const pugi::xml_node &node, int depth, bool last_chance);
@@ -88,19 +88,19 @@ class Reader {
     std::uint64_t xml_bytes_ = 0, includes_ = 0, elements_ = 0;
 };
 
-std::unique_ptr<File> Reader::open(const std::string &name, const fs::path &path, int version) {
+/// opened: nullptr where it cannot be read.
+std::unique_ptr<File> Reader::open(const std::shared_ptr<const OpenFile> &opened, const fs::path &path, int version) {
     auto file = std::make_unique<File>();
-    file->name = std::make_shared<const std::string>(name);
+    file->name = std::make_shared<const std::string>(path.string());
     file->path = path;
     const Location whole{file->name, 0};
-    std::error_code not_there;
-    const std::uintmax_t size = fs::file_size(path, not_there);
-    if (!not_there && size <= limits_.xml_bytes)
+    const std::uint64_t size = opened ? opened->bytes() : 0;
+    if (size <= limits_.xml_bytes)
         xml_bytes_ += size;
-    if (!not_there && (size > limits_.xml_bytes || xml_bytes_ > limits_.xml_bytes))
+    if (size > limits_.xml_bytes || xml_bytes_ > limits_.xml_bytes)
         fail(whole, "the scene's files have more than " + std::to_string(limits_.xml_bytes >> 20) + " MiB of XML" +
                         limits_hint);
-    std::optional<std::string> text = read_whole_file(path);
+    std::optional<std::string> text = opened ? opened->read() : std::nullopt;
     if (!text)
         fail(whole, "cannot read this scene file");
     file->line_starts.push_back(0);
@@ -192,7 +192,7 @@ bool Reader::open_include(const File &file, const pugi::xml_node &node, int dept
     }
     if (!found->exact)
         diagnostics_.warn(location, "\"" + name + "\" differs in case from the file " + found->path.string());
-    auto included = open(found->path.string(), found->path, file.version);
+    auto included = open(finder_.open(found->path), found->path, file.version);
     const File &opened = *included;
     included_[node.internal_object()] = std::move(included);
     collect_parameters(opened, opened.xml.document_element(), depth + 1);

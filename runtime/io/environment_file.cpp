@@ -42,18 +42,18 @@ void mend(std::vector<float> &values, float largest, Mended &mended) {
 
 } // namespace
 
-std::shared_ptr<const EnvironmentMap> read_environment(const std::filesystem::path &path, std::uint64_t limits,
+std::shared_ptr<const EnvironmentMap> read_environment(const OpenFile &file, std::uint64_t limits,
                                                        const Location &location, Diagnostics &diagnostics) {
+    const std::string path = file.name().string();
     Image image;
     try {
-        image = read_image(path.string(), limits);
+        image = read_image(file, limits);
     } catch (const Error &error) {
         throw SceneError(location, error.what());
     }
     if (std::uint64_t(image.width) * image.height > most_environment_texels)
-        throw SceneError(location,
-                         fmt::format("the environment map {} has {} x {} texels; {} million are possible",
-                                     path.string(), image.width, image.height, most_environment_texels >> 20));
+        throw SceneError(location, fmt::format("the environment map {} has {} x {} texels; {} million are possible",
+                                               path, image.width, image.height, most_environment_texels >> 20));
     std::vector<Channel *> planes;
     for (const char *name : {"R", "G", "B"})
         for (Channel &channel : image.channels)
@@ -69,7 +69,7 @@ std::shared_ptr<const EnvironmentMap> read_environment(const std::filesystem::pa
         mend(plane->values, largest, mended);
     const auto warn = [&](std::uint64_t count, const std::string &what) {
         if (count > 0)
-            diagnostics.warn(location, fmt::format("the environment map {} has {} {}", path.string(), count, what));
+            diagnostics.warn(location, fmt::format("the environment map {} has {} {}", path, count, what));
     };
     warn(mended.negative, "negative values, which count as 0");
     warn(mended.not_numbers, "values that are not numbers, which count as 0");

@@ -4,7 +4,6 @@
 #include "runtime/io/text.h"
 
 #include <algorithm>
-#include <fstream>
 
 namespace gradus {
 namespace fs = std::filesystem;
@@ -19,25 +18,28 @@ void FileFinder::confine(const std::vector<fs::path> &folders) {
     }
 }
 
-bool FileFinder::is_allowed(const fs::path &path) const {
-    if (!is_confined())
-        return true;
-    std::error_code error;
-    const fs::path canonical = fs::canonical(path, error);
-    if (error)
-        return false;
+bool FileFinder::is_allowed(const fs::path &place) const {
     return std::any_of(allowed_.begin(), allowed_.end(), [&](const fs::path &folder) {
-        return std::mismatch(folder.begin(), folder.end(), canonical.begin(), canonical.end()).first == folder.end();
+        return std::mismatch(folder.begin(), folder.end(), place.begin(), place.end()).first == folder.end();
     });
+}
+
+bool FileFinder::is_allowed(const Place &place) const { return !is_confined() || is_allowed(place.path()); }
+
+std::shared_ptr<const OpenFile> FileFinder::open(const fs::path &path) const {
+    return is_confined() ? OpenFile::open(path, [this](const fs::path &place) { return is_allowed(place); })
+                         : OpenFile::open(path);
 }
 
 /// A folder is listed once: a scene may have a thousand names in the wrong case.
 const std::map<std::string, std::string> &FileFinder::listing(const fs::path &folder) {
     const auto [at, is_new] = listings_.try_emplace(folder.string());
-    if (!is_new || !is_allowed(folder))
+    const Place place(folder);
+    if (!is_new || !place.is_folder() || !is_allowed(place))
         return at->second;
     std::error_code error;
-    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const fs::path listed = is_confined() ? fs::path(place.alias()) : folder;
+    for (fs::directory_iterator entry(listed, error), end; !error && entry != end; entry.increment(error)) {
         const std::string name = entry->path().filename().string();
         const auto [first, is_first] = at->second.try_emplace(lower_case(name), name);
         if (!is_first)
@@ -84,28 +86,13 @@ std::optional<FoundFile> FileFinder::search(const std::string &name, const std::
     const fs::path relative = path.relative_path();
     std::error_code error;
     for (const fs::path &start : starts)
-        if (fs::is_regular_file(start / relative, error) && is_allowed(start / relative))
+        if (fs::is_regular_file(start / relative, error) && is_allowed(Place(start / relative)))
             return FoundFile{start / relative, true};
     for (const fs::path &start : starts)
         if (const auto found = follow_ignoring_case(start.empty() ? fs::path(".") : start, relative);
-            found && is_allowed(*found))
+            found && is_allowed(Place(*found)))
             return FoundFile{*found, false};
     return std::nullopt;
-}
-
-std::optional<std::string> read_whole_file(const fs::path &path) {
-    std::error_code error;
-    if (!fs::is_regular_file(path, error))
-        return std::nullopt;
-    std::ifstream stream(path, std::ios::binary);
-    const std::uintmax_t size = fs::file_size(path, error);
-    if (!stream || error)
-        return std::nullopt;
-    std::string text(size, '\0');
-    stream.read(text.data(), std::streamsize(size));
-    if (std::uintmax_t(stream.gcount()) != size)
-        return std::nullopt;
-    return text;
 }
 
 } // namespace gradus

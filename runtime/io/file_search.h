@@ -1,6 +1,8 @@
 // Finds the files that a scene names, as forgiving as its users need.
 #pragma once
 
+#include "runtime/io/open_file.h"
+
 #include <cstddef>
 #include <filesystem>
 #include <map>
@@ -27,6 +29,10 @@ class FileFinder {
     /// file has that very name, letters are compared without case.
     std::optional<FoundFile> find(const std::string &name, const std::vector<std::filesystem::path> &folders);
 
+    /// Opens what was found, or nullptr: what may not be read by now is not, whatever it was when it was found. Any
+    /// thread may ask.
+    std::shared_ptr<const OpenFile> open(const std::filesystem::path &path) const;
+
     /// All that were found so far, each once.
     const std::set<std::string> &found() const { return found_; }
 
@@ -35,8 +41,9 @@ class FileFinder {
 
   private:
     std::optional<FoundFile> search(const std::string &name, const std::vector<std::filesystem::path> &folders);
-    /// Where links lead counts, not where they lie.
-    bool is_allowed(const std::filesystem::path &path) const;
+    /// place: where links lead.
+    bool is_allowed(const std::filesystem::path &place) const;
+    bool is_allowed(const Place &place) const;
     std::optional<std::filesystem::path> follow_ignoring_case(std::filesystem::path folder,
                                                               const std::filesystem::path &relative);
     const std::map<std::string, std::string> &listing(const std::filesystem::path &folder);
@@ -46,8 +53,5 @@ class FileFinder {
     /// By folder: its entries by their names in lower case; of several the first in alphabetical order.
     std::map<std::string, std::map<std::string, std::string>> listings_;
 };
-
-/// The whole file, or nothing if it cannot be read or is no regular file.
-std::optional<std::string> read_whole_file(const std::filesystem::path &path);
 
 } // namespace gradus

@@ -4,13 +4,12 @@
 #include "runtime/film/tonemap.h"
 #include "runtime/io/atomic_file.h"
 #include "runtime/io/exr_header.h"
+#include "runtime/io/picture_input.h"
 
 #include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <optional>
 #include <thread>
 
@@ -52,15 +51,14 @@ bool holds_srgb(const OIIO::ImageSpec &spec) {
 /// What may be read of a file: a few kilobytes can declare any number of pixels.
 class PixelLimit {
   public:
-    PixelLimit(const std::string &path, std::uint64_t limits) : path_(path), most_channels_(1024 * limits) {
+    PixelLimit(const OpenFile &file, std::uint64_t limits)
+        : path_(file.name().string()), most_channels_(1024 * limits) {
         constexpr std::uint64_t always = 1u << 28, unfolding = 64;
-        std::error_code not_there;
-        const std::uintmax_t size = std::filesystem::file_size(path, not_there);
-        most_bytes_ = (always + (not_there ? 0 : std::uint64_t(size)) * unfolding) * limits;
-        if (const std::optional<ExrSize> declared = exr_size(path); declared && !not_there) {
+        most_bytes_ = (always + file.bytes() * unfolding) * limits;
+        if (const std::optional<ExrSize> declared = exr_size(file.library_name())) {
             check_bytes(declared->bytes);
-            if (!declared->is_whole || declared->blocks > size / 8)
-                fail_read(path, "it is truncated or damaged: its header and its size do not agree");
+            if (!declared->is_whole || declared->blocks > file.bytes() / 8)
+                fail_read(path_, "it is truncated or damaged: its header and its size do not agree");
         }
     }
 
@@ -84,13 +82,14 @@ class PixelLimit {
                                          bytes >> 20, most_bytes_ >> 20));
     }
 
-    const std::string &path_;
+    const std::string path_;
     std::uint64_t most_channels_, most_bytes_, channels_ = 0, bytes_ = 0;
 };
 
 /// Appends the channels of the part that `input` stands at.
-void read_part(OIIO::ImageInput &input, int part, const std::string &path, PixelLimit &limit, Image &image) {
+void read_part(OIIO::ImageInput &input, int part, const OpenFile &file, PixelLimit &limit, Image &image) {
     const OIIO::ImageSpec spec = input.spec();
+    const std::string path = file.name().string();
     if (spec.deep)
         fail_read(path, "deep images are not supported");
     if (spec.width <= 0 || spec.height <= 0 || spec.depth > 1)
@@ -121,7 +120,7 @@ void read_part(OIIO::ImageInput &input, int part, const std::string &path, Pixel
                               : input.read_scanlines(part, 0, spec.y + int(begin), spec.y + int(end), spec.z, 0,
                                                      spec.nchannels, OIIO::TypeDesc::FLOAT, rows.data());
         if (!done)
-            fail_read(path, input.geterror());
+            fail_read(path, named_in(input.geterror(), file));
         for (std::size_t c = 0; c < count; ++c) {
             const bool linear = !decode || static_cast<int>(c) == spec.alpha_channel;
             float *to = image.channels[first_channel + c].values.data() + std::size_t(begin) * width;
@@ -180,14 +179,21 @@ void check_channels(const Image &image, const std::string &path) {
 } // namespace
 
 Image read_image(const std::string &path, std::uint64_t limits) {
+    const auto file = OpenFile::open(path);
+    if (!file)
+        fail_read(path, "there is no such file, or it is not for reading");
+    return read_image(*file, limits);
+}
+
+Image read_image(const OpenFile &file, std::uint64_t limits) {
     set_up_library();
-    PixelLimit limit(path, limits);
-    const auto input = OIIO::ImageInput::open(path);
-    if (!input)
-        fail_read(path, OIIO::geterror());
+    PixelLimit limit(file, limits);
+    const PictureInput opened = open_picture(file);
+    if (!opened.input)
+        fail_read(file.name().string(), opened.error);
     Image image;
-    for (int part = 0; input->seek_subimage(part, 0); ++part)
-        read_part(*input, part, path, limit, image);
+    for (int part = 0; opened.input->seek_subimage(part, 0); ++part)
+        read_part(*opened.input, part, file, limit, image);
     return image;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/film/image.h"
+#include "runtime/io/open_file.h"
 
 #include <cstdint>
 #include <string>
@@ -16,6 +17,7 @@ namespace gradus {
 /// `limits` times 1024 channels and 256 MiB of pixels as floats, to which 64 times the file's size comes.
 /// Throws Error(ExitCode::image).
 Image read_image(const std::string &path, std::uint64_t limits = 1);
+Image read_image(const OpenFile &file, std::uint64_t limits = 1);
 
 /// Writes all channels as 32-bit float to an OpenEXR file (zip), with the metadata as string attributes "gradus:KEY".
 /// Infinities and NaN are kept. The file is written in whole or not at all (write_file_atomically). Equal images give

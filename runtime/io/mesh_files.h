@@ -7,6 +7,7 @@
 #include "runtime/scene/scene.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,9 @@ namespace gradus {
 
 /// Wavefront OBJ: v, vt, vn, f with any mix of v, v/t, v//n, v/t/n and negative indices. Polygons become fans.
 /// Everything else (groups, materials, lines, curves) is skipped: the whole file is one mesh. Messages quote a file
-/// only where it is called .obj, links resolved: the format has no mark, and a scene can name any file.
-Mesh parse_obj(const std::string &text, const std::string &file_name);
+/// only where it is called .obj, links resolved: the format has no mark, and a scene can name any file. place: where
+/// the text was read from; empty: where its name says.
+Mesh parse_obj(const std::string &text, const std::string &file_name, const std::filesystem::path &place = {});
 
 /// PLY, ASCII or binary of either byte order. Takes x y z, nx ny nz, u v (or s t) of "vertex" and the index list of
 /// "face", and what makes the attributes that are wanted (ply_attributes.h); skips every other element and property.

@@ -27,11 +27,8 @@ constexpr int longest_list = 16; // of vertices that share a position
 
 class ObjReader {
   public:
-    ObjReader(const std::string &text, const std::string &file_name) : text_(text), file_name_(file_name) {
-        std::error_code not_there;
-        const std::filesystem::path file = std::filesystem::canonical(file_name, not_there);
-        quotes_ = lower_case((not_there ? std::filesystem::path(file_name) : file).extension().string()) == ".obj";
-    }
+    ObjReader(const std::string &text, const std::string &file_name, const std::filesystem::path &place)
+        : text_(text), file_name_(file_name), quotes_(lower_case(place.extension().string()) == ".obj") {}
 
     Mesh read() {
         const char *at = text_.data(), *const end = at + text_.size();
@@ -77,7 +74,7 @@ class ObjReader {
     std::vector<Corner> corners_;             // by vertex of the mesh
     std::vector<std::uint32_t> first_, next_; // the first few vertices that share a position, as lists
     std::map<Corner, std::uint32_t> crowded_; // the others: a list of all would be searched for each corner
-    bool quotes_ = false;
+    bool quotes_;
     std::vector<std::uint32_t> polygon_;
     std::vector<std::array<std::uint32_t, 3>> triangles_;
 };
@@ -213,6 +210,8 @@ Mesh ObjReader::assemble() {
 
 } // namespace
 
-Mesh parse_obj(const std::string &text, const std::string &file_name) { return ObjReader(text, file_name).read(); }
+Mesh parse_obj(const std::string &text, const std::string &file_name, const std::filesystem::path &place) {
+    return ObjReader(text, file_name, place.empty() ? std::filesystem::path(file_name) : place).read();
+}
 
 } // namespace gradus

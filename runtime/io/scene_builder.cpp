@@ -154,6 +154,14 @@ std::filesystem::path SceneBuilder::find_file(Properties &properties) {
     return found->path;
 }
 
+std::shared_ptr<const OpenFile> SceneBuilder::open_file(const std::filesystem::path &path,
+                                                        const Location &location) const {
+    auto file = finder_.open(path);
+    if (!file)
+        throw SceneError(location, "cannot read " + path.string());
+    return file;
+}
+
 Scene SceneBuilder::build() {
     const Element &root = document_.root;
     index(root, 0);

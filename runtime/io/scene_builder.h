@@ -3,6 +3,7 @@
 
 #include "runtime/io/diagnostics.h"
 #include "runtime/io/document.h"
+#include "runtime/io/file_search.h"
 #include "runtime/io/load_options.h"
 #include "runtime/io/properties.h"
 #include "runtime/scene/mesh_builder.h"
@@ -26,13 +27,19 @@ struct ShapeGroup;
 /// A file of meshes, which several threads may ask for; it is read once.
 class MeshFile {
   public:
-    MeshFile(std::filesystem::path path, Location location) : path_(std::move(path)), location_(std::move(location)) {}
+    /// size: of the file when it was counted; a larger one is not read.
+    MeshFile(const FileFinder &finder, std::filesystem::path path, std::uint64_t size, Location location)
+        : finder_(finder), path_(std::move(path)), size_(size), location_(std::move(location)) {}
     const std::filesystem::path &path() const { return path_; }
     /// Throws SceneError at the shape that asked first where it cannot be read.
     const std::string &bytes();
+    /// Where they were read from, links resolved; once they have been.
+    const std::filesystem::path &place() const { return place_; }
 
   private:
-    std::filesystem::path path_;
+    const FileFinder &finder_;
+    std::filesystem::path path_, place_;
+    std::uint64_t size_;
     Location location_;
     std::mutex mutex_;
     std::optional<std::string> bytes_;
@@ -49,6 +56,8 @@ class SceneBuilder {
 
     /// The file that the string parameter "filename" names. A missing one is a SceneError.
     std::filesystem::path find_file(Properties &properties);
+    /// What find_file() has found. Throws SceneError where it cannot be read.
+    std::shared_ptr<const OpenFile> open_file(const std::filesystem::path &path, const Location &location) const;
     /// A file that a shape takes as a whole; it counts as read. Throws SceneError where that is too much.
     std::shared_ptr<MeshFile> mesh_file(const std::filesystem::path &path, const Location &location);
     /// The same of a file that many shapes may come from: the last one is kept, and counts once.

@@ -1,6 +1,5 @@
 // Shapes of a scene file. Plugins say what is to be read, one after the other; then all cores read it; then shapes come
 // into the scene, and what is said of them into the diagnostics, in the file's order.
-#include "runtime/io/file_search.h"
 #include "runtime/io/plugins/plugin.h"
 #include "runtime/io/scene_builder.h"
 #include "runtime/phases.h"
@@ -37,18 +36,19 @@ struct SceneBuilder::ShapeInLine {
 const std::string &MeshFile::bytes() {
     const std::lock_guard lock(mutex_);
     if (!bytes_)
-        bytes_ = read_whole_file(path_);
+        if (const auto file = finder_.open(path_); file && file->bytes() <= size_) {
+            bytes_ = file->read();
+            place_ = file->place();
+        }
     if (!bytes_)
         throw SceneError(location_, "cannot read " + path_.string());
     return *bytes_;
 }
 
 std::shared_ptr<MeshFile> SceneBuilder::mesh_file(const std::filesystem::path &path, const Location &location) {
-    std::error_code not_there;
-    const std::uintmax_t size = std::filesystem::file_size(path, not_there);
-    if (!not_there)
-        count_mesh_bytes(size, location);
-    return std::make_shared<MeshFile>(path, location);
+    const std::uint64_t size = open_file(path, location)->bytes();
+    count_mesh_bytes(size, location);
+    return std::make_shared<MeshFile>(finder_, path, size, location);
 }
 
 std::shared_ptr<MeshFile> SceneBuilder::shared_mesh_file(const std::filesystem::path &path, const Location &location) {

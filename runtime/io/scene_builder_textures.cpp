@@ -24,7 +24,8 @@ std::shared_ptr<const Bitmap> SceneBuilder::bitmap(const std::filesystem::path &
         const Phase phase(phases_, phase_names::pictures);
         ReadBitmap read;
         try {
-            read = read_bitmap(path.string(), {is_linear, channel, limits_.texture_bytes / LoadLimits().texture_bytes});
+            read = read_bitmap(*open_file(path, location),
+                               {is_linear, channel, limits_.texture_bytes / LoadLimits().texture_bytes});
         } catch (const Error &error) {
             throw SceneError(location, error.what());
         }

@@ -102,6 +102,26 @@ TEST_F(FailingCalls, MemoryForAnyPartOfTheRender) {
     EXPECT_GT(refused, 0);
     EXPECT_GT(rendered, 0);
 }
+
+/// The same for numbers of threads: each takes its part of the address space, and what waits for one that could not be
+/// started waits for ever.
+TEST_F(FailingCalls, MemoryForAnyNumberOfThreads) {
+    ::unsetenv("LD_PRELOAD");
+    for (const char *threads : {"1", "8", "32"}) {
+        int refused = 0, rendered = 0;
+        for (std::size_t limit = 1300; limit <= 2500; limit += 75) {
+            const Outcome outcome = run({"render", GRADUS_SCENES "/cornell-box.xml", "-o", "out.exr", "--size", "64x64",
+                                         "--spp", "2", "--method", "gpt", "-q", "--nthreads", threads},
+                                        0, limit << 20);
+            const std::string which = std::string(threads) + " in " + std::to_string(limit) + " MB: " + outcome.err;
+            EXPECT_EQ(outcome.signal, 0) << which;
+            EXPECT_TRUE(outcome.exit_code == 0 || outcome.exit_code == 4) << which;
+            ++(outcome.exit_code == 0 ? rendered : refused);
+        }
+        std::printf("%s threads: %d renders were refused, %d were whole\n", threads, refused, rendered);
+        EXPECT_GT(rendered, 0) << threads;
+    }
+}
 #else
 TEST_F(FailingCalls, SomeCallsOfPathTracing) { fail_calls("pt", 7); }
 #endif

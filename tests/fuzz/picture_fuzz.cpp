@@ -18,18 +18,18 @@ void read_as_image(const std::string &path) {
 }
 
 /// `kind` chooses what a scene file asks of it.
-void read_as_texture(const std::string &path, std::size_t kind) {
+void read_as_texture(const OpenFile &file, std::size_t kind) {
     const char *const channels[] = {"", "r", "a"};
-    const Bitmap bitmap = read_bitmap(path, {kind % 2 == 0, channels[kind / 2 % 3]}).bitmap;
+    const Bitmap bitmap = read_bitmap(file, {kind % 2 == 0, channels[kind / 2 % 3]}).bitmap;
     require(bitmap.words.size() ==
             Bitmap::words_for(std::uint64_t(bitmap.width) * bitmap.height, bitmap.format, bitmap.is_color));
     for (int channel = 0; channel < (bitmap.is_color ? 3 : 1); ++channel)
         require(std::isfinite(bitmap.channel(bitmap.width - 1, bitmap.height - 1, channel)));
 }
 
-void read_as_environment(const std::string &path) {
+void read_as_environment(const OpenFile &file) {
     Diagnostics diagnostics(false);
-    const auto map = read_environment(path, 1, {}, diagnostics);
+    const auto map = read_environment(file, 1, {}, diagnostics);
     require(map->integral.r >= 0 && std::isfinite(map->integral.g) && std::isfinite(map->integral.b));
 }
 
@@ -47,8 +47,9 @@ extern "C" int LLVMFuzzerTestOneInput(const unsigned char *data, std::size_t siz
         } catch (const SceneError &) {
         }
     };
+    const auto file = OpenFile::open(path);
     refused([&] { read_as_image(path); });
-    refused([&] { read_as_texture(path, size); });
-    refused([&] { read_as_environment(path); });
+    refused([&] { read_as_texture(*file, size); });
+    refused([&] { read_as_environment(*file); });
     return 0;
 }

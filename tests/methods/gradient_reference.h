@@ -14,9 +14,9 @@ namespace gradus::testing {
 double expect_gradients(const ReferenceScene &reference, const std::vector<Image> &images, double samples_per_pixel,
                         RenderOptions options = {});
 
-/// Expects that reconstructions lose no light, a hundredth of the primals' mean at most (they are unbiased, but not each
-/// of the primal's mean: where rare bright samples make it, four standard errors over the seeds are more), and returns
-/// their relMSE over that of their primals.
+/// Expects that reconstructions lose no light, a hundredth of the primals' mean at most (they are unbiased, but not
+/// each of the primal's mean: where rare bright samples make it, four standard errors over the seeds are more), and
+/// returns their relMSE over that of their primals.
 double noise_left_by_reconstruction(const ReferenceScene &reference, const std::vector<Image> &images);
 
 /// Cuts a reference and its scene down to a part of the film, in pixels.

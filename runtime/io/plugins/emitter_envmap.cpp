@@ -45,8 +45,9 @@ Emitter emitter_envmap(Properties &properties, SceneBuilder &builder) {
         emitter.axes[a] = to_float(normalize(axes[a]));
     }
     const Phase phase(builder.phases(), phase_names::pictures);
-    emitter.map = read_environment(builder.find_file(properties), builder.limits().images,
-                                   properties.location_of("filename"), builder.diagnostics());
+    const Location location = properties.location_of("filename");
+    emitter.map = read_environment(*builder.open_file(builder.find_file(properties), location), builder.limits().images,
+                                   location, builder.diagnostics());
     const Rgb all = emitter.map->integral;
     if (!std::isfinite(scale * all.r + scale * all.g + scale * all.b))
         throw properties.error("scale", "the environment is too bright for single precision");

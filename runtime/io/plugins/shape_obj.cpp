@@ -16,7 +16,8 @@ ShapeGeometry shape_obj(Properties &properties, SceneBuilder &builder) {
     const std::shared_ptr<MeshFile> file = builder.mesh_file(builder.find_file(properties), properties.location());
     const bool flip = properties.boolean("flip_tex_coords"); // most files count v from the image's bottom
     return pending_shape_mesh(properties, [file, flip] {
-        Mesh mesh = parse_obj(file->bytes(), file->path().string());
+        const std::string &text = file->bytes();
+        Mesh mesh = parse_obj(text, file->path().string(), file->place());
         if (flip)
             for (auto &[u, v] : mesh.texcoords)
                 v = 1 - v;

@@ -1,0 +1,66 @@
+#include "runtime/io/picture_input.h"
+
+#include "runtime/io/text.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace gradus {
+namespace {
+
+/// OpenImageIO's names of them. The last has no mark in its files, so it is tried last.
+const std::vector<std::string> formats_of_one_file = {"openexr", "png", "jpeg", "tiff",     "hdr", "bmp", "pnm",
+                                                      "webp",    "gif", "dds",  "jpeg2000", "psd", "sgi", "targa"};
+
+/// The readers to try, in turn: first that of the name's extension.
+std::vector<std::unique_ptr<OIIO::ImageInput>> readers_for(const OpenFile &file) {
+    std::vector<std::unique_ptr<OIIO::ImageInput>> readers;
+    const std::string extension = lower_case(file.name().extension().string());
+    if (extension.size() > 1)
+        if (auto reader = OIIO::ImageInput::create(extension.substr(1)))
+            readers.push_back(std::move(reader));
+    OIIO::geterror(); // of an extension that nobody knows
+    const auto opens_others = [](const std::unique_ptr<OIIO::ImageInput> &reader) {
+        return std::find(formats_of_one_file.begin(), formats_of_one_file.end(), reader->format_name()) ==
+               formats_of_one_file.end();
+    };
+    readers.erase(std::remove_if(readers.begin(), readers.end(), opens_others), readers.end());
+    for (const std::string &format : formats_of_one_file)
+        if (readers.empty() || readers.front()->format_name() != format)
+            if (auto reader = OIIO::ImageInput::create(format))
+                readers.push_back(std::move(reader));
+    return readers;
+}
+
+} // namespace
+
+PictureInput open_picture(const OpenFile &file, const OIIO::ImageSpec *wishes) {
+    PictureInput opened;
+    if (!file.is_confined()) {
+        opened.input = OIIO::ImageInput::open(file.library_name(), wishes);
+        if (!opened.input)
+            opened.error = OIIO::geterror();
+        return opened;
+    }
+    for (std::unique_ptr<OIIO::ImageInput> &reader : readers_for(file)) {
+        OIIO::ImageSpec spec;
+        if (reader->open(file.library_name(), spec, wishes ? *wishes : OIIO::ImageSpec())) {
+            opened.input = std::move(reader);
+            return opened;
+        }
+        const std::string error = reader->geterror();
+        if (opened.error.empty())
+            opened.error = named_in(error, file);
+    }
+    opened.error += "; with --confined the formats are " + join(formats_of_one_file);
+    return opened;
+}
+
+std::string named_in(std::string message, const OpenFile &file) {
+    const std::string &alias = file.library_name(), name = file.name().string();
+    for (std::size_t at = 0; alias != name && (at = message.find(alias, at)) != std::string::npos; at += name.size())
+        message.replace(at, alias.size(), name);
+    return message;
+}
+
+} // namespace gradus

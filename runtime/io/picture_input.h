@@ -1,0 +1,25 @@
+// Opens pictures by OpenImageIO.
+#pragma once
+
+#include "runtime/io/open_file.h"
+
+#include <OpenImageIO/imageio.h>
+
+#include <memory>
+#include <string>
+
+namespace gradus {
+
+struct PictureInput {
+    std::unique_ptr<OIIO::ImageInput> input; ///< nullptr: see error
+    std::string error;
+};
+
+/// Any format that OpenImageIO knows. Of confined files those whose readers open no file but the one: playlists of
+/// films, say, name others. wishes: as ImageInput::open() has them; may be nullptr.
+PictureInput open_picture(const OpenFile &file, const OIIO::ImageSpec *wishes = nullptr);
+
+/// The library's words about a file, which call it by its name.
+std::string named_in(std::string message, const OpenFile &file);
+
+} // namespace gradus
