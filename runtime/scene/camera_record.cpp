@@ -49,7 +49,7 @@ std::vector<float> make_camera_record(const Camera &camera, const FilmSettings &
     const Vec along_x = column(camera.to_world, 0), along_y = column(camera.to_world, 1);
     const Vec left = normalized(along_x), up = normalized(along_y);
     const Vec forward = normalized(column(camera.to_world, 2)), origin = column(camera.to_world, 3);
-    // What lies ahead appears where the principal point is: the film is moved the other way.
+    // As Mitsuba 3.9 has it: the film is moved to the right and down, so what lies ahead appears left and above.
     const double right_by = 2 * half_width * camera.principal_x, down_by = 2 * half_height * camera.principal_y;
     std::vector<float> record(camera_stride);
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -212,8 +212,8 @@ struct Camera {
     FovAxis fov_axis = FovAxis::x;
     Kind kind = Kind::perspective;
     double principal_x = 0,
-           principal_y = 0; ///< where the image is of what lies ahead, right of and below its middle, ...
-                            ///< ... in widths and heights of the film
+           principal_y = 0;                ///< how far right of and below what lies ahead the film's middle looks, ...
+                                           ///< ... in widths and heights of the film
     double near_clip = 0, far_clip = 1e30; ///< along the line of sight, what is nearer or farther is not seen
     double aperture_radius = 0;            ///< of a thin lens
     double focus_distance = 1;             ///< of a thin lens, along the line of sight

@@ -81,7 +81,8 @@ TEST_P(GradientPhotons, DifferencesAreThoseOfThePrimal) {
 
 /// A floor that all photons come to from three walls. Gather points are small, so that most photons of a pixel do not
 /// count in the next one and are moved.
-void expect_differences_under_walls(const std::string &name, SceneMaker maker, const Bsdf &side, const Bsdf &back) {
+void expect_differences_under_walls(const std::string &name, SceneMaker maker, const Bsdf &side, const Bsdf &back,
+                                    std::size_t seeds) {
     maker.look({0, 2.5, 1.5}, {0, 0, 0}, 40);
     maker.scene.settings.max_depth = 3;
     maker.parallelogram({-1, 0, 1}, {0, 0, -2}, {0, 2, 0}, maker.material(two_sided(side)));
@@ -90,7 +91,7 @@ void expect_differences_under_walls(const std::string &name, SceneMaker maker, c
     maker.point_light({1, 1, 1}, {0.2f, 1, 0});
     RenderOptions options = few_photons();
     options.radius->value = 0.5;
-    expect_differences_of_the_primal(name, maker.scene, options, 48);
+    expect_differences_of_the_primal(name, maker.scene, options, seeds);
 }
 
 /// What textures replace is far from what they are worth.
@@ -105,14 +106,14 @@ TEST(GradientPhotonImage, HasDifferencesOfThePrimalUnderTexturedWalls) {
     maker.scene.blends = {{0, 1, 0.8f}};
     blend.blend = 0;
     maker.floor(-1, 1, 1, maker.material(floor));
-    expect_differences_under_walls("textured-walls", maker, textured, blend);
+    expect_differences_under_walls("textured-walls", maker, textured, blend, 16);
 }
 
 /// Walls that mirror some photons and scatter others.
 TEST(GradientPhotonImage, HasDifferencesOfThePrimalUnderWallsOfPlastic) {
     SceneMaker maker(24, passes);
     maker.floor(-1, 1, 1, maker.material(diffuse(0.5)));
-    expect_differences_under_walls("plastic-walls", maker, plastic(0.2, 2.2), plastic(0.5, 1.5));
+    expect_differences_under_walls("plastic-walls", maker, plastic(0.2, 2.2), plastic(0.5, 1.5), 48);
 }
 
 INSTANTIATE_TEST_SUITE_P(Image, GradientPhotons,

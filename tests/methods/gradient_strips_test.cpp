@@ -109,7 +109,8 @@ TEST_P(GradientStrips, GiveTheirImageInTheMiddleOfAFrame) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, GradientStrips, ::testing::Values("cornell-box", "materials"), name_of_scene);
+INSTANTIATE_TEST_SUITE_P(Methods, GradientStrips, ::testing::Values("cornell-box"), name_of_scene);
+INSTANTIATE_TEST_SUITE_P(Full, GradientStrips, ::testing::Values("materials"), name_of_scene);
 
 } // namespace
 } // namespace gradus::testing

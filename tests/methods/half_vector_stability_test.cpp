@@ -131,7 +131,7 @@ TEST(HalfVectorStability, ToLampsThatMirror) {
     const std::int32_t light = scene.emitter(Emitter::Kind::area, {1, 0.5f, 0.2f});
     scene.sphere({-0.4f, -0.4f, 0}, 0.35f, scene.material(mirror()), light);
     scene.sphere({0.4f, -0.4f, 0}, 0.35f, scene.material(rough_metal(0.02)), light);
-    expect_no_bias(gradient_bias(scene.scene, {8, 64, 256}),
+    expect_no_bias(gradient_bias(scene.scene, {8, 48, 192}),
                    row("a vertex that emits and mirrors: a path that ends there reconnects, one that goes on does not",
                        "balls of mirror and of polished metal that shine", 0.15, 0.0175));
 }

@@ -113,7 +113,7 @@ void expect_sight(const camera_sight &sight, const Double3 &origin, const Double
 
 // What Mitsuba 3.9 says of such rays.
 
-TEST(CameraRecord, PrincipalPointMovesTheImageRightAndDown) {
+TEST(CameraRecord, PrincipalPointMovesTheFilmRightAndDown) {
     Camera camera;
     camera.fov = 90;
     camera.principal_x = 0.1;

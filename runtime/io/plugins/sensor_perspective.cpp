@@ -9,7 +9,7 @@ Declaration declare_sensor_perspective() {
             joined({parameters_of_camera(),
                     parameters_of_field_of_view(),
                     {Parameter{"principal_point_offset_x", Takes::number, "0",
-                               "how far right of the film's middle the line of sight is"}
+                               "how far right of what lies ahead the film's middle looks"}
                          .in("widths of the film"),
                      Parameter{"principal_point_offset_y", Takes::number, "0", "how far below it"}.in(
                          "heights of the film")},
