@@ -8,6 +8,7 @@
 #include "runtime/film/metrics.h"
 #include "runtime/io/image_io.h"
 #include "runtime/seconds_since.h"
+#include "runtime/wavefront/sample_parts.h"
 #include "solver/halves.h"
 
 #include <fmt/format.h>
@@ -143,7 +144,7 @@ class SolveJob {
         const std::uint64_t pixels = std::uint64_t(images_.width) * images_.height;
         if (samples < 2 * pixels)
             return {1, 1};
-        return {samples_of_half(samples, pixels, 0), samples_of_half(samples, pixels, 1)};
+        return {samples_of_part(samples, pixels, 0, 2), samples_of_part(samples, pixels, 1, 2)};
     }
 
     Image result_image() const {

@@ -87,7 +87,7 @@ Image PathTracer::image() {
         guide(image, tells_error ? &errors : nullptr);
     else if (tells_error)
         errors = errors_of_halves(half_image(0), half_image(1),
-                                  double(samples_of_half(done_, session_.pixels(), 0)) / double(done_));
+                                  double(samples_of_part(done_, session_.pixels(), 0, 2)) / double(done_));
     if (tells_error)
         statistics_.estimated_error = add_error_layer(image, errors);
     return image;
@@ -110,7 +110,7 @@ void PathTracer::guide(Image &image, SquaredErrors *errors) {
         for (int i = 0; i < 2; ++i) {
             const std::vector<float> image_of_half = half_image(i);
             halves[i].primal = Buffer(device, "primal", image_of_half.data(), image_of_half.size() * sizeof(float));
-            halves[i].samples = samples_of_half(done_, pixels, i);
+            halves[i].samples = samples_of_part(done_, pixels, std::uint32_t(i), 2);
             for (int c = 0; options_.layers && c < 3; ++c) {
                 const float *plane = image_of_half.data() + c * pixels;
                 layers.push_back({fmt::format("primal_{}.{}", i == 0 ? "even" : "odd", "RGB"[c]),

@@ -29,12 +29,6 @@ struct HostHalves {
 };
 HalvedImages uploaded_halves(Device &device, const HostHalves &halves, std::size_t bytes_of_image);
 
-/// Of `samples` samples of `pixels` pixels, taken frame by frame, those of a half.
-constexpr std::uint64_t samples_of_half(std::uint64_t samples, std::uint64_t pixels, int half) {
-    const std::uint64_t frames = samples / pixels, more = samples % pixels;
-    return (frames + (half == 0 ? 1 : 0)) / 2 * pixels + (frames % 2 == std::uint64_t(half) ? more : 0);
-}
-
 /// A half needs so many samples of each pixel to have a variance.
 constexpr std::uint64_t least_half_samples = 2;
 

@@ -78,9 +78,7 @@ double mean_of(const Replicate &all) { return all.count > 0 ? all.sum / all.coun
 Film::Film(Session &session, Stages &stages, bool halves)
     : session_(session),
       accumulate_(stages.add({.name = "accumulate", .strict = true, .numbers = {"first_slot", "first_pixel"}})),
-      parts_(gradus::has_replicates(session.options) ? 1u << replicate_bits
-             : halves                                ? 2
-                                                     : 1) {}
+      parts_(1u << part_bits(session.options, halves)) {}
 
 std::vector<std::string> Film::table_names() const {
     std::vector<std::string> names;

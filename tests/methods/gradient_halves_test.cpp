@@ -1,6 +1,7 @@
 // The two halves of a render's samples: independent of each other, the same in strips and batches of any size, and what
 // the weighted reconstruction makes of them is unbiased.
 #include "methods/gradient_image.h"
+#include "runtime/wavefront/sample_parts.h"
 #include "solver/weighted_reconstruction.h"
 #include "tests/methods/gradient_bias.h"
 #include "tests/methods/reference_scene.h"
@@ -60,7 +61,7 @@ HalvedImages halves_of(const Image &image, std::uint64_t samples) {
                      buffer("primal", "_variance"),
                      buffer("dx", "_variance"),
                      buffer("dy", "_variance"),
-                     samples_of_half(samples, pixels, i)};
+                     samples_of_part(samples, pixels, std::uint32_t(i), 2)};
     }
     return halves;
 }
