@@ -157,6 +157,12 @@ class RenderJob {
 
     /// The next batch; false after the last, or where it was given up.
     bool render_batch() {
+        // Until a time: one sample a pixel, then as many as are done. A batch of the device's own size may take longer
+        // than there is time, and would be lost.
+        if (request_.time_limit > 0 && !error_watch_) {
+            const std::uint64_t done = prepared_.method->done_samples();
+            prepared_.method->pause_at(done + std::max(done, std::uint64_t(record_.width) * record_.height));
+        }
         try {
             return prepared_.method->render_batch();
         } catch (const Stopped &) {

@@ -5,6 +5,7 @@
 #include "bench/write_results.h"
 #include "methods/method.h"
 #include "planning/make_method.h"
+#include "runtime/device/pocl_compiler.h"
 #include "runtime/device/program.h"
 #include "runtime/scene/traits.h"
 
@@ -52,6 +53,7 @@ void run(const Arguments &arguments) {
         settings.cases = std::min(settings.cases, 20'000u);
     }
     if (arguments.parts.contains("remarks")) {
+        prepare_pocl_compiler(settings.device); // as the processes that compile have it
         remark_on_kernels(settings);
         return;
     }

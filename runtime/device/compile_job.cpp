@@ -2,6 +2,7 @@
 
 #include "runtime/device/byte_text.h"
 #include "runtime/device/framed_socket.h"
+#include "runtime/device/pocl_compiler.h"
 #include "runtime/device/pocl_stub.h"
 #include "runtime/error.h"
 
@@ -69,10 +70,14 @@ struct OpenDevice {
 
 OpenDevice open_device(const DeviceDescription &wanted) {
     const char *pocl_folder = std::getenv("POCL_CACHE_DIR");
-    for (const FoundDevice &found : find_devices())
-        if (found.description.platform == wanted.platform && found.description.name == wanted.name &&
-            found.description.driver == wanted.driver)
-            return {found.device, cl::Context(found.device), PoclStubs(pocl_folder ? pocl_folder : "", wanted)};
+    for (const FoundDevice &found : find_devices()) {
+        if (found.description.platform != wanted.platform || found.description.name != wanted.name ||
+            found.description.driver != wanted.driver)
+            continue;
+        OpenDevice opened{found.device, cl::Context(found.device), PoclStubs(pocl_folder ? pocl_folder : "", wanted)};
+        prepare_pocl_compiler(opened.context, opened.device, found.description);
+        return opened;
+    }
     throw cl::Error(CL_DEVICE_NOT_FOUND, "clGetDeviceIDs");
 }
 

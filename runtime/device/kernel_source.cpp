@@ -5,7 +5,10 @@
 
 #include <fmt/format.h>
 
+#include <map>
+#include <mutex>
 #include <sstream>
+#include <utility>
 
 namespace gradus {
 
@@ -45,11 +48,17 @@ void append(const std::string &path, const std::string &includer, KernelSource &
 
 } // namespace
 
-KernelSource kernel_source(const std::string &path) {
+const KernelSource &kernel_source(const std::string &path) {
+    static std::mutex mutex;
+    static std::map<std::string, KernelSource> made;
+    const std::lock_guard lock(mutex);
+    const auto found = made.find(path);
+    if (found != made.end())
+        return found->second;
     KernelSource source;
     std::set<std::string> seen;
     append(path, "the runtime", source, seen);
-    return source;
+    return made.emplace(path, std::move(source)).first->second;
 }
 
 } // namespace gradus

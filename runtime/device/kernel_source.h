@@ -11,8 +11,9 @@ struct KernelSource {
     std::set<std::string> traits; ///< the names that "//! traits:" lines declare, in the file and all it includes
 };
 
-/// The source of an embedded kernel file, by its path from the project's root. Throws Error where a file that it
-/// includes does not exist.
-KernelSource kernel_source(const std::string &path);
+/// The source of an embedded kernel file, by its path from the project's root; put together once, for a renderer asks
+/// for dozens of them, of some 200,000 characters each, and a process may make many renderers. Throws Error where a
+/// file that it includes does not exist.
+const KernelSource &kernel_source(const std::string &path);
 
 } // namespace gradus

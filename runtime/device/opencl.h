@@ -23,7 +23,7 @@ namespace gradus {
 struct BuiltProgram;
 class CompileWorkers;
 
-/// Programs that were built for a device in this process, by source and options.
+/// Programs that were built for a device in this process, by options and a hash of the source.
 struct BuiltPrograms {
     std::mutex mutex;
     std::map<std::string, std::shared_future<std::shared_ptr<const BuiltProgram>>> programs;

@@ -192,16 +192,12 @@ std::vector<Kernel> KernelLibrary::build(const std::vector<KernelRequest> &reque
                                          const std::string &dump_folder) {
     Device::Implementation &d = device_.implementation();
     std::vector<ProgramSource> sources;
-    std::map<std::string, KernelSource> files;
     for (const KernelRequest &request : requests) {
-        const auto [file, is_new] = files.try_emplace(request.file);
-        if (is_new)
-            file->second = kernel_source(request.file);
-        const std::string options =
-            options_for(d.description, request, file->second, traits_, precision_, work_group_size());
+        const KernelSource &file = kernel_source(request.file);
+        const std::string options = options_for(d.description, request, file, traits_, precision_, work_group_size());
         if (!dump_folder.empty())
-            dump(dump_folder, request, options, file->second.text);
-        sources.push_back({request.name, file->second.text, options});
+            dump(dump_folder, request, options, file.text);
+        sources.push_back({request.name, file.text, options});
     }
 
     std::size_t built = 0;

@@ -1,6 +1,7 @@
 #include "runtime/device/program_builder.h"
 
 #include "runtime/device/compile_workers.h"
+#include "runtime/device/hash.h"
 #include "runtime/device/program_key.h"
 #include "runtime/error.h"
 
@@ -77,15 +78,18 @@ class Builder {
         std::vector<Task> missing;
         std::vector<std::shared_future<Shared>> programs;
         std::vector<std::size_t> made_elsewhere;
-        const std::string device = device_.store.is_on() ? device_key(device_.description) : "";
+        std::string device; // its key asks the system, so only where there is something to look for
         for (std::size_t i = 0; i < sources_.size(); ++i) {
-            const std::string name = sources_[i].options + '\n' + sources_[i].text;
+            // Not the text itself, of which each comparison would read all.
+            const std::string name = sources_[i].options + '\n' + hexadecimal(hash128(sources_[i].text, 0));
             bool is_mine = false;
             programs.push_back(claims_.claim(name, is_mine));
             if (!is_mine) {
                 made_elsewhere.push_back(i);
                 continue;
             }
+            if (device.empty() && device_.store.is_on())
+                device = device_key(device_.description);
             Task task{i, name, device.empty() ? "" : program_key(device, sources_[i].options, sources_[i].text)};
             if (!take_stored(task))
                 missing.push_back(std::move(task));

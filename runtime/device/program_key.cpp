@@ -37,10 +37,14 @@ std::vector<std::string> compiler_variables() {
     return variables;
 }
 
+/// Changes with how programs are compiled (pocl_compiler.h, compiler/pocl_passes.cpp).
+constexpr const char *way_of_compiling = "3";
+
 } // namespace
 
 std::string device_key(const DeviceDescription &device) {
     ByteWriter writer;
+    writer.text(way_of_compiling);
     for (const std::string *text : {&device.platform, &device.name, &device.vendor, &device.version, &device.driver,
                                     &device.platform_version, &device.type})
         writer.text(*text);

@@ -1,5 +1,6 @@
 // Kernels from the store of programs against kernels that were compiled.
 #include "runtime/device/cache_folder.h"
+#include "runtime/device/kernel_source.h"
 #include "runtime/device/opencl.h"
 #include "runtime/device/program.h"
 #include "runtime/device/program_key.h"
@@ -119,7 +120,7 @@ TEST_F(ProgramCache, RebuildsWhatTheDeviceRefuses) {
     std::string key;
     for (const auto &[name, program] : device.implementation().built.programs) {
         const std::size_t end = name.find('\n');
-        key = program_key(device_key(device.description()), name.substr(0, end), name.substr(end + 1));
+        key = program_key(device_key(device.description()), name.substr(0, end), kernel_source(scan_of(4).file).text);
     }
     const ProgramStore store(folder);
     auto image = store.find(key);

@@ -1,13 +1,14 @@
-// A short render of which the n-th OpenCL call fails, for every n: it ends, with a clear error and exit code 4, or as
+// A short render of which the n-th OpenCL call fails: it ends, with a clear error and exit code 4, or as
 // if nothing had been where the program has another way.
 #include "runtime/io/image_io.h"
 #include "tests/driver/child_process.h"
 
 #include <gmock/gmock.h>
 
-#include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <numeric>
+#include <vector>
 
 namespace gradus {
 namespace {
@@ -26,33 +27,55 @@ class FailingCalls : public ProgramTest {
         ProgramTest::TearDown();
     }
 
-    Outcome render(const std::string &method) const {
-        return run({"render", GRADUS_SCENES "/cornell-box.xml", "-o", "out.exr", "--size", "8x8", "--spp", "1",
-                    "--method", method, "-q"});
+    struct Render {
+        std::string method, size = "8x8";
+    };
+    Outcome render(const Render &what) const {
+        return run({"render", GRADUS_SCENES "/cornell-box.xml", "-o", "out.exr", "--size", what.size, "--spp", "1",
+                    "--method", what.method, "-q"});
     }
-    /// How many calls a render makes. The first one fills the cache of programs.
-    long count_calls(const std::string &method) const {
-        EXPECT_EQ(render(method).exit_code, 0);
+    /// How many calls a render makes, and of these the first and the last from each place (failing_opencl.cpp).
+    struct Calls {
+        long count = 0;
+        std::vector<long> by_place;
+    };
+    /// The first render fills the cache of programs.
+    Calls calls_of(const Render &what) const {
+        EXPECT_EQ(render(what).exit_code, 0);
         ::setenv("GRADUS_TEST_CALLS", at("calls").c_str(), 1);
-        EXPECT_EQ(render(method).exit_code, 0);
+        EXPECT_EQ(render(what).exit_code, 0);
         ::unsetenv("GRADUS_TEST_CALLS");
-        long calls = 0;
-        std::ifstream(at("calls")) >> calls;
+        Calls calls;
+        std::ifstream file(at("calls"));
+        file >> calls.count;
+        for (long number = 0; file >> number;)
+            calls.by_place.push_back(number);
         return calls;
     }
-    /// Fails so many calls, evenly spread, one a render; 0: each.
-    void fail_calls(const std::string &method, long how_many) {
-        const long calls = count_calls(method);
-        ASSERT_GT(calls, 500);
+    static std::vector<long> each(const Calls &calls) {
+        std::vector<long> all(calls.count);
+        std::iota(all.begin(), all.end(), 1);
+        return all;
+    }
+    static std::vector<long> by_place(const Calls &calls) { return calls.by_place; }
+
+    /// Fails the calls that `choose` takes, one a render.
+    template <class Choose>
+    void fail_calls(const Render &what, const Choose &choose) {
+        const Calls calls = calls_of(what);
+        ASSERT_GT(calls.count, 500);
+        const std::vector<long> chosen = choose(calls);
+        ASSERT_FALSE(chosen.empty());
         const Image whole = read_image(at("out.exr"));
-        const long step = how_many > 0 ? std::max(1L, calls / how_many) : 1;
         long failed = 0;
-        for (long n = 1; n <= calls; n += step) {
+        for (const long n : chosen) {
             std::filesystem::remove(at("out.exr"));
             ::setenv("GRADUS_TEST_FAILING_CALL", std::to_string(n).c_str(), 1);
-            const Outcome outcome = render(method);
-            const std::string which = "call " + std::to_string(n) + " of " + std::to_string(calls);
-            ASSERT_EQ(outcome.signal, 0) << which << " crashes or hangs: " << outcome.err;
+            const Outcome outcome = render(what);
+            const std::string which = "call " + std::to_string(n) + " of " + std::to_string(calls.count);
+            EXPECT_EQ(outcome.signal, 0) << which << " crashes or hangs: " << outcome.err;
+            if (outcome.signal != 0)
+                continue;
             if (outcome.exit_code == 0) {
                 const Image image = read_image(at("out.exr"));
                 for (const Channel &channel : whole.channels)
@@ -63,17 +86,24 @@ class FailingCalls : public ProgramTest {
             EXPECT_EQ(outcome.exit_code, 4) << which << ": " << outcome.err;
             EXPECT_THAT(outcome.err, HasSubstr("gradus: error: ")) << which;
         }
-        RecordProperty("calls", std::to_string(calls));
+        RecordProperty("calls", std::to_string(calls.count));
         RecordProperty("failed", std::to_string(failed));
-        std::printf("%s: %ld calls, every %ldth failed in turn, %ld renders ended with an error\n", method.c_str(),
-                    calls, step, failed);
+        std::printf("%s: %ld calls, %zu failed in turn, %ld renders ended with an error\n", what.method.c_str(),
+                    calls.count, chosen.size(), failed);
         EXPECT_GT(failed, 0);
     }
 };
 
 #ifdef GRADUS_ALL_CALLS
-TEST_F(FailingCalls, EachCallOfPathTracing) { fail_calls("pt", 0); }
-TEST_F(FailingCalls, ManyCallsOfGradientDomainPathTracing) { fail_calls("gpt", 400); }
+TEST_F(FailingCalls, EachCallOfPathTracing) { fail_calls({"pt"}, each); }
+
+// Suites of their own: each takes half an hour.
+class FailingCallsOfOnePixel : public FailingCalls {};
+TEST_F(FailingCallsOfOnePixel, EachCallOfGradientDomainPathTracing) { fail_calls({"gpt", "1x1"}, each); }
+
+/// Of 22,000 calls, which is mostly what iterations of the solver repeat, on the levels that more pixels have.
+class FailingCallsByPlace : public FailingCalls {};
+TEST_F(FailingCallsByPlace, FirstAndLastOfGradientDomainPathTracing) { fail_calls({"gpt"}, by_place); }
 
 /// An address space from too small for anything to large enough: an error that says so, or the whole image.
 TEST_F(FailingCalls, MemoryForAnyPartOfTheRender) {
@@ -123,7 +153,14 @@ TEST_F(FailingCalls, MemoryForAnyNumberOfThreads) {
     }
 }
 #else
-TEST_F(FailingCalls, SomeCallsOfPathTracing) { fail_calls("pt", 7); }
+TEST_F(FailingCalls, SomeCallsOfPathTracing) {
+    fail_calls({"pt"}, [](const Calls &calls) {
+        std::vector<long> some;
+        for (long n = 1; n <= calls.count; n += calls.count / 7)
+            some.push_back(n);
+        return some;
+    });
+}
 #endif
 
 } // namespace

@@ -1,38 +1,93 @@
 // A layer between a program and OpenCL, for LD_PRELOAD: the n-th call fails without being made, where n is what the
-// environment has as GRADUS_TEST_FAILING_CALL. The number of calls is written to the file GRADUS_TEST_CALLS at the end.
-// Retaining and releasing are left alone: nobody asks whether they worked.
+// environment has as GRADUS_TEST_FAILING_CALL. The number of calls is written to the file GRADUS_TEST_CALLS at the end,
+// and after it the first and the last call from each place: a stack of callers, a kernel and an argument of it.
+// Iterations of a solver make thousands of calls from a few places. Retaining and releasing are left alone: nobody asks
+// whether they worked.
 #define CL_TARGET_OPENCL_VERSION 120
 #define CL_USE_DEPRECATED_OPENCL_1_2_APIS
 #include <CL/cl.h>
 
 #include <dlfcn.h>
+#include <execinfo.h>
 
 #include <atomic>
+#include <cstdint>
 #include <cstdlib>
 #include <fstream>
+#include <map>
+#include <mutex>
+#include <set>
 #include <tuple>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
 namespace {
 
 std::atomic<long> calls{0};
 
-bool fails() {
+/// The first and the last call from each place.
+class Places {
+  public:
+    explicit Places(const char *path) : path_(path) {}
+    ~Places() {
+        if (!path_)
+            return;
+        std::set<long> numbers;
+        for (const auto &[place, number] : places_)
+            numbers.insert({number.first, number.second});
+        std::ofstream file(path_);
+        file << calls << "\n";
+        for (const long number : numbers)
+            file << number << "\n";
+    }
+
+    template <class... Arguments>
+    void note(long call, Arguments... arguments) {
+        if (!path_)
+            return;
+        constexpr int deepest = 64;
+        void *frames[deepest];
+        const int depth = ::backtrace(frames, deepest);
+        Place place;
+        for (int i = 0; i < depth; ++i)
+            place.push_back(reinterpret_cast<std::uintptr_t>(frames[i]));
+        if constexpr (sizeof...(arguments) > 1) {
+            const auto list = std::tie(arguments...);
+            const auto add = [&]<class T>(const T &argument) {
+                if constexpr (std::is_same_v<T, cl_kernel>)
+                    place.push_back(reinterpret_cast<std::uintptr_t>(argument));
+                else if constexpr (std::is_same_v<T, cl_uint>)
+                    place.push_back(argument);
+            };
+            add(std::get<0>(list));
+            add(std::get<1>(list));
+        }
+        const std::lock_guard lock(mutex_);
+        const auto found = places_.try_emplace(std::move(place), call, call).first;
+        found->second.second = call;
+    }
+
+  private:
+    using Place = std::vector<std::uintptr_t>;
+    const char *path_;
+    std::mutex mutex_;
+    std::map<Place, std::pair<long, long>> places_;
+};
+
+Places places(std::getenv("GRADUS_TEST_CALLS"));
+
+bool fails(long call) {
     static const char *const text = std::getenv("GRADUS_TEST_FAILING_CALL");
     static const long failing = text ? std::atol(text) : 0;
-    return ++calls == failing;
+    return call == failing;
 }
-
-struct Report {
-    ~Report() {
-        if (const char *const path = std::getenv("GRADUS_TEST_CALLS"))
-            std::ofstream(path) << calls << "\n";
-    }
-} report;
 
 template <class Result, class... Parameters, class... Arguments>
 Result forward(const char *name, Result (*)(Parameters...), Arguments... arguments) {
-    if (fails()) {
+    const long call = ++calls;
+    places.note(call, arguments...);
+    if (fails(call)) {
         if constexpr (std::is_same_v<Result, cl_int>)
             return CL_OUT_OF_RESOURCES;
         else { // what makes objects takes the address of its error last

@@ -45,27 +45,68 @@ class SignedDifferences {
     ReferenceScene expected_;
 };
 
-} // namespace
-
-double expect_gradients(const ReferenceScene &reference, const std::vector<Image> &images, double samples_per_pixel,
-                        RenderOptions options) {
-    ReferenceScene expected = reference;
-    expected.name += "-primal";
+std::vector<Image> wholes(const std::vector<Image> &images) {
     std::vector<Image> primals;
     for (const Image &image : images)
         primals.push_back(whole(image));
-    EXPECT_TRUE(agrees(primals, samples_per_pixel, expected));
-    double score = largest_score(primals, samples_per_pixel, expected);
+    return primals;
+}
 
+/// The images, and 0 in some of their layers.
+std::vector<Image> without_layers(std::vector<Image> images, const std::vector<std::string> &layers) {
+    for (Image &image : images)
+        for (Channel &channel : image.channels)
+            for (const std::string &layer : layers)
+                if (channel.name.starts_with(layer + "."))
+                    std::fill(channel.values.begin(), channel.values.end(), 0.0f);
+    return images;
+}
+
+/// The least share of `planted` by which images may be too small, and are seen to be; 0: none. What is tested goes
+/// linearly from `images` to `without`, in which all of it is missing.
+double least_seen(const std::vector<double> &planted, const std::vector<Image> &images,
+                  const std::vector<Image> &without, double samples_per_pixel, const ReferenceScene &expected) {
+    for (const double share : planted) {
+        std::vector<Image> wrong = images;
+        for (std::size_t i = 0; i < wrong.size(); ++i)
+            for (std::size_t c = 0; c < wrong[i].channels.size(); ++c) {
+                std::vector<float> &values = wrong[i].channels[c].values;
+                for (std::size_t j = 0; j < values.size(); ++j)
+                    values[j] += float(share * (without[i].channels[c].values[j] - values[j]));
+            }
+        if (!is_met(wrong, samples_per_pixel, expected))
+            return share;
+    }
+    return 0;
+}
+
+} // namespace
+
+double expect_gradients(const ReferenceScene &reference, const std::vector<Image> &images, double samples_per_pixel,
+                        RenderOptions options, const std::vector<double> &planted) {
     Scene scene = reference.scene;
     scene.settings.samples_per_pixel = 64;
     options.seed = 4711;
     const Image independent = render(scene, options).image;
+    double score = 0;
+    const auto expect = [&](const std::vector<Image> &ours, const std::vector<Image> &without,
+                            const ReferenceScene &expected) {
+        EXPECT_TRUE(agrees(ours, samples_per_pixel, expected));
+        score = std::max(score, largest_score(ours, samples_per_pixel, expected));
+        if (planted.empty())
+            return;
+        const double seen = least_seen(planted, ours, without, samples_per_pixel, expected);
+        std::printf(seen > 0 ? "%s: %g %% too little would be seen, in some block\n"
+                             : "%s: not even %g %% too little would be seen: blunt\n",
+                    expected.name.c_str(), 100 * (seen > 0 ? seen : planted.back()));
+    };
+    ReferenceScene expected = reference;
+    expected.name += "-primal";
+    expect(wholes(images), wholes(without_layers(images, {"primal"})), expected);
+    const std::vector<Image> alike = without_layers(images, {"dx", "dy"});
     for (const bool right : {true, false}) {
         const SignedDifferences changes(reference, independent, right);
-        const std::vector<Image> ours = changes.of(images);
-        EXPECT_TRUE(agrees(ours, samples_per_pixel, changes.expected()));
-        score = std::max(score, largest_score(ours, samples_per_pixel, changes.expected()));
+        expect(changes.of(images), changes.of(alike), changes.expected());
     }
     return score;
 }

@@ -8,8 +8,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 
 namespace gradus::testing {
 
@@ -19,6 +21,18 @@ namespace fs = std::filesystem;
 
 const fs::path root = GRADUS_ROOT;
 const fs::path shared = root / ".." / "shared";
+
+/// One of ../shared/references: scene file and what its README says of it.
+struct SharedReference {
+    std::string name, scene;
+    std::uint32_t width, height;
+    int max_depth;
+    double samples_per_pixel;
+};
+const SharedReference shared_references[] = {{"cornell-box", "cornell-box/scene.xml", 256, 256, 30, 32768},
+                                             {"torus-soft", "torus/scene-soft.xml", 256, 192, 30, 32768},
+                                             {"veach-mis", "veach-mis/scene.xml", 320, 180, 3, 32768},
+                                             {"bathroom", "bathroom/scene-3.xml", 256, 256, 16, 10240}};
 
 void use_box_filter(Scene &scene, std::uint32_t width, std::uint32_t height) {
     FilmSettings film;
@@ -97,15 +111,19 @@ ReferenceScene own_reference(const std::string &name, LoadOptions options) {
 
 bool has_shared_references() { return fs::exists(shared / "references") && fs::exists(shared / "scenes"); }
 
-ReferenceScene shared_reference(const SharedReference &from) {
+ReferenceScene shared_reference(const std::string &name) {
+    const auto from = std::find_if(std::begin(shared_references), std::end(shared_references),
+                                   [&](const SharedReference &reference) { return reference.name == name; });
+    if (from == std::end(shared_references))
+        throw std::runtime_error("no shared reference " + name);
     ReferenceScene reference;
-    reference.name = from.name;
-    reference.scene = load_scene((shared / "scenes" / from.scene).string()).scene;
-    use_box_filter(reference.scene, from.width, from.height);
-    reference.scene.settings.max_depth = from.max_depth;
-    reference.mean = read_image((shared / "references" / (from.name + "-mean.exr")).string());
-    reference.variance = read_image((shared / "references" / (from.name + "-variance.exr")).string());
-    reference.samples_per_pixel = from.samples_per_pixel;
+    reference.name = from->name;
+    reference.scene = load_scene((shared / "scenes" / from->scene).string()).scene;
+    use_box_filter(reference.scene, from->width, from->height);
+    reference.scene.settings.max_depth = from->max_depth;
+    reference.mean = read_image((shared / "references" / (from->name + "-mean.exr")).string());
+    reference.variance = read_image((shared / "references" / (from->name + "-variance.exr")).string());
+    reference.samples_per_pixel = from->samples_per_pixel;
     return reference;
 }
 
@@ -113,6 +131,15 @@ ReferenceScene shared_reference(const SharedReference &from) {
                                   const ReferenceScene &reference) {
     return judge(reference.name, seeds, samples_per_pixel, reference.mean, reference.variance,
                  reference.samples_per_pixel, reference_batches, reference.block);
+}
+
+bool is_met(const std::vector<Image> &seeds, double samples_per_pixel, const ReferenceScene &reference) {
+    const auto passes = [&](int block) {
+        return block_z_test(seeds, reference.mean, reference.variance, samples_per_pixel, reference.samples_per_pixel,
+                            block, reference_batches)
+            .passed();
+    };
+    return passes(reference.block) && passes(0);
 }
 
 double largest_score(const std::vector<Image> &seeds, double samples_per_pixel, const ReferenceScene &reference) {

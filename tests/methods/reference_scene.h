@@ -25,16 +25,10 @@ struct ReferenceScene {
 /// One of the project's own, as tests/references/NAME.json says. Throws where any part of it is missing.
 ReferenceScene own_reference(const std::string &name, LoadOptions options = {});
 
-/// One of ../shared/references, by its name, scene file and what its README says of it.
-struct SharedReference {
-    std::string name, scene;
-    std::uint32_t width, height;
-    int max_depth;
-    double samples_per_pixel;
-};
 /// True where the folder of shared references is there.
 bool has_shared_references();
-ReferenceScene shared_reference(const SharedReference &reference);
+/// One of ../shared/references, by its name.
+ReferenceScene shared_reference(const std::string &name);
 
 /// A file of the project's own scenes, at a size, with the box filter.
 Scene own_scene(const std::string &file, std::uint32_t width, std::uint32_t height);
@@ -43,6 +37,9 @@ Scene own_scene(const std::string &file, std::uint32_t width, std::uint32_t heig
 /// thousand tests. On failure writes mean, error and picture of the error to the folder failed-images and says so.
 ::testing::AssertionResult agrees(const std::vector<Image> &seeds, double samples_per_pixel,
                                   const ReferenceScene &reference);
+
+/// Whether agrees() would succeed, without its words and pictures.
+bool is_met(const std::vector<Image> &seeds, double samples_per_pixel, const ReferenceScene &reference);
 
 /// The largest score of the blocks, over its limit in agrees().
 double largest_score(const std::vector<Image> &seeds, double samples_per_pixel, const ReferenceScene &reference);

@@ -1,0 +1,60 @@
+// In gradus-compile, PoCL's optimisation of a kernel begins with leaving out what nobody launches.
+//
+// PoCL 3.1 makes three functions of each kernel: the kernel itself, a launcher for work-groups, which is what its CPU
+// devices look up, and a "fast" launcher, which they never do. Each contains all of the kernel and is optimised by
+// itself: two thirds of the work, and of the code, for nothing.
+//
+// PoCL has no setting for this. But it has LLVM list its passes by a function of LLVM's library, and the loader finds
+// the one here first, since the program exports it (runtime/CMakeLists.txt). It puts two passes in front and then does
+// what LLVM's does. Where PoCL or LLVM are others, nobody calls it.
+#include "runtime/device/loaded_library.h"
+
+#include <cstddef>
+#include <cstdlib>
+#include <string_view>
+
+namespace {
+
+// Of LLVM's C interface (llvm-c/Core.h, Transforms/IPO.h), whose references are pointers.
+using NameOf = const char *(void *value, std::size_t *length);
+using AddInternalize = void(void *passes, void *context, int (*is_kept)(void *value, void *context));
+using AddGlobalDce = void(void *passes);
+using Populate = void(void *builder, void *passes);
+
+template <class Function>
+Function *of_llvm(const char *name) {
+    return gradus::function_of<Function>(gradus::loaded_library("libLLVM"), name);
+}
+
+NameOf *name_of = nullptr;
+
+/// Of the functions that PoCL makes of a kernel the launcher alone.
+int is_kept(void *value, void *) {
+    std::size_t length = 0;
+    const char *text = name_of(value, &length);
+    const std::string_view name(text, length);
+    return !name.starts_with("_pocl_kernel_") || name.ends_with("_workgroup");
+}
+
+} // namespace
+
+#define POPULATE _ZN4llvm18PassManagerBuilder25populateModulePassManagerERNS_6legacy15PassManagerBaseE
+#define TEXT_OF(name) #name
+#define NAME_OF(macro) TEXT_OF(macro)
+
+extern "C" void POPULATE(void *builder, void *passes);
+
+/// llvm::PassManagerBuilder::populateModulePassManager(llvm::legacy::PassManagerBase &)
+extern "C" void POPULATE(void *builder, void *passes) {
+    const auto populate = of_llvm<Populate>(NAME_OF(POPULATE));
+    const auto internalize = of_llvm<AddInternalize>("LLVMAddInternalizePassWithMustPreservePredicate");
+    const auto remove_unused = of_llvm<AddGlobalDce>("LLVMAddGlobalDCEPass");
+    name_of = of_llvm<NameOf>("LLVMGetValueName2");
+    if (!populate)
+        std::abort(); // who started this process compiles by himself then
+    if (internalize && remove_unused && name_of) {
+        internalize(passes, nullptr, is_kept);
+        remove_unused(passes);
+    }
+    populate(builder, passes);
+}

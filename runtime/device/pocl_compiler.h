@@ -1,0 +1,32 @@
+// Having PoCL's compiler vectorise over work-items where it would not.
+#pragma once
+
+#include "runtime/device/device.h"
+
+namespace cl {
+class Context;
+class Device;
+} // namespace cl
+
+namespace gradus {
+
+/// Sets up the compiler of PoCL 3.1 in this process, for all that it compiles from now on:
+///
+/// - LLVM packs like operations of one work-item into short vectors, after which it does not vectorise over work-items.
+///   It is told not to.
+/// - Where the processor cannot scatter (all without AVX-512) it gives up on kernels with more than one such store. It
+///   is told to store one work-item after the other.
+/// - Debian's PoCL compiles for one of a few processors. Where there is no AVX-512 that is Haswell, of which LLVM says
+///   that gathers are slow, and then it vectorises next to no kernel of ours. It is made to compile for Skylake, which
+///   has the same vectors.
+///
+/// Images stay the same bit for bit; on a Zen 3 processor renders take 0.6 of the time (docs/design.md).
+///
+/// PoCL offers none of these. Options of LLVM are those of the whole process, and what names the processor is a word of
+/// PoCL's own record of the device: so this is for a process that only compiles, and may end of it. To be called before
+/// there are programs. Does nothing for other implementations and versions.
+void prepare_pocl_compiler(const cl::Context &context, const cl::Device &device, const DeviceDescription &description);
+/// The same for the compiler of this device.
+void prepare_pocl_compiler(Device &device);
+
+} // namespace gradus

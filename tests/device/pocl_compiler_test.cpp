@@ -1,0 +1,84 @@
+// What the processes that compile have PoCL's compiler do.
+#include "runtime/device/compile_workers.h"
+
+#include <gmock/gmock.h>
+
+#include <cstddef>
+#include <string>
+
+namespace gradus {
+namespace {
+
+// A kernel in which three things keep LLVM 15 from vectorising over work-items on a processor without AVX-512, of which
+// each is enough: gathers, more than one scattered store, and like operations on neighbouring fields.
+const char *const source = R"(
+static float4_of scaled(float4_of v, float by) {
+    v.x *= by, v.y *= by, v.z *= by, v.w *= by;
+    return v;
+}
+__attribute__((reqd_work_group_size(64, 1, 1))) __kernel
+void normalize_records(uint count, __global const uint *index, __global const float *records, __global float *to) {
+    const size_t i = get_global_id(0);
+    if (i >= count)
+        return;
+    const size_t row = 4 * (size_t)index[i];
+    float4_of v;
+    v.x = records[row], v.y = records[row + 1], v.z = records[row + 2], v.w = records[row + 3];
+    v = scaled(v, 1.0f / sqrt(v.x * v.x + v.y * v.y + v.z * v.z + v.w * v.w));
+    to[row] = v.x, to[row + 1] = v.y, to[row + 2] = v.z, to[row + 3] = v.w;
+}
+)";
+
+/// How many places look like instructions that gather, by their prefix and number (VEX or EVEX, 0F 38 92 or
+/// 93).
+std::size_t gathers(const std::string &code) {
+    std::size_t found = 0;
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(code[i]); };
+    for (std::size_t i = 0; i + 4 < code.size(); ++i) {
+        const bool is_vex = byte(i) == 0xC4 && (byte(i + 1) & 0x1F) == 2 && (byte(i + 2) & 3) == 1;
+        const bool is_evex = byte(i) == 0x62 && (byte(i + 1) & 0x0F) == 2 && (byte(i + 2) & 7) == 5;
+        const unsigned number = is_vex ? byte(i + 3) : byte(i + 4);
+        found += (is_vex || is_evex) && (number == 0x92 || number == 0x93);
+    }
+    return found;
+}
+
+/// The code of that kernel; empty without PoCL 3.1.
+std::string compiled() {
+    DeviceDescription device;
+    for (const DeviceDescription &found : list_devices())
+        if (is_pocl_cpu(found) && found.driver.starts_with("3.1"))
+            device = found;
+    if (device.name.empty())
+        return {};
+    CompileJob job;
+    job.device = device;
+    job.source = {"normalize_records", "typedef struct { float x, y, z, w, more; } float4_of;" + std::string(source),
+                  "-cl-std=CL1.2 -cl-kernel-arg-info"};
+    CompileAnswer answer;
+    CompileWorkers().compile({job}, 64, 1, [&](std::size_t, const CompileAnswer &one) { answer = one; });
+    EXPECT_EQ(answer.kind, CompileAnswer::Kind::compiled) << answer.content;
+    return answer.content;
+}
+
+TEST(PoclCompiler, VectorisesGathersAndScattersOfRecords) {
+    bool can_gather = false;
+    for (const DeviceDescription &found : list_devices())
+        can_gather |=
+            found.name.find("haswell") != std::string::npos || found.name.find("skylake") != std::string::npos;
+    const std::string code = compiled();
+    if (code.empty() || !can_gather)
+        GTEST_SKIP() << "needs PoCL 3.1 of Debian on a processor that gathers";
+    EXPECT_GE(gathers(code), 3u);
+}
+
+TEST(PoclCompiler, LeavesOutWhatNobodyLaunches) {
+    const std::string code = compiled();
+    if (code.empty())
+        GTEST_SKIP() << "needs PoCL 3.1";
+    EXPECT_NE(code.find("_pocl_kernel_normalize_records_workgroup"), std::string::npos);
+    EXPECT_EQ(code.find("_workgroup_fast"), std::string::npos);
+}
+
+} // namespace
+} // namespace gradus
