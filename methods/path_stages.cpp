@@ -34,7 +34,8 @@ StageDeclaration shade_stage(bool with_offsets) {
             .file = "shade",
             .definitions = {{"WITH_OFFSETS", with_offsets ? "1" : "0"}},
             .by_kind = true,
-            .numbers = {"first", "to"}};
+            .textured_file = with_offsets ? "" : "shade_textured",
+            .numbers = {"first", "to", "parameter_texture"}};
 }
 
 TableList joined(TableList a, const TableList &b) {
@@ -62,8 +63,11 @@ void run_on_places(Stage &stage, const Hits &hits, Range rows) {
     stage.run(rows.count, {{"first", hits.place(rows.first)}});
 }
 
-void run_shade(Stage &shade, const Hits &hits, Range rows, std::size_t kind) {
-    shade.run_kind(kind, rows.count, {{"first", hits.place(rows.first)}, {"to", rows.first}});
+void run_shade(Stage &shade, const Session &session, const Hits &hits, Range rows, std::size_t kind) {
+    shade.run_kind(kind, rows.count,
+                   {{"first", hits.place(rows.first)},
+                    {"to", rows.first},
+                    {"parameter_texture", session.first_texture_of_kind(kind)}});
 }
 
 std::vector<std::uint32_t> material_kinds(const Scene &scene, double threshold) {

@@ -18,7 +18,8 @@ namespace gradus {
 
 PathTracer::PathTracer(Device &device, const Scene &scene, const RenderOptions &options)
     : options_(options), session_(device, scene, options,
-                                  {{"TRAIT_AOV", options.all_traits || needs_features(options)},
+                                  {{"KINDS_BY_CLASS", 1},
+                                   {"TRAIT_AOV", options.all_traits || needs_features(options)},
                                    {"TRAIT_PART_BITS", part_bits(options, keeps_halves())}}),
       camera_(stages_.add(camera_stage())), far_clip_(stages_.add(far_clip_stage(session_))),
       connect_(stages_.add(connect_stage())),
@@ -67,7 +68,7 @@ bool PathTracer::render_batch() {
             run_on_places(emission_, hits, hits.emitting(0, kind));
         paths_.advance();
         for (std::size_t kind = 0; kind < paths_.kinds(); ++kind)
-            run_shade(shade_, hits, hits.kind(0, kind), kind);
+            run_shade(shade_, session_, hits, hits.kind(0, kind), kind);
     }
     film_.add(paths, first_pixel, first_sample);
     finish(session_.device);

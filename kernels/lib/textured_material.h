@@ -1,6 +1,7 @@
 /* Materials whose parameters are textures: the stage `material` has read these and left them as columns, by row of the
- * ray in `surface`; whoever makes a vertex copies them to the last columns of its table. Where nothing is textured the
- * macros here are what they were without textures. */
+ * ray in `surface`; whoever makes a vertex copies them to the last columns of its table. Where nothing is textured, or
+ * with READS_NO_SURFACE, of kernels that look textures up themselves or serve materials without, the macros here are
+ * what they were without textures. */
 #ifndef GRADUS_LIB_TEXTURED_MATERIAL_H
 #define GRADUS_LIB_TEXTURED_MATERIAL_H
 //! traits: TRAIT_MATERIAL TRAIT_TEXTURED TRAIT_TEXTURED_NORMALS TRAIT_BLENDS TRAIT_ANISOTROPIC TRAIT_SHADING_NORMALS
@@ -9,12 +10,10 @@
 #include "kernels/shared/tables.h"
 #include "kernels/shared/texture.h"
 
-#if TRAIT_MATERIAL
+#if TRAIT_MATERIAL && !READS_NO_SURFACE
 
 GRADUS_LIB_BEGIN
 
-/* Whether a mask, as TRAIT_TEXTURED is one, has a parameter. */
-#define HAS_PARAMETER(mask, name) ((((mask) >> parameter_##name) & 1) != 0)
 #define IS_TEXTURED(name) HAS_PARAMETER(TRAIT_TEXTURED, name)
 
 /* The columns: three for a colour, one for a number, none for what is not textured. */

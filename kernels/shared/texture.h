@@ -182,6 +182,8 @@ enum material_parameter {
     GRADUS_TEXTURED_PARAMETERS(GRADUS_PARAMETER_INDEX, GRADUS_PARAMETER_INDEX, ) textured_parameters
 };
 #undef GRADUS_PARAMETER_INDEX
+/* Whether a mask, as TRAIT_TEXTURED is one, has a parameter. */
+#define HAS_PARAMETER(mask, name) ((((mask) >> parameter_##name) & 1) != 0)
 
 GRADUS_LIB_END
 

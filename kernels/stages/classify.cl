@@ -19,7 +19,7 @@ STAGE classify(uint count, uint unit, uint capacity, __global const real *ray, _
                __global const uint *primitive_bin
 #if TRAIT_BLENDS
                ,
-               __global const real *surface, __global const uint *record_kind
+               __global const real *surface, __global const uint *record_kind, uint blend_bin
 #endif
 #if TRAIT_TWO_FACED
                ,
@@ -65,9 +65,11 @@ STAGE classify(uint count, uint unit, uint capacity, __global const real *ray, _
     hit_bin = behind ? back_bin : hit_bin;
 #endif
 #if TRAIT_BLENDS
-    /* Of the kind that the blend has come to; whether it emits is as it was. */
+    /* Of the kind that the blend has come to; whether it emits is as it was. Others have left no record. */
+    const int is_blend = hit && hit_bin >= blend_bin;
     const uint chosen = surface_record_at(surface, capacity, row);
-    hit_bin = 1u + 2u * record_kind[hit ? chosen : 0u] + ((hit_bin - 1u) & 1u);
+    const uint blended_bin = 1u + 2u * record_kind[is_blend ? chosen : 0u] + ((hit_bin - 1u) & 1u);
+    hit_bin = is_blend ? blended_bin : hit_bin;
 #endif
     uint escaped_bin = 0u;
 #if GATHER
@@ -76,7 +78,7 @@ STAGE classify(uint count, uint unit, uint capacity, __global const real *ray, _
     record = material_on_side(material_back, OF_PRIMITIVE(primitive_material, material, present), behind);
 #endif
 #if TRAIT_BLENDS
-    record = hit ? chosen : 0u;
+    record = is_blend ? chosen : record;
 #endif
     const uint gathers = material_gathers[record] != gathers_nowhere ? 1u : 0u;
     const uint emits = (hit_bin & 1u) == 0u ? 1u : 0u;

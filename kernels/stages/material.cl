@@ -22,6 +22,7 @@
 #include "kernels/lib/division.h"
 #include "kernels/lib/hit_uv.h"
 #include "kernels/lib/mapped_normal.h"
+#include "kernels/lib/material_lookup.h"
 #include "kernels/lib/material_side.h"
 #include "kernels/lib/normal_map.h"
 #include "kernels/lib/path_draw.h"
@@ -31,52 +32,16 @@
 #include "kernels/lib/textured_material.h"
 #include "kernels/shared/stage.h"
 
-/* What texture number n of the material is worth here. */
-#define LOOKED_UP(n)                                                                                                   \
-    texture_lookup(TRAIT_TEXTURES, parameter_texture, textures, texture_reals, texels, unit,                           \
-                   texture_or_first((material_lookups + (n) * (size_t)unit)[(int)(record * (uint)TRAIT_LOOKUPS)],      \
-                                    parameter_texture),                                                                \
-                   point)
-/* With a single lookup, which all materials take, there is nothing to ask. */
-#define LOOK_UP(name)                                                                                                  \
-    const int is_asked = CLASS_LOOKUPS > 1 || !HAS_PARAMETER(CLASS_ALL_TEXTURED, name);                                \
-    uint number = HAS_PARAMETER(CLASS_TEXTURED, name) ? 0u : texture_none;                                             \
-    if (HAS_PARAMETER(CLASS_TEXTURED, name) && is_asked)                                                               \
-        number = (material_textures + parameter_##name * (size_t)unit)[(int)(record * (uint)textured_parameters)];     \
-    const int is_constant = number == texture_none;                                                                    \
-    const int constants = (int)(record * (uint)material_stride);                                                       \
-    CHOOSE_LOOKED_UP
-#if CLASS_LOOKUPS == 0
-#define CHOOSE_LOOKED_UP const rgb looked_up = rgb_gray(R(0));
-#elif CLASS_LOOKUPS == 1
-#define CHOOSE_LOOKED_UP const rgb looked_up = looked_up_0;
-#elif CLASS_LOOKUPS == 2
-#define CHOOSE_LOOKED_UP const rgb looked_up = rgb_select(number == 1u, looked_up_1, looked_up_0);
-#elif CLASS_LOOKUPS == 3
-#define CHOOSE_LOOKED_UP                                                                                               \
-    const rgb looked_up = rgb_select(number == 2u, looked_up_2, rgb_select(number == 1u, looked_up_1, looked_up_0));
-#else
-/* Many: each where it is needed, so that they need not be kept. */
-#define CHOOSE_LOOKED_UP const rgb looked_up = LOOKED_UP(is_constant ? 0u : number);
-#endif
-#define LEAVE(name, field, value)                                                                                      \
-    surface[(size_t)textured_##field * traced_rows + row] =                                                            \
-        HAS_PARAMETER(CLASS_ALL_TEXTURED, name)                                                                        \
-            ? (value)                                                                                                  \
-            : (is_constant ? (materials + material_##field * (size_t)unit)[constants] : (value));
+/* Constants too: whoever reads a column of `surface` knows no class. */
 #define LEAVE_COLOR(with, name, value, text)                                                                           \
     if (IS_TEXTURED(name)) {                                                                                           \
-        LOOK_UP(name)                                                                                                  \
-        LEAVE(name, name##_r, looked_up.r)                                                                             \
-        LEAVE(name, name##_g, looked_up.g)                                                                             \
-        LEAVE(name, name##_b, looked_up.b)                                                                             \
+        surface[(size_t)textured_##name##_r * traced_rows + row] = m.name##_r;                                         \
+        surface[(size_t)textured_##name##_g * traced_rows + row] = m.name##_g;                                         \
+        surface[(size_t)textured_##name##_b * traced_rows + row] = m.name##_b;                                         \
     }
-/* Of a coloured texture its luminance. */
 #define LEAVE_NUMBER(with, name, value, text)                                                                          \
-    if (IS_TEXTURED(name)) {                                                                                           \
-        LOOK_UP(name)                                                                                                  \
-        LEAVE(name, name, rgb_luminance(looked_up))                                                                    \
-    }
+    if (IS_TEXTURED(name))                                                                                             \
+        surface[(size_t)textured_##name * traced_rows + row] = m.name;
 
 STAGE read_material(uint count, uint unit, uint first, uint traced_rows, uint parameter_texture, uint blend_texture,
                     uint normal_texture, __global const uint *index, __global const real *traced,
@@ -178,15 +143,7 @@ STAGE read_material(uint count, uint unit, uint first, uint traced_rows, uint pa
         choice = is_blend ? r_min(rest, R(0.99999994)) : choice;
     }
 #endif
-#if CLASS_LOOKUPS >= 1 && CLASS_LOOKUPS <= 3
-    const rgb looked_up_0 = LOOKED_UP(0u);
-#if CLASS_LOOKUPS >= 2
-    const rgb looked_up_1 = LOOKED_UP(1u);
-#endif
-#if CLASS_LOOKUPS == 3
-    const rgb looked_up_2 = LOOKED_UP(2u);
-#endif
-#endif
+    const material m = material_looked_up(material_load(materials, record, unit), record, point LOOKUP_ARGUMENTS);
     GRADUS_TEXTURED_PARAMETERS(LEAVE_COLOR, LEAVE_NUMBER, )
 #if TRAIT_BLENDS
     *(GRADUS_GLOBAL uint *)(surface + (size_t)surface_record * traced_rows + row) = record;

@@ -4,7 +4,9 @@
 #include <bit>
 #include <limits>
 #include <optional>
+#include <set>
 #include <tuple>
+#include <utility>
 
 // After all others: its short macro names are not for library headers.
 #include "kernels/shared/texture.h"
@@ -148,6 +150,25 @@ MaterialClasses material_classes(const Scene &scene, std::size_t most) {
     if (found.classes.empty())
         found.classes.emplace_back();
     return found;
+}
+
+std::vector<KindOfClass> kinds_by_class(const Scene &scene, const MaterialClasses &classes) {
+    std::set<std::pair<std::string, std::uint32_t>> found;
+    for (const Shape &shape : scene.shapes) {
+        const Material &material = scene.materials[shape.material];
+        const std::uint32_t number = classes.of_material[shape.material];
+        const bool is_left = classes.classes[number].is_of_blends_or_maps();
+        for (const Bsdf *side : {&material.front, material.two_sided ? &material.back : &material.front})
+            for_each_part(scene, *side, [&](const Bsdf &part) {
+                found.emplace(bsdf_kind_name(part), is_left ? class_of_blends_and_maps : number);
+            });
+    }
+    std::vector<KindOfClass> kinds;
+    for (const std::string &kind : bsdf_kinds(scene))
+        for (const auto &[name, number] : found)
+            if (name == kind)
+                kinds.push_back({name, number});
+    return kinds;
 }
 
 std::map<std::string, std::string> definitions_of(const MaterialClass &one) {

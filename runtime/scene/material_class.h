@@ -26,6 +26,9 @@ struct MaterialClass {
     int blend_levels = 0;  ///< as TRAIT_BLEND_LEVELS
     int normals = 0;       ///< as TRAIT_TEXTURED_NORMALS
     TextureUse parameter, blend, normal;
+
+    /// Blends and maps are left to the stage `material`, whoever reads textures.
+    bool is_of_blends_or_maps() const { return blends > 0 || normals != 0; }
 };
 
 struct MaterialClasses {
@@ -42,5 +45,17 @@ MaterialClass class_of_all_materials(const Scene &scene);
 
 /// What the kernel of a class is compiled with (kernels/stages/material.cl).
 std::map<std::string, std::string> definitions_of(const MaterialClass &one);
+
+/// The classes of blends and maps, all of them.
+constexpr std::uint32_t class_of_blends_and_maps = 0xFFFFFFFFu;
+
+/// A BSDF kind on the materials of a class.
+struct KindOfClass {
+    std::string kind;
+    std::uint32_t number; ///< of the class, or class_of_blends_and_maps
+};
+
+/// Each kind that shapes have, on each class that it occurs in, kind by kind.
+std::vector<KindOfClass> kinds_by_class(const Scene &scene, const MaterialClasses &classes);
 
 } // namespace gradus

@@ -74,21 +74,25 @@ SceneBox scene_bounds(const Scene &scene) {
     return bounds;
 }
 
-/// The bin of a side of a surface that does not emit; that of one that does follows.
-std::uint32_t bin_of(const Bsdf &bsdf, const SceneTables &tables) {
-    const auto kind = std::find(tables.kinds.begin(), tables.kinds.end(), bsdf_kind_name(bsdf));
-    return static_cast<std::uint32_t>(1 + 2 * (kind - tables.kinds.begin()));
+/// The bin of a side of a surface that does not emit; that of one that does follows. Blends are behind all kinds.
+std::uint32_t bin_of(const Bsdf &bsdf, std::uint32_t number_of_class, const SceneTables &tables) {
+    const bool is_blend = bsdf.blend != no_blend;
+    return 1 + 2 * (is_blend ? std::uint32_t(tables.kinds.size())
+                             : tables.place_of_kind(bsdf_kind_name(bsdf), number_of_class));
 }
 
 /// What all primitives of a shape share.
 struct SurfaceOfShape {
     std::uint32_t material, bin, back_bin;
 
-    SurfaceOfShape(const Scene &scene, const Shape &shape, const SceneTables &tables) {
+    SurfaceOfShape(const Scene &scene, const Shape &shape, const SceneTables &tables, const MaterialClasses *classes) {
         const Material &of_shape = scene.materials[shape.material];
         material = shape.material | (of_shape.two_sided ? material_two_sided : 0);
-        bin = bin_of(of_shape.front, tables);
-        back_bin = bin_of(of_shape.two_sided ? of_shape.back : of_shape.front, tables);
+        std::uint32_t number = classes ? classes->of_material[shape.material] : 0;
+        if (classes && classes->classes[number].is_of_blends_or_maps())
+            number = class_of_blends_and_maps;
+        bin = bin_of(of_shape.front, number, tables);
+        back_bin = bin_of(of_shape.two_sided ? of_shape.back : of_shape.front, number, tables);
     }
 };
 
@@ -228,10 +232,9 @@ class TriangleLights {
     Rgb mean_of_all_;
 };
 
-void add_mesh(const Scene &scene, const Shape &shape, const TraitMap &traits, SceneTables &tables,
-              PrimitiveBuilder &primitives, LightBuilder &lights) {
+void add_mesh(const Scene &scene, const Shape &shape, const SurfaceOfShape &surface, const TraitMap &traits,
+              SceneTables &tables, PrimitiveBuilder &primitives, LightBuilder &lights) {
     const Mesh &mesh = scene.meshes[shape.geometry];
-    const SurfaceOfShape surface(scene, shape, tables);
     if (primitives.is_indexed() && shape.emitter < 0) {
         primitives.add_unlit(surface, mesh.triangles.size());
         return;
@@ -244,8 +247,8 @@ void add_mesh(const Scene &scene, const Shape &shape, const TraitMap &traits, Sc
     }
 }
 
-void add_sphere(const Scene &scene, const Shape &shape, SceneTables &tables, PrimitiveBuilder &primitives,
-                LightBuilder &lights) {
+void add_sphere(const Scene &scene, const Shape &shape, const SurfaceOfShape &surface, SceneTables &tables,
+                PrimitiveBuilder &primitives, LightBuilder &lights) {
     const Sphere &sphere = scene.spheres[shape.geometry];
     const float offset = static_cast<float>(tracer_error * sphere.radius);
     const float facing = sphere.flip_normals ? -1.0f : 1.0f;
@@ -273,7 +276,7 @@ void add_sphere(const Scene &scene, const Shape &shape, SceneTables &tables, Pri
             lights.set_sphere(light, std::uint32_t(tables.spheres.size() / sphere_stride - 1));
         }
     }
-    primitives.add(SurfaceOfShape(scene, shape, tables), light);
+    primitives.add(surface, light);
 }
 
 /// Lights without a surface. Those at infinity count with what crosses a disk as wide as the scene.
@@ -387,22 +390,38 @@ std::vector<Bsdf> material_records(const Scene &scene) {
     return records;
 }
 
-SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits, const LightTreeFrom &tree_from) {
+std::uint32_t SceneTables::place_of_kind(const std::string &kind, std::uint32_t number_of_class) const {
+    std::size_t place = 0;
+    while (place < kinds.size() &&
+           (kinds[place] != kind || (!kind_classes.empty() && kind_classes[place] != number_of_class)))
+        ++place;
+    return std::uint32_t(place);
+}
+
+SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits, const LightTreeFrom &tree_from,
+                              const MaterialClasses *classes) {
     SceneTables tables;
     const int indexed = traits.at("TRAIT_INDEXED");
     PrimitiveBuilder primitives(tables, indexed != 0);
     reserve_tables(scene, traits, tables, primitives);
     if (indexed != 0)
         add_vertices(scene, indexed, tables);
-    tables.kinds = bsdf_kinds(scene);
+    if (classes) {
+        for (const KindOfClass &one : kinds_by_class(scene, *classes)) {
+            tables.kinds.push_back(one.kind);
+            tables.kind_classes.push_back(one.number);
+        }
+    } else {
+        tables.kinds = bsdf_kinds(scene);
+    }
     LightBuilder lights(scene, tables, traits.at("TRAIT_TEXTURED_LIGHTS") != 0);
     for (const Shape &shape : scene.shapes)
         if (shape.kind == Shape::Kind::mesh)
-            add_mesh(scene, shape, traits, tables, primitives, lights);
+            add_mesh(scene, shape, {scene, shape, tables, classes}, traits, tables, primitives, lights);
     tables.triangle_count = tables.primitive_count;
     for (const Shape &shape : scene.shapes)
         if (shape.kind == Shape::Kind::sphere)
-            add_sphere(scene, shape, tables, primitives, lights);
+            add_sphere(scene, shape, {scene, shape, tables, classes}, tables, primitives, lights);
     primitives.finish();
     const SceneBox bounds = scene_bounds(scene);
     const double radius = bounds.radius();

@@ -3,6 +3,7 @@
 
 #include "runtime/scene/camera_clips.h"
 #include "runtime/scene/light_tree.h"
+#include "runtime/scene/material_class.h"
 #include "runtime/scene/scene.h"
 #include "runtime/scene/traits.h"
 
@@ -53,6 +54,8 @@ struct SceneTables {
     float light_share_at_infinity = 0;                 ///< with a tree: how often a light at infinity is chosen
     std::shared_ptr<const EnvironmentMap> environment; ///< where the environment is a map, or kernels expect one
     std::vector<std::string> kinds; ///< the BSDF kinds of the scene: kind k has the bins 1 + 2 k and 2 + 2 k
+    /// By kind the class of its materials, as in KindOfClass, where a kind is there once for each; else empty.
+    std::vector<std::uint32_t> kind_classes;
     std::uint32_t primitive_count = 0, triangle_count = 0, light_count = 0, environment_light = 0;
     /// With TRAIT_INDEXED how many numbers a vertex has, the number of the first, and that past the last; else 0.
     std::uint32_t vertex_numbers = 0, first_vertex = 0, end_vertex = 0;
@@ -64,6 +67,9 @@ struct SceneTables {
     Camera::Kind camera_kind = Camera::Kind::perspective;
 
     bool is_indexed() const { return vertex_numbers > 0; }
+    /// The place in `kinds` of a kind on materials of a class, which counts where there are classes; past the last
+    /// where it is not there, as of blends.
+    std::uint32_t place_of_kind(const std::string &kind, std::uint32_t number_of_class) const;
     /// In its group's frame where it is of one.
     TableTriangle triangle(std::uint32_t number) const;
     /// A triangle of an instance, by the record of that.
@@ -74,8 +80,9 @@ struct SceneTables {
     std::uint32_t light_of(std::uint32_t primitive) const;
 };
 
-/// Lays out the scene for these traits.
-SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits, const LightTreeFrom &tree_from = {});
+/// Lays out the scene for these traits. `classes`: surfaces of a kind are kept apart by class too.
+SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits, const LightTreeFrom &tree_from = {},
+                              const MaterialClasses *classes = nullptr);
 
 /// The BSDF of each material record: the fronts of all materials, then the backs that differ from them, then what
 /// blends are made of.

@@ -208,10 +208,9 @@ void add_blends(const Scene &scene, SceneTables &tables) {
     const std::vector<Bsdf> records = material_records(scene);
     const auto parts = std::uint32_t(records.size() - scene.blended.size());
     for (const Bsdf &bsdf : records) {
-        const auto kind = std::ranges::find(tables.kinds, bsdf_kind_name(bsdf));
+        const std::uint32_t kind = tables.place_of_kind(bsdf_kind_name(bsdf), class_of_blends_and_maps);
         const bool is_blend = bsdf.blend != no_blend;
-        tables.record_kind.push_back(
-            is_blend || kind == tables.kinds.end() ? 0 : std::uint32_t(kind - tables.kinds.begin()));
+        tables.record_kind.push_back(is_blend || kind == tables.kinds.size() ? 0 : kind);
         const Blend blend = is_blend ? scene.blends[std::size_t(bsdf.blend)] : Blend();
         tables.blends.insert(
             tables.blends.end(),

@@ -19,8 +19,9 @@ StageDeclaration material_stage(const Session &session, bool of_light_paths) {
         .definitions = {{"OF_LIGHT_PATHS", of_light_paths ? "1" : "0"}},
         .numbers = {"first", "traced_rows", "plane_rows", "parameter_texture", "blend_texture", "normal_texture"},
         .tables = {{"traced", "ray"}, {"index", "material_index"}}};
-    for (const MaterialClass &one : session.material_classes)
-        stage.variants.push_back(definitions_of(one));
+    for (const MaterialClass &one : session.material_classes.classes)
+        if (session.is_left_to_material(one))
+            stage.variants.push_back(definitions_of(one));
     return stage;
 }
 
@@ -32,7 +33,7 @@ MaterialReader::MaterialReader(const Session &session, Stages &stages, bool of_l
     group_ = &stages.add(group_stage());
     // Offset paths that are apart are four for each path.
     const auto apart = session.traits.find("TRAIT_APART");
-    grouping_.emplace(stages, "material", std::uint32_t(session.material_classes.size()), RowsOf::path,
+    grouping_.emplace(stages, "material", std::uint32_t(session.material_classes.classes.size()), RowsOf::path,
                       apart != session.traits.end() && apart->second != 0 ? 4 : 1);
     material_ = &stages.add(material_stage(session, of_light_paths));
 }
@@ -51,10 +52,13 @@ void MaterialReader::read(const Buffer &rays, std::uint32_t rows, std::uint32_t 
     material_->bind("surface", surface);
     group_->run(planes * rows, {{"traced_rows", table_rows}});
     grouping_->run(planes * rows);
-    for (std::size_t i = 0; i < session_.material_classes.size(); ++i) {
-        const MaterialClass &one = session_.material_classes[i];
+    std::size_t variant = 0;
+    for (std::size_t i = 0; i < session_.material_classes.classes.size(); ++i) {
+        const MaterialClass &one = session_.material_classes.classes[i];
+        if (!session_.is_left_to_material(one))
+            continue;
         const Range places = grouping_->bin(std::uint32_t(i));
-        material_->run_kind(i, places.count,
+        material_->run_kind(variant++, places.count,
                             {{"first", places.first},
                              {"traced_rows", table_rows},
                              {"plane_rows", rows},

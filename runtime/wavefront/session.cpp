@@ -1,5 +1,6 @@
 #include "runtime/wavefront/session.h"
 
+#include "kernels/shared/tables.h"
 #include "kernels/shared/texture.h"
 #include "runtime/error.h"
 #include "runtime/phases.h"
@@ -42,8 +43,11 @@ TraitMap traits_for(const Scene &scene, const SessionOptions &options, const Tra
     traits["TRAIT_LIGHT_VERTICES"] = 0;
     traits["TRAIT_LIGHT_STARTS"] = 0;
     traits["STRATEGY"] = static_cast<int>(options.strategy);
+    traits["KINDS_BY_CLASS"] = 0;
     for (const auto &[name, value] : of_method)
         traits[name] = value;
+    if (options.all_traits || traits["TRAIT_MATERIAL"] == 0)
+        traits["KINDS_BY_CLASS"] = 0;
     // Features are seen through mirrors and glass (kernels/lib/seen_features.h).
     if (traits["TRAIT_AOV"] != 0)
         traits["TRAIT_AOV"] = options.all_traits || has_dirac_bsdf(scene) ? 2 : 1;
@@ -166,15 +170,24 @@ std::vector<Buffer> make_scene_buffers(Device &device, const SceneTables &t, Pre
     return buffers;
 }
 
-/// Finds the classes, and puts the number of that of each material where kernels find it.
-void add_material_classes(const Scene &scene, Session &session) {
-    const bool all = session.options.all_traits;
-    MaterialClasses found = material_classes(scene, all ? 1 : most_material_classes);
-    if (all)
+/// Where materials have textures, blends or maps.
+MaterialClasses material_classes_for(const Scene &scene, const SessionOptions &options, const TraitMap &traits) {
+    if (traits.at("TRAIT_MATERIAL") == 0)
+        return {};
+    MaterialClasses found = material_classes(scene, options.all_traits ? 1 : most_material_classes);
+    if (options.all_traits)
         found.classes[0].on_triangles = found.classes[0].on_spheres = found.classes[0].two_faced = true;
-    session.scene_buffers.emplace_back(session.device, "material_class", found.of_material.data(),
-                                       found.of_material.size() * sizeof(found.of_material[0]));
-    session.material_classes = std::move(found.classes);
+    return found;
+}
+
+/// By material, as the stage `material` groups them: those that it does not read are of none.
+void add_class_numbers(Session &session) {
+    std::vector<std::uint32_t> numbers = session.material_classes.of_material;
+    for (std::uint32_t &number : numbers)
+        if (!session.is_left_to_material(session.material_classes.classes[number]))
+            number = bin_none;
+    session.scene_buffers.emplace_back(session.device, "material_class", numbers.data(),
+                                       numbers.size() * sizeof(numbers[0]));
 }
 
 } // namespace
@@ -183,8 +196,12 @@ Session::Session(Device &session_device, const Scene &s, const SessionOptions &s
                  const TraitMap &method_traits)
     : device(session_device), options(session_options), settings(s.settings), film(with_crop(s.film)),
       traits(traits_for(s, session_options, method_traits)),
+      material_classes(material_classes_for(s, session_options, traits)),
       scene(in_phase(options.phases, phase_names::tables,
-                     [&] { return make_scene_tables(s, traits, tree_from(session_options.lights)); })),
+                     [&] {
+                         return make_scene_tables(s, traits, tree_from(session_options.lights),
+                                                  has("KINDS_BY_CLASS") ? &material_classes : nullptr);
+                     })),
       scene_buffers(in_phase(options.phases, phase_names::tables,
                              [&] { return make_scene_buffers(session_device, scene, session_options.precision); })),
       tracer(in_phase(options.phases, phase_names::tree, [&] { return Tracer(s, session_options.threads, &scene); })) {
@@ -198,7 +215,7 @@ Session::Session(Device &session_device, const Scene &s, const SessionOptions &s
         traits["TRAIT_LIGHT_TEXTURES"] = textures_with_count(traits["TRAIT_LIGHT_TEXTURES"], few_textures);
     traits["MANY_LIGHTS"] = scene.light_count >= least_many_lights && !traits["TRAIT_LIGHT_TREE"];
     if (traits["TRAIT_MATERIAL"] != 0)
-        add_material_classes(s, *this);
+        add_class_numbers(*this);
     numbers = {{"unit", 1},
                {"triangle_count", scene.triangle_count},
                {"light_count", scene.light_count},
@@ -211,7 +228,8 @@ Session::Session(Device &session_device, const Scene &s, const SessionOptions &s
                {"crop_height", film.crop_height},
                {"film_width", film.width},
                {"seed_low", static_cast<std::uint32_t>(options.seed)},
-               {"seed_high", static_cast<std::uint32_t>(options.seed >> 32)}};
+               {"seed_high", static_cast<std::uint32_t>(options.seed >> 32)},
+               {"blend_bin", static_cast<std::uint32_t>(1 + 2 * scene.kinds.size())}};
     if (scene.environment) {
         numbers["environment_columns"] = scene.environment->columns;
         numbers["environment_rows"] = scene.environment->rows;

@@ -11,6 +11,7 @@
 #include "runtime/wavefront/session_options.h"
 #include "runtime/wavefront/statistics.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -27,9 +28,9 @@ struct Session {
     RenderSettings settings;
     FilmSettings film; ///< with its crop set
     TraitMap traits;
+    MaterialClasses material_classes; ///< where materials have textures, blends or maps
     SceneTables scene;
-    std::vector<Buffer> scene_buffers;           ///< by the names of kernels' arguments
-    std::vector<MaterialClass> material_classes; ///< where materials have textures, blends or maps
+    std::vector<Buffer> scene_buffers; ///< by the names of kernels' arguments
     Tracer tracer;
 
     /// What kernels may ask for by name, the same for all launches.
@@ -60,8 +61,24 @@ struct Session {
     std::uint32_t textured_columns() const {
         return textured_column_count(traits.at("TRAIT_TEXTURED")) + (has("TRAIT_TEXTURED_NORMALS") ? 4 : 0);
     }
-    /// Columns of `surface`: those, and the record that a blend has come to.
-    std::uint32_t surface_columns() const { return textured_columns() + (has("TRAIT_BLENDS") ? 1 : 0); }
+    /// Columns of `surface`: those, and the record that a blend has come to. None where nobody leaves any.
+    std::uint32_t surface_columns() const {
+        return is_left_to_material() ? textured_columns() + (has("TRAIT_BLENDS") ? 1 : 0) : 0;
+    }
+    /// Whether the stage `material` reads the materials of a class: all of them, unless kinds are kept apart by class.
+    bool is_left_to_material(const MaterialClass &one) const {
+        return !has("KINDS_BY_CLASS") || one.is_of_blends_or_maps();
+    }
+    /// Whether there are such classes.
+    bool is_left_to_material() const {
+        return std::ranges::any_of(material_classes.classes,
+                                   [&](const MaterialClass &one) { return is_left_to_material(one); });
+    }
+    /// That its kernels read, where kinds are kept apart by class.
+    std::uint32_t first_texture_of_kind(std::size_t kind) const {
+        const std::uint32_t number = scene.kind_classes.empty() ? class_of_blends_and_maps : scene.kind_classes[kind];
+        return number == class_of_blends_and_maps ? 0 : material_classes.classes[number].parameter.first;
+    }
     /// Of so many columns of a table of surface vertices those that are allocated.
     std::uint32_t vertex_columns(std::uint32_t all) const {
         return all - vertex_columns_not_needed() + textured_columns();

@@ -67,6 +67,19 @@ KernelRequest request_of(const StageDeclaration &declaration, std::string kind, 
     return request;
 }
 
+/// For the materials of a class alone, but for what they are blended or mapped by.
+void serve_class(KernelRequest &request, const StageDeclaration &declaration, const MaterialClass &one,
+                 std::uint32_t number) {
+    for (const auto &[name, value] : definitions_of(one))
+        if (one.textured != 0 || name == "TRAIT_TRIANGLES" || name == "TRAIT_SPHERES" || name == "TRAIT_TWO_FACED")
+            request.definitions[name] = value;
+    request.definitions.emplace("READS_NO_SURFACE", "1");
+    request.definitions.emplace("TRAIT_TEXTURED_NORMALS", "0");
+    if (one.textured != 0)
+        request.file = fmt::format("kernels/stages/{}.cl", declaration.textured_file);
+    request.name += fmt::format(" {}", number + 1);
+}
+
 /// Sets what is the same for all launches, and lists the arguments that are tables which change.
 std::vector<std::string> bind_arguments(Kernel &kernel, const StageDeclaration &declaration, const Session &session,
                                         const Tables &tables) {
@@ -155,7 +168,8 @@ void Stages::build(Session &session, const Tables &tables) {
         if (!declaration.is_wanted)
             continue;
         stage.tables_ = &tables;
-        std::size_t count = 0, for_dirac = no_kernel;
+        std::size_t count = 0;
+        std::map<std::uint32_t, std::size_t> for_dirac; // by class
         for (std::size_t variant = 0; variant < declaration.variants.size(); ++variant) {
             requests.push_back(request_of(declaration, variant));
             places.push_back({&stage, count});
@@ -165,14 +179,18 @@ void Stages::build(Session &session, const Tables &tables) {
         for (std::size_t k = 0; k < others; ++k) {
             const bool is_dirac = declaration.by_kind && bsdf_kind_is_dirac(kinds[k]);
             const bool is_left_out = is_dirac && declaration.dirac == DiracKinds::left_out;
-            if (is_left_out || (is_dirac && for_dirac != no_kernel)) {
-                stage.kernel_of_.push_back(for_dirac);
+            const bool by_class = declaration.by_kind && !session.scene.kind_classes.empty();
+            const std::uint32_t of_class = by_class ? session.scene.kind_classes[k] : class_of_blends_and_maps;
+            if (is_left_out || (is_dirac && for_dirac.contains(of_class))) {
+                stage.kernel_of_.push_back(is_left_out ? no_kernel : for_dirac[of_class]);
                 continue;
             }
             if (is_dirac)
-                for_dirac = count;
+                for_dirac[of_class] = count;
             requests.push_back(declaration.by_kind ? request_of(declaration, kinds[k], session.scene.kinds)
                                                    : request_of(declaration));
+            if (of_class != class_of_blends_and_maps)
+                serve_class(requests.back(), declaration, session.material_classes.classes[of_class], of_class);
             places.push_back({&stage, count});
             stage.kernel_of_.push_back(count++);
         }

@@ -32,6 +32,9 @@ struct StageDeclaration {
     std::map<std::string, std::string> definitions = {};
     /// True: a kernel for each BSDF kind of the scene, compiled with BSDF and BSDF_IS_DIRAC.
     bool by_kind = false;
+    /// With by_kind, where kinds are kept apart by class (KINDS_BY_CLASS): the file of kernels that read the textures
+    /// of their class themselves.
+    std::string textured_file = {};
     DiracKinds dirac = DiracKinds::chosen; ///< with by_kind
     /// Where there are any, a kernel for each, compiled with these definitions too.
     std::vector<std::map<std::string, std::string>> variants = {};

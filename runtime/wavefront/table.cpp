@@ -14,6 +14,8 @@ namespace {
 
 // On a CPU a batch should stay near the last-level cache; a GPU wants many rows to hide its latencies.
 constexpr std::uint32_t default_batch_cpu = 1u << 17, default_batch_other = 1u << 20;
+// Each launch costs some 25 us beside its rows. So where paths take few bytes there are twice as many of them.
+constexpr std::uint64_t twice_below_bytes = 96u << 20;
 constexpr std::uint32_t least_batch = 64, largest_batch = 1u << 24;
 
 std::size_t element_bytes(const TableDeclaration &table, Precision precision) {
@@ -128,6 +130,8 @@ std::uint32_t choose_batch_size(Device &device, std::uint32_t requested, std::ui
     if (fits < least_batch)
         throw Error(ExitCode::device, fmt::format("{} has not enough memory for {} paths", d.name, least_batch));
     std::uint64_t size = requested ? requested : default_batch_size(device);
+    if (!requested && d.type == "cpu" && 2 * size * of_path <= twice_below_bytes)
+        size *= 2;
     size = std::min<std::uint64_t>({size, largest_batch, std::max<std::uint64_t>(samples, 1)});
     const std::uint64_t rounded_up = (size + least_batch - 1) / least_batch * least_batch;
     return static_cast<std::uint32_t>(std::min(rounded_up, fits / least_batch * least_batch));

@@ -114,7 +114,7 @@ std::uint32_t slot_rows(std::uint32_t paths);
 /// Passes are this many batches long.
 constexpr std::uint32_t batches_a_pass = 4;
 
-/// Paths in flight where nobody asks for another number.
+/// Paths in flight where nobody asks for another number; twice as many where they take little memory.
 std::uint32_t default_batch_size(const Device &device);
 
 /// The batch size for a request (0: the device's default): bounded by half of the device's memory and by its largest

@@ -268,6 +268,71 @@ TEST(Textures, SeveralOfAMaterialAreEachInTheirPlace) {
     }
 }
 
+/// Strips of a wall and a sphere before it, each of another class: bytes of gray, halves in colour, no texture, a rough
+/// metal, a blend whose weight is a texture, and two sides. `pictures`: of one texel, in place of constants.
+Image wall_of_classes(bool pictures, const char *method) {
+    SceneMaker maker(size, 1);
+    maker.look({0, 0, 3}, {0, 0, 0}, 60);
+    maker.directional_light({3, 3, 3}, {0.6f, 0, -0.8f});
+    maker.scene.settings.max_depth = 2;
+    Scene &scene = maker.scene;
+    scene.textures.push_back(random_texture()); // nobody's
+    const auto picture_of = [&](Bitmap::Format format, bool is_color, std::array<std::uint32_t, 3> code) {
+        auto bitmap = std::make_shared<Bitmap>();
+        bitmap->resize(1, 1, format, is_color);
+        for (std::uint32_t c = 0; c < (is_color ? 3u : 1u); ++c)
+            bitmap->set(0, 0, c, code[c]);
+        Texture texture;
+        texture.bitmap = bitmap;
+        scene.textures.push_back(texture);
+        return pictures ? std::int32_t(scene.textures.size() - 1) : no_texture;
+    };
+    const auto gray = [&](std::uint32_t code) {
+        Bsdf bsdf = diffuse(float(code) / 255);
+        bsdf.reflectance.texture = picture_of(Bitmap::Format::byte, false, {code});
+        return bsdf;
+    };
+    Bsdf colored = diffuse(0.5);
+    colored.reflectance = {0.5f, 0.25f, 0.75f};
+    colored.reflectance.texture = picture_of(Bitmap::Format::half, true, {0x3800, 0x3400, 0x3A00});
+    Bsdf metal = diffuse(0.5);
+    metal.kind = BsdfKind::roughconductor_ggx;
+    metal.alpha_u = metal.alpha_v = Number(102.0f / 255);
+    metal.alpha_u.texture = metal.alpha_v.texture = picture_of(Bitmap::Format::byte, false, {102});
+    scene.blended = {gray(51), metal};
+    scene.blends = {{0, 1, 51.0f / 255}};
+    scene.blends[0].weight.texture = picture_of(Bitmap::Format::byte, false, {51});
+    Bsdf blend;
+    blend.blend = 0;
+    float left = -2;
+    for (const Bsdf &bsdf : {gray(204), colored, diffuse(0.3f), metal, blend, gray(26)}) {
+        maker.parallelogram({left, -2, 0}, {0.6f, 0, 0}, {0, 4, 0}, maker.material(bsdf));
+        left += 0.6f;
+    }
+    const std::uint32_t sides = maker.material(metal);
+    scene.materials[sides].two_sided = true;
+    scene.materials[sides].back = colored;
+    maker.sphere({0, -0.5f, 1}, 0.3f, sides);
+    maker.parallelogram({-0.3f, 0.4f, 0.5f}, {0, 0.6f, 0}, {0.6f, 0, 0}, sides); // from behind
+    return render(scene, RenderOptions(), method).image;
+}
+
+/// In pt those that shade, in sppm those of the stage `material`.
+TEST(Textures, KernelsReadThoseOfTheirClass) {
+    for (const char *method : {"pt", "sppm"}) {
+        const Image constants = wall_of_classes(false, method), read = wall_of_classes(true, method);
+        double largest = 0;
+        for (int c = 0; c < 3; ++c)
+            for (std::size_t i = 0; i < size * size; ++i) {
+                const double expected = constants.find(colors[c])->values[i];
+                ASSERT_NEAR(read.find(colors[c])->values[i], expected, rounding * (1 + expected))
+                    << method << ", " << colors[c] << " of pixel " << i;
+                largest = std::max(largest, expected);
+            }
+        EXPECT_GT(largest, 0.5) << method;
+    }
+}
+
 /// A sphere of half mirror, half wall, under light from everywhere, has the radiance of its mean albedo, however the
 /// parts are nested, and from both sides. (Mitsuba 3.9 is no judge of it: it weighs a Dirac part by densities.)
 TEST(Blends, HaveTheMeanOfTheirParts) {

@@ -1,12 +1,16 @@
 // Materials whose textures are read alike share a class, and a class has all that its materials need.
 #include "runtime/scene/material_class.h"
 
+#include "runtime/scene/scene_tables.h"
 #include "tests/support/small_scenes.h"
 #include "tests/support/textures.h"
 
 #include <gmock/gmock.h>
 
 #include <cstddef>
+#include <set>
+#include <string>
+#include <utility>
 
 // After all others: its short macro names are not for library headers.
 #include "kernels/shared/texture.h"
@@ -92,6 +96,38 @@ TEST(MaterialClasses, OfABlendHaveWhatItsPartsNeed) {
     EXPECT_EQ(one.textured, 1 << lib_float::parameter_reflectance);
     EXPECT_EQ(one.all_textured, 0) << "one part has a constant";
     EXPECT_EQ(one.normals, textured_normals_given);
+}
+
+TEST(MaterialClasses, KeepKindsApart) {
+    SceneMaker maker = maker_with_textures();
+    Bsdf metal = with_texture(0);
+    metal.kind = BsdfKind::roughconductor_ggx;
+    maker.scene.blended = {diffuse(0.5), metal};
+    maker.scene.blends = {{0, 1, 0.5f}};
+    Bsdf blend;
+    blend.blend = 0;
+    const std::size_t plain = wall_of(maker, diffuse(0.5)), textured = wall_of(maker, with_texture(0));
+    wall_of(maker, metal);
+    wall_of(maker, blend);
+    const MaterialClasses found = material_classes(maker.scene, many);
+    std::set<std::pair<std::string, std::uint32_t>> kinds;
+    for (const KindOfClass &one : kinds_by_class(maker.scene, found))
+        EXPECT_TRUE(kinds.emplace(one.kind, one.number).second);
+    const std::uint32_t of_textured = found.of_material[textured];
+    EXPECT_THAT(kinds, ::testing::UnorderedElementsAre(
+                           Pair("diffuse", found.of_material[plain]), Pair("diffuse", of_textured),
+                           Pair("diffuse", class_of_blends_and_maps), Pair("roughconductor_ggx", ::testing::_),
+                           Pair("roughconductor_ggx", class_of_blends_and_maps)));
+
+    const SceneTables tables = make_scene_tables(maker.scene, scene_traits(maker.scene), {}, &found);
+    ASSERT_EQ(tables.kinds.size(), 5u);
+    // Two triangles a wall, in the order of the walls; blends are behind all kinds.
+    const auto bin = [](std::uint32_t place) { return 1 + 2 * place; };
+    EXPECT_EQ(tables.primitive_bin[0], bin(tables.place_of_kind("diffuse", found.of_material[plain])));
+    EXPECT_EQ(tables.primitive_bin[2], bin(tables.place_of_kind("diffuse", of_textured)));
+    EXPECT_EQ(tables.primitive_bin[6], bin(5));
+    EXPECT_EQ(tables.record_kind[4], tables.place_of_kind("diffuse", class_of_blends_and_maps));
+    EXPECT_EQ(tables.record_kind[5], tables.place_of_kind("roughconductor_ggx", class_of_blends_and_maps));
 }
 
 TEST(MaterialClasses, AreMergedWhereThereAreTooMany) {

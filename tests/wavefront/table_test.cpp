@@ -133,6 +133,17 @@ TEST_F(BatchSize, IsNoMoreThanThereIsToDo) {
     EXPECT_EQ(choose(0, 1, false), 64u);
 }
 
+TEST_F(BatchSize, IsLargerOnACpuWherePathsAreSmall) {
+    description().memory_bytes = description().allocation_bytes = plenty;
+    description().type = "cpu";
+    EXPECT_EQ(choose(0, plenty, false), 2 * default_batch_size(device));
+    TableList wide = list(false);
+    wide.push_back({.name = "wide", .columns = 100});
+    EXPECT_EQ(choose_batch_size(device, 0, plenty, wide, Precision::single), default_batch_size(device));
+    description().type = "gpu";
+    EXPECT_EQ(choose(0, plenty, false), default_batch_size(device));
+}
+
 TEST_F(BatchSize, HasABoundWhateverIsAsked) {
     description().memory_bytes = description().allocation_bytes = plenty;
     EXPECT_LE(choose(0xFFFFFFFF, plenty, true), 1u << 24);
