@@ -124,7 +124,7 @@ TEST_F(Program, ThatDoesNotCompileIsNamedWithTheCompilersLog) {
         EXPECT_EQ(error.code, ExitCode::device);
         EXPECT_THAT(error.what(), HasSubstr("shade broken"));
         EXPECT_THAT(error.what(), HasSubstr("nonsense_sample"));
-        EXPECT_THAT(error.what(), HasSubstr("kernels/stages/shade.cl")) << "the real file, by #line";
+        EXPECT_THAT(error.what(), HasSubstr("kernels/stages/shade_vertex.h")) << "the real file, by #line";
     }
 }
 

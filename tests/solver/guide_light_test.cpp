@@ -95,8 +95,9 @@ TEST(LightCorrection, KeepsFirefliesAndHolesOut) {
     image.at(1, 30, 20) = none;
     const GuideImage found = corrected(halves, image);
     for (std::size_t i = 0; i < found.values.size(); ++i) {
-        if (std::isfinite(image.values[i]))
+        if (std::isfinite(image.values[i])) {
             ASSERT_EQ(found.values[i], image.values[i]) << i;
+        }
     }
 }
 
