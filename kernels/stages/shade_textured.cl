@@ -1,7 +1,7 @@
 /* shade, as in shade.cl, of the surfaces of one class of materials (runtime/scene/material_class.h), whose textures it
  * reads itself: no stage `material` has been there. READS_NO_SURFACE is 1, and the class has neither blends nor maps.
  * The paths have no offset paths. */
-//! traits: TRAIT_SPHERES TRAIT_TEXTURES
+//! traits: TRAIT_SPHERES TRAIT_TEXTURES TRAIT_TEXTURED_LIGHTS
 #include "kernels/lib/hit_uv.h"
 #include "kernels/lib/material_lookup.h"
 
@@ -14,7 +14,16 @@
 #define SPHERE_PARAMETER
 #define PLACE_ON_SPHERE(primitive, hit) v3(R(0), R(0), R(1))
 #endif
-#define MATERIAL_PARAMETERS , __global const real *triangle_texcoords SPHERE_PARAMETER LOOKUP_PARAMETERS
+#if TRAIT_TEXTURED_LIGHTS
+#define TEXTURE_BUFFERS /* LIGHT_TEXTURE_PARAMETERS has them */
+#else
+#define TEXTURE_BUFFERS                                                                                                \
+    , __global const real *triangle_texcoords SPHERE_PARAMETER, __global const uint *textures,                         \
+        __global const real *texture_reals, __global const uint *texels
+#endif
+#define MATERIAL_PARAMETERS                                                                                            \
+    TEXTURE_BUFFERS, uint parameter_texture, __global const uint *material_textures,                                   \
+        __global const uint *material_lookups
 #define BITS_OF_MATERIAL texture_bits(TRAIT_TEXTURES, parameter_texture, textures, texture_reals, unit)
 #define MATERIAL_AT(point, primitive, hit)                                                                             \
     material_looked_up(material_load(materials, (point).material, unit), (point).material,                             \
