@@ -356,8 +356,7 @@ void GradientPathTracer::find_emission(const Hits &next) {
 void GradientPathTracer::shade(const Hits &next) {
     for (std::uint32_t phase = 0; phase < phases_.count; ++phase)
         for (std::size_t kind = 0; kind < paths_.kinds(); ++kind)
-            run_shade(phase == phases_.later ? shade_ : shade_with_offsets_, session_, next, next.kind(phase, kind),
-                      kind);
+            run_shade(phase == phases_.later ? shade_ : shade_with_offsets_, next, next.kind(phase, kind), kind);
 }
 
 /// Brings offset paths to the new vertices; those that are connected there take the base path's direction. `stride` as

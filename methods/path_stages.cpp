@@ -35,7 +35,7 @@ StageDeclaration shade_stage(bool with_offsets) {
             .definitions = {{"WITH_OFFSETS", with_offsets ? "1" : "0"}},
             .by_kind = true,
             .textured_file = with_offsets ? "" : "shade_textured",
-            .numbers = {"first", "to", "parameter_texture"}};
+            .numbers = {"first", "to"}};
 }
 
 TableList joined(TableList a, const TableList &b) {
@@ -63,11 +63,8 @@ void run_on_places(Stage &stage, const Hits &hits, Range rows) {
     stage.run(rows.count, {{"first", hits.place(rows.first)}});
 }
 
-void run_shade(Stage &shade, const Session &session, const Hits &hits, Range rows, std::size_t kind) {
-    shade.run_kind(kind, rows.count,
-                   {{"first", hits.place(rows.first)},
-                    {"to", rows.first},
-                    {"parameter_texture", session.first_texture_of_kind(kind)}});
+void run_shade(Stage &shade, const Hits &hits, Range rows, std::size_t kind) {
+    shade.run_kind(kind, rows.count, {{"first", hits.place(rows.first)}, {"to", rows.first}});
 }
 
 std::vector<std::uint32_t> material_kinds(const Scene &scene, double threshold) {

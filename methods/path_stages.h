@@ -29,7 +29,7 @@ std::uint32_t begin_camera_paths(Stage &camera, Wavefront &paths, std::uint32_t 
 /// Runs a stage that reads the rows of before by the index, on those that take the new rows of the range.
 void run_on_places(Stage &stage, const Hits &hits, Range rows);
 /// The new vertices of one BSDF kind.
-void run_shade(Stage &shade, const Session &session, const Hits &hits, Range rows, std::size_t kind);
+void run_shade(Stage &shade, const Hits &hits, Range rows, std::size_t kind);
 
 /// By material record, the kind with what `kind` in kernels/shared/tables.h says of it, surfaces being rough from this
 /// roughness on.

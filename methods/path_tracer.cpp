@@ -68,7 +68,7 @@ bool PathTracer::render_batch() {
             run_on_places(emission_, hits, hits.emitting(0, kind));
         paths_.advance();
         for (std::size_t kind = 0; kind < paths_.kinds(); ++kind)
-            run_shade(shade_, session_, hits, hits.kind(0, kind), kind);
+            run_shade(shade_, hits, hits.kind(0, kind), kind);
     }
     film_.add(paths, first_pixel, first_sample);
     finish(session_.device);

@@ -8,7 +8,13 @@
 #if HAS_TEXTURES || !defined(__OPENCL_VERSION__)
 GRADUS_LIB_BEGIN
 
-/* on_sphere: the sphere_place() of one with a sphere. */
+/* The sphere_place() of a hit with a sphere. */
+GRADUS_FN vec3 hit_sphere_place(GRADUS_GLOBAL const real *sphere_axes, GRADUS_GLOBAL const real *spheres, uint unit,
+                                uint sphere, primitive_hit hit) {
+    return sphere_place(sphere_axes, unit, sphere, v3_scale(hit.normal, FIELD_OF(sphere, spheres, sphere, facing)));
+}
+
+/* on_sphere: the hit_sphere_place() of one with a sphere. */
 GRADUS_FN texture_point hit_texture_point(GRADUS_GLOBAL const real *triangle_texcoords, uint unit, uint triangle_count,
                                           uint primitive, primitive_hit hit, vec3 on_sphere) {
     (void)triangle_texcoords, (void)triangle_count, (void)primitive, (void)hit;

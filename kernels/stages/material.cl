@@ -99,8 +99,7 @@ STAGE read_material(uint count, uint unit, uint first, uint traced_rows, uint pa
     vec3 on_sphere = v3(R(0), R(0), R(1));
 #if TRAIT_SPHERES
     const uint sphere = SPHERE_OF(primitive);
-    on_sphere =
-        sphere_place(sphere_axes, unit, sphere, v3_scale(hit.normal, FIELD_OF(sphere, spheres, sphere, facing)));
+    on_sphere = hit_sphere_place(sphere_axes, spheres, unit, sphere, hit);
 #endif
     const texture_point point = hit_texture_point(triangle_texcoords, unit, triangle_count, primitive, hit, on_sphere);
 #if CLASS_BLENDS

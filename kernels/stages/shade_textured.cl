@@ -7,9 +7,7 @@
 
 #if TRAIT_SPHERES
 #define SPHERE_PARAMETER , __global const real *sphere_axes
-#define PLACE_ON_SPHERE(primitive, hit)                                                                                \
-    sphere_place(sphere_axes, unit, SPHERE_OF(primitive),                                                              \
-                 v3_scale((hit).normal, FIELD_OF(sphere, spheres, SPHERE_OF(primitive), facing)))
+#define PLACE_ON_SPHERE(primitive, hit) hit_sphere_place(sphere_axes, spheres, unit, SPHERE_OF(primitive), hit)
 #else
 #define SPHERE_PARAMETER
 #define PLACE_ON_SPHERE(primitive, hit) v3(R(0), R(0), R(1))

@@ -93,12 +93,12 @@ void GatherPaths::step(const Hits &hits) {
     gathered_ = samples_lights_ ? hits.phase(gathers) : Range();
     run_on_places(travel_, hits, hits.phase(goes_on));
     for (std::size_t kind = 0; kind < paths_.kinds(); ++kind) {
-        run_shade(shade_, session_, hits, hits.kind(goes_on, kind), kind);
+        run_shade(shade_, hits, hits.kind(goes_on, kind), kind);
         const Range rows = hits.kind(gathers, kind);
         const LaunchNumbers places = {{"first", hits.place(rows.first)}, {"to", rows.first}};
         gather_.run_kind(features_ ? kind : 0, rows.count, places);
         if (samples_lights_)
-            run_shade(shade_, session_, hits, rows, kind);
+            run_shade(shade_, hits, rows, kind);
     }
 }
 

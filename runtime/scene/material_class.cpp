@@ -156,12 +156,9 @@ std::vector<KindOfClass> kinds_by_class(const Scene &scene, const MaterialClasse
     std::set<std::pair<std::string, std::uint32_t>> found;
     for (const Shape &shape : scene.shapes) {
         const Material &material = scene.materials[shape.material];
-        const std::uint32_t number = classes.of_material[shape.material];
-        const bool is_left = classes.classes[number].is_of_blends_or_maps();
+        const std::uint32_t number = classes.of_kinds(shape.material);
         for (const Bsdf *side : {&material.front, material.two_sided ? &material.back : &material.front})
-            for_each_part(scene, *side, [&](const Bsdf &part) {
-                found.emplace(bsdf_kind_name(part), is_left ? class_of_blends_and_maps : number);
-            });
+            for_each_part(scene, *side, [&](const Bsdf &part) { found.emplace(bsdf_kind_name(part), number); });
     }
     std::vector<KindOfClass> kinds;
     for (const std::string &kind : bsdf_kinds(scene))

@@ -4,6 +4,7 @@
 
 #include "runtime/scene/traits.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -31,10 +32,19 @@ struct MaterialClass {
     bool is_of_blends_or_maps() const { return blends > 0 || normals != 0; }
 };
 
+/// The classes of blends and maps, all of them.
+constexpr std::uint32_t class_of_blends_and_maps = 0xFFFFFFFFu;
+
 struct MaterialClasses {
     std::vector<MaterialClass> classes;
     /// By number of a material of the scene, the place in `classes`; 0 where no shape has it.
     std::vector<std::uint32_t> of_material;
+
+    /// By which the kinds of a material that some shape has are kept apart: its place, or class_of_blends_and_maps.
+    std::uint32_t of_kinds(std::size_t material) const {
+        const std::uint32_t number = of_material[material];
+        return classes[number].is_of_blends_or_maps() ? class_of_blends_and_maps : number;
+    }
 };
 
 /// The classes of the materials that shapes have, at most `most` of them: those that are most alike go together.
@@ -46,13 +56,10 @@ MaterialClass class_of_all_materials(const Scene &scene);
 /// What the kernel of a class is compiled with (kernels/stages/material.cl).
 std::map<std::string, std::string> definitions_of(const MaterialClass &one);
 
-/// The classes of blends and maps, all of them.
-constexpr std::uint32_t class_of_blends_and_maps = 0xFFFFFFFFu;
-
 /// A BSDF kind on the materials of a class.
 struct KindOfClass {
     std::string kind;
-    std::uint32_t number; ///< of the class, or class_of_blends_and_maps
+    std::uint32_t number; ///< of the class, as of_kinds() has it
 };
 
 /// Each kind that shapes have, on each class that it occurs in, kind by kind.

@@ -88,9 +88,7 @@ struct SurfaceOfShape {
     SurfaceOfShape(const Scene &scene, const Shape &shape, const SceneTables &tables, const MaterialClasses *classes) {
         const Material &of_shape = scene.materials[shape.material];
         material = shape.material | (of_shape.two_sided ? material_two_sided : 0);
-        std::uint32_t number = classes ? classes->of_material[shape.material] : 0;
-        if (classes && classes->classes[number].is_of_blends_or_maps())
-            number = class_of_blends_and_maps;
+        const std::uint32_t number = classes ? classes->of_kinds(shape.material) : 0;
         bin = bin_of(of_shape.front, number, tables);
         back_bin = bin_of(of_shape.two_sided ? of_shape.back : of_shape.front, number, tables);
     }

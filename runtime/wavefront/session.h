@@ -74,11 +74,6 @@ struct Session {
         return std::ranges::any_of(material_classes.classes,
                                    [&](const MaterialClass &one) { return is_left_to_material(one); });
     }
-    /// That its kernels read, where kinds are kept apart by class.
-    std::uint32_t first_texture_of_kind(std::size_t kind) const {
-        const std::uint32_t number = scene.kind_classes.empty() ? class_of_blends_and_maps : scene.kind_classes[kind];
-        return number == class_of_blends_and_maps ? 0 : material_classes.classes[number].parameter.first;
-    }
     /// Of so many columns of a table of surface vertices those that are allocated.
     std::uint32_t vertex_columns(std::uint32_t all) const {
         return all - vertex_columns_not_needed() + textured_columns();

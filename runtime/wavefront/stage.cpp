@@ -80,13 +80,18 @@ void serve_class(KernelRequest &request, const StageDeclaration &declaration, co
     request.name += fmt::format(" {}", number + 1);
 }
 
-/// Sets what is the same for all launches, and lists the arguments that are tables which change.
+/// Sets what is the same for all launches, and lists the arguments that are tables which change. `of_class`: whose
+/// textures the kernel reads itself, or class_of_blends_and_maps.
 std::vector<std::string> bind_arguments(Kernel &kernel, const StageDeclaration &declaration, const Session &session,
-                                        const Tables &tables) {
+                                        const Tables &tables, std::uint32_t of_class) {
     std::vector<std::string> provided = declaration.numbers, changing;
     provided.push_back("count");
     for (const std::string &number : provided)
         kernel.set(number, 0);
+    if (of_class != class_of_blends_and_maps) {
+        kernel.set("parameter_texture", session.material_classes.classes[of_class].parameter.first);
+        provided.push_back("parameter_texture");
+    }
     const std::vector<std::string> arguments = kernel.argument_names();
     const auto asks_for = [&](const std::string &name) {
         return std::find(arguments.begin(), arguments.end(), name) != arguments.end();
@@ -162,7 +167,12 @@ void Stages::build(Session &session, const Tables &tables) {
     const std::vector<std::string> &kinds = session.scene.kinds;
     const Phase phase(session.options.phases, phase_names::compile);
     std::vector<KernelRequest> requests;
-    std::vector<std::pair<Stage *, std::size_t>> places; // by request
+    struct Place {
+        Stage *stage;
+        std::size_t kernel;
+        std::uint32_t of_class = class_of_blends_and_maps;
+    };
+    std::vector<Place> places; // by request
     for (Stage &stage : stages_) {
         const StageDeclaration &declaration = stage.declaration_;
         if (!declaration.is_wanted)
@@ -191,7 +201,7 @@ void Stages::build(Session &session, const Tables &tables) {
                                                    : request_of(declaration));
             if (of_class != class_of_blends_and_maps)
                 serve_class(requests.back(), declaration, session.material_classes.classes[of_class], of_class);
-            places.push_back({&stage, count});
+            places.push_back({&stage, count, of_class});
             stage.kernel_of_.push_back(count++);
         }
         stage.kernels_.resize(count);
@@ -206,13 +216,13 @@ void Stages::build(Session &session, const Tables &tables) {
                 session.options.on_compiled(name, ready, total, seconds);
         },
         session.options.dump_kernels);
-    for (std::size_t i = 0; i < built.size(); ++i)
-        places[i].first->kernels_[places[i].second] = built[i];
-    for (Stage &stage : stages_) {
-        stage.bound_.assign(stage.kernels_.size(), tables.version());
-        for (Kernel &kernel : stage.kernels_)
-            stage.changing_.push_back(kernel.valid() ? bind_arguments(kernel, stage.declaration_, session, tables)
-                                                     : std::vector<std::string>());
+    for (std::size_t i = 0; i < built.size(); ++i) {
+        Stage &stage = *places[i].stage;
+        Kernel &kernel = stage.kernels_[places[i].kernel] = built[i];
+        stage.bound_.push_back(tables.version());
+        stage.changing_.push_back(kernel.valid()
+                                      ? bind_arguments(kernel, stage.declaration_, session, tables, places[i].of_class)
+                                      : std::vector<std::string>());
     }
     warm(session);
 }

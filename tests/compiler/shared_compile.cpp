@@ -74,36 +74,40 @@ bool is_of_this_user(int socket) {
 }
 
 /// A message of one character with a file descriptor.
-bool send_descriptor(int socket, int descriptor) {
-    char byte = 0;
-    alignas(cmsghdr) char space[CMSG_SPACE(sizeof descriptor)] = {};
-    iovec content = {&byte, 1};
+struct DescriptorMessage {
+    DescriptorMessage() {
+        message.msg_iov = &content;
+        message.msg_iovlen = 1;
+        message.msg_control = space;
+        message.msg_controllen = sizeof space;
+    }
+    DescriptorMessage(const DescriptorMessage &) = delete;
+    DescriptorMessage &operator=(const DescriptorMessage &) = delete;
+
     msghdr message = {};
-    message.msg_iov = &content;
-    message.msg_iovlen = 1;
-    message.msg_control = space;
-    message.msg_controllen = sizeof space;
-    cmsghdr *head = CMSG_FIRSTHDR(&message);
+
+  private:
+    char byte = 0;
+    alignas(cmsghdr) char space[CMSG_SPACE(sizeof(int))] = {};
+    iovec content = {&byte, 1};
+};
+
+bool send_descriptor(int socket, int descriptor) {
+    DescriptorMessage sent;
+    cmsghdr *head = CMSG_FIRSTHDR(&sent.message);
     head->cmsg_level = SOL_SOCKET;
     head->cmsg_type = SCM_RIGHTS;
     head->cmsg_len = CMSG_LEN(sizeof descriptor);
     std::memcpy(CMSG_DATA(head), &descriptor, sizeof descriptor);
-    return sendmsg(socket, &message, MSG_NOSIGNAL) == 1;
+    return sendmsg(socket, &sent.message, MSG_NOSIGNAL) == 1;
 }
 
 int received_descriptor(int socket) {
-    char byte = 0;
     int descriptor = -1;
-    alignas(cmsghdr) char space[CMSG_SPACE(sizeof descriptor)] = {};
-    iovec content = {&byte, 1};
-    msghdr message = {};
-    message.msg_iov = &content;
-    message.msg_iovlen = 1;
-    message.msg_control = space;
-    message.msg_controllen = sizeof space;
-    if (recvmsg(socket, &message, MSG_CMSG_CLOEXEC) != 1)
+    DescriptorMessage received;
+    if (recvmsg(socket, &received.message, MSG_CMSG_CLOEXEC) != 1)
         return -1;
-    const cmsghdr *head = CMSG_FIRSTHDR(&message);
+    const cmsghdr *head = CMSG_FIRSTHDR(&received.message);
     if (head && head->cmsg_level == SOL_SOCKET && head->cmsg_type == SCM_RIGHTS)
         std::memcpy(&descriptor, CMSG_DATA(head), sizeof descriptor);
     return descriptor;
