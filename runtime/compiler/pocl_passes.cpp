@@ -1,4 +1,5 @@
-// In gradus-compile, PoCL's optimisation of a kernel begins with leaving out what nobody launches.
+// In gradus-compile, PoCL's optimisation of a kernel begins with leaving out what nobody launches, and with saying how
+// wide its vectors are to be.
 //
 // PoCL 3.1 makes three functions of each kernel: the kernel itself, a launcher for work-groups, which is what its CPU
 // devices look up, and a "fast" launcher, which they never do. Each contains all of the kernel and is optimised by
@@ -9,6 +10,8 @@
 // what LLVM's does. Where PoCL or LLVM are others, nobody calls it.
 #include "runtime/device/loaded_library.h"
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdlib>
 #include <string_view>
@@ -16,6 +19,7 @@
 namespace {
 
 // Of LLVM's C interface (llvm-c/Core.h, Transforms/IPO.h), whose references are pointers.
+using AddAttribute = void(void *function, const char *name, const char *value);
 using NameOf = const char *(void *value, std::size_t *length);
 using AddInternalize = void(void *passes, void *context, int (*is_kept)(void *value, void *context));
 using AddGlobalDce = void(void *passes);
@@ -27,13 +31,31 @@ Function *of_llvm(const char *name) {
 }
 
 NameOf *name_of = nullptr;
+AddAttribute *add_attribute = nullptr;
+
+/// Whether a kernel takes sixteen work-items at a time where the processor can, by its launcher. LLVM would have eight
+/// of them, as the first processors with AVX-512 were slower else. These kernels wait for one result after the other,
+/// so the more side by side the better: with sixteen a row of `shade` takes 0.85 of the time (Zen 4). Kernels that
+/// scatter, or hold more than the registers do, are not among them: they take as long or longer.
+bool is_wide(std::string_view launcher) {
+    static constexpr std::array<std::string_view, 7> wide = {"camera",   "emit",  "escape",          "gradient_combine",
+                                                             "material", "shade", "photon_reconnect"};
+    return std::ranges::any_of(wide, [&](std::string_view kernel) {
+        return launcher.starts_with(kernel) && launcher.substr(kernel.size()) == "_workgroup";
+    });
+}
 
 /// Of the functions that PoCL makes of a kernel the launcher alone.
 int is_kept(void *value, void *) {
+    constexpr std::string_view prefix = "_pocl_kernel_";
     std::size_t length = 0;
     const char *text = name_of(value, &length);
     const std::string_view name(text, length);
-    return !name.starts_with("_pocl_kernel_") || name.ends_with("_workgroup");
+    if (!name.starts_with(prefix))
+        return true;
+    if (add_attribute && is_wide(name.substr(prefix.size())))
+        add_attribute(value, "prefer-vector-width", "512");
+    return name.ends_with("_workgroup");
 }
 
 } // namespace
@@ -50,6 +72,7 @@ extern "C" void POPULATE(void *builder, void *passes) {
     const auto internalize = of_llvm<AddInternalize>("LLVMAddInternalizePassWithMustPreservePredicate");
     const auto remove_unused = of_llvm<AddGlobalDce>("LLVMAddGlobalDCEPass");
     name_of = of_llvm<NameOf>("LLVMGetValueName2");
+    add_attribute = of_llvm<AddAttribute>("LLVMAddTargetDependentFunctionAttr");
     if (!populate)
         std::abort(); // who started this process compiles by himself then
     if (internalize && remove_unused && name_of) {

@@ -38,7 +38,7 @@ std::vector<std::string> compiler_variables() {
 }
 
 /// Changes with how programs are compiled (pocl_compiler.h, compiler/pocl_passes.cpp).
-constexpr const char *way_of_compiling = "3";
+constexpr const char *way_of_compiling = "4";
 
 } // namespace
 

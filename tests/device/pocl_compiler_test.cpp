@@ -17,7 +17,7 @@ static float4_of scaled(float4_of v, float by) {
     return v;
 }
 __attribute__((reqd_work_group_size(64, 1, 1))) __kernel
-void normalize_records(uint count, __global const uint *index, __global const float *records, __global float *to) {
+void NAME(uint count, __global const uint *index, __global const float *records, __global float *to) {
     const size_t i = get_global_id(0);
     if (i >= count)
         return;
@@ -43,8 +43,24 @@ std::size_t gathers(const std::string &code) {
     return found;
 }
 
-/// The code of that kernel; empty without PoCL 3.1.
-std::string compiled() {
+/// How many places look like instructions on 64 bytes: the prefix EVEX with its fixed bits and that length.
+std::size_t wide_instructions(const std::string &code) {
+    std::size_t found = 0;
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(code[i]); };
+    for (std::size_t i = 0; i + 3 < code.size(); ++i)
+        found += byte(i) == 0x62 && (byte(i + 1) & 0x0C) == 0 && (byte(i + 2) & 4) == 4 && (byte(i + 3) & 0x60) == 0x40;
+    return found;
+}
+
+bool has_processor(const char *name) {
+    for (const DeviceDescription &found : list_devices())
+        if (found.name.find(name) != std::string::npos)
+            return true;
+    return false;
+}
+
+/// The code of that kernel, by that name; empty without PoCL 3.1.
+std::string compiled(const std::string &name = "normalize_records") {
     DeviceDescription device;
     for (const DeviceDescription &found : list_devices())
         if (is_pocl_cpu(found) && found.driver.starts_with("3.1"))
@@ -53,8 +69,8 @@ std::string compiled() {
         return {};
     CompileJob job;
     job.device = device;
-    job.source = {"normalize_records", "typedef struct { float x, y, z, w, more; } float4_of;" + std::string(source),
-                  "-cl-std=CL1.2 -cl-kernel-arg-info"};
+    job.source = {name, "typedef struct { float x, y, z, w, more; } float4_of;" + std::string(source),
+                  "-cl-std=CL1.2 -cl-kernel-arg-info -D NAME=" + name};
     CompileAnswer answer;
     CompileWorkers().compile({job}, 64, 1, [&](std::size_t, const CompileAnswer &one) { answer = one; });
     EXPECT_EQ(answer.kind, CompileAnswer::Kind::compiled) << answer.content;
@@ -62,14 +78,20 @@ std::string compiled() {
 }
 
 TEST(PoclCompiler, VectorisesGathersAndScattersOfRecords) {
-    bool can_gather = false;
-    for (const DeviceDescription &found : list_devices())
-        can_gather |=
-            found.name.find("haswell") != std::string::npos || found.name.find("skylake") != std::string::npos;
     const std::string code = compiled();
-    if (code.empty() || !can_gather)
+    if (code.empty() || !(has_processor("haswell") || has_processor("skylake")))
         GTEST_SKIP() << "needs PoCL 3.1 of Debian on a processor that gathers";
     EXPECT_GE(gathers(code), 3u);
+}
+
+TEST(PoclCompiler, TakesSixteenWorkItemsOfSomeKernels) {
+    const std::string wide = compiled("shade"), narrow = compiled("shift");
+    if (wide.empty())
+        GTEST_SKIP() << "needs PoCL 3.1";
+    // Of the kernel's code some 200 are; by chance some 30 places look like them. Without AVX-512 there are none.
+    constexpr std::size_t border = 100;
+    EXPECT_LT(wide_instructions(narrow), border);
+    EXPECT_EQ(wide_instructions(wide) > border, has_processor("avx512"));
 }
 
 TEST(PoclCompiler, LeavesOutWhatNobodyLaunches) {
