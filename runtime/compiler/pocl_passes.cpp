@@ -45,7 +45,8 @@ bool is_wide(std::string_view launcher) {
     });
 }
 
-/// Of the functions that PoCL makes of a kernel the launcher alone.
+/// Of the functions that PoCL makes of a kernel the launcher alone. LLVM asks it of each function before it optimises,
+/// and nobody else hands them to us: so it is here that launchers are told how wide they are.
 int is_kept(void *value, void *) {
     constexpr std::string_view prefix = "_pocl_kernel_";
     std::size_t length = 0;

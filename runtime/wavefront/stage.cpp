@@ -168,8 +168,7 @@ void Stages::build(Session &session, const Tables &tables) {
     const Phase phase(session.options.phases, phase_names::compile);
     std::vector<KernelRequest> requests;
     struct Place {
-        Stage *stage;
-        std::size_t kernel;
+        Stage *stage; // requests of a stage are in the order of its kernels
         std::uint32_t of_class = class_of_blends_and_maps;
     };
     std::vector<Place> places; // by request
@@ -182,7 +181,7 @@ void Stages::build(Session &session, const Tables &tables) {
         std::map<std::uint32_t, std::size_t> for_dirac; // by class
         for (std::size_t variant = 0; variant < declaration.variants.size(); ++variant) {
             requests.push_back(request_of(declaration, variant));
-            places.push_back({&stage, count});
+            places.push_back({&stage});
             stage.kernel_of_.push_back(count++);
         }
         const std::size_t others = declaration.by_kind ? kinds.size() : declaration.variants.empty() ? 1 : 0;
@@ -201,10 +200,9 @@ void Stages::build(Session &session, const Tables &tables) {
                                                    : request_of(declaration));
             if (of_class != class_of_blends_and_maps)
                 serve_class(requests.back(), declaration, session.material_classes.classes[of_class], of_class);
-            places.push_back({&stage, count, of_class});
+            places.push_back({&stage, of_class});
             stage.kernel_of_.push_back(count++);
         }
-        stage.kernels_.resize(count);
     }
     KernelLibrary library(session.device, session.traits, session.options.precision, session.options.work_group_size);
     const std::vector<Kernel> built = library.build(
@@ -218,7 +216,7 @@ void Stages::build(Session &session, const Tables &tables) {
         session.options.dump_kernels);
     for (std::size_t i = 0; i < built.size(); ++i) {
         Stage &stage = *places[i].stage;
-        Kernel &kernel = stage.kernels_[places[i].kernel] = built[i];
+        Kernel &kernel = stage.kernels_.emplace_back(built[i]);
         stage.bound_.push_back(tables.version());
         stage.changing_.push_back(kernel.valid()
                                       ? bind_arguments(kernel, stage.declaration_, session, tables, places[i].of_class)
