@@ -23,7 +23,7 @@ GRADUS_FN photon_chain photon_chain_of(GRADUS_GLOBAL const uint *light_vertex_ma
         const int is_specular = !light_vertex_is_light(material) &&
                                 material_bin[light_vertex_is_light(material) ? 0u : material] == chain_bin;
         if (!is_specular) {
-            const int is_fixed = material != light_vertex_far && !LIGHT_VERTEX_MIRRORS(chain.start);
+            const int is_fixed = LIGHT_VERTEX_MIRRORS(chain.start) ? 0 : material != light_vertex_far;
             chain.inner = is_fixed ? found : 0u;
             break;
         }

@@ -1,13 +1,16 @@
-// In gradus-compile, PoCL's optimisation of a kernel begins with leaving out what nobody launches, and with saying how
-// wide its vectors are to be.
+// In gradus-compile, PoCL's optimisation of a kernel begins with leaving out what nobody launches and with saying how
+// wide its vectors are to be, and is done once.
 //
 // PoCL 3.1 makes three functions of each kernel: the kernel itself, a launcher for work-groups, which is what its CPU
 // devices look up, and a "fast" launcher, which they never do. Each contains all of the kernel and is optimised by
 // itself: two thirds of the work, and of the code, for nothing.
 //
-// PoCL has no setting for this. But it has LLVM list its passes by a function of LLVM's library, and the loader finds
-// the one here first, since the program exports it (runtime/CMakeLists.txt). It puts two passes in front and then does
-// what LLVM's does. Where PoCL or LLVM are others, nobody calls it.
+// It also optimises each kernel twice: as the code of one work-item, and again when it has made that of work-groups.
+// The second time finds what the first one does, and the first one alone is a tenth of the work.
+//
+// PoCL has no settings for these. But it has LLVM list its passes by a function of LLVM's library, and the loader finds
+// the one here first, since the program exports it (runtime/CMakeLists.txt). It puts two passes in front, leaves the
+// first time out, and then does what LLVM's does. Where PoCL or LLVM are others, nobody calls it.
 #include "runtime/device/loaded_library.h"
 
 #include <algorithm>
@@ -24,6 +27,10 @@ using NameOf = const char *(void *value, std::size_t *length);
 using AddInternalize = void(void *passes, void *context, int (*is_kept)(void *value, void *context));
 using AddGlobalDce = void(void *passes);
 using Populate = void(void *builder, void *passes);
+using SetLevel = void(void *builder, unsigned level);
+
+constexpr const char *library_of_pocl = "libpocl.so.2.10"; // of 3.1
+constexpr unsigned level_of_pocl = 3;
 
 template <class Function>
 Function *of_llvm(const char *name) {
@@ -80,5 +87,14 @@ extern "C" void POPULATE(void *builder, void *passes) {
         internalize(passes, nullptr, is_kept);
         remove_unused(passes);
     }
+    // PoCL 3.1 lists all passes for a kernel once, those of both times in one list.
+    static void *listed = nullptr;
+    const auto set_level = of_llvm<SetLevel>("LLVMPassManagerBuilderSetOptLevel");
+    const bool is_first_time = set_level && listed != passes && gradus::loaded_library(library_of_pocl);
+    listed = passes;
+    if (is_first_time)
+        set_level(builder, 0);
     populate(builder, passes);
+    if (is_first_time)
+        set_level(builder, level_of_pocl);
 }

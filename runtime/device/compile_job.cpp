@@ -3,6 +3,7 @@
 #include "runtime/device/byte_text.h"
 #include "runtime/device/framed_socket.h"
 #include "runtime/device/pocl_compiler.h"
+#include "runtime/device/pocl_linker.h"
 #include "runtime/device/pocl_stub.h"
 #include "runtime/error.h"
 
@@ -69,12 +70,14 @@ struct OpenDevice {
 };
 
 OpenDevice open_device(const DeviceDescription &wanted) {
-    const char *pocl_folder = std::getenv("POCL_CACHE_DIR");
+    const char *variable = std::getenv("POCL_CACHE_DIR");
+    const std::string pocl_folder = variable ? variable : "";
     for (const FoundDevice &found : find_devices()) {
         if (found.description.platform != wanted.platform || found.description.name != wanted.name ||
             found.description.driver != wanted.driver)
             continue;
-        OpenDevice opened{found.device, cl::Context(found.device), PoclStubs(pocl_folder ? pocl_folder : "", wanted)};
+        OpenDevice opened{found.device, cl::Context(found.device), PoclStubs(pocl_folder, wanted)};
+        prepare_pocl_linker(pocl_folder, found.description);
         prepare_pocl_compiler(opened.context, opened.device, found.description);
         return opened;
     }

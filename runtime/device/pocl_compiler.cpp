@@ -18,9 +18,11 @@ void set_llvm_options() {
     const auto parse = function_of<Parse>(loaded_library("libLLVM"), "LLVMParseCommandLineOptions");
     if (!parse)
         return;
-    // Both are limits that nothing of ours reaches: what packing would have to gain, and stores of a kernel.
-    const std::array<const char *, 3> options = {"gradus-compile", "-slp-threshold=1000000",
-                                                 "-vectorize-num-stores-pred=1000000"};
+    const std::array<const char *, 4> options = {
+        "gradus-compile", "-vectorize-slp=false",
+        "-vectorize-num-stores-pred=1000000", // a limit that no kernel of ours reaches
+        // Each of some ten passes goes through all expressions once, and not again for as long as any of them changes.
+        "-instcombine-max-iterations=1"};
     parse(int(options.size()), options.data(), nullptr);
 }
 

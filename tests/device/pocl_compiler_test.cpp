@@ -59,8 +59,8 @@ bool has_processor(const char *name) {
     return false;
 }
 
-/// The code of that kernel, by that name; empty without PoCL 3.1.
-std::string compiled(const std::string &name = "normalize_records") {
+/// The code of a kernel; empty without PoCL 3.1.
+std::string compiled_source(const std::string &name, const std::string &text) {
     DeviceDescription device;
     for (const DeviceDescription &found : list_devices())
         if (is_pocl_cpu(found) && found.driver.starts_with("3.1"))
@@ -69,12 +69,16 @@ std::string compiled(const std::string &name = "normalize_records") {
         return {};
     CompileJob job;
     job.device = device;
-    job.source = {name, "typedef struct { float x, y, z, w, more; } float4_of;" + std::string(source),
-                  "-cl-std=CL1.2 -cl-kernel-arg-info -D NAME=" + name};
+    job.source = {name, text, "-cl-std=CL1.2 -cl-kernel-arg-info -D NAME=" + name};
     CompileAnswer answer;
     CompileWorkers().compile({job}, 64, 1, [&](std::size_t, const CompileAnswer &one) { answer = one; });
     EXPECT_EQ(answer.kind, CompileAnswer::Kind::compiled) << answer.content;
     return answer.content;
+}
+
+/// That of the kernel above, by that name.
+std::string compiled(const std::string &name = "normalize_records") {
+    return compiled_source(name, "typedef struct { float x, y, z, w, more; } float4_of;" + std::string(source));
 }
 
 TEST(PoclCompiler, VectorisesGathersAndScattersOfRecords) {
@@ -100,6 +104,26 @@ TEST(PoclCompiler, LeavesOutWhatNobodyLaunches) {
         GTEST_SKIP() << "needs PoCL 3.1";
     EXPECT_NE(code.find("_pocl_kernel_normalize_records_workgroup"), std::string::npos);
     EXPECT_EQ(code.find("_workgroup_fast"), std::string::npos);
+}
+
+// What a library defines is known by the library's name in the code.
+TEST(PoclCompiler, LinksNoLibraryWhereNoneIsUsed) {
+    const std::string code = compiled();
+    if (code.empty())
+        GTEST_SKIP() << "needs PoCL 3.1";
+    EXPECT_EQ(code.find("libc.so"), std::string::npos);
+    EXPECT_EQ(code.find("libm.so"), std::string::npos);
+}
+
+TEST(PoclCompiler, LinksALibraryThatIsUsed) {
+    const std::string code = compiled_source("copy_records", R"(
+typedef struct { float all[1000]; } record;
+__kernel void NAME(__global const record *from, __global record *to) { to[get_global_id(0)] = from[get_global_id(0)]; }
+)");
+    if (code.empty())
+        GTEST_SKIP() << "needs PoCL 3.1";
+    EXPECT_NE(code.find("memcpy"), std::string::npos) << "uses no library";
+    EXPECT_NE(code.find("libc.so"), std::string::npos);
 }
 
 } // namespace
