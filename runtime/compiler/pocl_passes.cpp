@@ -91,7 +91,7 @@ extern "C" void POPULATE(void *builder, void *passes) {
     static void *listed = nullptr;
     const auto set_level = of_llvm<SetLevel>("LLVMPassManagerBuilderSetOptLevel");
     const bool is_first_time = set_level && listed != passes && gradus::loaded_library(library_of_pocl);
-    listed = passes;
+    listed = is_first_time ? passes : nullptr; // another list may come to lie at the same place
     if (is_first_time)
         set_level(builder, 0);
     populate(builder, passes);
