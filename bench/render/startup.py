@@ -61,11 +61,12 @@ def scene_of_kinds():
 """
 
 
-def render(arguments, scene, size, method, folder, cache):
+def render(arguments, scene, method, folder, cache):
     """Wall seconds and the statistics of one process."""
     image, record = pathlib.Path(folder) / "image.exr", pathlib.Path(folder) / "statistics.json"
-    command = [arguments.gradus, "render", scene, "--method", method, "-o", image, "--stats", record, "--quiet"]
-    command += ["--size", size, "--spp", 1, *(["--device", arguments.device] if arguments.device else [])]
+    command = [arguments.gradus, "render", scene.file, "--method", method, "-o", image, "--stats", record, "--quiet"]
+    command += ["--size", f"{scene.width}x{scene.height}", "--spp", 1]
+    command += ["--device", arguments.device] if arguments.device else []
     # Without a folder of PoCL's, as users start it: each process then has one of its own.
     environment = {name: value for name, value in os.environ.items() if name != "POCL_CACHE_DIR"}
     environment["GRADUS_CACHE_DIR"] = str(cache)
@@ -74,18 +75,18 @@ def render(arguments, scene, size, method, folder, cache):
     return time.perf_counter() - started, json.loads(record.read_text())
 
 
-def measure(arguments, scene, size, method):
+def measure(arguments, scene, method):
     cold = []
-    for _ in range(arguments.cold):
-        with tempfile.TemporaryDirectory() as folder:
-            cache = pathlib.Path(folder) / "cache"
+    with tempfile.TemporaryDirectory() as folder:
+        for turn in range(arguments.cold):
+            cache = pathlib.Path(folder) / f"cache-{turn}"
             cache.mkdir()
-            seconds, record = render(arguments, scene, size, method, folder, cache)
+            seconds, record = render(arguments, scene, method, folder, cache)
             cold.append(seconds)
-            warm = [render(arguments, scene, size, method, folder, cache)[0] for _ in range(arguments.repeats)]
-    return {"scene": pathlib.Path(scene).name, "size": size, "method": method,
-            "cold_seconds": statistics.median(cold), "cold_turns": cold, "warm_seconds": statistics.median(warm),
-            "warm_turns": warm, "cold_compile_seconds": record["compile_seconds"]["total"],
+        warm = [render(arguments, scene, method, folder, cache)[0] for _ in range(arguments.repeats)]
+    return {"scene": scene.name, "method": method, "cold_seconds": statistics.median(cold), "cold_turns": cold,
+            "warm_seconds": statistics.median(warm), "warm_turns": warm,
+            "cold_compile_seconds": record["compile_seconds"]["total"],
             "kernels": record["compile_seconds"]["kernels"]}
 
 
@@ -106,16 +107,13 @@ def main():
         scenes = renders.ROOT / "scenes"
         jobs = arguments.scenes or [f"{scenes}/cornell-box.xml:128x128", f"{scenes}/materials.xml:64x64",
                                     f"{kinds}:64x64"]
-        print(f"{'scene':<20} {'size':<8} {'method':<6} {'empty cache':>11} {'compiling':>10} {'kernels':>8} "
-              f"{'slowest':>8} {'warm':>6}")
-        for job in jobs:
-            scene, _, size = job.rpartition(":")
-            if not scene or not pathlib.Path(scene).exists():
-                sys.exit(f"'{job}' is no SCENE.xml:WxH, or there is no such scene")
+        print(f"{'scene':<24} {'method':<6} {'empty cache':>11} {'compiling':>10} {'kernels':>8} {'slowest':>8} "
+              f"{'warm':>6}")
+        for scene in map(renders.find_scene, jobs):
             for method in arguments.method:
-                record = measure(arguments, scene, size, method)
+                record = measure(arguments, scene, method)
                 results.append(record)
-                print(f"{record['scene']:<20} {size:<8} {method:<6} {record['cold_seconds']:>9.2f} s "
+                print(f"{record['scene']:<24} {method:<6} {record['cold_seconds']:>9.2f} s "
                       f"{record['cold_compile_seconds']:>8.2f} s {len(record['kernels']):>8} "
                       f"{max(record['kernels'].values()):>6.2f} s {record['warm_seconds']:>4.2f} s", flush=True)
     if arguments.json:

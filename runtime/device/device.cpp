@@ -112,6 +112,8 @@ bool is_pocl_cpu(const DeviceDescription &d) {
     return d.type == "cpu" && lower(d.platform).find("portable computing language") != std::string::npos;
 }
 
+bool is_pocl_3_1_cpu(const DeviceDescription &d) { return is_pocl_cpu(d) && d.driver.starts_with("3.1"); }
+
 std::vector<DeviceDescription> list_devices() {
     std::vector<DeviceDescription> descriptions;
     for (const FoundDevice &found : find_devices())

@@ -41,7 +41,7 @@ constexpr std::size_t words_of_device = 160;
 } // namespace
 
 void prepare_pocl_compiler(const cl::Context &context, const cl::Device &device, const DeviceDescription &description) {
-    if (!is_pocl_cpu(description) || !description.driver.starts_with("3.1"))
+    if (!is_pocl_3_1_cpu(description))
         return;
     set_llvm_options();
     const char *const processor = processor_of_pocl();

@@ -1,5 +1,7 @@
 #include "runtime/device/pocl_linker.h"
 
+#include "runtime/device/opencl.h"
+
 #include <cstdlib>
 #include <fstream>
 #include <system_error>
@@ -26,7 +28,7 @@ without_libraries "$@" 2>/dev/null || exec ld "$@"
 
 void prepare_pocl_linker(const fs::path &folder, const DeviceDescription &description) {
     constexpr const char *variable = "COMPILER_PATH";
-    if (folder.empty() || !is_pocl_cpu(description) || !description.driver.starts_with("3.1") || std::getenv(variable))
+    if (folder.empty() || !is_pocl_3_1_cpu(description) || std::getenv(variable))
         return;
     std::error_code failure;
     const fs::path linkers = folder / "linkers", linker = linkers / "ld";

@@ -1,10 +1,13 @@
 // What the processes that compile have PoCL's compiler do.
 #include "runtime/device/compile_workers.h"
+#include "runtime/device/opencl.h"
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace gradus {
 namespace {
@@ -59,69 +62,67 @@ bool has_processor(const char *name) {
     return false;
 }
 
-/// The code of a kernel; empty without PoCL 3.1.
-std::string compiled_source(const std::string &name, const std::string &text) {
-    DeviceDescription device;
-    for (const DeviceDescription &found : list_devices())
-        if (is_pocl_cpu(found) && found.driver.starts_with("3.1"))
-            device = found;
-    if (device.name.empty())
-        return {};
-    CompileJob job;
-    job.device = device;
-    job.source = {name, text, "-cl-std=CL1.2 -cl-kernel-arg-info -D NAME=" + name};
-    CompileAnswer answer;
-    CompileWorkers().compile({job}, 64, 1, [&](std::size_t, const CompileAnswer &one) { answer = one; });
-    EXPECT_EQ(answer.kind, CompileAnswer::Kind::compiled) << answer.content;
-    return answer.content;
-}
+class PoclCompiler : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        const std::vector<DeviceDescription> devices = list_devices();
+        const auto found = std::ranges::find_if(devices, is_pocl_3_1_cpu);
+        if (found == devices.end())
+            GTEST_SKIP() << "needs PoCL 3.1";
+        device_ = *found;
+    }
 
-/// That of the kernel above, by that name.
-std::string compiled(const std::string &name = "normalize_records") {
-    return compiled_source(name, "typedef struct { float x, y, z, w, more; } float4_of;" + std::string(source));
-}
+    /// The code of a kernel.
+    std::string compiled_source(const std::string &name, const std::string &text) const {
+        CompileJob job;
+        job.device = device_;
+        job.source = {name, text, "-cl-std=CL1.2 -cl-kernel-arg-info -D NAME=" + name};
+        CompileAnswer answer;
+        CompileWorkers().compile({job}, 64, 1, [&](std::size_t, const CompileAnswer &one) { answer = one; });
+        EXPECT_EQ(answer.kind, CompileAnswer::Kind::compiled) << answer.content;
+        return answer.content;
+    }
+    /// That of the kernel above, by that name.
+    std::string compiled(const std::string &name = "normalize_records") const {
+        return compiled_source(name, "typedef struct { float x, y, z, w, more; } float4_of;" + std::string(source));
+    }
 
-TEST(PoclCompiler, VectorisesGathersAndScattersOfRecords) {
-    const std::string code = compiled();
-    if (code.empty() || !(has_processor("haswell") || has_processor("skylake")))
+  private:
+    DeviceDescription device_;
+};
+
+TEST_F(PoclCompiler, VectorisesGathersAndScattersOfRecords) {
+    if (!(has_processor("haswell") || has_processor("skylake")))
         GTEST_SKIP() << "needs PoCL 3.1 of Debian on a processor that gathers";
-    EXPECT_GE(gathers(code), 3u);
+    EXPECT_GE(gathers(compiled()), 3u);
 }
 
-TEST(PoclCompiler, TakesSixteenWorkItemsOfSomeKernels) {
+TEST_F(PoclCompiler, TakesSixteenWorkItemsOfSomeKernels) {
     const std::string wide = compiled("shade"), narrow = compiled("shift");
-    if (wide.empty())
-        GTEST_SKIP() << "needs PoCL 3.1";
     // Of the kernel's code some 200 are; by chance some 30 places look like them. Without AVX-512 there are none.
     constexpr std::size_t border = 100;
     EXPECT_LT(wide_instructions(narrow), border);
     EXPECT_EQ(wide_instructions(wide) > border, has_processor("avx512"));
 }
 
-TEST(PoclCompiler, LeavesOutWhatNobodyLaunches) {
+TEST_F(PoclCompiler, LeavesOutWhatNobodyLaunches) {
     const std::string code = compiled();
-    if (code.empty())
-        GTEST_SKIP() << "needs PoCL 3.1";
     EXPECT_NE(code.find("_pocl_kernel_normalize_records_workgroup"), std::string::npos);
     EXPECT_EQ(code.find("_workgroup_fast"), std::string::npos);
 }
 
 // What a library defines is known by the library's name in the code.
-TEST(PoclCompiler, LinksNoLibraryWhereNoneIsUsed) {
+TEST_F(PoclCompiler, LinksNoLibraryWhereNoneIsUsed) {
     const std::string code = compiled();
-    if (code.empty())
-        GTEST_SKIP() << "needs PoCL 3.1";
     EXPECT_EQ(code.find("libc.so"), std::string::npos);
     EXPECT_EQ(code.find("libm.so"), std::string::npos);
 }
 
-TEST(PoclCompiler, LinksALibraryThatIsUsed) {
+TEST_F(PoclCompiler, LinksALibraryThatIsUsed) {
     const std::string code = compiled_source("copy_records", R"(
 typedef struct { float all[1000]; } record;
 __kernel void NAME(__global const record *from, __global record *to) { to[get_global_id(0)] = from[get_global_id(0)]; }
 )");
-    if (code.empty())
-        GTEST_SKIP() << "needs PoCL 3.1";
     EXPECT_NE(code.find("memcpy"), std::string::npos) << "uses no library";
     EXPECT_NE(code.find("libc.so"), std::string::npos);
 }
