@@ -1,5 +1,6 @@
 #include "runtime/device/compile_workers.h"
 
+#include "runtime/companion_file.h"
 #include "runtime/device/cache_folder.h"
 #include "runtime/device/framed_socket.h"
 #include "runtime/seconds_since.h"
@@ -146,13 +147,8 @@ class CompileWorker {
 fs::path compile_worker_program() {
     if (const char *chosen = std::getenv("GRADUS_COMPILE"))
         return is_program(chosen) ? fs::path(chosen) : fs::path();
-    std::error_code failure;
-    const fs::path folder = fs::read_symlink("/proc/self/exe", failure).parent_path();
-    for (const fs::path &place : {folder / "gradus-compile", folder / "../libexec/gradus/gradus-compile",
-                                  fs::path(GRADUS_COMPILE_OF_BUILD), fs::path(GRADUS_COMPILE_OF_INSTALLATION)})
-        if (is_program(place))
-            return place;
-    return {};
+    const fs::path found = companion_file(GRADUS_COMPILE_OF_BUILD, GRADUS_COMPILE_OF_INSTALLATION);
+    return is_program(found) ? found : fs::path();
 }
 
 double compile_limit() {

@@ -1,6 +1,6 @@
-#include "runtime/io/picture_input.h"
+#include "runtime/pictures/picture_input.h"
 
-#include "runtime/io/text.h"
+#include <OpenImageIO/strutil.h>
 
 #include <algorithm>
 #include <vector>
@@ -15,7 +15,7 @@ const std::vector<std::string> formats_of_one_file = {"openexr", "png", "jpeg", 
 /// The readers to try, in turn: first that of the name's extension.
 std::vector<std::unique_ptr<OIIO::ImageInput>> readers_for(const OpenFile &file) {
     std::vector<std::unique_ptr<OIIO::ImageInput>> readers;
-    const std::string extension = lower_case(file.name().extension().string());
+    const std::string extension = OIIO::Strutil::lower(file.name().extension().string());
     if (extension.size() > 1)
         if (auto reader = OIIO::ImageInput::create(extension.substr(1)))
             readers.push_back(std::move(reader));
@@ -52,7 +52,7 @@ PictureInput open_picture(const OpenFile &file, const OIIO::ImageSpec *wishes) {
         if (opened.error.empty())
             opened.error = named_in(error, file);
     }
-    opened.error += "; with --confined the formats are " + join(formats_of_one_file);
+    opened.error += "; with --confined the formats are " + OIIO::Strutil::join(formats_of_one_file, ", ");
     return opened;
 }
 

@@ -1,0 +1,59 @@
+#include "runtime/io/picture_library.h"
+
+#include "runtime/companion_file.h"
+#include "runtime/error.h"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <dlfcn.h>
+#include <filesystem>
+#include <string>
+#include <system_error>
+
+namespace gradus {
+namespace {
+
+[[noreturn]] void fail(const std::string &reason) {
+    throw Error(ExitCode::failure,
+                fmt::format("image files cannot be read or written: {}; install Gradus again, or build it", reason));
+}
+
+std::filesystem::path file_of_library() {
+    if (const char *chosen = std::getenv("GRADUS_PICTURES"))
+        return chosen;
+    return companion_file(GRADUS_PICTURES_OF_BUILD, GRADUS_PICTURES_OF_INSTALLATION);
+}
+
+const PictureLibrary &load() {
+    check_picture_library();
+    const std::string path = file_of_library().string();
+    // Never closed: what it returns is freed by functions of its libraries.
+    void *const handle = dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL);
+    if (!handle)
+        fail(dlerror());
+    const auto *library = static_cast<const PictureLibrary *>(dlsym(handle, "gradus_picture_library"));
+    if (!library || std::strcmp(library->version, GRADUS_VERSION) != 0)
+        fail(fmt::format("'{}' is not of Gradus {}", path, GRADUS_VERSION));
+    return *library;
+}
+
+} // namespace
+
+void check_picture_library() {
+    const std::filesystem::path path = file_of_library();
+    std::error_code failure;
+    if (path.empty())
+        fail(fmt::format("gradus-pictures.so is neither beside the program nor at '{}'",
+                         GRADUS_PICTURES_OF_INSTALLATION));
+    if (!std::filesystem::is_regular_file(path, failure))
+        fail(fmt::format("there is no file '{}' (GRADUS_PICTURES)", path.string()));
+}
+
+const PictureLibrary &picture_library() {
+    static const PictureLibrary &library = load();
+    return library;
+}
+
+} // namespace gradus

@@ -1,0 +1,31 @@
+// What is done by OpenImageIO. It brings 260 libraries, which take 0.2 s to load, so it is linked to a library of its
+// own (runtime/pictures) that is loaded when the first file is read or written.
+#pragma once
+
+#include "runtime/film/image.h"
+#include "runtime/io/bitmap_reader.h"
+#include "runtime/io/open_file.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace gradus {
+
+/// The files' names are for messages.
+struct PictureLibrary {
+    const char *version; ///< the project's: what was built with another one does not know these functions
+    Image (*read_image)(const OpenFile &file, std::uint64_t limits);                   ///< as image_io.h has it
+    ReadBitmap (*read_bitmap)(const OpenFile &file, const BitmapRequest &request);     ///< as bitmap_reader.h has it
+    std::vector<unsigned char> (*exr_of)(const Image &image, const std::string &path); ///< what write_image() writes
+    std::vector<unsigned char> (*png_of)(const Image &image, const std::string &path); ///< what write_png() writes
+};
+
+/// Loads it at first use: the file gradus-pictures.so, or $GRADUS_PICTURES. Throws Error(ExitCode::failure) where it
+/// cannot be loaded, or is of another version.
+const PictureLibrary &picture_library();
+
+/// Throws as picture_library() would where there is no such file. Loads nothing.
+void check_picture_library();
+
+} // namespace gradus

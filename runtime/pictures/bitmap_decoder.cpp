@@ -1,0 +1,201 @@
+#include "runtime/pictures/bitmap_decoder.h"
+
+#include "runtime/error.h"
+#include "runtime/io/exr_header.h"
+#include "runtime/pictures/picture_input.h"
+
+#include <OpenImageIO/strutil.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+namespace gradus {
+
+namespace {
+
+constexpr std::uint64_t always_bytes = 256u << 20, unfolding = 64; // as in read_image()
+
+[[noreturn]] void refuse(const std::string &path, const std::string &reason) {
+    throw Error(ExitCode::image, fmt::format("cannot read the texture '{}': {}", path, reason));
+}
+
+Bitmap::Format format_of(const OIIO::ImageSpec &spec) {
+    switch (spec.format.basetype) {
+    case OIIO::TypeDesc::UINT8:
+        return Bitmap::Format::byte;
+    case OIIO::TypeDesc::UINT16:
+        return Bitmap::Format::word;
+    case OIIO::TypeDesc::HALF:
+        return Bitmap::Format::half;
+    default:
+        return Bitmap::Format::real;
+    }
+}
+
+OIIO::TypeDesc type_of(Bitmap::Format format) {
+    switch (format) {
+    case Bitmap::Format::byte:
+        return OIIO::TypeDesc::UINT8;
+    case Bitmap::Format::word:
+        return OIIO::TypeDesc::UINT16;
+    case Bitmap::Format::half:
+        return OIIO::TypeDesc::HALF;
+    case Bitmap::Format::real:
+        break;
+    }
+    return OIIO::TypeDesc::FLOAT;
+}
+
+/// Before anything is allocated.
+void check_size(const OpenFile &file, const OIIO::ImageSpec &spec, std::uint64_t limits) {
+    const std::string path = file.name().string();
+    if (spec.deep || spec.depth > 1 || spec.width <= 0 || spec.height <= 0)
+        refuse(path, "it is not a plane of pixels");
+    const double most = (double(always_bytes) + double(unfolding) * double(file.bytes())) * double(limits);
+    const double bytes = double(spec.width) * spec.height * spec.nchannels * double(spec.format.size());
+    if (bytes > most)
+        refuse(path,
+               fmt::format("its pixels would take {:.0f} MiB, far more than a file of its size holds; --limits 10 "
+                           "allows ten times the {:.0f} MiB that are read",
+                           bytes / 0x1p20, most / 0x1p20));
+}
+
+void check_exr(const OpenFile &file, std::uint64_t limits) {
+    const std::string path = file.name().string();
+    const std::optional<ExrSize> declared = exr_size(file.library_name());
+    if (!declared)
+        return;
+    if (!declared->is_whole || declared->blocks > file.bytes() / 8)
+        refuse(path, "it is truncated or damaged: its header and its size do not agree");
+    if (double(declared->bytes) > (double(always_bytes) + double(unfolding) * double(file.bytes())) * double(limits))
+        refuse(path, "it declares far more pixels than a file of its size holds");
+}
+
+int channel_named(const OIIO::ImageSpec &spec, const std::string &name) {
+    for (int c = 0; c < spec.nchannels; ++c)
+        if (OIIO::Strutil::iequals(spec.channelnames[std::size_t(c)], name))
+            return c;
+    return -1;
+}
+
+/// The channels to take: one or three.
+std::vector<int> channels_of(const std::string &path, const OIIO::ImageSpec &spec, const std::string &asked) {
+    if (!asked.empty()) {
+        int channel = asked == "a" && spec.alpha_channel >= 0 ? spec.alpha_channel : channel_named(spec, asked);
+        if (channel < 0 && (asked == "r" || asked == "g" || asked == "b")) // all that gray has is its one channel
+            channel = spec.nchannels < 3 ? 0 : asked == "r" ? 0 : asked == "g" ? 1 : 2;
+        if (channel < 0)
+            refuse(path, fmt::format("it has no channel \"{}\"", asked));
+        return {channel};
+    }
+    const int r = channel_named(spec, "R"), g = channel_named(spec, "G"), b = channel_named(spec, "B");
+    if (r >= 0 && g >= 0 && b >= 0)
+        return {r, g, b};
+    if (const int y = channel_named(spec, "Y"); y >= 0)
+        return {y};
+    if (spec.nchannels <= 2)
+        return {0};
+    if (spec.nchannels <= 4)
+        return {0, 1, 2};
+    refuse(path, fmt::format("of its {} channels none are R, G, B or Y", spec.nchannels));
+}
+
+/// Calls use(y, row) for each row of the file.
+template <class Value, class Use>
+void for_each_row(OIIO::ImageInput &input, const OpenFile &file, OIIO::TypeDesc type, Use use) {
+    const OIIO::ImageSpec spec = input.spec();
+    const int step = spec.tile_width > 0 ? spec.height : std::min(spec.height, 64); // tiles are read as a whole
+    const std::size_t line = std::size_t(spec.width) * std::size_t(spec.nchannels);
+    std::vector<Value> rows(line * std::size_t(step));
+    for (int begin = 0; begin < spec.height; begin += step) {
+        const int end = std::min(begin + step, spec.height);
+        const bool done = spec.tile_width > 0 ? input.read_image(0, 0, 0, spec.nchannels, type, rows.data())
+                                              : input.read_scanlines(0, 0, spec.y + begin, spec.y + end, spec.z, 0,
+                                                                     spec.nchannels, type, rows.data());
+        if (!done)
+            refuse(file.name().string(), named_in(input.geterror(), file));
+        for (int y = begin; y < end; ++y)
+            use(std::uint32_t(y), rows.data() + line * std::size_t(y - begin));
+    }
+}
+
+} // namespace
+
+ReadBitmap decode_bitmap(const OpenFile &file, const BitmapRequest &request) {
+    const std::string path = file.name().string();
+    check_exr(file, request.limits);
+    OIIO::ImageSpec wishes;
+    wishes.attribute("oiio:UnassociatedAlpha", 1); // colours as they are stored, not times alpha
+    const PictureInput opened = open_picture(file, &wishes);
+    if (!opened.input)
+        refuse(path, opened.error);
+    OIIO::ImageInput &input = *opened.input;
+    const OIIO::ImageSpec spec = input.spec();
+    check_size(file, spec, request.limits);
+    const std::vector<int> channels = channels_of(path, spec, request.channel);
+    const bool is_alpha = channels.size() == 1 && channels[0] == spec.alpha_channel;
+    ReadBitmap read;
+    const Bitmap::Format stored = format_of(spec);
+    const bool is_integer = stored == Bitmap::Format::byte || stored == Bitmap::Format::word;
+    const bool is_srgb = is_integer && !request.is_linear && !is_alpha;
+    const bool unfolds = is_srgb && stored == Bitmap::Format::word;
+    read.is_srgb = is_srgb && !unfolds;
+    read.bitmap.path = path;
+    read.bitmap.resize(std::uint32_t(spec.width), std::uint32_t(spec.height), unfolds ? Bitmap::Format::real : stored,
+                       channels.size() == 3);
+    Bitmap &bitmap = read.bitmap;
+    const auto copy = [&]<class Value>(const Value *row, std::uint32_t y, auto convert) {
+        for (std::uint32_t x = 0; x < bitmap.width; ++x)
+            for (std::size_t c = 0; c < channels.size(); ++c)
+                bitmap.set(x, y, int(c),
+                           convert(row[std::size_t(x) * std::size_t(spec.nchannels) + std::size_t(channels[c])]));
+    };
+    const auto as_stored = [](auto value) { return std::uint32_t(value); };
+    switch (stored) {
+    case Bitmap::Format::byte:
+        for_each_row<std::uint8_t>(input, file, type_of(stored), [&](std::uint32_t y, const std::uint8_t *row) {
+            if (!bitmap.is_color)
+                return copy(row, y, as_stored);
+            // What large pictures are: a word each.
+            std::uint32_t *to = bitmap.words.data() + std::size_t(y) * bitmap.width;
+            for (std::uint32_t x = 0; x < bitmap.width; ++x, row += spec.nchannels)
+                to[x] = row[channels[0]] | std::uint32_t(row[channels[1]]) << 8 | std::uint32_t(row[channels[2]]) << 16;
+        });
+        break;
+    case Bitmap::Format::word:
+        for_each_row<std::uint16_t>(input, file, type_of(stored), [&](std::uint32_t y, const std::uint16_t *row) {
+            if (unfolds)
+                copy(row, y, [](std::uint16_t value) {
+                    return std::bit_cast<std::uint32_t>(float(srgb_to_linear_value(value / 65535.0)));
+                });
+            else
+                copy(row, y, as_stored);
+        });
+        break;
+    case Bitmap::Format::half:
+        for_each_row<std::uint16_t>(input, file, type_of(stored), [&](std::uint32_t y, const std::uint16_t *row) {
+            copy(row, y, [&](std::uint16_t bits) {
+                const bool is_number = (bits & 0x7c00u) != 0x7c00u;
+                read.not_numbers += !is_number;
+                return is_number ? std::uint32_t(bits) : 0;
+            });
+        });
+        break;
+    case Bitmap::Format::real:
+        for_each_row<float>(input, file, type_of(stored), [&](std::uint32_t y, const float *row) {
+            copy(row, y, [&](float value) {
+                const bool is_number = std::isfinite(value);
+                read.not_numbers += !is_number;
+                return is_number ? std::bit_cast<std::uint32_t>(value) : 0;
+            });
+        });
+        break;
+    }
+    return read;
+}
+
+} // namespace gradus

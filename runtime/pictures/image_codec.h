@@ -1,0 +1,20 @@
+// Images to and from the bytes of files, by OpenImageIO.
+#pragma once
+
+#include "runtime/film/image.h"
+#include "runtime/io/open_file.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace gradus {
+
+/// read_image().
+Image decode_image(const OpenFile &file, std::uint64_t limits);
+
+/// The bytes that write_image() and write_png() write to `path`, which is for messages.
+std::vector<unsigned char> encode_exr(const Image &image, const std::string &path);
+std::vector<unsigned char> encode_png(const Image &image, const std::string &path);
+
+} // namespace gradus
