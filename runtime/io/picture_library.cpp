@@ -31,8 +31,14 @@ const PictureLibrary &load() {
     const std::string path = file_of_library().string();
     // Never closed: what it returns is freed by functions of its libraries.
     void *const handle = dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL);
-    if (!handle)
-        fail(dlerror());
+    if (!handle) {
+        const std::string reason = dlerror();
+        // As the loader says it: "failed to map segment from shared object", "cannot allocate memory".
+        if (reason.find("map segment") != std::string::npos || reason.find("allocate") != std::string::npos)
+            throw Error(ExitCode::device,
+                        fmt::format("there is not enough memory to load what reads and writes images: {}", reason));
+        fail(reason);
+    }
     const auto *library = static_cast<const PictureLibrary *>(dlsym(handle, "gradus_picture_library"));
     if (!library || std::strcmp(library->version, GRADUS_VERSION) != 0)
         fail(fmt::format("'{}' is not of Gradus {}", path, GRADUS_VERSION));

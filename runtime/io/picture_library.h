@@ -22,7 +22,7 @@ struct PictureLibrary {
 };
 
 /// Loads it at first use: the file gradus-pictures.so, or $GRADUS_PICTURES. Throws Error(ExitCode::failure) where it
-/// cannot be loaded, or is of another version.
+/// cannot be loaded, or is of another version, and Error(ExitCode::device) where there is no memory for it.
 const PictureLibrary &picture_library();
 
 /// Throws as picture_library() would where there is no such file. Loads nothing.

@@ -94,19 +94,28 @@ class FailingCalls : public ProgramTest {
     }
 };
 
-#ifdef GRADUS_ALL_CALLS
-TEST_F(FailingCalls, EachCallOfPathTracing) { fail_calls({"pt"}, each); }
+TEST_F(FailingCalls, SomeCallsOfPathTracing) {
+    fail_calls({"pt"}, [](const Calls &calls) {
+        std::vector<long> some;
+        for (long n = 1; n <= calls.count; n += calls.count / 7)
+            some.push_back(n);
+        return some;
+    });
+}
 
-// Suites of their own: each takes half an hour.
-class FailingCallsOfOnePixel : public FailingCalls {};
-TEST_F(FailingCallsOfOnePixel, EachCallOfGradientDomainPathTracing) { fail_calls({"gpt", "1x1"}, each); }
+/// Of which each takes half an hour.
+class FullFailingCalls : public FailingCalls {};
+TEST_F(FullFailingCalls, EachCallOfPathTracing) { fail_calls({"pt"}, each); }
+
+class FullFailingCallsOfOnePixel : public FailingCalls {};
+TEST_F(FullFailingCallsOfOnePixel, EachCallOfGradientDomainPathTracing) { fail_calls({"gpt", "1x1"}, each); }
 
 /// Of 22,000 calls, which is mostly what iterations of the solver repeat, on the levels that more pixels have.
-class FailingCallsByPlace : public FailingCalls {};
-TEST_F(FailingCallsByPlace, FirstAndLastOfGradientDomainPathTracing) { fail_calls({"gpt"}, by_place); }
+class FullFailingCallsByPlace : public FailingCalls {};
+TEST_F(FullFailingCallsByPlace, FirstAndLastOfGradientDomainPathTracing) { fail_calls({"gpt"}, by_place); }
 
 /// An address space from too small for anything to large enough: an error that says so, or the whole image.
-TEST_F(FailingCalls, MemoryForAnyPartOfTheRender) {
+TEST_F(FullFailingCalls, MemoryForAnyPartOfTheRender) {
     ::unsetenv("LD_PRELOAD");
     int refused = 0, rendered = 0;
     for (std::size_t limit = 600; limit <= 1800; limit += 25)
@@ -135,7 +144,7 @@ TEST_F(FailingCalls, MemoryForAnyPartOfTheRender) {
 
 /// The same for numbers of threads: each takes its part of the address space, and what waits for one that could not be
 /// started waits for ever.
-TEST_F(FailingCalls, MemoryForAnyNumberOfThreads) {
+TEST_F(FullFailingCalls, MemoryForAnyNumberOfThreads) {
     ::unsetenv("LD_PRELOAD");
     for (const char *threads : {"1", "8", "32"}) {
         int refused = 0, rendered = 0;
@@ -152,16 +161,6 @@ TEST_F(FailingCalls, MemoryForAnyNumberOfThreads) {
         EXPECT_GT(rendered, 0) << threads;
     }
 }
-#else
-TEST_F(FailingCalls, SomeCallsOfPathTracing) {
-    fail_calls({"pt"}, [](const Calls &calls) {
-        std::vector<long> some;
-        for (long n = 1; n <= calls.count; n += calls.count / 7)
-            some.push_back(n);
-        return some;
-    });
-}
-#endif
 
 } // namespace
 } // namespace gradus

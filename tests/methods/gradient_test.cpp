@@ -10,18 +10,14 @@ namespace {
 
 constexpr std::size_t seeds = 8;
 constexpr std::uint64_t samples_per_pixel = 16;
-/// Shares by which images are too small in expect_gradients(); with quick tests none.
-#ifdef GRADUS_MANY_KINDS
-const std::vector<double> planted = {0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5};
-#else
-const std::vector<double> planted;
-#endif
 
 /// A scene, the least way over which offset paths reconnect, and samples a pixel.
 struct ReferenceCase {
     const char *scene;
     double distance = 0;
     std::uint64_t samples = samples_per_pixel;
+    /// Shares by which images are too small in expect_gradients(); with quick tests none.
+    std::vector<double> planted = {};
 };
 
 void PrintTo(const ReferenceCase &c, std::ostream *out) { *out << c.scene; }
@@ -45,7 +41,7 @@ class GradientReference : public ::testing::TestWithParam<ReferenceCase> {
 };
 
 TEST_P(GradientReference, IsMetByPrimalAndDifferences) {
-    expect_gradients(reference_, images_, double(GetParam().samples), options_, planted);
+    expect_gradients(reference_, images_, double(GetParam().samples), options_, GetParam().planted);
 
     // The reconstruction may not lose light, nor add noise.
     const double noise_left = noise_left_by_reconstruction(reference_, images_);
@@ -66,17 +62,6 @@ TEST_P(GradientReference, IsMetByPrimalAndDifferences) {
                       "relMSE of the reconstruction over the primal's, 16 samples a pixel", noise_left, 1.1});
 }
 
-#ifdef GRADUS_MANY_KINDS
-/// Paths find most of the light by chance: of eight seeds of 16 samples too few meet what makes the variance, and
-/// scores have longer tails than their limits know. So many as path tracing has in image_test.cpp.
-constexpr ReferenceCase by_chance(const char *scene) { return {scene, 0, 64}; }
-INSTANTIATE_TEST_SUITE_P(Image, GradientReference,
-                         ::testing::Values(ReferenceCase{"plastics"}, ReferenceCase{"relief"},
-                                           ReferenceCase{"instances"}, by_chance("metal-ring-soft"),
-                                           by_chance("metal-ring"), by_chance("torus-smooth-glass-soft"),
-                                           by_chance("slab-and-ball-soft"), by_chance("lamp-in-egg-soft")),
-                         name_of_reference);
-#else
 INSTANTIATE_TEST_SUITE_P(Image, GradientReference,
                          ::testing::Values(ReferenceCase{"cornell-box"}, ReferenceCase{"torus-rough-glass", 0.02},
                                            ReferenceCase{"plates"}, ReferenceCase{"holes-7"}, ReferenceCase{"holes-14"},
@@ -90,9 +75,21 @@ INSTANTIATE_TEST_SUITE_P(Full, GradientReference,
                                            ReferenceCase{"clipped-mitchell"}, ReferenceCase{"cornell-box-glossy"},
                                            ReferenceCase{"lanterns"}),
                          name_of_reference);
-#endif
 
-#ifdef GRADUS_MANY_KINDS
+ReferenceCase planted_in(const char *scene, std::uint64_t samples = samples_per_pixel) {
+    return {scene, 0, samples, {0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5}};
+}
+/// Paths find most of the light by chance: of eight seeds of 16 samples too few meet what makes the variance, and
+/// scores have longer tails than their limits know. So many as path tracing has in image_test.cpp.
+ReferenceCase by_chance(const char *scene) { return planted_in(scene, 64); }
+/// Scenes whose kernels take long to compile, or whose light paths find by chance.
+INSTANTIATE_TEST_SUITE_P(FullOfManyKinds, GradientReference,
+                         ::testing::Values(planted_in("plastics"), planted_in("relief"), planted_in("instances"),
+                                           by_chance("metal-ring-soft"), by_chance("metal-ring"),
+                                           by_chance("torus-smooth-glass-soft"), by_chance("slab-and-ball-soft"),
+                                           by_chance("lamp-in-egg-soft")),
+                         name_of_reference);
+
 /// Scenes by others.
 class SharedGradientReference : public ::testing::TestWithParam<ReferenceCase> {};
 
@@ -103,15 +100,14 @@ TEST_P(SharedGradientReference, IsMetByPrimalAndDifferences) {
     const double samples = double(GetParam().samples);
     reference.scene.settings.samples_per_pixel = GetParam().samples;
     const std::vector<Image> images = render_seeds(reference.scene, seeds, {}, 1, "gpt");
-    expect_gradients(reference, images, samples, {}, planted);
+    expect_gradients(reference, images, samples, {}, GetParam().planted);
     noise_left_by_reconstruction(reference, images);
 }
 
-INSTANTIATE_TEST_SUITE_P(Image, SharedGradientReference,
-                         ::testing::Values(ReferenceCase{"cornell-box"}, ReferenceCase{"torus-soft", 0, 32},
-                                           ReferenceCase{"veach-mis"}, ReferenceCase{"bathroom", 0, 8}),
+INSTANTIATE_TEST_SUITE_P(Full, SharedGradientReference,
+                         ::testing::Values(planted_in("cornell-box"), planted_in("torus-soft", 32),
+                                           planted_in("veach-mis"), planted_in("bathroom", 8)),
                          name_of_reference);
-#endif
 
 /// The difference between two pixels that look alike is nothing, whatever the noise of the primal.
 TEST(GradientNoise, OfAPlainWallIsFarBelowThePrimals) {

@@ -1,7 +1,5 @@
 // On the paths of renders: each shift has a way back, it ends where the base path is, and the product of both Jacobians
 // is 1. Gradient-domain path tracing is unbiased only if that is so.
-//
-// GRADUS_SHIFT_SAMPLES: samples a pixel of 128 x 96, a little more than 30000 shifts each.
 #include "tests/methods/reference_scene.h"
 #include "tests/methods/shift_inverse.h"
 #include "tests/support/render.h"
@@ -10,14 +8,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <vector>
 
 namespace gradus::testing {
 namespace {
 
 struct InverseCase {
     const char *name, *scene;
-    double threshold;    ///< of the roughness from which on offset paths reconnect
-    double distance = 0; ///< and of the least way
+    double threshold;     ///< of the roughness from which on offset paths reconnect
+    double distance = 0;  ///< and of the least way
+    unsigned samples = 2; ///< a pixel of 128 x 96, a little more than 30000 shifts each
 };
 
 void PrintTo(const InverseCase &c, std::ostream *out) { *out << c.name; }
@@ -63,38 +63,42 @@ class ShiftInverse : public ::testing::TestWithParam<InverseCase> {};
 TEST_P(ShiftInverse, BringsEveryPathBack) {
     const InverseCase &c = GetParam();
     Scene scene = own_scene(fmt::format("{}.xml", c.scene), 128, 96);
-    scene.settings.samples_per_pixel = GRADUS_SHIFT_SAMPLES;
+    scene.settings.samples_per_pixel = c.samples;
     RenderOptions options;
     options.shift_threshold = c.threshold;
     options.shift_distance = c.distance;
     ShiftInverter inverter(shared_device(), scene);
     render(scene, options, "gpt");
-    EXPECT_GT(inverter.reconnections().shifts + inverter.copies().shifts, 10000u * GRADUS_SHIFT_SAMPLES);
+    EXPECT_GT(inverter.reconnections().shifts + inverter.copies().shifts, 10000u * c.samples);
     record(c, "Reconnection", "reconnections", inverter.reconnections(), 0.03);
     record(c, "Half-vector copy", "copies", inverter.copies(), 0.01);
 }
 
 std::string name_of_inverse(const ::testing::TestParamInfo<InverseCase> &info) { return info.param.name; }
 
-INSTANTIATE_TEST_SUITE_P(
-    Methods, ShiftInverse,
-    ::testing::Values(InverseCase{"cornell_box", "cornell-box", 0.01}, InverseCase{"door_ajar", "door-ajar", 0.01},
-                      InverseCase{"holes", "holes", 0.01}, InverseCase{"materials", "materials", 0.01},
-                      InverseCase{"materials_copied", "materials", 0.21}, InverseCase{"plates", "plates", 0.01},
-                      InverseCase{"torus", "torus-rough-glass", 0.01},
-                      InverseCase{"torus_near", "torus-rough-glass", 0.01, 0.02}),
-    name_of_inverse);
+const std::vector<InverseCase> quick = {{"cornell_box", "cornell-box", 0.01},
+                                        {"door_ajar", "door-ajar", 0.01},
+                                        {"holes", "holes", 0.01},
+                                        {"materials", "materials", 0.01},
+                                        {"materials_copied", "materials", 0.21},
+                                        {"plates", "plates", 0.01},
+                                        {"torus", "torus-rough-glass", 0.01},
+                                        {"torus_near", "torus-rough-glass", 0.01, 0.02}};
+INSTANTIATE_TEST_SUITE_P(Methods, ShiftInverse, ::testing::ValuesIn(quick), name_of_inverse);
 
-#if GRADUS_SHIFT_SAMPLES > 2
-/// Kernels that no other test compiles.
-INSTANTIATE_TEST_SUITE_P(Copies, ShiftInverse,
-                         ::testing::Values(InverseCase{"plates_copied", "plates", 0.2},
-                                           InverseCase{"plastics", "plastics", 0.01},
-                                           InverseCase{"relief", "relief", 0.01},
-                                           InverseCase{"torus_copied", "torus-rough-glass", 0.2},
-                                           InverseCase{"materials_near", "materials", 0.01, 0.02}),
-                         name_of_inverse);
-#endif
+/// The shifts of millions of paths, and some by kernels that no other test compiles.
+std::vector<InverseCase> full_cases() {
+    std::vector<InverseCase> cases = quick;
+    cases.insert(cases.end(), {{"plates_copied", "plates", 0.2},
+                               {"plastics", "plastics", 0.01},
+                               {"relief", "relief", 0.01},
+                               {"torus_copied", "torus-rough-glass", 0.2},
+                               {"materials_near", "materials", 0.01, 0.02}});
+    for (InverseCase &c : cases)
+        c.samples = 64;
+    return cases;
+}
+INSTANTIATE_TEST_SUITE_P(Full, ShiftInverse, ::testing::ValuesIn(full_cases()), name_of_inverse);
 
 } // namespace
 } // namespace gradus::testing

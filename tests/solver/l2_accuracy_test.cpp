@@ -70,7 +70,7 @@ TEST_P(L2Accuracy, OfSmallRenders) {
     check(640, 360, 1, {method() == LinearMethod::jacobi ? 2.0 : alphas()[0]});
 }
 
-/// solver_large_test has images of 8 Mpixel.
+/// large_test.cpp has images of 8 Mpixel.
 TEST(L2AccuracyLarge, OfFourMillionPixels) {
     constexpr double alpha = 0.2, level = 1e-4;
     const PoissonProblem problem = make_poisson_problem(2048, 2048, 1, 1);

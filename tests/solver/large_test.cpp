@@ -5,7 +5,7 @@ namespace gradus::testing {
 namespace {
 
 /// alpha is small, so that the solution is smooth over many pixels and the residual needs many steps.
-TEST(Large, ConjugateGradientsDoNotStagnate) {
+TEST(FullLarge, ConjugateGradientsDoNotStagnate) {
     const PoissonProblem problem = make_poisson_problem(3840, 2160, 1, 1);
     for (const double alpha : {0.2, 0.05}) {
         PoissonOptions options = l2_options(LinearMethod::cg, alpha, 1e-5);
@@ -20,7 +20,7 @@ TEST(Large, ConjugateGradientsDoNotStagnate) {
     }
 }
 
-TEST(Large, SolutionsAreThoseOfTheReference) {
+TEST(FullLarge, SolutionsAreThoseOfTheReference) {
     const PoissonProblem problem = make_poisson_problem(4096, 2160, 1, 2);
     const std::vector<double> reference = solve_directly(problem, 0.2);
     PoissonSolver &solver = solver_for(problem);
