@@ -3,7 +3,6 @@
 #include "driver/standard_streams.h"
 #include "runtime/error.h"
 #include "runtime/io/atomic_file.h"
-#include "runtime/io/picture_library.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -16,7 +15,6 @@ void check_outputs(const OutputFiles &files) {
     if (std::filesystem::path(files.image).extension() != ".exr")
         throw Error(ExitCode::usage,
                     fmt::format("the output '{}' must end in .exr; --png writes a PNG beside it", files.image));
-    check_picture_library();
     check_writable(files.image);
     if (files.png)
         check_writable(png_path(files.image));

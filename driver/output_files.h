@@ -14,8 +14,8 @@ struct OutputFiles {
     bool png = false;       ///< a PNG beside the image
 };
 
-/// Throws Error(ExitCode::usage) for names that do not fit, Error(ExitCode::output) for files that could not be
-/// written, and Error(ExitCode::failure) where what writes images is not there.
+/// Throws Error(ExitCode::usage) for names that do not fit and Error(ExitCode::output) for files that could not be
+/// written.
 void check_outputs(const OutputFiles &files);
 
 /// Files that a command reads and writes, by what they are for ("--stats"). Throws Error(ExitCode::usage) where two

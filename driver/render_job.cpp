@@ -22,10 +22,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <future>
 #include <new>
 #include <optional>
-#include <system_error>
 
 namespace gradus {
 namespace {
@@ -66,6 +64,8 @@ class RenderJob {
   private:
     void prepare() {
         const PhaseWatch phase_watch(phases_, progress_);
+        // What will write the image, while there is memory for it and nothing to lose.
+        picture_library();
         Scene scene = load_requested_scene(
             request_.scene, services_,
             [this](const std::string &warning) { progress_.message("gradus: warning: " + warning); }, &files_read_,
@@ -178,7 +178,6 @@ class RenderJob {
         render_start_ =
             Clock::now() - std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(pilot_seconds_));
         auto last_partial = Clock::now();
-        load_pictures();
         progress_.update(state());
         if (request_.until_error > 0)
             error_watch_.emplace(*prepared_.method, request_.until_error,
@@ -186,7 +185,6 @@ class RenderJob {
         bool more = true;
         while (more) {
             more = render_batch();
-            check_pictures();
             if (watch_->requested())
                 break;
             if (error_watch_ && error_watch_->is_reached())
@@ -205,19 +203,6 @@ class RenderJob {
             }
         }
         progress_.finish(state());
-    }
-
-    /// What writes images takes 0.2 s to load. It does so beside the first samples.
-    void load_pictures() {
-        try {
-            pictures_ = std::async(std::launch::async, [] { picture_library(); });
-        } catch (const std::system_error &) { // No thread is to be had: it is loaded when it is needed.
-        }
-    }
-    /// Where it cannot be loaded no more is rendered: it would be lost.
-    void check_pictures() {
-        if (pictures_.valid() && pictures_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
-            pictures_.get();
     }
 
     /// A partial image that cannot be written is no reason to lose the render: the disk may have room again at the end.
@@ -327,7 +312,6 @@ class RenderJob {
     Progress progress_;
     Phases phases_;                       ///< until the first sample
     std::optional<InterruptWatch> watch_; ///< once there is something to lose
-    std::future<void> pictures_;
     PreparedMethod prepared_;
     RenderRecord record_;
     std::optional<ErrorWatch> error_watch_;

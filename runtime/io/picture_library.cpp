@@ -10,7 +10,6 @@
 #include <dlfcn.h>
 #include <filesystem>
 #include <string>
-#include <system_error>
 
 namespace gradus {
 namespace {
@@ -27,8 +26,10 @@ std::filesystem::path file_of_library() {
 }
 
 const PictureLibrary &load() {
-    check_picture_library();
     const std::string path = file_of_library().string();
+    if (path.empty())
+        fail(fmt::format("gradus-pictures.so is neither beside the program nor at '{}'",
+                         GRADUS_PICTURES_OF_INSTALLATION));
     // Never closed: what it returns is freed by functions of its libraries.
     void *const handle = dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL);
     if (!handle) {
@@ -46,16 +47,6 @@ const PictureLibrary &load() {
 }
 
 } // namespace
-
-void check_picture_library() {
-    const std::filesystem::path path = file_of_library();
-    std::error_code failure;
-    if (path.empty())
-        fail(fmt::format("gradus-pictures.so is neither beside the program nor at '{}'",
-                         GRADUS_PICTURES_OF_INSTALLATION));
-    if (!std::filesystem::is_regular_file(path, failure))
-        fail(fmt::format("there is no file '{}' (GRADUS_PICTURES)", path.string()));
-}
 
 const PictureLibrary &picture_library() {
     static const PictureLibrary &library = load();

@@ -1,5 +1,5 @@
 // What is done by OpenImageIO. It brings 260 libraries, which take 0.2 s to load, so it is linked to a library of its
-// own (runtime/pictures) that is loaded when the first file is read or written.
+// own (runtime/pictures) that is loaded where files are read or written.
 #pragma once
 
 #include "runtime/film/image.h"
@@ -24,8 +24,5 @@ struct PictureLibrary {
 /// Loads it at first use: the file gradus-pictures.so, or $GRADUS_PICTURES. Throws Error(ExitCode::failure) where it
 /// cannot be loaded, or is of another version, and Error(ExitCode::device) where there is no memory for it.
 const PictureLibrary &picture_library();
-
-/// Throws as picture_library() would where there is no such file. Loads nothing.
-void check_picture_library();
 
 } // namespace gradus
