@@ -25,7 +25,7 @@ import run as mutants  # noqa: E402
 import stability_table  # noqa: E402
 
 DEFECT = "offset paths carry a tenth too much to the right and downwards, and a tenth too little back"
-PROGRAM = "method_test"
+PROGRAM = "gradient_test"
 HEAD = """\
 # What rows of docs/stability.md find where, by tests/mutants/mutants.txt, "{defect}":
 # bias, how far offset paths are off | test | what provokes it. Written by power.py.
