@@ -1,7 +1,7 @@
 // Pictures of the format that GRADUS_FUZZ_PICTURE names: as textures and, by way of images, as environments.
 #include "runtime/error.h"
+#include "runtime/io/bitmap_reader.h"
 #include "runtime/io/environment_file.h"
-#include "runtime/pictures/bitmap_decoder.h"
 #include "tests/fuzz/fuzz_file.h"
 #include "tests/fuzz/fuzz_mesh.h"
 
@@ -61,7 +61,7 @@ namespace {
 /// `kind` chooses what a scene file asks of it.
 void read_as_texture(const OpenFile &file, std::size_t kind) {
     const char *const channels[] = {"", "r", "a"};
-    const Bitmap bitmap = decode_bitmap(file, {kind % 2 == 0, channels[kind / 2 % 3]}).bitmap;
+    const Bitmap bitmap = read_bitmap(file, {kind % 2 == 0, channels[kind / 2 % 3]}).bitmap;
     require(bitmap.words.size() ==
             Bitmap::words_for(std::uint64_t(bitmap.width) * bitmap.height, bitmap.format, bitmap.is_color));
     for (int channel = 0; channel < (bitmap.is_color ? 3 : 1); ++channel)
