@@ -17,8 +17,6 @@ namespace gradus {
 
 namespace {
 
-constexpr std::uint64_t always_bytes = 256u << 20, unfolding = 64; // as in read_image()
-
 [[noreturn]] void refuse(const std::string &path, const std::string &reason) {
     throw Error(ExitCode::image, fmt::format("cannot read the texture '{}': {}", path, reason));
 }
@@ -55,7 +53,7 @@ void check_size(const OpenFile &file, const OIIO::ImageSpec &spec, std::uint64_t
     const std::string path = file.name().string();
     if (spec.deep || spec.depth > 1 || spec.width <= 0 || spec.height <= 0)
         refuse(path, "it is not a plane of pixels");
-    const double most = (double(always_bytes) + double(unfolding) * double(file.bytes())) * double(limits);
+    const double most = double(most_pixel_bytes(file, limits));
     const double bytes = double(spec.width) * spec.height * spec.nchannels * double(spec.format.size());
     if (bytes > most)
         refuse(path,
@@ -71,7 +69,7 @@ void check_exr(const OpenFile &file, std::uint64_t limits) {
         return;
     if (!declared->is_whole || declared->blocks > file.bytes() / 8)
         refuse(path, "it is truncated or damaged: its header and its size do not agree");
-    if (double(declared->bytes) > (double(always_bytes) + double(unfolding) * double(file.bytes())) * double(limits))
+    if (declared->bytes > most_pixel_bytes(file, limits))
         refuse(path, "it declares far more pixels than a file of its size holds");
 }
 

@@ -47,13 +47,11 @@ bool holds_srgb(const OIIO::ImageSpec &spec) {
     return !spec.format.is_floating_point() && spec.get_string_attribute("oiio:ColorSpace") == "sRGB";
 }
 
-/// What may be read of a file: a few kilobytes can declare any number of pixels.
+/// What may be read of a file.
 class PixelLimit {
   public:
     PixelLimit(const OpenFile &file, std::uint64_t limits)
-        : path_(file.name().string()), most_channels_(1024 * limits) {
-        constexpr std::uint64_t always = 1u << 28, unfolding = 64;
-        most_bytes_ = (always + file.bytes() * unfolding) * limits;
+        : path_(file.name().string()), most_channels_(1024 * limits), most_bytes_(most_pixel_bytes(file, limits)) {
         if (const std::optional<ExrSize> declared = exr_size(file.library_name())) {
             check_bytes(declared->bytes);
             if (!declared->is_whole || declared->blocks > file.bytes() / 8)

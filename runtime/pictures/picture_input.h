@@ -5,6 +5,7 @@
 
 #include <OpenImageIO/imageio.h>
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -18,6 +19,9 @@ struct PictureInput {
 /// Any format that OpenImageIO knows. Of confined files those whose readers open no file but the one: playlists of
 /// films, say, name others. wishes: as ImageInput::open() has them; may be nullptr.
 PictureInput open_picture(const OpenFile &file, const OIIO::ImageSpec *wishes = nullptr);
+
+/// Bytes of pixels that may be read of a file, as read_image() says it: a few kilobytes can declare any number.
+std::uint64_t most_pixel_bytes(const OpenFile &file, std::uint64_t limits);
 
 /// The library's words about a file, which call it by its name.
 std::string named_in(std::string message, const OpenFile &file);
