@@ -16,7 +16,7 @@ GRADUS_LIB_BEGIN
 /* PoCL's compiler is clang, whose function for it takes a quarter of the instructions on AVX-512; others that begin
  * with clang need not know what it becomes. */
 GRADUS_FN uint reversed_bits(uint x) {
-#ifdef POCL_DEVICE_ADDRESS_BITS
+#ifdef GRADUS_OF_POCL
     return __builtin_bitreverse32(x);
 #else
     x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);

@@ -2,6 +2,7 @@
 
 #include "runtime/device/compile_workers.h"
 #include "runtime/device/hash.h"
+#include "runtime/device/needed_source.h"
 #include "runtime/device/program_key.h"
 #include "runtime/error.h"
 
@@ -63,9 +64,10 @@ class Claims {
 
 /// A program that this call makes.
 struct Task {
-    std::size_t index; ///< of its source
-    std::string name;  ///< among those of this process
-    std::string key;   ///< in the store; empty: it is not kept
+    std::size_t index;    ///< of its source
+    std::string name;     ///< among those of this process
+    std::string key;      ///< in the store; empty: it is not kept
+    ProgramSource source; ///< what is compiled
 };
 
 class Builder {
@@ -90,8 +92,8 @@ class Builder {
             }
             if (device.empty() && device_.store.is_on())
                 device = device_key(device_.description);
-            Task task{i, name, device.empty() ? "" : program_key(device, sources_[i].options, sources_[i].text)};
-            if (!take_stored(task))
+            Task task{i, name, "", {}};
+            if (!take_stored(task, device))
                 missing.push_back(std::move(task));
         }
         compile(missing);
@@ -123,9 +125,33 @@ class Builder {
         return true;
     }
 
-    bool take_stored(const Task &task) {
-        if (task.key.empty())
+    /// Else says what is to be compiled, and under which key it is kept.
+    bool take_stored(Task &task, const std::string &device) {
+        const ProgramSource &source = sources_[task.index];
+        const std::string whole_key = device.empty() ? "" : program_key(device, source.options, source.text);
+        // The short way, as preprocessing takes time: it was done before, or was of no use.
+        task.key = device_.store.find_alias(whole_key).value_or(whole_key);
+        if (take_entry(task))
+            return true;
+        task.source = source;
+        // Others may be given options of their own, which are not known here (oclgrind --build-options).
+        if (!is_pocl_cpu(device_.description))
             return false;
+        std::optional<NeededSource> needed = needed_source(source.text, source.options);
+        if (!needed)
+            return false;
+        task.source.text = std::move(needed->text);
+        task.source.options = std::move(needed->options);
+        if (whole_key.empty())
+            return false;
+        const std::string known = std::exchange(task.key, needed_key(device, task.source.options, needed->meaning));
+        if (known == task.key)
+            return false;
+        device_.store.put_alias(whole_key, task.key);
+        return take_entry(task);
+    }
+
+    bool take_entry(const Task &task) {
         const std::optional<ProgramImage> image = device_.store.find(task.key);
         if (!image)
             return false;
@@ -150,7 +176,7 @@ class Builder {
     std::vector<Task> compile_elsewhere(const std::vector<Task> &tasks) {
         std::vector<CompileJob> jobs;
         for (const Task &task : tasks)
-            jobs.push_back({device_.description, sources_[task.index]});
+            jobs.push_back({device_.description, task.source});
         std::vector<Task> left;
         compile_workers(device_)->compile(
             jobs, work_group_size_, device_.compile_threads, [&](std::size_t i, const CompileAnswer &answer) {
@@ -183,7 +209,7 @@ class Builder {
             for (std::size_t i = next++; i < tasks.size(); i = next++) {
                 try {
                     const auto start = Clock::now();
-                    BuiltProgram program = build_source(device_.context, device_.device, sources_[tasks[i].index]);
+                    BuiltProgram program = build_source(device_.context, device_.device, tasks[i].source);
                     if (keep)
                         store(tasks[i], program);
                     finish(tasks[i], std::move(program), seconds_since(start));

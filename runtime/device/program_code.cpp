@@ -92,7 +92,8 @@ ProgramImage image_of(const BuiltProgram &program) {
 
 std::string builtin_options(const DeviceDescription &device) {
     // _OPENCL_H_ is the include guard of clang's opencl-c.h; types are in another header.
-    return is_pocl_3_1_cpu(device) ? " -D _OPENCL_H_ -D GRADUS_DECLARE_BUILTINS" : "";
+    return std::string(is_pocl_cpu(device) ? " -D GRADUS_OF_POCL" : "") +
+           (is_pocl_3_1_cpu(device) ? " -D _OPENCL_H_ -D GRADUS_DECLARE_BUILTINS" : "");
 }
 
 std::string pocl_specialization(std::uint32_t work_group_size) {

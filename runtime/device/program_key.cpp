@@ -1,6 +1,7 @@
 #include "runtime/device/program_key.h"
 
 #include "runtime/device/byte_text.h"
+#include "runtime/device/hash.h"
 
 #include <unistd.h>
 
@@ -61,6 +62,11 @@ std::string program_key(const std::string &device_key, const std::string &option
     for (const std::string *text : {&device_key, &options, &source})
         writer.text(*text);
     return writer.bytes();
+}
+
+std::string needed_key(const std::string &device_key, const std::string &options, const std::string &meaning) {
+    const std::string whole = program_key(device_key, options, meaning);
+    return "needed " + hexadecimal(hash128(whole, 1)) + hexadecimal(hash128(whole, 2));
 }
 
 } // namespace gradus

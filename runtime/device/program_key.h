@@ -13,4 +13,7 @@ std::string device_key(const DeviceDescription &device);
 /// Equal keys, equal code.
 std::string program_key(const std::string &device_key, const std::string &options, const std::string &source);
 
+/// The same for what a source comes to (needed_source.h), which more sources have in common. Short.
+std::string needed_key(const std::string &device_key, const std::string &options, const std::string &meaning);
+
 } // namespace gradus

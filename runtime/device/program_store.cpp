@@ -22,7 +22,7 @@ namespace {
 
 /// Changes with the layout of the files.
 constexpr std::string_view magic = "gradus program 1\n";
-constexpr const char *suffix = ".program", *unfinished = ".unfinished-";
+constexpr const char *suffix = ".program", *alias_suffix = ".alias", *unfinished = ".unfinished-";
 /// The name of a file is one hash of its key, its head holds another: a file that was renamed is seen.
 constexpr std::uint64_t seed_in_name = 1, seed_in_head = 2, seed_of_content = 3;
 
@@ -36,8 +36,7 @@ Hash128 read_hash(ByteReader &reader) {
     return {low, reader.number()};
 }
 
-std::string file_content(const std::string &key, const ProgramImage &image) {
-    const std::string payload = to_bytes(image);
+std::string file_content(const std::string &key, const std::string &payload) {
     ByteWriter writer;
     write_hash(writer, hash128(key, seed_in_head));
     write_hash(writer, hash128(payload, seed_of_content));
@@ -46,7 +45,7 @@ std::string file_content(const std::string &key, const ProgramImage &image) {
 }
 
 /// Throws std::runtime_error for anything but what file_content() wrote for this key.
-ProgramImage checked_image(const std::string &key, std::string_view content) {
+std::string_view checked_payload(const std::string &key, std::string_view content) {
     if (!content.starts_with(magic))
         throw std::runtime_error("not a program, or one of another version");
     ByteReader reader(content.substr(magic.size()));
@@ -56,8 +55,18 @@ ProgramImage checked_image(const std::string &key, std::string_view content) {
     const std::string_view payload = reader.text();
     if (!reader.rest().empty() || checksum != hash128(payload, seed_of_content))
         throw std::runtime_error("a damaged program");
-    return program_image(payload);
+    return payload;
 }
+
+std::optional<std::string> content_of(const fs::path &path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file)
+        return std::nullopt;
+    return std::string{std::istreambuf_iterator<char>(file), {}};
+}
+
+/// trim() goes by the time of the last use.
+void mark_used(const fs::path &path) { utimensat(AT_FDCWD, path.c_str(), nullptr, 0); }
 
 bool write_all(int file, std::string_view bytes) {
     while (!bytes.empty()) {
@@ -77,17 +86,17 @@ fs::path ProgramStore::file_of(const std::string &key) const {
     return folder_ / (hexadecimal(hash128(key, seed_in_name)) + suffix);
 }
 
+fs::path ProgramStore::alias_file_of(const std::string &key) const {
+    return folder_ / (hexadecimal(hash128(key, seed_in_name)) + alias_suffix);
+}
+
 std::optional<ProgramImage> ProgramStore::find(const std::string &key) const {
-    if (!is_on())
+    const std::optional<std::string> content = is_on() ? content_of(file_of(key)) : std::nullopt;
+    if (!content)
         return std::nullopt;
-    const fs::path path = file_of(key);
-    std::ifstream file(path, std::ios::binary);
-    if (!file)
-        return std::nullopt;
-    const std::string content{std::istreambuf_iterator<char>(file), {}};
     try {
-        ProgramImage image = checked_image(key, content);
-        utimensat(AT_FDCWD, path.c_str(), nullptr, 0); // trim() goes by the time of the last use
+        ProgramImage image = program_image(checked_payload(key, *content));
+        mark_used(file_of(key));
         return image;
     } catch (const std::runtime_error &) {
         remove(key);
@@ -95,18 +104,38 @@ std::optional<ProgramImage> ProgramStore::find(const std::string &key) const {
     }
 }
 
+std::optional<std::string> ProgramStore::find_alias(const std::string &key) const {
+    const std::optional<std::string> content = is_on() ? content_of(alias_file_of(key)) : std::nullopt;
+    if (!content)
+        return std::nullopt;
+    try {
+        std::string other(checked_payload(key, *content));
+        mark_used(alias_file_of(key));
+        return other;
+    } catch (const std::runtime_error &) {
+        return std::nullopt; // and is written anew
+    }
+}
+
 void ProgramStore::put(const std::string &key, const ProgramImage &image) const {
-    if (!is_on())
-        return;
+    if (is_on())
+        write(file_of(key), file_content(key, to_bytes(image)));
+}
+
+void ProgramStore::put_alias(const std::string &key, const std::string &other) const {
+    if (is_on())
+        write(alias_file_of(key), file_content(key, other));
+}
+
+void ProgramStore::write(const fs::path &path, const std::string &content) const {
     std::error_code ignored;
     fs::create_directories(folder_, ignored);
-    const fs::path path = file_of(key);
     std::string temporary = path.string() + unfinished + "XXXXXX";
     const int file = mkostemp(temporary.data(), O_CLOEXEC);
     if (file < 0)
         return;
     // No fsync: after a crash the checksum tells.
-    const bool written = write_all(file, file_content(key, image));
+    const bool written = write_all(file, content);
     const bool closed = close(file) == 0;
     if (!written || !closed || std::rename(temporary.c_str(), path.c_str()) != 0)
         unlink(temporary.c_str());
@@ -132,7 +161,7 @@ void ProgramStore::trim() const {
     const auto now = fs::file_time_type::clock::now();
     for (fs::directory_iterator file(folder_, failure), end; !failure && file != end; file.increment(failure)) {
         const std::string name = file->path().filename().string();
-        if (name.find(suffix) == std::string::npos)
+        if (name.find(suffix) == std::string::npos && name.find(alias_suffix) == std::string::npos)
             continue; // not ours
         std::error_code gone;
         const auto used = fs::last_write_time(file->path(), gone);

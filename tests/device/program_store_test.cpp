@@ -87,6 +87,23 @@ TEST_F(Store, ThrowsAwayTheProgramOfAnotherKey) {
     expect_thrown_away("other", "the file of another key");
 }
 
+TEST_F(Store, KnowsAliases) {
+    EXPECT_FALSE(store.find_alias("long key"));
+    store.put_alias("long key", "key");
+    EXPECT_EQ(store.find_alias("long key"), "key");
+    EXPECT_FALSE(store.find("long key")) << "no program by itself";
+    fs::rename(store.alias_file_of("long key"), store.alias_file_of("other"));
+    EXPECT_FALSE(store.find_alias("other")) << "the file of another key";
+    store.put_alias("other", "key");
+    EXPECT_EQ(store.find_alias("other"), "key") << "written anew";
+    fs::resize_file(store.alias_file_of("other"), fs::file_size(store.alias_file_of("other")) - 1);
+    EXPECT_FALSE(store.find_alias("other")) << "cut off";
+    fs::last_write_time(store.alias_file_of("other"), fs::file_time_type::clock::now() - std::chrono::hours(2));
+    const ProgramStore tiny(folder, 0);
+    tiny.trim();
+    EXPECT_EQ(files(), 0u) << "they count";
+}
+
 TEST_F(Store, KeepsNothingWhereItMayNotWrite) {
     fs::create_directories(folder);
     std::ofstream(folder / "file") << "in the way of a folder";
@@ -96,6 +113,8 @@ TEST_F(Store, KeepsNothingWhereItMayNotWrite) {
     EXPECT_NO_THROW(nowhere.trim());
     const ProgramStore off;
     EXPECT_NO_THROW(off.put("key", image_of_size(10, 'x')));
+    EXPECT_NO_THROW(off.put_alias("long key", "key"));
+    EXPECT_FALSE(off.find_alias("long key"));
     EXPECT_FALSE(off.find("key"));
 }
 
