@@ -123,6 +123,12 @@ void mark_needed(const std::vector<SourceToken> &tokens, std::vector<Item> &item
     }
 }
 
+/// A token and what parts it from the next one. A pragma takes a line of its own.
+std::string spelled(const SourceToken &token) {
+    const std::string spelling(token.spelling);
+    return token.kind == Kind::pragma ? "\n#pragma" + spelling + '\n' : spelling + ' ';
+}
+
 /// Writes tokens on the lines that they stood on.
 class Writer {
   public:
@@ -135,17 +141,9 @@ class Writer {
             text.append(static_cast<std::size_t>(token.line - line_), '\n');
         else
             text += fmt::format("\n#line {} \"{}\"\n", token.line, token.file);
-        file_ = token.file;
+        text += spelled(token);
+        file_ = token.kind == Kind::pragma ? std::string_view() : token.file; // which has lines more than there were
         line_ = token.line;
-        if (token.kind == Kind::pragma) {
-            text += "\n#pragma";
-            text += token.spelling;
-            text += '\n';
-            file_ = {}; // a line more than there were
-            return;
-        }
-        text += token.spelling;
-        text += ' ';
     }
 
   private:
@@ -194,11 +192,8 @@ std::optional<NeededSource> needed_source(const std::string &text, const std::st
         if (!item.is_needed)
             continue;
         for (std::size_t i = item.first; i < item.end; ++i) {
-            const SourceToken &token = source->tokens[i];
-            writer.write(token);
-            needed.meaning += token.kind == Kind::pragma ? "\n#pragma" : "";
-            needed.meaning += token.spelling;
-            needed.meaning += token.kind == Kind::pragma ? '\n' : ' ';
+            writer.write(source->tokens[i]);
+            needed.meaning += spelled(source->tokens[i]);
         }
     }
     needed.text = std::move(writer.text);

@@ -4,7 +4,6 @@
 #include <cctype>
 #include <charconv>
 #include <cstdint>
-#include <memory>
 #include <stdexcept>
 #include <unordered_map>
 #include <utility>
@@ -283,10 +282,8 @@ class Condition {
         }
         std::int64_t number = 0;
         const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number, base);
-        for (const char *rest = end; rest != digits.data() + digits.size(); ++rest)
-            if (std::string_view("uUlL").find(*rest) == std::string_view::npos)
-                throw NotUnderstood("a number that is not whole");
-        if (error != std::errc())
+        digits.remove_prefix(static_cast<std::size_t>(end - digits.data()));
+        if (error != std::errc() || digits.find_first_not_of("uUlL") != std::string_view::npos)
             throw NotUnderstood("a number that is not whole");
         return number;
     }
@@ -313,12 +310,7 @@ class Preprocessor {
     }
 
     void run() {
-        SourceToken token;
-        while (next(token)) {
-            if (token.kind == Kind::identifier && expand(token))
-                continue;
-            result_.tokens.push_back(token);
-        }
+        result_.tokens = expanded_rest();
         if (!conditions_.empty())
             throw NotUnderstood("#if without #endif");
     }
@@ -437,16 +429,22 @@ class Preprocessor {
         return arguments;
     }
 
-    /// All macros in tokens expanded, as if they were the rest of the text.
-    Tokens expanded(const Tokens &tokens) {
-        const std::size_t outer_floor = std::exchange(floor_, frames_.size());
-        const bool was_within = std::exchange(reads_text_, false);
-        frames_.push_back({tokens, nullptr});
+    /// All that may be read, with its macros expanded.
+    Tokens expanded_rest() {
         Tokens result;
         SourceToken token;
         while (next(token))
             if (token.kind != Kind::identifier || !expand(token))
                 result.push_back(token);
+        return result;
+    }
+
+    /// All macros in tokens expanded, as if they were the rest of the text.
+    Tokens expanded(const Tokens &tokens) {
+        const std::size_t outer_floor = std::exchange(floor_, frames_.size());
+        const bool was_within = std::exchange(reads_text_, false);
+        frames_.push_back({tokens, nullptr});
+        Tokens result = expanded_rest();
         floor_ = outer_floor;
         reads_text_ = was_within;
         return result;

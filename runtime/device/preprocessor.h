@@ -28,8 +28,8 @@ struct PreprocessedSource {
 
 /// `text` has its includes resolved, `definitions` are as those of -D: "NAME" or "NAME=VALUE". What a device defines by
 /// itself is not known here: kernels may ask for __OPENCL_VERSION__ alone, which is given. None where the text has what
-/// kernels do not use (#error that is met, __VA_OPT__, an unknown directive) or is wrong: then its compiler is to say
-/// so. C11, 6.10.
+/// kernels do not use (#error that is met, # of an argument, an unknown directive) or is wrong: then its compiler is to
+/// say so. C11, 6.10.
 std::optional<PreprocessedSource> preprocessed(std::string_view text, const std::vector<std::string> &definitions);
 
 } // namespace gradus

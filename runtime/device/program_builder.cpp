@@ -144,9 +144,7 @@ class Builder {
         task.source.options = std::move(needed->options);
         if (whole_key.empty())
             return false;
-        const std::string known = std::exchange(task.key, needed_key(device, task.source.options, needed->meaning));
-        if (known == task.key)
-            return false;
+        task.key = needed_key(device, task.source.options, needed->meaning);
         device_.store.put_alias(whole_key, task.key);
         return take_entry(task);
     }

@@ -58,15 +58,16 @@ std::string_view checked_payload(const std::string &key, std::string_view conten
     return payload;
 }
 
-std::optional<std::string> content_of(const fs::path &path) {
+/// None where there is no such file. Throws as checked_payload() does.
+std::optional<std::string> payload_of(const fs::path &path, const std::string &key) {
     std::ifstream file(path, std::ios::binary);
     if (!file)
         return std::nullopt;
-    return std::string{std::istreambuf_iterator<char>(file), {}};
+    const std::string content{std::istreambuf_iterator<char>(file), {}};
+    std::string payload(checked_payload(key, content));
+    utimensat(AT_FDCWD, path.c_str(), nullptr, 0); // trim() goes by the time of the last use
+    return payload;
 }
-
-/// trim() goes by the time of the last use.
-void mark_used(const fs::path &path) { utimensat(AT_FDCWD, path.c_str(), nullptr, 0); }
 
 bool write_all(int file, std::string_view bytes) {
     while (!bytes.empty()) {
@@ -91,27 +92,22 @@ fs::path ProgramStore::alias_file_of(const std::string &key) const {
 }
 
 std::optional<ProgramImage> ProgramStore::find(const std::string &key) const {
-    const std::optional<std::string> content = is_on() ? content_of(file_of(key)) : std::nullopt;
-    if (!content)
+    if (!is_on())
         return std::nullopt;
     try {
-        ProgramImage image = program_image(checked_payload(key, *content));
-        mark_used(file_of(key));
-        return image;
+        if (const std::optional<std::string> payload = payload_of(file_of(key), key))
+            return program_image(*payload);
     } catch (const std::runtime_error &) {
         remove(key);
-        return std::nullopt;
     }
+    return std::nullopt;
 }
 
 std::optional<std::string> ProgramStore::find_alias(const std::string &key) const {
-    const std::optional<std::string> content = is_on() ? content_of(alias_file_of(key)) : std::nullopt;
-    if (!content)
+    if (!is_on())
         return std::nullopt;
     try {
-        std::string other(checked_payload(key, *content));
-        mark_used(alias_file_of(key));
-        return other;
+        return payload_of(alias_file_of(key), key);
     } catch (const std::runtime_error &) {
         return std::nullopt; // and is written anew
     }

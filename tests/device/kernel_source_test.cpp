@@ -3,6 +3,7 @@
 #include "runtime/device/kernel_source.h"
 #include "runtime/error.h"
 #include "runtime/scene/traits.h"
+#include "tests/device/stage_files.h"
 
 #include <gmock/gmock.h>
 
@@ -14,6 +15,7 @@ namespace gradus {
 namespace {
 
 using ::testing::HasSubstr;
+using testing::stage_files;
 
 std::vector<std::string> lines_of(const std::string &text) {
     std::vector<std::string> lines;
@@ -21,14 +23,6 @@ std::vector<std::string> lines_of(const std::string &text) {
     for (std::string line; std::getline(stream, line);)
         lines.push_back(line);
     return lines;
-}
-
-std::vector<std::string> stage_files() {
-    std::vector<std::string> files;
-    for (const EmbeddedKernel &file : embedded_kernels())
-        if (file.path.ends_with(".cl"))
-            files.push_back(file.path);
-    return files;
 }
 
 /// The text without comments, strings and the lines that declare traits.

@@ -1,8 +1,8 @@
 // What kernels need of a source, and which sources become the same.
 #include "runtime/device/needed_source.h"
 
-#include "runtime/device/embedded_kernels.h"
 #include "runtime/device/kernel_source.h"
+#include "tests/device/stage_files.h"
 
 #include <gmock/gmock.h>
 
@@ -83,14 +83,12 @@ TEST(NeededSource, KeepsOptionsButDefinitionsOfOurs) {
 
 // A tenth of the text is what this is for; a kernel that was not understood would be compiled whole, and alone.
 TEST(NeededSource, IsMadeOfEveryKernel) {
-    for (const EmbeddedKernel &file : embedded_kernels()) {
-        if (!file.path.ends_with(".cl"))
-            continue;
-        const KernelSource &whole = kernel_source(file.path);
+    for (const std::string &path : testing::stage_files()) {
+        const KernelSource &whole = kernel_source(path);
         const auto part = needed_source(whole.text, "-D WORK_GROUP_SIZE=64 -D BSDF=diffuse -D GRADUS_DECLARE_BUILTINS");
-        ASSERT_TRUE(part) << file.path;
-        EXPECT_THAT(part->text, HasSubstr("__kernel")) << file.path;
-        EXPECT_LT(part->text.size(), whole.text.size() / 2) << file.path;
+        ASSERT_TRUE(part) << path;
+        EXPECT_THAT(part->text, HasSubstr("__kernel")) << path;
+        EXPECT_LT(part->text.size(), whole.text.size() / 2) << path;
     }
 }
 

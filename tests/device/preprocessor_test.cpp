@@ -1,18 +1,16 @@
 // The preprocessor of kernel sources against the compiler's own, and by hand.
 #include "runtime/device/preprocessor.h"
 
-#include "runtime/device/embedded_kernels.h"
 #include "runtime/device/kernel_source.h"
+#include "tests/device/stage_files.h"
+#include "tests/driver/child_process.h"
 
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cctype>
-#include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <string>
-#include <unistd.h>
 #include <vector>
 
 namespace gradus {
@@ -45,33 +43,26 @@ std::string without_space(const std::string &text) {
     return result;
 }
 
-/// By the C compiler that built this.
-std::string result_of_compiler(const std::string &text, const std::vector<std::string> &definitions) {
-    const std::filesystem::path file =
-        std::filesystem::path(::testing::TempDir()) / ("gradus-preprocessor-" + std::to_string(getpid()) + ".c");
-    std::ofstream(file) << text;
-    std::string command = GRADUS_COMPILER " -E -P -undef -x c -D __OPENCL_VERSION__=120";
-    for (const std::string &definition : definitions)
-        command += " -D " + definition;
-    std::string result;
-    if (FILE *output = popen((command + " " + file.string()).c_str(), "r")) {
-        char block[4096];
-        for (std::size_t count; (count = fread(block, 1, sizeof block, output)) > 0;)
-            result.append(block, count);
-        if (pclose(output) != 0)
-            result = "an error of the compiler";
+/// GRADUS_PROGRAM is the compiler that built this.
+class PreprocessorOfCompiler : public ProgramTest {
+  protected:
+    std::string result_of_compiler(const std::string &text, const std::vector<std::string> &definitions) const {
+        std::ofstream(at("kernel.c")) << text;
+        std::vector<std::string> arguments = {"-E", "-P", "-undef", "-x", "c", "-D__OPENCL_VERSION__=120"};
+        for (const std::string &definition : definitions)
+            arguments.push_back("-D" + definition);
+        arguments.push_back("kernel.c");
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        return outcome.out;
     }
-    std::filesystem::remove(file);
-    return result;
-}
+};
 
-TEST(Preprocessor, ReadsEveryKernelAsTheCompilerDoes) {
+TEST_F(PreprocessorOfCompiler, ReadsEveryKernelAsThisDoes) {
     int value = 0;
     std::size_t most = 0;
-    for (const EmbeddedKernel &file : embedded_kernels()) {
-        if (!file.path.ends_with(".cl"))
-            continue;
-        const KernelSource &source = kernel_source(file.path);
+    for (const std::string &path : testing::stage_files()) {
+        const KernelSource &source = kernel_source(path);
         std::vector<std::string> definitions = {"WORK_GROUP_SIZE=64", "BSDF=roughdielectric_ggx",
                                                 "GRADUS_DECLARE_BUILTINS"};
         for (const std::string &trait : source.traits)
@@ -81,7 +72,7 @@ TEST(Preprocessor, ReadsEveryKernelAsTheCompilerDoes) {
         const std::string result = without_space(result_of(source.text, definitions));
         const auto difference = std::mismatch(result.begin(), result.end(), expected.begin(), expected.end());
         const auto place = difference.first - result.begin();
-        EXPECT_TRUE(result == expected) << file.path << " differs at ..."
+        EXPECT_TRUE(result == expected) << path << " differs at ..."
                                         << result.substr(static_cast<std::size_t>(std::max(place - 60L, 0L)), 120);
         most = std::max(most, result.size());
     }

@@ -47,7 +47,7 @@ double integrated_power(const BsdfCase &test) {
             return scale * d.jacobian *
                    test.kind.eval(test.material, test.wi, lib::v3(real(d.x), real(d.y), real(d.z))).g;
         };
-        const int cells = 24; // none wider than the narrowest lobe of a case
+        const int cells = 24; // between 16 x 16 both rules miss a narrow lobe
         for (int i = 0; i < cells; ++i)
             for (int j = 0; j < cells; ++j)
                 sum += integrate_adaptively(power, i / double(cells), (i + 1) / double(cells), j / double(cells),
