@@ -1,4 +1,5 @@
-// The L1 objective against 60 reweightings of 200 plain steps of conjugate gradients in double precision.
+// The L1 objective against 60 reweightings in double precision, each solved by at most 200 steps of conjugate
+// gradients.
 #include "tests/solver/solver_fixture.h"
 #include "tests/support/stability.h"
 
@@ -49,12 +50,13 @@ TEST(L1Objective, OfLittleNoiseAndOfMuch) {
 }
 
 TEST(L1Objective, OfLines) {
-    const double row = compare("301 x 1", make_poisson_problem(301, 1, 3, 8), 0.2, true);
-    const double column = compare("1 x 301", make_poisson_problem(1, 301, 3, 8), 0.2, false);
-    // Of four edges a slow one is a quarter of the objective; in larger images slow ones are few.
+    // Slow edges are few, and weigh the more the fewer edges there are: the default of 20 reweightings leaves 0.2 % of
+    // the objective of 300 edges, and more of that of four.
+    const double row = compare("301 x 1", make_poisson_problem(301, 1, 3, 8), 0.2, true, 40);
+    const double column = compare("1 x 301", make_poisson_problem(1, 301, 3, 8), 0.2, false, 40);
     compare("2 x 2", make_poisson_problem(2, 2, 3, 8), 0.2, true, 80);
     record_stability({"Reconstruction", "1 x N images: grids that cannot be halved, pixels without neighbours",
-                      "301 pixels in a line, L1", "solved as any other", objective_excess,
+                      "301 pixels in a line, L1, 40 reweightings", "solved as any other", objective_excess,
                       excess(std::max(row, column)), allowed - 1});
 }
 

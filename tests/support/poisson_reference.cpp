@@ -131,6 +131,16 @@ class System {
         apply_carefully(last, n);
     }
 
+    /// The diagonal of A.
+    std::vector<double> diagonal() const {
+        const std::size_t w = problem_.width, n = w * problem_.height;
+        const double *wx = &weights_.dx[first_], *wy = &weights_.dy[first_], *wp = &weights_.primal[first_];
+        std::vector<double> result(n);
+        for (std::size_t i = 0; i < n; ++i)
+            result[i] = alpha_ * alpha_ * wp[i] + wx[i] + wy[i] + (i >= 1 ? wx[i - 1] : 0) + (i >= w ? wy[i - w] : 0);
+        return result;
+    }
+
     /// -A^T W e, e being the residuals of `image` without weights, those of the primal not times alpha.
     std::vector<double> right_side(const Inputs &inputs, const std::vector<double> &image) const {
         std::vector<double> b(problem_.pixels());
@@ -153,23 +163,32 @@ class System {
     const PoissonWeights &weights_;
 };
 
-/// u from 0.
+/// u from 0. Preconditioned by the diagonal, for weights of L1 differ by many powers of ten.
 std::vector<double> conjugate_gradients(const System &system, std::vector<double> residual, int steps,
                                         double tolerance) {
-    std::vector<double> u(residual.size()), direction = residual, product(residual.size());
-    double squares = dot(residual, residual);
-    const double enough = tolerance * tolerance * squares;
-    for (int k = 0; k < steps && squares > enough && squares > 0; ++k) {
+    std::vector<double> inverse = system.diagonal();
+    for (double &one : inverse)
+        one = one > 0 ? 1 / one : 0;
+    std::vector<double> u(residual.size()), scaled(residual.size()), product(residual.size());
+    const auto scale = [&] {
+        for (std::size_t i = 0; i < scaled.size(); ++i)
+            scaled[i] = inverse[i] * residual[i];
+        return dot(residual, scaled);
+    };
+    double progress = scale();
+    std::vector<double> direction = scaled;
+    const double enough = tolerance * tolerance * dot(residual, residual);
+    for (int k = 0; k < steps && progress > 0 && dot(residual, residual) > enough; ++k) {
         system.apply(direction, product);
-        const double step = squares / dot(direction, product);
+        const double step = progress / dot(direction, product);
         for (std::size_t i = 0; i < u.size(); ++i) {
             u[i] += step * direction[i];
             residual[i] -= step * product[i];
         }
-        const double next = dot(residual, residual);
+        const double next = scale();
         for (std::size_t i = 0; i < u.size(); ++i)
-            direction[i] = residual[i] + next / squares * direction[i];
-        squares = next;
+            direction[i] = scaled[i] + next / progress * direction[i];
+        progress = next;
     }
     return u;
 }
@@ -277,7 +296,7 @@ std::vector<double> solve_l1(const PoissonProblem &problem, double alpha, bool j
     for (int k = 1; k < reweightings; ++k, reg *= 0.5) {
         const Inputs e = residuals(problem, alpha, units, image);
         const PoissonWeights w = l1_weights(problem, units, e, joint, reg);
-        image = solve_weighted(problem, alpha, w, image, steps, 1e-15);
+        image = solve_weighted(problem, alpha, w, image, steps, 1e-3);
         if (const double objective = l1_objective(problem, alpha, image, joint); objective < least) {
             least = objective;
             best = image;
