@@ -28,12 +28,10 @@ class DirectionChart {
     };
 
     Point to_square(double x, double y, double z) const {
-        const double length = std::hypot(x, y);
-        // sqrt(1 - |z|) without cancellation
-        const double radius = length / std::sqrt(1 + std::fabs(z));
-        const std::complex<double> disk = length > 0 ? std::complex(x, y) * (radius / length) : 0.0;
-        const auto w = (disk - centre) / (1.0 - std::conj(centre) * disk);
-        const double rho = std::min(std::abs(w), 1.0);
+        // Its radius is sqrt(1 - |z|), without cancellation.
+        const std::complex<double> disk = std::complex(x, y) / std::sqrt(1 + std::fabs(z));
+        const auto w = quotient(disk - centre, 1.0 - std::conj(centre) * disk);
+        const double rho = std::min(std::sqrt(std::norm(w)), 1.0);
         const double turn = std::arg(w) / (2 * M_PI);
         const double one_minus_p = width * (1 - rho) / (width + rho);
         return {1 - std::sqrt(one_minus_p), turn < 0 ? turn + 1 : turn};
@@ -49,7 +47,7 @@ class DirectionChart {
         const double rho_per_q = width * (1 + width) / ((1 + width - p) * (1 + width - p)) * 2 * (1 - q);
         const auto w = std::polar(rho, 2 * M_PI * turn);
         const auto denominator = 1.0 + std::conj(centre) * w;
-        const auto disk = (w + centre) / denominator;
+        const auto disk = quotient(w + centre, denominator);
         const double stretch = (1 - std::norm(centre)) / std::norm(denominator);
         const double squared = std::min(std::norm(disk), 1.0);
         const double scale = std::sqrt(2 - squared);
@@ -58,6 +56,11 @@ class DirectionChart {
     }
 
   private:
+    /// Of numbers of ordinary size; the library's division guards against overflow and takes most of a test's time.
+    static std::complex<double> quotient(std::complex<double> a, std::complex<double> b) {
+        return a * std::conj(b) / std::norm(b);
+    }
+
     double width;
     bool is_upper;
     std::complex<double> centre;

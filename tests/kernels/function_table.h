@@ -23,17 +23,21 @@ struct Arguments {
     double u_lobe, u1, u2;
 };
 
-struct Results {
-    std::array<double, 3> eval;
+struct Evaluated {
+    std::array<double, 3> value;
     double pdf, pdf_reverse;
-    std::array<double, 3> wo, weight; ///< of the sample
-    double sample_pdf, eta;
+};
+
+struct Sampled {
+    std::array<double, 3> wo, weight;
+    double pdf, eta;
 };
 
 struct FunctionEntry {
     const char *name;
     bool is_delta, refracts;
-    Results (*call)(const Arguments &);
+    Evaluated (*evaluate)(const Arguments &);
+    Sampled (*sample)(const Arguments &); ///< wo of the arguments is not read
 };
 
 std::span<const FunctionEntry> float_functions();

@@ -147,29 +147,30 @@ TEST_P(Filter, EqualsAFineImageFilteredAfterwards) {
         weights[i] = GetParam().below(left + 1.0 / fine) - GetParam().below(left);
     }
     const auto inner_image =
-        [&](const Image &image, const std::function<double(const std::string &, std::uint32_t, std::uint32_t)> &value) {
+        [&](const Image &image,
+            const std::function<double(const std::vector<float> &, std::uint32_t, std::uint32_t)> &value) {
             Image result;
             result.width = result.height = inner;
             for (const Channel &channel : image.channels) {
                 Channel values{channel.name, {}};
                 for (std::uint32_t y = 0; y < inner; ++y)
                     for (std::uint32_t x = 0; x < inner; ++x)
-                        values.values.push_back(float(value(channel.name, x, y)));
+                        values.values.push_back(float(value(channel.values, x, y)));
                 result.channels.push_back(std::move(values));
             }
             return result;
         };
     std::vector<Image> filtered, convolved;
     for (const Image &image : render_seeds(coarse_scene, seeds, {}, 1))
-        filtered.push_back(inner_image(image, [&](const std::string &channel, std::uint32_t x, std::uint32_t y) {
-            return pixel(image, x + margin, y + margin, channel);
+        filtered.push_back(inner_image(image, [&](const std::vector<float> &values, std::uint32_t x, std::uint32_t y) {
+            return values[(y + margin) * size + x + margin];
         }));
     for (const Image &image : render_seeds(fine_scene, seeds, {}, 100))
-        convolved.push_back(inner_image(image, [&](const std::string &channel, std::uint32_t x, std::uint32_t y) {
+        convolved.push_back(inner_image(image, [&](const std::vector<float> &values, std::uint32_t x, std::uint32_t y) {
             double sum = 0;
             for (std::uint32_t j = 0; j < reach; ++j)
                 for (std::uint32_t i = 0; i < reach; ++i)
-                    sum += weights[i] * weights[j] * pixel(image, x * fine + i, y * fine + j, channel);
+                    sum += weights[i] * weights[j] * values[(y * fine + j) * size * fine + x * fine + i];
             return sum;
         }));
     // In this order: neighbours are correlated where one fine image served both, which only the first may be.
