@@ -10,8 +10,10 @@ class Strategies : public ::testing::TestWithParam<const char *> {};
 
 TEST_P(Strategies, Agree) {
     constexpr std::size_t seeds = 12;
-    constexpr std::uint64_t samples_per_pixel = 32;
     const std::string name = GetParam();
+    // BSDF samples seldom meet the sundial's sun, a few texels of its map: with 384 samples in all a block's variance
+    // is of those that happened to.
+    const std::uint64_t samples_per_pixel = name == "sundial" ? 512 : 32;
     Scene scene = own_scene(name + ".xml", 64, 48);
     scene.settings.samples_per_pixel = samples_per_pixel;
     // BSDF sampling cannot meet lights of no extent.
