@@ -91,7 +91,7 @@ std::vector<InverseCase> full_cases() {
     std::vector<InverseCase> cases = quick;
     cases.insert(cases.end(), {{"plates_copied", "plates", 0.2},
                                {"plastics", "plastics", 0.01},
-                               {"relief", "relief", 0.01},
+                               {"relief", "../tests/scenes/relief", 0.01},
                                {"torus_copied", "torus-rough-glass", 0.2},
                                {"materials_near", "materials", 0.01, 0.02}});
     for (InverseCase &c : cases)
