@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <utility>
@@ -55,11 +56,12 @@ std::uint32_t number(const Arguments &arguments, const char *name) {
 
 } // namespace
 
-/// A vertex of a path, with all that the tables keep of it.
+/// A vertex of a path: its row of a table of vertices, with all columns that the scene has, textures' among them.
 struct Vertex {
-    std::uint32_t kind = 0, material = 0;
-    vec3 position{}, wi{}, geometric{}, shading{}, along{};
-    float offset = 0;
+    /// Bits: as numbers, small integers would be denormal and might be flushed to zero.
+    std::vector<std::uint32_t> row;
+    float real(int column) const { return std::bit_cast<float>(row[std::size_t(column)]); }
+    vec3 position() const { return v3(real(vertex_position_x), real(vertex_position_y), real(vertex_position_z)); }
 };
 
 /// A base path's vertex, the offset path's, and the segments by which both go on.
@@ -72,6 +74,8 @@ struct ShiftInverter::Base {
     /// The offset path's density where it copied at a rough vertex; else 0: then it is that of its copy to itself.
     float pdf = 0;
     bool takes_dirac = false; ///< the base path's lobe
+    /// Of blends, the record that each has come to where its segment ends.
+    std::uint32_t base_record = 0, offset_record = 0;
     bool is_escaped() const { return base_primitive == ray_escaped; }
 };
 
@@ -80,28 +84,18 @@ namespace {
 // All tables of vertices have the same columns.
 static_assert(int(vertex_kind) == int(own_vertex_kind) && int(vertex_along_z) == int(own_vertex_along_z));
 
-Vertex read_vertex(const HostTable &table, std::size_t row, bool has_shading, bool has_along) {
+int columns_of(const Buffer &table, std::size_t rows) { return int(table.bytes() / (rows * sizeof(float))); }
+
+Vertex read_vertex(const HostTable &table, int columns, std::size_t row) {
     Vertex v;
-    v.kind = table.uint(vertex_kind, row);
-    v.material = table.uint(vertex_material, row);
-    v.position = vector_at(table, vertex_position_x, row);
-    v.wi = vector_at(table, vertex_wi_x, row);
-    v.geometric = vector_at(table, vertex_geometric_x, row);
-    v.shading = has_shading ? vector_at(table, vertex_shading_x, row) : v.geometric;
-    v.along = has_along ? vector_at(table, vertex_along_x, row) : v3(0, 0, 0);
-    v.offset = float(table.real(vertex_offset, row));
+    for (int column = 0; column < columns; ++column)
+        v.row.push_back(table.uint(column, row));
     return v;
 }
 
 void write_vertex(MadeTable &table, std::size_t row, const Vertex &v) {
-    table.set(vertex_kind, row, v.kind);
-    table.set(vertex_material, row, v.material);
-    table.set(vertex_position_x, row, v.position);
-    table.set(vertex_wi_x, row, v.wi);
-    table.set(vertex_geometric_x, row, v.geometric);
-    table.set(vertex_shading_x, row, v.shading);
-    table.set(vertex_along_x, row, v.along);
-    table.at(vertex_offset, row) = v.offset;
+    for (std::size_t column = 0; column < v.row.size(); ++column)
+        table.set(int(column), row, v.row[column]);
 }
 
 /// The row of offset j of base row n: j = 0 goes back, j = 1 stays, so that its ratio is the density at home.
@@ -155,25 +149,36 @@ void ShiftInverter::on_launch(const Launch &launch) {
         weighed_.push_back(kept);
 }
 
+/// Of the tables `surface`, the column of the record that a blend has come to: the last one. 0 without such tables.
+int ShiftInverter::record_column(const Kept &weigh) {
+    const auto found = weigh.arguments.find("surface");
+    return found == weigh.arguments.end()
+               ? 0
+               : columns_of(std::get<Buffer>(found->second.value), number(weigh.arguments, "capacity")) - 1;
+}
+
 std::vector<ShiftInverter::Base> ShiftInverter::arrivals(const Kept &weigh) const {
     const auto argument = [&](const char *name) { return number(weigh.arguments, name); };
     const std::size_t capacity = argument("capacity"), stride = argument("stride");
     const bool may_be_apart = weigh.traits.at("TRAIT_APART") != 0;
     const bool at_first = !may_be_apart || argument("at_first") != 0;
-    const bool has_along = weigh.traits.at("TRAIT_ANISOTROPIC") != 0;
-    const bool has_shading = weigh.traits.at("TRAIT_SHADING_NORMALS") != 0;
+    const bool has_blends = weigh.traits.at("TRAIT_BLENDS") != 0;
     const Buffer none(device_, "none", sizeof(float));
-    const auto table = [&](const char *name, std::size_t rows) {
+    const auto buffer = [&](const char *name) -> const Buffer & {
         // `weigh` itself does not read the rays where none are apart; the last `shift` before it read them.
         const Arguments &arguments = weigh.arguments.contains(name) ? weigh.arguments : shift_;
         const auto found = arguments.find(name);
-        return HostTable(found == arguments.end() ? none : std::get<Buffer>(found->second.value), rows,
-                         Precision::single);
+        return found == arguments.end() ? none : std::get<Buffer>(found->second.value);
+    };
+    const auto table = [&](const char *name, std::size_t rows) {
+        return HostTable(buffer(name), rows, Precision::single);
     };
     const HostTable path = table("path", capacity), ray = table("ray", capacity), vertex = table("vertex", capacity),
                     own_vertex = table("own_vertex", argument("own_rows")), offset = table("offset", 4 * capacity),
                     shift = table("shift", 4 * capacity), link = table("link", 8 * capacity),
-                    offset_ray = table("offset_ray", 4 * capacity);
+                    offset_ray = table("offset_ray", 4 * capacity), surface = table("surface", capacity),
+                    offset_surface = table("offset_surface", 4 * capacity);
+    const int columns = columns_of(buffer("vertex"), capacity), record = record_column(weigh);
     std::vector<Base> bases;
     const std::uint32_t width = argument("crop_width"), height = argument("crop_height");
     for (std::size_t row = argument("first"); row < argument("first") + argument("count"); ++row)
@@ -213,6 +218,8 @@ std::vector<ShiftInverter::Base> ShiftInverter::arrivals(const Kept &weigh) cons
             b.offset_origin = vector_at(link, link_origin_x, segment);
             b.offset_direction = v3_neg(vector_at(offset, offset_wi_x, at));
             b.offset_primitive = b.base_primitive;
+            if (has_blends && !b.is_escaped())
+                b.base_record = b.offset_record = surface.uint(record, row);
             if (b.reconnects) {
                 if (link.uint(link_open, segment) == 0)
                     continue;
@@ -224,9 +231,11 @@ std::vector<ShiftInverter::Base> ShiftInverter::arrivals(const Kept &weigh) cons
                 // `gradient_emission` sees to that.
                 if ((b.offset_primitive == ray_escaped) != b.is_escaped())
                     continue;
+                if (has_blends && !b.is_escaped())
+                    b.offset_record = offset_surface.uint(record, sent);
             }
-            b.offset = read_vertex(own_vertex, own_row, has_shading, has_along);
-            b.base = read_vertex(vertex, row, has_shading, has_along);
+            b.offset = read_vertex(own_vertex, columns, own_row);
+            b.base = read_vertex(vertex, columns, row);
             bases.push_back(b);
         }
     return bases;
@@ -243,8 +252,10 @@ void ShiftInverter::take_back(const Kept &weigh, const std::vector<Base> &bases)
     const bool may_be_apart = weigh.traits.at("TRAIT_APART") != 0;
     // Where none are apart, offset vertices are those of neighbours on the film: of three pixels for each row.
     const std::uint32_t pixels = may_be_apart ? rows : 3 * rows, own_rows = may_be_apart ? 4 * rows : pixels;
-    MadeTable path(path_columns, rows), vertex(vertex_columns, rows), ray(ray_columns, rows),
-        event(event_columns, rows), before(offset_columns, 4 * rows), own_vertex(own_vertex_columns, own_rows);
+    const int columns = int(bases.front().base.row.size()), record = record_column(weigh);
+    MadeTable path(path_columns, rows), vertex(columns, rows), ray(ray_columns, rows), event(event_columns, rows),
+        before(offset_columns, 4 * rows), own_vertex(columns, own_rows), surface(record + 1, rows),
+        offset_surface(record + 1, 4 * rows);
     for (std::uint32_t n = 0; n < rows; ++n) {
         const Base &b = bases[n];
         path.set(path_slot, n, may_be_apart ? n : 3 * n + 1);
@@ -259,9 +270,11 @@ void ShiftInverter::take_back(const Kept &weigh, const std::vector<Base> &bases)
             direction = v3_normalize(v3_sub(hit(b.base_primitive, b.base_origin, b.base_direction), b.offset_origin));
         ray.set(ray_direction_x, n, direction);
         ray.set(ray_primitive, n, b.offset_primitive);
+        surface.set(record, n, b.offset_record);
         for (std::uint32_t j = 0; j < 4; ++j) {
             before.at(offset_ratio, j * rows + n) = j <= home ? 1.0f : shift_absent;
             before.set(offset_state, j * rows + n, connection_none);
+            offset_surface.set(record, j * rows + n, j == back ? b.base_record : b.offset_record);
             if (may_be_apart)
                 write_vertex(own_vertex, j * rows + n, j == back ? b.base : b.offset);
         }
@@ -280,6 +293,8 @@ void ShiftInverter::take_back(const Kept &weigh, const std::vector<Base> &bases)
         {"ray", ray.on(device_)},
         {"event", event.on(device_)},
         {"own_vertex", own_vertex.on(device_)},
+        {"surface", surface.on(device_)},
+        {"offset_surface", offset_surface.on(device_)},
         {"offset", offset},
         {"shift", shift},
         {"link", link},
@@ -364,12 +379,13 @@ void ShiftInverter::take_back(const Kept &weigh, const std::vector<Base> &bases)
         double away = std::sqrt(v3_length_squared(v3_sub(direction, b.base_direction)));
         if (!b.is_escaped()) {
             const vec3 end = hit(b.base_primitive, b.base_origin, b.base_direction);
-            const vec3 way = v3_sub(end, b.base.position);
+            const vec3 way = v3_sub(end, b.base.position());
             // A miss of no more than rays start off the surface is rounding of positions, however short the way.
-            const vec3 miss = b.reconnects
-                                  ? v3_sub(direction, v3_normalize(way))
-                                  : v3_scale(v3_sub(hit(primitive, origin, direction), end),
-                                             1 / (std::sqrt(v3_length_squared(way)) + b.base.offset / allowed_miss));
+            const vec3 miss =
+                b.reconnects
+                    ? v3_sub(direction, v3_normalize(way))
+                    : v3_scale(v3_sub(hit(primitive, origin, direction), end),
+                               1 / (std::sqrt(v3_length_squared(way)) + b.base.real(vertex_offset) / allowed_miss));
             away = std::sqrt(v3_length_squared(miss));
         }
         if (!(away < allowed_miss)) {

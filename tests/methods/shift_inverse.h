@@ -46,6 +46,7 @@ class ShiftInverter {
         TraitValues traits;
         Arguments arguments;
     };
+    static int record_column(const Kept &weigh);
     void on_launch(const Launch &launch);
     /// The shifts of a launch of `weigh` that arrive, once it has run.
     std::vector<Base> arrivals(const Kept &weigh) const;
