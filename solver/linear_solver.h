@@ -30,6 +30,7 @@ class LinearSolver {
         double tolerance = 0; ///< on the relative residual of each channel
         int iterations = 0;   ///< at most
         double damping = 1;   ///< Jacobi's step
+        int steps_after = 0;  ///< of smoothing after each level's correction, where cycles precondition
         bool watch = true;    ///< false: does all iterations, reads nothing back, and reports no residuals
     };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace gradus::solver {
 
@@ -166,7 +167,17 @@ std::uint32_t Multigrid::rows_of_band(const Grid &grid, std::uint32_t channels) 
     return in_bands_ && grid.height > 2 * rows ? static_cast<std::uint32_t>(rows) : grid.height + grid.height % 2;
 }
 
-void Multigrid::run_cycle(Kernels &kernels, Planes channels, const Buffer *onto) {
+void Multigrid::bind_smooth(Kernels &kernels, const Level &level, const Buffer &from, const Buffer &to,
+                            double step_size) {
+    Kernel &smooth = kernels.smooth;
+    level.system.bind(smooth);
+    smooth.bind("u", from);
+    smooth.bind(level.right_side);
+    smooth.bind("smoothed", to);
+    smooth.set_real("step_size", step_size);
+}
+
+void Multigrid::run_cycle(Kernels &kernels, Planes channels, int steps_after, const Buffer *onto) {
     // With weights that jump, a third step gains less than it costs.
     const bool third_step = kernels.weights == Weights::uniform;
     const int steps = third_step ? 3 : 2;
@@ -182,14 +193,8 @@ void Multigrid::run_cycle(Kernels &kernels, Planes channels, const Buffer *onto)
         twice.bind("smoothed", third_step ? level.other : level.smoothed);
         twice.set_real("step_0", single ? 1 : chebyshev_step(0, steps));
         twice.set_real("step_1", single ? 0 : chebyshev_step(1, steps));
-        Kernel &smooth = kernels.smooth;
-        if (third_step) {
-            level.system.bind(smooth);
-            smooth.bind("u", level.other);
-            smooth.bind(level.right_side);
-            smooth.bind("smoothed", level.smoothed);
-            smooth.set_real("step_size", single ? 0 : chebyshev_step(2, 3));
-        }
+        if (third_step)
+            bind_smooth(kernels, level, level.other, level.smoothed, single ? 0 : chebyshev_step(2, 3));
         Kernel &residual = kernels.residual, &restrict_sum = kernels.restrict_sum;
         if (next) {
             level.system.bind(residual);
@@ -200,7 +205,8 @@ void Multigrid::run_cycle(Kernels &kernels, Planes channels, const Buffer *onto)
             restrict_sum.bind("coarse", next->right_side);
         }
         // Each of these reads a row more than it writes, so those before it are a row ahead.
-        const std::uint32_t band = rows_of_band(grid, channels.count);
+        // With weights in memory it gains nothing.
+        const std::uint32_t band = third_step ? rows_of_band(grid, channels.count) : grid.height + grid.height % 2;
         for (std::uint32_t begin = 0; begin < grid.height; begin += band) {
             const auto launch = [&](Kernel &kernel, std::uint32_t ahead) {
                 const std::uint32_t first = begin == 0 ? 0 : std::min(begin + ahead, grid.height);
@@ -210,7 +216,7 @@ void Multigrid::run_cycle(Kernels &kernels, Planes channels, const Buffer *onto)
             };
             launch(twice, third_step ? 2 : 1);
             if (third_step)
-                launch(smooth, 1);
+                launch(kernels.smooth, 1);
             if (!next)
                 continue;
             launch(residual, 0);
@@ -229,6 +235,13 @@ void Multigrid::run_cycle(Kernels &kernels, Planes channels, const Buffer *onto)
         kernel.bind("smoothed", level.smoothed);
         kernel.bind("u", i == 0 && onto ? *onto : level.smoothed);
         launch_transfer(kernel, level.system.grid, next.system.grid, level.system.grid.height, channels);
+        for (int step = 0; step < steps_after; ++step) {
+            // In the other order than on the way down, which makes the cycle symmetric but for the interpolation.
+            bind_smooth(kernels, level, level.smoothed, level.other,
+                        chebyshev_step(steps_after - 1 - step, steps_after));
+            level.system.grid.launch(kernels.smooth, channels);
+            std::swap(level.smoothed, level.other);
+        }
     }
 }
 

@@ -4,8 +4,8 @@
 // zero, with Chebyshev steps over the upper three quarters of the spectrum of D^-1 A, [1/2, 2], and hands the sum of
 // its residual over 2 x 2 pixels to the next; going up, corrections are interpolated linearly. A cycle divides the
 // residual of the five-point operator by about ten, whatever the size and alpha (Trottenberg, Oosterlee and Schueller
-// 2001, chapter 2). Coarse weights are sums of fine ones (see coarsen_weights), which keeps that rate at odd sizes and,
-// inside conjugate gradients, where weights jump.
+// 2001, chapter 2). Inside conjugate gradients it may smooth on the way up, too. Coarse weights are sums of fine ones
+// (see coarsen_weights), which keeps that rate at odd sizes and, inside conjugate gradients, where weights jump.
 #pragma once
 
 #include "solver/grid.h"
@@ -49,11 +49,13 @@ class Multigrid {
     void invert_finest_diagonal(Kernels &kernels);
 
     /// Writes an approximate solution of A z = right_side() to solution(), for a group of channels, which all buffers
-    /// hold alone.
-    void cycle(Kernels &kernels, Planes channels) { run_cycle(kernels, channels, nullptr); }
+    /// hold alone. `steps_after`: of smoothing on each level on the way up, which pay where weights jump.
+    void cycle(Kernels &kernels, Planes channels, int steps_after = 0) {
+        run_cycle(kernels, channels, steps_after, nullptr);
+    }
     const Buffer &solution() const { return levels_.front().smoothed; }
     /// Adds it to `u` instead.
-    void cycle_onto(Kernels &kernels, Planes channels, const Buffer &u) { run_cycle(kernels, channels, &u); }
+    void cycle_onto(Kernels &kernels, Planes channels, const Buffer &u) { run_cycle(kernels, channels, 0, &u); }
 
   private:
     struct Level {
@@ -64,7 +66,10 @@ class Multigrid {
     void invert_diagonal(Kernels &kernels, System &system);
     /// Rows that the kernels on the way down do one after the other before they go on to the next; even.
     std::uint32_t rows_of_band(const Grid &grid, std::uint32_t channels) const;
-    void run_cycle(Kernels &kernels, Planes channels, const Buffer *onto);
+    /// One step of smoothing as the kernel's arguments.
+    static void bind_smooth(Kernels &kernels, const Level &level, const Buffer &from, const Buffer &to,
+                            double step_size);
+    void run_cycle(Kernels &kernels, Planes channels, int steps_after, const Buffer *onto);
 
     void allocate();
 

@@ -21,6 +21,9 @@ using namespace solver;
 namespace {
 
 constexpr double default_tolerance = 1e-5;
+/// With weights that jump, cycles that also smooth on the way up take half to a quarter of the steps, which are 1.4
+/// times as long.
+constexpr int smoothing_steps_after = 2;
 constexpr std::uint32_t most_channels = 8;
 
 /// The weights of a problem in which something may be missing.
@@ -126,6 +129,7 @@ void PoissonSolver::Implementation::least_squares(const Inputs &images, const Po
     request.tolerance = options.tolerance > 0 ? options.tolerance : default_tolerance;
     request.iterations = options.iterations > 0 ? options.iterations : default_iterations(request.method);
     request.damping = options.damping;
+    request.steps_after = uniform ? 0 : smoothing_steps_after;
     const double norm = images.start ? problem.norm_of_right_side(kernels) : 0;
     problem.start(images);
     if (uniform && images.start)

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <initializer_list>
-#include <iterator>
 #include <map>
 #include <utility>
 
@@ -17,18 +16,17 @@ namespace {
 /// weights jump by a factor of 10^9 from pixel to pixel.
 constexpr double largest_weight = 1000;
 
+/// Of the residual. What is left to gain is then a thousandth of the squared error that the noise leaves, or less; the
+/// right side shrinks as the noise does.
+constexpr double tolerance = 1e-4;
+
 /// A variance is at least this share of the squared brightness, over the number of samples: none at all is luck.
 constexpr double least_of_a_sample = 1e-3;
 
-/// How far a pixel's neighbours are, and how much they count, from each smoothing to the next.
-struct Smoothing {
-    std::uint32_t apart;
-    double side;
-};
 // Standard deviations of 0.4, 0.8, 1.6, 3.3 and 6.6 pixels in all.
-constexpr Smoothing smoothings[] = {{1, 0.07}, {1, 0.5}, {2, 0.5}, {4, 0.5}, {8, 0.5}};
+constexpr VarianceSmoother::Smoothing smoothings[] = {{1, 0.07}, {1, 0.5}, {2, 0.5}, {4, 0.5}, {8, 0.5}};
 
-constexpr auto smoothing_kernels = {"mean_of_channels", "smooth_image", "add_logarithm", "geometric_mean"};
+constexpr auto smoothing_kernels = {"mean_of_channels", "smooth_image", "smooth_and_add", "geometric_mean"};
 
 /// Kernels of one program: to build one of them is to compile all.
 std::vector<Kernel> weighted_kernels(Device &device, std::uint32_t channels,
@@ -50,72 +48,80 @@ std::vector<float> values_of(const Buffer &image) {
 } // namespace
 
 VarianceSmoother::VarianceSmoother(Device &device, std::uint32_t width, std::uint32_t height, std::uint32_t channels)
-    : device_(device), width_(width), height_(height), channels_(channels) {
+    : device_(device), grid_(width, height), channels_(channels) {
     std::vector<Kernel> kernels = weighted_kernels(device, channels, smoothing_kernels);
     mean_ = std::move(kernels[0]);
     smooth_ = std::move(kernels[1]);
-    add_ = std::move(kernels[2]);
+    smooth_and_add_ = std::move(kernels[2]);
     finish_ = std::move(kernels[3]);
 }
 
-void VarianceSmoother::launch(Kernel &kernel) {
-    kernel.set("width", width_);
-    kernel.set("height", height_);
-    kernel.launch(width_, height_);
+void VarianceSmoother::launch(Kernel &kernel, Extent extent) {
+    kernel.set("columns", extent.columns);
+    kernel.set("rows", extent.rows);
+    grid_.launch(kernel, {});
 }
 
-void VarianceSmoother::take_mean(const Buffer &image, bool is_variance) {
+void VarianceSmoother::take_mean(const Buffer &image, bool is_variance, Extent extent) {
     mean_.set("is_variance", is_variance);
     mean_.bind("packed", image);
     mean_.bind("mean", image_);
-    launch(mean_);
+    launch(mean_, extent);
 }
 
-void VarianceSmoother::smooth(std::uint32_t columns, std::uint32_t rows, std::uint32_t apart, double side) {
-    smooth_.set("columns", columns);
-    smooth_.set("rows", rows);
-    smooth_.set("apart", apart);
-    smooth_.set_real("side", side);
-    smooth_.bind("image", image_);
-    smooth_.bind("smoothed", other_);
-    launch(smooth_);
+void VarianceSmoother::smooth(Kernel &kernel, Smoothing smoothing, Extent extent) {
+    kernel.set("apart", smoothing.apart);
+    kernel.set_real("side", smoothing.side);
+    kernel.bind("image", image_);
+    kernel.bind("smoothed", other_);
+    launch(kernel, extent);
     std::swap(image_, other_);
 }
 
+void VarianceSmoother::allocate() {
+    if (image_.valid())
+        return;
+    const solver::PlaneMaker make(device_, Precision::single);
+    // Nothing is there beyond the image, which kernels do not write to.
+    const std::vector<double> nothing(grid_.plane, -1.0);
+    for (Buffer *plane : {&image_, &other_, &brightness_})
+        *plane = make.reals("image", nothing);
+    logarithms_ = make.planes("logarithms", grid_, 1);
+    smoothed_ = Buffer(device_, "smoothed", std::size_t(channels_) * grid_.width * grid_.height * sizeof(float));
+}
+
 void VarianceSmoother::begin(const HalfImages &judge) {
-    const std::size_t pixels = std::size_t(width_) * height_, bytes = pixels * sizeof(float);
-    if (!image_.valid()) {
-        image_ = Buffer(device_, "image", bytes);
-        other_ = Buffer(device_, "image", bytes);
-        brightness_ = Buffer(device_, "brightness", bytes);
-        logarithms_ = Buffer(device_, "logarithms", 2 * bytes);
-        smoothed_ = Buffer(device_, "smoothed", channels_ * bytes);
-    }
-    samples_ = std::max(double(judge.samples) / double(pixels), double(least_half_samples));
-    take_mean(judge.primal, false);
+    allocate();
+    const double pixels = double(grid_.width) * grid_.height;
+    samples_ = std::max(double(judge.samples) / pixels, double(least_half_samples));
+    const Extent whole = {grid_.width, grid_.height};
+    take_mean(judge.primal, false, whole);
     for (int i = 0; i < 2; ++i)
-        smooth(width_, height_, 1, 0.5);
+        smooth(smooth_, {1, 0.5}, whole);
     std::swap(image_, brightness_);
 }
 
 const Buffer &VarianceSmoother::smoothed(const Buffer &variance, Differences differences) {
-    take_mean(variance, true);
-    const std::uint32_t columns = width_ - (differences == Differences::right ? 1 : 0),
-                        rows = height_ - (differences == Differences::down ? 1 : 0);
-    for (std::size_t i = 0; i < std::size(smoothings); ++i) {
-        smooth(columns, rows, smoothings[i].apart, smoothings[i].side);
+    const Extent extent = {grid_.width - (differences == Differences::right ? 1 : 0),
+                           grid_.height - (differences == Differences::down ? 1 : 0)};
+    take_mean(variance, true, extent);
+    double shares = 0;
+    for (const Smoothing &smoothing : smoothings) {
         // The fewer samples, the less the pixel itself knows.
-        add_.set_real("share", i == 0 ? 2 * (1 - 1 / samples_) : 1);
-        add_.set_real("least", least_of_a_sample / samples_);
-        add_.set("begins", i == 0);
-        add_.bind("variance", image_);
-        add_.bind("brightness", brightness_);
-        add_.bind(logarithms_);
-        launch(add_);
+        const double share = shares == 0 ? 2 * (1 - 1 / samples_) : 1;
+        smooth_and_add_.set_real("share", share);
+        smooth_and_add_.set_real("before", shares);
+        smooth_and_add_.set_real("least", least_of_a_sample / samples_);
+        smooth_and_add_.bind("brightness", brightness_);
+        smooth_and_add_.bind("logarithms", logarithms_);
+        smooth(smooth_and_add_, smoothing, extent);
+        shares += share;
     }
-    finish_.bind(logarithms_);
-    finish_.bind(smoothed_);
-    launch(finish_);
+    finish_.set_real("shares", shares);
+    finish_.bind("smoothed", image_);
+    finish_.bind("logarithms", logarithms_);
+    finish_.bind("packed", smoothed_);
+    grid_.launch(finish_, {});
     return smoothed_;
 }
 
@@ -142,6 +148,7 @@ PoissonOptions WeightedReconstruction::options() {
     options.alpha_from_variances = true;
     options.weigh_by_variance = true;
     options.largest_weight = largest_weight;
+    options.tolerance = tolerance;
     return options;
 }
 

@@ -10,6 +10,7 @@
 #pragma once
 
 #include "runtime/device/program.h"
+#include "solver/grid.h"
 #include "solver/halves.h"
 #include "solver/poisson_solver.h"
 #include "solver/squared_errors.h"
@@ -30,15 +31,27 @@ class VarianceSmoother {
     /// buffer is used again by the next call.
     const Buffer &smoothed(const Buffer &variance, Differences differences);
 
+    /// How far a pixel's neighbours are, and how much they count, from each smoothing to the next.
+    struct Smoothing {
+        std::uint32_t apart;
+        double side;
+    };
+
   private:
-    void launch(Kernel &kernel);
-    void take_mean(const Buffer &image, bool is_variance);
-    void smooth(std::uint32_t columns, std::uint32_t rows, std::uint32_t apart, double side);
+    /// How many columns and rows an image has.
+    struct Extent {
+        std::uint32_t columns, rows;
+    };
+    void allocate();
+    void launch(Kernel &kernel, Extent extent);
+    void take_mean(const Buffer &image, bool is_variance, Extent extent);
+    void smooth(Kernel &kernel, Smoothing smoothing, Extent extent);
 
     Device &device_;
-    std::uint32_t width_, height_, channels_;
+    solver::Grid grid_;
+    std::uint32_t channels_;
     double samples_ = 0; ///< of a pixel
-    Kernel mean_, smooth_, add_, finish_;
+    Kernel mean_, smooth_, smooth_and_add_, finish_;
     Buffer image_, other_, brightness_, logarithms_, smoothed_;
 };
 

@@ -12,7 +12,7 @@
 
 namespace {
 
-const std::vector<std::string> all_parts = {"direct", "l1", "bandwidth", "scaling", "curves"};
+const std::vector<std::string> all_parts = {"direct", "weighted", "l1", "bandwidth", "scaling", "curves"};
 
 struct Arguments : gradus::bench::ProgramOptions {
     std::set<std::string> parts{all_parts.begin(), all_parts.end()};
@@ -44,6 +44,8 @@ void run(const Arguments &arguments) {
         if (wanted("bandwidth"))
             results["bandwidth"].push_back(measure_bandwidth(settings, problem));
     }
+    if (wanted("weighted"))
+        results["weighted"] = measure_weighted(settings, 1280, 720);
     if (wanted("bandwidth") && !arguments.quick) {
         Problem large(settings, 3840, 2160); // beyond the caches of most processors
         results["bandwidth"].push_back(measure_bandwidth(settings, large));
@@ -66,7 +68,7 @@ int main(int argc, char **argv) {
     Arguments arguments;
     CLI::App app("Solver benchmarks in one process. Every ratio is of turns of one run, the median of --repeats turns",
                  "gradus-bench-solver");
-    app.add_option("--parts", arguments.parts, "Any of direct, l1, bandwidth, scaling, curves")
+    app.add_option("--parts", arguments.parts, "Any of direct, weighted, l1, bandwidth, scaling, curves")
         ->check(CLI::IsMember(all_parts))
         ->delimiter(',');
     app.add_option("--repeats", arguments.repeats, "Turns")->check(CLI::Range(1, 1000))->capture_default_str();

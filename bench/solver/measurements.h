@@ -12,6 +12,10 @@ nlohmann::json measure_curves(const Settings &settings, Problem &problem);
 /// L2 to a relative residual of 1e-4, against FFTW; and 50 steps of conjugate gradients.
 nlohmann::json measure_direct_rival(const Settings &settings, Problem &problem);
 
+/// Both halves of a render, each weighted by the other's variances, against FFTW's uniform solve of one half and
+/// against L1 with default options.
+nlohmann::json measure_weighted(const Settings &settings, std::uint32_t width, std::uint32_t height);
+
 /// What a step of conjugate gradients moves in memory, against a triad.
 nlohmann::json measure_bandwidth(const Settings &settings, Problem &problem);
 

@@ -28,7 +28,8 @@
 
 /* A grid as kernel arguments, the first channel and row of a launch, and where a pixel lies. */
 #define GRID uint width, uint height, uint row, uint plane, uint first_channel, uint first_row
-#define GRID_AT(channel, x, y) ((channel)*plane + ((y) + 1) * row + SOLVER_MARGIN + (x))
+#define GRID_LINE(y) (((y) + 1) * row + SOLVER_MARGIN)
+#define GRID_AT(channel, x, y) ((channel)*plane + GRID_LINE(y) + (x))
 #define OWN_AT(x, y) GRID_AT(own, x, y)
 
 /* Defines the channel and the pixel of a work-item: channels first_channel and on take turns row by row. `own` counts

@@ -8,67 +8,90 @@
 #include "kernels/lib/finite.h"
 #include "kernels/solver/grid.h"
 
-#define IMAGE uint width, uint height
-#define PIXELS ((size_t)width * height)
-#define PLANE_AT(plane) (((size_t)(plane)*height + y) * width + x)
-#define IMAGE_PLACE                                                                                                    \
-    const size_t x = get_global_id(0), y = get_global_id(1);                                                           \
-    if (x >= width)                                                                                                    \
-        return;
+/* In the caller's planes. */
+#define PACKED_AT(plane) (((size_t)(plane)*height + y) * width + x)
 
 /* The least variance: its logarithm is a number, and so is what it is divided by. */
 #define LEAST_VARIANCE R(1e-30)
 
-/* The mean over the channels, -1 where it is missing: NaN, infinite, or (of variances) below zero. */
-SOLVE mean_of_channels(IMAGE, uint is_variance, __global const float *packed, __global real *mean) {
-    IMAGE_PLACE
+/* The mean over the channels, -1 where it is missing: NaN, infinite, (of variances) below zero, or beyond `columns` and
+ * `rows`, which are all that the image has. */
+SOLVE mean_of_channels(GRID, uint columns, uint rows, uint is_variance, __global const float *packed,
+                       __global real *mean) {
+    SOLVER_PLACE_OF_ALL_CHANNELS
+    const bool inside = x < columns && y < rows;
     real sum = R(0);
+#pragma unroll
     for (uint c = 0; c < SOLVER_CHANNELS; ++c)
-        sum += packed[PLANE_AT(c)];
-    const int is_there = is_finite(sum) && (sum >= R(0) || !is_variance);
-    mean[PLANE_AT(0)] = is_there ? r_abs(sum) * R(1.0 / SOLVER_CHANNELS) : R(-1);
+        sum += inside ? packed[PACKED_AT(c)] : 0.0f;
+    const int is_there = inside && is_finite(sum) && (sum >= R(0) || !is_variance);
+    mean[GRID_AT(0, x, y)] = is_there ? r_abs(sum) * R(1.0 / SOLVER_CHANNELS) : R(-1);
 }
 
-/* smoothed = the mean of `image` and of its neighbours `apart` pixels away, which count `side` beside it, at the
- * corners side^2; -1 where none of them is there. Only `columns` and `rows` of the image are. */
-SOLVE smooth_image(IMAGE, uint columns, uint rows, uint apart, real side, __global const real *image,
-                   __global real *smoothed) {
-    IMAGE_PLACE
-    real sum = R(0), weight = R(0);
-    for (int dy = -1; dy <= 1; ++dy)
-        for (int dx = -1; dx <= 1; ++dx) {
-            const int at_x = (int)x + dx * (int)apart, at_y = (int)y + dy * (int)apart;
-            const int inside = at_x >= 0 && at_y >= 0 && at_x < (int)columns && at_y < (int)rows;
-            const real value = image[inside ? (size_t)at_y * width + (size_t)at_x : PLANE_AT(0)];
-            const real tap = (dx == 0 ? R(1) : side) * (dy == 0 ? R(1) : side);
-            const real one = inside && value >= R(0) ? tap : R(0);
-            sum += one * value;
-            weight += one;
-        }
-    smoothed[PLANE_AT(0)] = weight > R(0) ? sum / weight : R(-1);
+/* The mean of `image` and of its neighbours `apart` pixels away (at most SOLVER_MARGIN), which count `side` beside it,
+ * at the corners side^2; -1 where none of them is there, and beyond `columns` and `rows`. What is missing is -1, in the
+ * border too; so a sum takes one comparison a value. */
+#define NEIGHBOURS uint columns, uint rows, uint apart, real side, __global const real *image
+typedef struct {
+    real values, count;
+    GRADUS_NOT_IN_REGISTERS
+} present_values;
+#define ADD_PRESENT(sum, value)                                                                                        \
+    {                                                                                                                  \
+        const real added = value;                                                                                      \
+        sum.values += r_max(added, R(0));                                                                              \
+        sum.count += added >= R(0) ? R(1) : R(0);                                                                      \
+    }
+GRADUS_FN real mean_of_neighbours(size_t x, size_t y, uint row, NEIGHBOURS) {
+    present_values here = {R(0), R(0)}, sides = {R(0), R(0)}, corners = {R(0), R(0)};
+    /* The same for all work-items of a group, or they would gather. */
+    __global const real *line = image + GRID_LINE(y);
+    __global const real *above = image + GRID_LINE(y >= apart ? y - apart : (size_t)-1);
+    __global const real *below = image + GRID_LINE(y + apart < rows ? y + apart : (size_t)-1);
+    const size_t left = x - apart, right = x + apart;
+    ADD_PRESENT(here, line[x])
+    ADD_PRESENT(sides, line[left])
+    ADD_PRESENT(sides, line[right])
+    ADD_PRESENT(sides, above[x])
+    ADD_PRESENT(sides, below[x])
+    ADD_PRESENT(corners, above[left])
+    ADD_PRESENT(corners, above[right])
+    ADD_PRESENT(corners, below[left])
+    ADD_PRESENT(corners, below[right])
+    const real sum = here.values + side * (sides.values + side * corners.values);
+    const real weight = here.count + side * (sides.count + side * corners.count);
+    return (x < columns) & (y < rows) & (weight > R(0)) ? sum / weight : R(-1);
 }
 
-/* logarithms += share log(variance), and in the second plane += share. A variance is at least `least` times the squared
- * brightness. */
-SOLVE add_logarithm(IMAGE, real share, real least, uint begins, __global const real *variance,
-                    __global const real *brightness, __global real *logarithms) {
-    IMAGE_PLACE
-    const size_t at = PLANE_AT(0), at_share = PLANE_AT(1);
-    const real v = variance[at], b = r_max(brightness[at], R(0));
-    const real one = v >= R(0) ? share : R(0);
-    const real logarithm = one * approx_log(r_max(v, R(0)) + least * b * b + LEAST_VARIANCE);
-    logarithms[at] = (begins ? R(0) : logarithms[at]) + logarithm;
-    logarithms[at_share] = (begins ? R(0) : logarithms[at_share]) + one;
+SOLVE smooth_image(GRID, NEIGHBOURS, __global real *smoothed) {
+    SOLVER_PLACE_OF_ALL_CHANNELS
+    smoothed[GRID_AT(0, x, y)] = mean_of_neighbours(x, y, row, columns, rows, apart, side, image);
 }
 
-/* The geometric mean, the same for all channels; -1 where nothing was there. */
-SOLVE geometric_mean(IMAGE, __global const real *logarithms, __global float *smoothed) {
-    IMAGE_PLACE
-    const real share = logarithms[PLANE_AT(1)];
-    const real mean = approx_exp(logarithms[PLANE_AT(0)] / (share > R(0) ? share : R(1)));
-    const float value = share > R(0) ? (float)mean : -1.0f;
+/* The same; and logarithms += share log(smoothed), `before` being the shares so far. What is there for the first time
+ * counts for those, too. A variance is at least `least` times the squared brightness. */
+SOLVE smooth_and_add(GRID, NEIGHBOURS, real share, real before, real least, __global const real *brightness,
+                     __global real *smoothed, __global real *logarithms) {
+    SOLVER_PLACE_OF_ALL_CHANNELS
+    const size_t at = GRID_AT(0, x, y);
+    const real v = mean_of_neighbours(x, y, row, columns, rows, apart, side, image);
+    const real b = r_max(brightness[at], R(0));
+    const real logarithm = approx_log(r_max(v, R(0)) + least * b * b + LEAST_VARIANCE);
+    const int is_first = (image[at] < R(0)) | (before == R(0));
+    smoothed[at] = v;
+    logarithms[at] = is_first ? (before + share) * logarithm : logarithms[at] + share * logarithm;
+}
+
+/* The geometric mean, the same for all channels, `shares` being those of all; -1 where nothing was there. */
+SOLVE geometric_mean(GRID, real shares, __global const real *smoothed, __global const real *logarithms,
+                     __global float *packed) {
+    SOLVER_PLACE_OF_ALL_CHANNELS
+    const size_t at = GRID_AT(0, x, y);
+    const float value = smoothed[at] >= R(0) ? (float)approx_exp(logarithms[at] / shares) : -1.0f;
+#pragma unroll
     for (uint c = 0; c < SOLVER_CHANNELS; ++c)
-        smoothed[PLANE_AT(c)] = value;
+        if (x < width)
+            packed[PACKED_AT(c)] = value;
 }
 
 /* mixed = a first + b second; it may be one of them. */

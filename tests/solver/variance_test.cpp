@@ -123,6 +123,17 @@ TEST(VariancesWeights, LessenTheError) {
     EXPECT_LT(with, 0.8 * without);
 }
 
+TEST(VariancesWeights, ThatJumpTakeFewSteps) {
+    const PoissonProblem problem = make_jumping_problem(513, 301, 3, 7);
+    PoissonOptions options = weighted_options(LinearMethod::automatic, 1e-4);
+    options.largest_weight = 1000;
+    options.alpha_from_variances = true;
+    const PoissonReport report = solve_with_variances(problem, options).report;
+    std::printf("%d steps\n", report.iterations);
+    EXPECT_TRUE(report.converged);
+    EXPECT_LE(report.iterations, 17); // with one step of smoothing on the way up 19, without 30
+}
+
 TEST(VariancesAlpha, IsTheirRatio) {
     const PoissonProblem problem = make_poisson_problem(75, 43, 3, 5);
     const double expected = std::sqrt(mean_of_gradients(problem) / mean_of_primal(problem));

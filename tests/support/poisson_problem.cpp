@@ -111,4 +111,32 @@ PoissonProblem make_poisson_problem(std::uint32_t width, std::uint32_t height, s
     return problem;
 }
 
+PoissonProblem make_jumping_problem(std::uint32_t width, std::uint32_t height, std::uint32_t channels,
+                                    std::uint64_t seed) {
+    PoissonProblem problem = make_exact_problem(width, height, channels);
+    const std::size_t size = problem.clean.size();
+    problem.primal_variance.resize(size);
+    problem.dx_variance.resize(size);
+    problem.dy_variance.resize(size);
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    const auto disturb = [&](float &value, float &variance, double of_noise) {
+        value = float(value + std::sqrt(of_noise) * normal(random));
+        variance = float(of_noise);
+    };
+    for (std::uint32_t c = 0; c < channels; ++c)
+        for (std::uint32_t y = 0; y < height; ++y)
+            for (std::uint32_t x = 0; x < width; ++x) {
+                const std::size_t i = problem.at(c, x, y);
+                const double level = problem.clean[problem.at(0, x, y)], square = 0.01 * level * level;
+                const double stripes = x / 5 % 3 == 0 ? 30 : y / 7 % 4 == 0 ? 0.01 : 1;
+                disturb(problem.primal[i], problem.primal_variance[i], level * level * level * stripes);
+                if (x + 1 < width)
+                    disturb(problem.dx[i], problem.dx_variance[i], square * (x % 40 < 3 ? 300 : stripes));
+                if (y + 1 < height)
+                    disturb(problem.dy[i], problem.dy_variance[i], square * (y % 50 < 2 ? 300 : stripes));
+            }
+    return problem;
+}
+
 } // namespace gradus::testing

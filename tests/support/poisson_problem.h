@@ -39,6 +39,11 @@ std::vector<float> synthetic_image(std::uint32_t width, std::uint32_t height, st
 PoissonProblem make_poisson_problem(std::uint32_t width, std::uint32_t height, std::uint32_t channels,
                                     std::uint64_t seed, const PoissonNoise &noise = {});
 
+/// The synthetic image with normal noise whose variances jump as those of renders do: next to none in the dark, and from
+/// stripe to stripe by factors up to 30,000. Equal arguments give equal problems.
+PoissonProblem make_jumping_problem(std::uint32_t width, std::uint32_t height, std::uint32_t channels,
+                                    std::uint64_t seed);
+
 /// The differences of `clean` and itself as the primal: no noise, but for the rounding of the differences.
 PoissonProblem make_exact_problem(std::uint32_t width, std::uint32_t height, std::uint32_t channels);
 
