@@ -60,7 +60,8 @@ GRADUS_FN real mean_of_neighbours(size_t x, size_t y, uint row, NEIGHBOURS) {
     ADD_PRESENT(corners, below[right])
     const real sum = here.values + side * (sides.values + side * corners.values);
     const real weight = here.count + side * (sides.count + side * corners.count);
-    return (x < columns) & (y < rows) & (weight > R(0)) ? sum / weight : R(-1);
+    const int is_there = (x < columns) & (y < rows) & (weight > R(0));
+    return is_there ? sum / weight : R(-1);
 }
 
 SOLVE smooth_image(GRID, NEIGHBOURS, __global real *smoothed) {

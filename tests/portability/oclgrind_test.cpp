@@ -157,6 +157,13 @@ TEST_F(FullOclgrind, GradientsOfPhotonsStraightFromLights) {
                                "--direct", "photons", "--batch-size", "64"});
 }
 
+// With fewer samples there are no variances of halves.
+TEST_F(FullOclgrind, ReconstructionsByVariances) {
+    for (const std::string name : {"weighted", "guided"})
+        render("cornell-box.xml",
+               {"--method", "gpt", "--size", "6x5", "--spp", "4", "--max-depth", "3", "--reconstruction", name});
+}
+
 TEST_F(FullOclgrind, GradientsWithEveryTrait) {
     render("materials.xml", {"--method", "gpt", "--norm", "L2", "--size", "6x6", "--all-traits", "--aov"});
 }
