@@ -160,11 +160,13 @@ void Multigrid::coarsen_weights(Kernels &kernels) {
     }
 }
 
-std::uint32_t Multigrid::rows_of_band(const Grid &grid, std::uint32_t channels) const {
+std::uint32_t Multigrid::rows_of_band(const Grid &grid, Weights weights, std::uint32_t channels) const {
     const std::size_t row = values_by_pixel * grid.row * channels * real_bytes(make_.precision());
     const std::size_t rows = std::max<std::size_t>(band_bytes / row / 16 * 16, 16);
-    // Elsewhere a launch is to fill the device; and a little more than a band is not worth two.
-    return in_bands_ && grid.height > 2 * rows ? static_cast<std::uint32_t>(rows) : grid.height + grid.height % 2;
+    // Elsewhere a launch is to fill the device; and a little more than a band is not worth two. With weights in memory
+    // bands gain nothing.
+    return in_bands_ && weights == Weights::uniform && grid.height > 2 * rows ? static_cast<std::uint32_t>(rows)
+                                                                              : grid.height + grid.height % 2;
 }
 
 void Multigrid::bind_smooth(Kernels &kernels, const Level &level, const Buffer &from, const Buffer &to,
@@ -205,8 +207,7 @@ void Multigrid::run_cycle(Kernels &kernels, Planes channels, int steps_after, co
             restrict_sum.bind("coarse", next->right_side);
         }
         // Each of these reads a row more than it writes, so those before it are a row ahead.
-        // With weights in memory it gains nothing.
-        const std::uint32_t band = third_step ? rows_of_band(grid, channels.count) : grid.height + grid.height % 2;
+        const std::uint32_t band = rows_of_band(grid, kernels.weights, channels.count);
         for (std::uint32_t begin = 0; begin < grid.height; begin += band) {
             const auto launch = [&](Kernel &kernel, std::uint32_t ahead) {
                 const std::uint32_t first = begin == 0 ? 0 : std::min(begin + ahead, grid.height);

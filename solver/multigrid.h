@@ -50,7 +50,7 @@ class Multigrid {
 
     /// Writes an approximate solution of A z = right_side() to solution(), for a group of channels, which all buffers
     /// hold alone. `steps_after`: of smoothing on each level on the way up, which pay where weights jump.
-    void cycle(Kernels &kernels, Planes channels, int steps_after = 0) {
+    void cycle(Kernels &kernels, Planes channels, int steps_after) {
         run_cycle(kernels, channels, steps_after, nullptr);
     }
     const Buffer &solution() const { return levels_.front().smoothed; }
@@ -65,7 +65,7 @@ class Multigrid {
     };
     void invert_diagonal(Kernels &kernels, System &system);
     /// Rows that the kernels on the way down do one after the other before they go on to the next; even.
-    std::uint32_t rows_of_band(const Grid &grid, std::uint32_t channels) const;
+    std::uint32_t rows_of_band(const Grid &grid, Weights weights, std::uint32_t channels) const;
     /// One step of smoothing as the kernel's arguments.
     static void bind_smooth(Kernels &kernels, const Level &level, const Buffer &from, const Buffer &to,
                             double step_size);

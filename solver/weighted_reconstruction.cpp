@@ -81,12 +81,11 @@ void VarianceSmoother::smooth(Kernel &kernel, Smoothing smoothing, Extent extent
 void VarianceSmoother::allocate() {
     if (image_.valid())
         return;
-    const solver::PlaneMaker make(device_, Precision::single);
     // Nothing is there beyond the image, which kernels do not write to.
-    const std::vector<double> nothing(grid_.plane, -1.0);
+    const std::vector<float> nothing(grid_.plane, -1.0f);
     for (Buffer *plane : {&image_, &other_, &brightness_})
-        *plane = make.reals("image", nothing);
-    logarithms_ = make.planes("logarithms", grid_, 1);
+        *plane = Buffer(device_, "image", nothing.data(), nothing.size() * sizeof(float));
+    logarithms_ = solver::PlaneMaker(device_, Precision::single).planes("logarithms", grid_, 1);
     smoothed_ = Buffer(device_, "smoothed", std::size_t(channels_) * grid_.width * grid_.height * sizeof(float));
 }
 

@@ -29,11 +29,7 @@ Problem::Problem(const Settings &settings, Inputs inputs)
 
 Problem::Run Problem::timed(const std::function<PoissonReport()> &solve) {
     Run run;
-    finish(device_);
-    run.seconds = seconds_of([&] {
-        run.report = solve();
-        finish(device_);
-    });
+    run.seconds = seconds_of(device_, [&] { run.report = solve(); });
     return run;
 }
 
@@ -85,6 +81,14 @@ double seconds_of(const std::function<void()> &work) {
     const auto start = std::chrono::steady_clock::now();
     work();
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double seconds_of(Device &device, const std::function<void()> &work) {
+    finish(device);
+    return seconds_of([&] {
+        work();
+        finish(device);
+    });
 }
 
 } // namespace gradus::bench

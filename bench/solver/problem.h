@@ -77,5 +77,7 @@ class Problem {
 PoissonOptions l2_steps(LinearMethod method, int steps);
 
 double seconds_of(const std::function<void()> &work);
+/// The same of what a device does: from when it has nothing left of before to when it is done.
+double seconds_of(Device &device, const std::function<void()> &work);
 
 } // namespace gradus::bench

@@ -31,6 +31,8 @@
 #define GRID_LINE(y) (((y) + 1) * row + SOLVER_MARGIN)
 #define GRID_AT(channel, x, y) ((channel)*plane + GRID_LINE(y) + (x))
 #define OWN_AT(x, y) GRID_AT(own, x, y)
+/* Where pixel x, y lies in the caller's planes: contiguous even where it is not inside and must not be read. */
+#define PACKED_AT(channel) (((size_t)(channel)*height + y) * width + x)
 
 /* Defines the channel and the pixel of a work-item: channels first_channel and on take turns row by row. `own` counts
  * from first_channel: buffers of one group of channels alone (solver/workspace.h) begin there, OWN_AT. */

@@ -4,9 +4,6 @@
 #include "kernels/shared/guide_shared.h"
 #include "kernels/solver/grid.h"
 
-/* Contiguous even where it is not inside and must not be read. */
-#define PACKED_AT(channel) (((size_t)(channel)*height + y) * width + x)
-
 /* A value has a variance of at least this share of the squared brightness around it, and its trust a larger one: two
  * halves that agree by chance are not sure. */
 #define LEAST_VARIANCE_SHARE R(1e-6)

@@ -3,8 +3,6 @@
 #include "kernels/shared/guide_shared.h"
 #include "kernels/solver/grid.h"
 
-#define PACKED_AT(channel) (((size_t)(channel)*height + y) * width + x)
-
 #define JUDGED                                                                                                         \
     real share, __global const float *first_half, __global const float *second_half,                                   \
         __global const float *first_guide, __global const float *second_guide

@@ -5,8 +5,6 @@
 #include "kernels/shared/guide_shared.h"
 #include "kernels/solver/grid.h"
 
-#define PACKED_AT(channel) (((size_t)(channel)*height + y) * width + x)
-
 /* How much brighter or darker, in logarithms, a neighbour is that counts e^-1/2 as much, and at most what share of its
  * brightness a pixel is given. */
 #define LIGHT_APART R(0.3)

@@ -3,9 +3,6 @@
 #include "kernels/lib/finite.h"
 #include "kernels/solver/grid.h"
 
-/* Contiguous even where it is not inside and must not be read. */
-#define PACKED_AT(channel) (((size_t)(channel)*height + y) * width + x)
-
 /* A plane of the caller's, `missing_value` where it is missing; `valid` is 1 where all channels are there; and the
  * number missing. */
 SOLVE import_plane(GRID, uint edge_columns, uint edge_rows, real missing_value, uint partials,

@@ -8,9 +8,6 @@
 #include "kernels/lib/finite.h"
 #include "kernels/solver/grid.h"
 
-/* In the caller's planes. */
-#define PACKED_AT(plane) (((size_t)(plane)*height + y) * width + x)
-
 /* The least variance: its logarithm is a number, and so is what it is divided by. */
 #define LEAST_VARIANCE R(1e-30)
 

@@ -46,10 +46,6 @@ TEST(FullLarge, SolutionsAreThoseOfTheReference) {
     EXPECT_LE(relative_error(solve(solver, problem.images(), options).image, reference), floor);
 }
 
-double mean_of(const std::vector<float> &values) {
-    return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
-}
-
 /// `count` by `count` copies, each the mirror image of its neighbours, so that the solution is the copies of the
 /// tile's: across a seam there is no difference, and the border of the tile is none either.
 PoissonProblem mirrored(const PoissonProblem &tile, std::uint32_t count) {
@@ -62,8 +58,8 @@ PoissonProblem mirrored(const PoissonProblem &tile, std::uint32_t count) {
                                       &problem.primal_variance, &problem.dx_variance, &problem.dy_variance})
         image->resize(size);
     // Those of seams leave the mean, by which weights go, as it is.
-    const float of_seam_x = float(mean_of(tile.dx_variance) * tile.width / (tile.width - 1.0)),
-                of_seam_y = float(mean_of(tile.dy_variance) * tile.height / (tile.height - 1.0));
+    const float of_seam_x = float(means(tile.dx_variance, 1)[0] * tile.width / (tile.width - 1.0)),
+                of_seam_y = float(means(tile.dy_variance, 1)[0] * tile.height / (tile.height - 1.0));
     const auto place = [](std::uint32_t i, std::uint32_t side, bool &is_turned) {
         is_turned = i / side % 2 == 1;
         return is_turned ? side - 1 - i % side : i % side;
