@@ -192,6 +192,32 @@ def band(inner_radius, outer_radius, height, segments):
     return positions, normals, triangles
 
 
+def waves(half_x, half_z, columns, rows):
+    """A rippled sheet over [-half_x, half_x] x [-half_z, half_z] around y = 0, a sum of waves that run in several
+    directions, seen from above; its normals are those of the sum."""
+    # Of each: wave numbers along x and z, height, phase.
+    trains = [(7.1, 3.3, 0.014, 0.4), (-5.2, 8.6, 0.012, 1.9), (12.4, -6.1, 0.006, 3.1), (4.3, 15.2, 0.005, 5.2),
+              (17.3, 9.9, 0.002, 0.7)]
+    positions, normals, triangles = [], [], []
+    for row in range(rows + 1):
+        for column in range(columns + 1):
+            x, z = half_x * (2 * column / columns - 1), half_z * (2 * row / rows - 1)
+            y = slope_x = slope_z = 0.0
+            for along_x, along_z, height, phase in trains:
+                angle = along_x * x + along_z * z + phase
+                y += height * math.sin(angle)
+                slope_x += height * along_x * math.cos(angle)
+                slope_z += height * along_z * math.cos(angle)
+            positions.append((x, y, z))
+            normals.append(normalized((-slope_x, 1.0, -slope_z)))
+    for row in range(rows):
+        for column in range(columns):
+            a = row * (columns + 1) + column
+            b = a + columns + 1
+            triangles += [(a, b, a + 1), (a + 1, b, b + 1)]
+    return positions, normals, triangles
+
+
 def star(points, outer_radius, inner_radius, half_thickness):
     """A star in the x-y plane with a bevelled front and back: (positions, faces of three or four indices)."""
     rim = []
@@ -347,6 +373,7 @@ def main():
     write_ply_binary(folder / "block.ply", *block(0.86, 0.42, 0.86))
     write_ply_binary(folder / "egg.ply", *egg(0.36, 0.27, 0.18, 36, 56))
     write_ply_binary(folder / "band.ply", *band(0.52, 0.56, 0.34, 128))
+    write_ply_binary(folder / "waves.ply", *waves(1.0, 0.75, 64, 48))
     for group in range(3):
         write_ply_binary(folder / f"lanterns-{group}.ply", *lanterns(24, 25, group, 3))
     for count in (7, 14, 28):

@@ -8,6 +8,7 @@
 //! traits: TRAIT_LIGHT_TRIANGLE TRAIT_LIGHT_SPHERE TRAIT_LIGHT_POINT TRAIT_LIGHT_DIRECTIONAL TRAIT_LIGHT_CONSTANT
 //! traits: TRAIT_LIGHT_ENVIRONMENT TRAIT_LIGHT_SPOT
 #include "kernels/lib/light_sampling.h"
+#include "kernels/shared/light_vertex.h"
 
 GRADUS_LIB_BEGIN
 
@@ -15,8 +16,8 @@ typedef struct {
     vec3 origin;    /* already moved off the surface */
     vec3 direction; /* unit vector */
     rgb power;
-    vec3 normal; /* of the surface, on the side that emits; 0 for points */
-    int is_far;  /* at infinity, or a spot: nobody may turn the ray and take its power for what it was */
+    vec3 normal; /* of the surface, on the side that emits; at infinity the direction; 0 for points */
+    uint starts; /* light_vertex_on_surface and so on */
     GRADUS_NOT_IN_REGISTERS
 } light_emission;
 
@@ -28,7 +29,7 @@ GRADUS_FN light_emission emission_from_surface(rgb radiance, vec3 point, vec3 no
     e.origin = v3_mad(point, offset_at(point, normal, offset), normal);
     e.power = rgb_scale(radiance, GRADUS_PI * area);
     e.normal = normal;
-    e.is_far = 0;
+    e.starts = light_vertex_on_surface;
     return e;
 }
 
@@ -57,7 +58,7 @@ GRADUS_FN light_emission emission_from_point(rgb intensity, vec3 point, point2 l
     e.origin = point;
     e.power = rgb_scale(intensity, R(4) * GRADUS_PI);
     e.normal = v3(R(0), R(0), R(0));
-    e.is_far = 0;
+    e.starts = light_vertex_at_point;
     return e;
 }
 
@@ -70,7 +71,7 @@ GRADUS_FN light_emission emission_from_direction(rgb irradiance, vec3 towards, v
     e.origin = v3_mad(center, radius, frame_to_world(frame_from_normal(towards), v3(disk.x, disk.y, R(1))));
     e.power = rgb_scale(irradiance, GRADUS_PI * radius * radius);
     e.normal = e.direction;
-    e.is_far = 1;
+    e.starts = light_vertex_at_infinity;
     return e;
 }
 
@@ -97,7 +98,7 @@ GRADUS_FN light_emission emission_from_spot(rgb intensity, vec3 point, vec3 axis
     e.power = rgb_scale(intensity,
                         R(2) * GRADUS_PI * one_minus_cosine * light_spot_falloff(axis, e.direction, cutoff, steepness));
     e.normal = v3(R(0), R(0), R(0));
-    e.is_far = 1;
+    e.starts = light_vertex_of_beam;
     return e;
 }
 
@@ -116,7 +117,7 @@ GRADUS_FN light_emission emission_from_projector(rgb irradiance, vec3 point, vec
     e.origin = point;
     e.power = rgb_scale(irradiance, R(1) / r_sqrt(r_max(u_squared * v_squared, R(1e-30))));
     e.normal = v3(R(0), R(0), R(0));
-    e.is_far = 1;
+    e.starts = light_vertex_of_beam;
     return e;
 }
 #endif
@@ -127,7 +128,7 @@ GRADUS_FN light_emission light_emission_select(int first, light_emission a, ligh
     e.direction = v3_select(first, a.direction, b.direction);
     e.power = rgb_select(first, a.power, b.power);
     e.normal = v3_select(first, a.normal, b.normal);
-    e.is_far = first ? a.is_far : b.is_far;
+    e.starts = first ? a.starts : b.starts;
     return e;
 }
 
@@ -171,7 +172,7 @@ GRADUS_FN light_emission emission_sampling(GRADUS_GLOBAL const real *lights, GRA
     e.direction = v3(R(0), R(0), R(1));
     e.power = rgb_gray(R(0));
     e.normal = e.direction;
-    e.is_far = 1;
+    e.starts = light_vertex_of_beam;
 #if TRAIT_LIGHT_TRIANGLE
     e = emission_from_triangle(value, p, e1, LIGHT_V3(light, e2), offset, on_light, away);
 #endif

@@ -34,7 +34,8 @@ GRADUS_FN frame light_vertex_frame(GRADUS_GLOBAL const real *light_vertices, uin
 }
 
 /* direction: the one that it took; towards: the new one; unit vectors, world frame. Of a vertex of the kind BSDF, or,
- * with LAST_IS_LIGHT, of one on a light that is not far away. */
+ * with LAST_IS_LIGHT, of one on a light; at infinity both directions are the same, and densities are by area across it.
+ */
 GRADUS_FN light_leaving light_vertex_leave(GRADUS_GLOBAL const real *light_vertices,
                                            GRADUS_GLOBAL const uint *light_vertex_marks,
                                            GRADUS_GLOBAL const real *materials, uint record, uint unit, vec3 direction,
@@ -45,10 +46,10 @@ GRADUS_FN light_leaving light_vertex_leave(GRADUS_GLOBAL const real *light_verti
     real turned = R(1);
 #if LAST_IS_LIGHT
     (void)materials LIGHT_VERTEX_TEXTURES;
-    const int is_point = marked == light_vertex_at_point;
-    const int same_side = is_point | ((cosine > R(0)) & (cosine_offset > R(0)));
+    const int is_surface = marked == light_vertex_on_surface, is_far = marked == light_vertex_at_infinity;
+    const int same_side = !is_surface | ((cosine > R(0)) & (cosine_offset > R(0)));
     bsdf_value f;
-    f.pdf = GRADUS_INV_PI * (is_point ? R(0.25) : cosine_offset);
+    f.pdf = is_far ? R(1) : GRADUS_INV_PI * (is_surface ? cosine_offset : R(0.25));
     f.value = rgb_gray(f.pdf);
 #else
     const int same_side = cosine * cosine_offset > R(0);

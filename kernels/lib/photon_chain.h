@@ -5,7 +5,7 @@
 
 typedef struct {
     uint start; /* record of the vertex that stays */
-    uint inner; /* how many there are; 0 where there are too many, or light comes from afar or was mirrored by a
+    uint inner; /* how many there are; 0 where there are too many, or light comes from a beam or was mirrored by a
                  * material that scatters as well */
     GRADUS_NOT_IN_REGISTERS
 } photon_chain;
@@ -23,7 +23,7 @@ GRADUS_FN photon_chain photon_chain_of(GRADUS_GLOBAL const uint *light_vertex_ma
         const int is_specular = !light_vertex_is_light(material) &&
                                 material_bin[light_vertex_is_light(material) ? 0u : material] == chain_bin;
         if (!is_specular) {
-            const int is_fixed = LIGHT_VERTEX_MIRRORS(chain.start) ? 0 : material != light_vertex_far;
+            const int is_fixed = LIGHT_VERTEX_MIRRORS(chain.start) ? 0 : material != light_vertex_of_beam;
             chain.inner = is_fixed ? found : 0u;
             break;
         }

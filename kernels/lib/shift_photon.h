@@ -113,6 +113,23 @@ GRADUS_FN shifted_photon photon_shift_from(vec3 from, vec3 photon, photon_disc b
     return shifted;
 }
 
+/* The same for parallel rays along `direction`, a unit vector, from a light at infinity: the Jacobian is by area across
+ * them, (r' / r)^2 |n'.w| / |n.w|. */
+GRADUS_FN shifted_photon photon_shift_parallel(vec3 direction, vec3 photon, photon_disc base, photon_disc offset) {
+    const vec3 apart = v3_sub(photon, base.position);
+    const real across = v3_dot(direction, base.normal), cosine = r_abs(across);
+    const int meets = cosine > GRADUS_PHOTON_GRAZING;
+    const vec3 in_plane = v3_mad(apart, -v3_dot(apart, base.normal) / (meets ? across : R(1)), direction);
+    int is_turned = 0;
+    const vec3 moved = photon_mirrored(in_plane, base, offset, &is_turned);
+    const real cosine_offset = r_abs(v3_dot(direction, offset.normal)), scale = offset.radius / base.radius;
+    shifted_photon shifted;
+    shifted.target = v3_add(offset.position, moved);
+    shifted.is_valid = meets & is_turned & (cosine_offset > GRADUS_PHOTON_GRAZING);
+    shifted.jacobian = shifted.is_valid ? scale * scale * cosine_offset / r_max(cosine, GRADUS_PHOTON_GRAZING) : R(0);
+    return shifted;
+}
+
 /* The same along the normals of the planes, for photons at the end of a chain: `target` is where the line along the
  * offset's normal crosses its plane. The Jacobian, by area on the surfaces, lacks what is only known once the offset
  * photon is: divide by |m'.n'|. `photon_normal`: m. */

@@ -9,7 +9,8 @@
     FIELD(light_vertex, position_x, "")                                                                                \
     FIELD(light_vertex, position_y, "")                                                                                \
     FIELD(light_vertex, position_z, "")                                                                                \
-    FIELD(light_vertex, geometric_x, "geometric normal, unit, on the side that the material calls front")              \
+    FIELD(light_vertex, geometric_x,                                                                                   \
+          "geometric normal, unit, on the side that the material calls front; of a light at infinity its direction")   \
     FIELD(light_vertex, geometric_y, "")                                                                               \
     FIELD(light_vertex, geometric_z, "")                                                                               \
     FIELD(light_vertex, wi_x, "unit vector to the vertex before, world frame")                                         \
@@ -18,9 +19,9 @@
     FIELD(light_vertex, power_r, "flux that arrives, as a photon's")                                                   \
     FIELD(light_vertex, power_g, "")                                                                                   \
     FIELD(light_vertex, power_b, "")                                                                                   \
-    FIELD(light_vertex, offset, "how far a new ray starts off the surface")                                            \
+    FIELD(light_vertex, offset, "how far a new ray starts off the surface; of a light chain_start_at_infinity or 0")   \
     FIELD(light_vertex, pdf,                                                                                           \
-          "of the direction in which the path goes on, by solid angle; a specular one's probability")                  \
+          "of the direction in which the path goes on, by solid angle; a specular one's probability; 1 at infinity")   \
     FIELD(light_vertex, survival, "probability with which Russian roulette let it")                                    \
     FIELD(light_vertex, shading_x, "only with TRAIT_SHADING_NORMALS or TRAIT_ANISOTROPIC: on the side of geometric")   \
     FIELD(light_vertex, shading_y, "")                                                                                 \
@@ -50,11 +51,14 @@ enum light_vertex_mark_field { GRADUS_LIGHT_VERTEX_MARKS(GRADUS_RECORD_INDEX) li
 
 #define light_vertex_none 0xFFFFFFFFu
 
-/* Materials of vertices on lights, which have no record: light that leaves a surface, a point, or comes from afar. */
+/* Materials of vertices on lights, which have no record: light that leaves a surface, a point, or comes from infinity;
+ * or by a beam whose power is another in each direction, so that nobody may turn it and take its power for what it was.
+ */
 #define light_vertex_on_surface 0xFFFFFFFEu
 #define light_vertex_at_point 0xFFFFFFFDu
-#define light_vertex_far 0xFFFFFFFCu
-#define light_vertex_is_light(material) ((material) >= light_vertex_far)
+#define light_vertex_at_infinity 0xFFFFFFFCu
+#define light_vertex_of_beam 0xFFFFFFFBu
+#define light_vertex_is_light(material) ((material) >= light_vertex_of_beam)
 
 /* Whether a path goes on by the mirror of a material that scatters as well: no walk moves such a vertex, and the value
  * of its BSDF says nothing of the mirror. */

@@ -1,19 +1,24 @@
 /* The tables of manifold walks (runtime/wavefront/manifold_walk.h): columns alone, for kernels/shared/tables.h.
  *
  * A chain has a fixed start y_b, `inner` vertices y_b+1 ... y_s-1 that are not rough, and an end y_s, which is to move
- * to its target. Vertex k = 0 ... inner - 1 of chain r is row k * chain_rows + r of the tables of vertices. */
+ * to its target. Where it starts at infinity the rays from there stay parallel, and y_b is where the chain's own
+ * crosses a plane before the scene, across them. Vertex k = 0 ... inner - 1 of chain r is row k * chain_rows + r of the
+ * tables of vertices. */
 #ifndef GRADUS_SHARED_WALK_TABLES_H
 #define GRADUS_SHARED_WALK_TABLES_H
+
+#define chain_start_at_infinity R(-1)
 
 /* What is asked: a chain a row. */
 #define GRADUS_CHAIN_COLUMNS(REAL, UINT)                                                                               \
     REAL(chain, start_x, "y_b, which stays; world units, as all positions")                                            \
     REAL(chain, start_y, "")                                                                                           \
     REAL(chain, start_z, "")                                                                                           \
-    REAL(chain, start_normal_x, "geometric normal there, unit, either side; zero where it is on no surface")           \
+    REAL(chain, start_normal_x,                                                                                        \
+         "geometric normal there, unit, either side; zero on no surface; at infinity direction")                       \
     REAL(chain, start_normal_y, "")                                                                                    \
     REAL(chain, start_normal_z, "")                                                                                    \
-    REAL(chain, start_offset, "how far rays start off the surface there; 0 on none")                                   \
+    REAL(chain, start_offset, "how far rays start off the surface there; 0 on none; or chain_start_at_infinity")       \
     REAL(chain, end_x, "y_s, where the chain ends now")                                                                \
     REAL(chain, end_y, "")                                                                                             \
     REAL(chain, end_z, "")                                                                                             \

@@ -56,13 +56,13 @@ STAGE emit(uint count, uint unit, uint capacity, uint first_row, uint first_slot
     FIELD_OF(light_vertex, light_vertices, record, power_r) = emitted.power.r;
     FIELD_OF(light_vertex, light_vertices, record, power_g) = emitted.power.g;
     FIELD_OF(light_vertex, light_vertices, record, power_b) = emitted.power.b;
-    const int is_point = v3_dot(emitted.normal, emitted.normal) == R(0);
-    FIELD_OF(light_vertex, light_vertices, record, offset) = R(0);
-    FIELD_OF(light_vertex, light_vertices, record, pdf) =
-        GRADUS_INV_PI * (is_point ? R(0.25) : v3_dot(emitted.normal, emitted.direction));
+    const int is_on_surface = emitted.starts == light_vertex_on_surface;
+    const real by_angle = GRADUS_INV_PI * (is_on_surface ? v3_dot(emitted.normal, emitted.direction) : R(0.25));
+    const int is_far = emitted.starts == light_vertex_at_infinity;
+    FIELD_OF(light_vertex, light_vertices, record, offset) = is_far ? chain_start_at_infinity : R(0);
+    FIELD_OF(light_vertex, light_vertices, record, pdf) = is_far ? R(1) : by_angle;
     FIELD_OF(light_vertex, light_vertices, record, survival) = R(1);
-    const uint of_near = is_point ? light_vertex_at_point : light_vertex_on_surface;
-    FIELD_OF(light_vertex_mark, light_vertex_marks, record, material) = emitted.is_far ? light_vertex_far : of_near;
+    FIELD_OF(light_vertex_mark, light_vertex_marks, record, material) = emitted.starts;
     FIELD_OF(light_vertex_mark, light_vertex_marks, record, primitive) = 0u;
     FIELD_OF(light_vertex_mark, light_vertex_marks, record, before) = light_vertex_none;
 #if TRAIT_MIXED_LOBES

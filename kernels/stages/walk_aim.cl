@@ -1,7 +1,6 @@
 /* walk_aim: the first ray of each walk, at where its first vertex is wanted: the share of the step that it tries. Walks
  * that go on take rows side by side, in the order of the index. */
-#include "kernels/lib/ray_differential.h"
-#include "kernels/lib/ray_start.h"
+#include "kernels/lib/chain_start.h"
 #include "kernels/shared/stage.h"
 
 STAGE walk_aim(uint count, uint chain_rows, __global const uint *walk_index, __global const real *chain,
@@ -21,16 +20,17 @@ STAGE walk_aim(uint count, uint chain_rows, __global const uint *walk_index, __g
     AT(walk, share, row) = tried;
     AT(walk, miss, row) = AT_IN(walk_old, walk, miss, old);
 
-    const vec3 start = AT_V3(chain, start, number);
-    const vec3 way = v3_sub(v3_mad(position, tried, step), start);
-    const vec3 direction = v3_scale(way, R(1) / r_sqrt(r_max(v3_dot(way, way), R(1e-30))));
-    const ray_differential beam = ray_differential_begin(direction);
-    const vec3 origin =
-        ray_origin(start, AT_V3(chain, start_normal, number), AT(chain, start_offset, number), direction);
-    SET_V3(walk_ray, origin, row, origin);
-    SET_V3(walk_ray, direction, row, direction);
+    chain_start start;
+    start.position = AT_V3(chain, start, number);
+    start.normal = AT_V3(chain, start_normal, number);
+    start.offset = AT(chain, start_offset, number);
+    const vec3 onward = v3_sub(AT_V3(chain, target, number), position);
+    const chain_ray ray = chain_ray_through(start, v3_mad(position, tried, step), r_sqrt(v3_dot(onward, onward)));
+    const ray_differential beam = ray.beam;
+    SET_V3(walk_ray, origin, row, ray.origin);
+    SET_V3(walk_ray, direction, row, ray.direction);
     AT_UINT(walk_ray, primitive, row) = ray_pending;
-    SET_V3(walk_beam, from, row, start);
+    SET_V3(walk_beam, from, row, ray.from);
     AT(walk_beam, turn, row) = R(1);
     AT_UINT(walk_beam, outcome, row) = walk_unfinished;
     SET_V3(walk_beam, position_s, row, beam.position_s);

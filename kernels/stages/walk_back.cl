@@ -1,5 +1,6 @@
 /* walk_turn: chains that have arrived ask for the walk back, in tables of the same columns. walk_turn_vertices: their
  * vertices; get_global_id(2) is the vertex. walk_return: chains whose walk back has not come back have not arrived. */
+#include "kernels/lib/chain_start.h"
 #include "kernels/shared/stage.h"
 
 STAGE walk_turn(uint count, uint chain_rows, __global const real *chain, __global const real *walked,
@@ -46,7 +47,9 @@ STAGE walk_return(uint count, uint chain_rows, uint chain_vertices, real walk_ba
     const uint outcome = AT_UINT(walked, outcome, row), back = AT_UINT_IN(back_walked, walked, outcome, row);
     const vec3 here = AT_V3(chain_vertex, position, row);
     const vec3 there = AT_V3_IN(back_walked_vertex, walked_vertex, position, row);
-    const vec3 off = v3_sub(there, here), way = v3_sub(here, AT_V3(chain, start, row));
+    const int is_far = chain_start_is_far(AT(chain, start_offset, row));
+    const vec3 measured_from = v3_select(is_far, AT_V3(chain, target, row), AT_V3(chain, start, row));
+    const vec3 off = v3_sub(there, here), way = v3_sub(here, measured_from);
     const real tolerance = walk_back_tolerance * r_sqrt(v3_dot(way, way)) + walk_floor * AT(chain, target_offset, row);
     const int is_back = back == walk_arrived && v3_dot(off, off) <= tolerance * tolerance;
     AT_UINT(walked, outcome, row) = outcome == walk_arrived && !is_back ? walk_back : outcome;

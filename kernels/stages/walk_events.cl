@@ -2,6 +2,7 @@
  * at which half vector where it is glossy. get_global_id(2) is the vertex. */
 #include "kernels/lib/chain_event.h"
 #include "kernels/lib/chain_hit.h"
+#include "kernels/lib/chain_start.h"
 #include "kernels/shared/material.h"
 #include "kernels/shared/stage.h"
 
@@ -20,8 +21,13 @@ STAGE walk_events(uint count, uint unit, uint chain_rows, uint chain_vertices, _
     const uint stored = AT_UINT(chain_vertex, primitive, at);
     const uint primitive = is_vertex ? stored : 0u;
     const vec3 here = AT_V3(chain_vertex, position, at);
-    const vec3 before =
-        v3_select(k == 0u, AT_V3(chain, start, row), AT_V3(chain_vertex, position, k == 0u ? at : at - chain_rows));
+    vec3 start = AT_V3(chain, start, row);
+#if LIGHTS_AT_INFINITY
+    const vec3 onward = v3_sub(AT_V3(chain, target, row), here);
+    const vec3 along = v3_mad(here, -r_sqrt(v3_dot(onward, onward)), AT_V3(chain, start_normal, row));
+    start = v3_select(chain_start_is_far(AT(chain, start_offset, row)), along, start);
+#endif
+    const vec3 before = v3_select(k == 0u, start, AT_V3(chain_vertex, position, k == 0u ? at : at - chain_rows));
     const vec3 next =
         v3_select(is_last, AT_V3(chain, end, row), AT_V3(chain_vertex, position, is_last ? at : at + chain_rows));
     const vec3 way_in = v3_sub(here, before), way_out = v3_sub(next, here);

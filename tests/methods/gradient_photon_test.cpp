@@ -109,6 +109,36 @@ TEST(GradientPhotonImage, HasDifferencesOfThePrimalUnderTexturedWalls) {
     expect_differences_under_walls("textured-walls", maker, textured, blend, 16);
 }
 
+/// A ball of glass and a mirror over a floor, and light from infinity: from a sun, from a map with a bright spot, or
+/// from all directions alike. All of it by photons, so that some come straight from there, and some by chains.
+class GradientPhotonsFromInfinity : public ::testing::TestWithParam<const char *> {};
+
+TEST_P(GradientPhotonsFromInfinity, HaveDifferencesOfThePrimal) {
+    const std::string light = GetParam();
+    SceneMaker maker(24, passes);
+    maker.look({0, 2, 2.5}, {0, 0, 0}, 30);
+    maker.scene.settings.max_depth = 6;
+    maker.floor(-1, 1, 1, maker.material(diffuse(0.6)));
+    maker.sphere({-0.2f, 0.5f, 0}, 0.3f, maker.material(glass(1.5)));
+    maker.parallelogram({0.4f, 0, 0.4f}, {0, 0, -0.8f}, {0.3f, 0.9f, 0}, maker.material(two_sided(mirror())));
+    if (light == "sun")
+        maker.directional_light({4, 4, 4}, {0.3f, -1, 0.1f});
+    else if (light == "map")
+        maker.environment_map(8, 4, [](std::uint32_t x, std::uint32_t y) { return x == 2 && y == 1 ? 5.0 : 0.2; });
+    else
+        maker.environment(1);
+    RenderOptions options = few_photons(true);
+    const std::map<std::string, std::uint64_t> shifts = render(maker.scene, options, "gpm").statistics.shifts;
+    const double all = double(shifts.at("walked") + shifts.at("reconnected") + shifts.at("failed"));
+    std::printf("walked %.3f, reconnected %.3f of the photons that are moved\n", double(shifts.at("walked")) / all,
+                double(shifts.at("reconnected")) / all);
+    EXPECT_GT(double(shifts.at("walked")), 0.02 * all);
+    EXPECT_GT(double(shifts.at("reconnected")), 0.5 * all);
+    expect_differences_of_the_primal("infinity-" + light, maker.scene, options);
+}
+INSTANTIATE_TEST_SUITE_P(Image, GradientPhotonsFromInfinity, ::testing::Values("sun", "map", "constant"),
+                         [](const auto &info) { return std::string(info.param); });
+
 /// Walls that mirror some photons and scatter others.
 TEST(GradientPhotonImage, HasDifferencesOfThePrimalUnderWallsOfPlastic) {
     SceneMaker maker(24, passes);
@@ -214,22 +244,32 @@ TEST(GradientPhotonImage, SaysWhatItDoesNotKnow) {
     EXPECT_EQ(error_of(diffuse(0.5), {diffuse(0.5), rough_metal(0.3)}), "");
 }
 
-/// All light on a floor comes through a ball of glass, from a point in it: chains alone make the very same image. In a
-/// room of rough walls they make none.
+/// All light on a floor comes through glass, from a point in a ball of it or from a sun over a pane: chains alone make
+/// the very same image. In a room of rough walls they make none.
 TEST(GradientPhotonImage, OfChainsAlone) {
-    SceneMaker maker(16, 2);
-    maker.look({0, 3, 3}, {0, 0, 0}, 20);
-    maker.scene.settings.max_depth = 6;
-    maker.floor(-1, 1, 1, maker.material(diffuse(0.7)));
-    maker.sphere({0, 1.5f, 0}, 0.3f, maker.material(glass(1.5)));
-    maker.point_light({5, 5, 5}, {0.05f, 1.5f, 0});
+    for (const bool by_the_sun : {false, true}) {
+        SceneMaker maker(16, 2);
+        maker.look({0, 3, 3}, {0, 0, 0}, 20);
+        maker.scene.settings.max_depth = 6;
+        maker.floor(-1, 1, 1, maker.material(diffuse(0.7)));
+        const std::uint32_t clear = maker.material(glass(1.5));
+        if (by_the_sun) {
+            maker.parallelogram({-9, 0.5f, 9}, {18, 0, 0}, {0, 0, -18}, clear);
+            maker.directional_light({5, 5, 5}, {0.2f, -1, 0.1f});
+        } else {
+            maker.sphere({0, 1.5f, 0}, 0.3f, clear);
+            maker.point_light({5, 5, 5}, {0.05f, 1.5f, 0});
+        }
+        RenderOptions options = few_photons();
+        const Image all = render(maker.scene, options, "gpm").image;
+        options.only_chains = true;
+        const Image chains = render(maker.scene, options, "gpm").image;
+        EXPECT_GT(spread_of(chains, "primal.G").mean, 0);
+        for (const char *channel : {"primal.G", "dx.R", "dy.B"})
+            EXPECT_EQ(chains.find(channel)->values, all.find(channel)->values) << channel;
+    }
     RenderOptions options = few_photons();
-    const Image all = render(maker.scene, options, "gpm").image;
     options.only_chains = true;
-    const Image chains = render(maker.scene, options, "gpm").image;
-    EXPECT_GT(spread_of(chains, "primal.G").mean, 0);
-    for (const char *channel : {"primal.G", "dx.R", "dy.B"})
-        EXPECT_EQ(chains.find(channel)->values, all.find(channel)->values) << channel;
     Scene room = own_scene("cornell-box.xml", 16, 12);
     room.settings.samples_per_pixel = 2;
     const Image none = render(room, options, "gpm").image;

@@ -87,7 +87,7 @@ std::optional<WalkChain> ChainSampler::sample(const ChainEnd &start, const Point
     WalkChain chain;
     chain.start = start;
     vec3 from = of(start.position), direction = v3_normalize(of(first));
-    vec3 origin = ray_origin(from, of(start.normal), start.offset, direction);
+    vec3 origin = start.is_far() ? from : ray_origin(from, of(start.normal), start.offset, direction);
     for (;;) {
         const std::uint32_t primitive = implementation_->trace(origin, direction);
         if (primitive >= ray_first_special)

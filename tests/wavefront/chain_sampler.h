@@ -19,6 +19,8 @@ using Point = std::array<double, 3>;
 struct ChainEnd {
     Point position{}, normal{}; ///< normal zero: on no surface
     double offset = 0;
+    /// A start at infinity (kernels/shared/walk_tables.h): `normal` is the direction of its rays.
+    bool is_far() const { return offset < 0; }
 };
 
 struct WalkVertex {

@@ -65,15 +65,33 @@ Scene sphere_of(const Bsdf &bsdf) {
     return maker.scene;
 }
 
+/// Chains start at a point, or at infinity, where their rays stay parallel.
+enum class From { point, infinity };
+
+/// Kernels know of chains from infinity where there is light from there.
+Scene lit_from(From from, Scene scene) {
+    if (from == From::infinity) {
+        scene.emitters.emplace_back();
+        scene.emitters.back().kind = Emitter::Kind::directional;
+        scene.emitters.back().value = {1, 1, 1};
+        scene.emitters.back().direction = {0, 0, -1};
+    }
+    return scene;
+}
+bool has_far_light(const Walker &walker) { return walker.session.has("TRAIT_LIGHT_DIRECTIONAL"); }
+
 /// `count` chains from the region above, each to be moved by up to `most` in the plane of its end's surface. `keeps`
-/// says which chains are wanted.
+/// says which chains are wanted. They start at infinity where the scene has light from there.
 std::vector<WalkChain> draw_chains(Walker &walker, Random &random, std::size_t count, double most, double slope,
                                    const std::function<bool(const WalkChain &)> &keeps = {}) {
     std::vector<WalkChain> chains;
     for (std::size_t tries = 0; chains.size() < count && tries < 300 * count; ++tries) {
-        const ChainEnd start = {
-            {random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(0.5, 0.9)}, {}, 0};
+        ChainEnd start = {{random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(0.5, 0.9)}, {}, 0};
         const Point towards = {random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-0.6, 0.3)};
+        if (has_far_light(walker)) {
+            start.normal = unit(towards - start.position);
+            start.offset = double(chain_start_at_infinity);
+        }
         std::optional<WalkChain> chain = walker.sampler.sample(
             start, towards - start.position, walker.walk.settings().most_vertices, slope, random.engine);
         if (!chain || (keeps && !keeps(*chain)))
@@ -159,15 +177,23 @@ double bisect(double low, double high, const std::function<double(double)> &f) {
 double allowed(Precision precision) { return precision == Precision::double_ ? 1e-10 : 1e-5; }
 
 const Precision precisions[] = {Precision::single, Precision::double_};
+const std::pair<From, Precision> starts[] = {{From::point, Precision::single},
+                                             {From::point, Precision::double_},
+                                             {From::infinity, Precision::single},
+                                             {From::infinity, Precision::double_}};
 
 TEST(ManifoldWalkOf, PlaneMirrorIsThatOfTheImage) {
-    for (const Precision precision : precisions) {
-        const Accuracy a = accuracy(plane_mirror(), precision, 1, 0.3, [](const WalkChain &chain, const WalkResult &) {
+    for (const auto &[from, precision] : starts) {
+        const auto closed_form = [](const WalkChain &chain, const WalkResult &) {
             const double plane = -0.5, above = chain.start.position[2] - plane;
+            const Point to = chain.target.position, d = chain.start.normal, mirrored = {d[0], d[1], -d[2]};
+            if (chain.start.is_far())
+                return std::vector<Point>{to - (to[2] - plane) / mirrored[2] * mirrored};
             const Point image = {chain.start.position[0], chain.start.position[1], plane - above};
-            const Point way = chain.target.position - image;
+            const Point way = to - image;
             return std::vector<Point>{image + above / way[2] * way};
-        });
+        };
+        const Accuracy a = accuracy(lit_from(from, plane_mirror()), precision, 1, 0.3, closed_form);
         EXPECT_LT(a.largest, allowed(precision));
         EXPECT_GT(a.arrived, a.count * 8 / 10);
     }
@@ -203,57 +229,61 @@ TEST(ManifoldWalkOf, SlabIsThatOfSnellsLaw) {
 
 // In the plane of center, start and target, where both ways make the same angle with the normal.
 TEST(ManifoldWalkOf, SphereMirrorIsWhereAnglesAreEqual) {
-    for (const Precision precision : precisions) {
-        const Accuracy a =
-            accuracy(sphere_of(testing::mirror()), precision, 1, 0.3, [](const WalkChain &chain, const WalkResult &) {
-                const Point from = chain.start.position, to = chain.target.position, x = unit(from);
-                const Point y = unit(to - dot(to, x) * x);
-                const double most = std::atan2(dot(to, y), dot(to, x)), r = radius;
-                const auto at = [&](double angle) { return r * (std::cos(angle) * x + std::sin(angle) * y); };
-                const auto difference = [&](double angle) {
-                    const Point p = at(angle), tangent = -std::sin(angle) * x + std::cos(angle) * y;
-                    return dot(unit(from - p) + unit(to - p), tangent);
-                };
-                return std::vector<Point>{at(bisect(0, most, difference))};
-            });
+    for (const auto &[where, precision] : starts) {
+        const auto closed_form = [](const WalkChain &chain, const WalkResult &) {
+            const bool is_far = chain.start.is_far();
+            const Point from = chain.start.position, to = chain.target.position;
+            const Point x = is_far ? -1 * chain.start.normal : unit(from), y = unit(to - dot(to, x) * x);
+            const double most = std::atan2(dot(to, y), dot(to, x)), r = radius;
+            const auto at = [&](double angle) { return r * (std::cos(angle) * x + std::sin(angle) * y); };
+            const auto difference = [&](double angle) {
+                const Point p = at(angle), tangent = -std::sin(angle) * x + std::cos(angle) * y;
+                return dot((is_far ? x : unit(from - p)) + unit(to - p), tangent);
+            };
+            return std::vector<Point>{at(bisect(0, most, difference))};
+        };
+        const Accuracy a = accuracy(lit_from(where, sphere_of(testing::mirror())), precision, 1, 0.3, closed_form);
         EXPECT_LT(a.largest, allowed(precision));
         EXPECT_GT(a.arrived, a.count * 7 / 10);
     }
 }
 
 // A ray with impact parameter b turns by 2 (i - t) in the plane of its start and the center, sin i = b / r,
-// sin t = b / (ior r). There may be several ways to the target; the one that is near what the walk found must be it.
+// sin t = b / (ior r). Its own angle to the line from start to center is that of b, or 0 from infinity. There may be
+// several ways to the target; the one that is near what the walk found must be it.
 TEST(ManifoldWalkOf, SphereLensIsThatOfSnellsLaw) {
-    for (const Precision precision : precisions) {
+    for (const auto &[where, precision] : starts) {
         const double ior = float(1.5);
-        const Accuracy a = accuracy(
-            sphere_of(testing::glass(1.5)), precision, 2, 0.3, [&](const WalkChain &chain, const WalkResult &result) {
-                const Point from = chain.start.position, to = chain.target.position, x = -1 * unit(from);
-                const Point y = unit(to - dot(to, x) * x);
-                const double away = length(from), r = radius;
-                const auto points = [&](double angle) {
-                    const double b = away * std::sin(angle); // signed
-                    const double in = std::asin(b / r), inside = std::asin(b / (ior * r));
-                    const Point direction = std::cos(angle) * x + std::sin(angle) * y;
-                    const double near = away * std::cos(angle) - r * std::cos(in);
-                    const Point first = from + near * direction;
-                    const double turned = angle - (in - inside); // the ray turns to the center
-                    const Point within = std::cos(turned) * x + std::sin(turned) * y;
-                    const Point second = first + 2 * r * std::cos(inside) * within;
-                    const double out = angle - 2 * (in - inside);
-                    return std::array<Point, 3>{first, second, std::cos(out) * x + std::sin(out) * y};
-                };
-                const auto miss = [&](double angle) {
-                    const auto p = points(angle);
-                    const Point way = to - p[1];
-                    return dot(way, y) * dot(p[2], x) - dot(way, x) * dot(p[2], y);
-                };
-                const Point found = result.vertices[0].position - from;
-                const double angle = std::atan2(dot(found, y), dot(found, x));
-                const double around = 1e-3 * std::asin(r / away);
-                const auto p = points(bisect(angle - around, angle + around, miss));
-                return std::vector<Point>{p[0], p[1]};
-            });
+        const Accuracy a =
+            accuracy(lit_from(where, sphere_of(testing::glass(1.5))), precision, 2, 0.3,
+                     [&](const WalkChain &chain, const WalkResult &result) {
+                         const bool is_far = chain.start.is_far();
+                         const Point from = chain.start.position, to = chain.target.position;
+                         const Point x = is_far ? chain.start.normal : -1 * unit(from), y = unit(to - dot(to, x) * x);
+                         const double away = length(from), r = radius;
+                         const auto points = [&](double b) { // signed
+                             const double in = std::asin(b / r), inside = std::asin(b / (ior * r));
+                             const double angle = is_far ? 0 : std::asin(b / away);
+                             const Point direction = std::cos(angle) * x + std::sin(angle) * y;
+                             // The foot of the center on the ray, less the way from there.
+                             const Point foot = b * (std::cos(angle) * y - std::sin(angle) * x);
+                             const Point first = foot - r * std::cos(in) * direction;
+                             const double turned = angle - (in - inside); // the ray turns to the center
+                             const Point within = std::cos(turned) * x + std::sin(turned) * y;
+                             const Point second = first + 2 * r * std::cos(inside) * within;
+                             const double out = angle - 2 * (in - inside);
+                             return std::array<Point, 3>{first, second, std::cos(out) * x + std::sin(out) * y};
+                         };
+                         const auto miss = [&](double b) {
+                             const auto p = points(b);
+                             const Point way = to - p[1];
+                             return dot(way, y) * dot(p[2], x) - dot(way, x) * dot(p[2], y);
+                         };
+                         const Point vertex = result.vertices[0].position, found = vertex - from;
+                         const double b = is_far ? dot(vertex, y) : away * dot(found, y) / length(found);
+                         const auto p = points(bisect(b - 1e-3 * r, b + 1e-3 * r, miss));
+                         return std::vector<Point>{p[0], p[1]};
+                     });
         // Where the sphere's focus is near the target, it is known less well, to the root of rounding at worst.
         EXPECT_LT(a.largest, precision == Precision::double_ ? 1e-9 : 1e-4);
         EXPECT_GT(a.arrived, a.count * 6 / 10);
@@ -349,17 +379,25 @@ TEST(ManifoldWalkOf, TurnedAroundChainsHaveTheSameSpreads) {
 }
 
 // The Jacobian of a shift that moves the end by a constant, by walks from three chains beside each other.
+// From infinity by area across the rays, else by solid angle.
 TEST(ManifoldWalkOf, JacobiansAreThoseOfDifferences) {
-    for (const Scene &scene : {slab(), sphere_of(testing::mirror()), sphere_of(testing::glass(1.5))}) {
+    std::vector<Scene> scenes;
+    for (const From from : {From::point, From::infinity})
+        for (const Scene &scene : {slab(), sphere_of(testing::mirror()), sphere_of(testing::glass(1.5))})
+            scenes.push_back(lit_from(from, scene));
+    for (const Scene &scene : scenes) {
         SessionOptions options;
         options.precision = Precision::double_;
         Walker walker(scene, 1024, settings_of(Precision::double_), options);
         Random random(7);
         const std::vector<WalkChain> chains = draw_chains(walker, random, 150, 0.1, 0);
-        const double h = 1e-5;
+        // Places across the rays are as near as 1e-3 to the silhouette of a sphere, where derivatives go by its root.
+        const double h = has_far_light(walker) ? 2e-6 : 1e-5;
         std::vector<WalkChain> asked;
         for (const WalkChain &chain : chains) {
-            const Point direction = unit(chain.vertices[0].position - chain.start.position);
+            const bool is_far = chain.start.is_far();
+            const Point direction =
+                is_far ? chain.start.normal : unit(chain.vertices[0].position - chain.start.position);
             const Point s = unit(std::fabs(direction[0]) < 0.5 ? Point{0, direction[2], -direction[1]}
                                                                : Point{direction[2], 0, -direction[0]});
             const Point t = {direction[1] * s[2] - direction[2] * s[1], direction[2] * s[0] - direction[0] * s[2],
@@ -368,9 +406,13 @@ TEST(ManifoldWalkOf, JacobiansAreThoseOfDifferences) {
             for (const auto &[along_s, along_t] : {std::array{h, 0.0}, {-h, 0.0}, {0.0, h}, {0.0, -h}, {0.0, 0.0}}) {
                 std::mt19937_64 events(1);
                 // The same events: by trying, until the chain has the same primitives.
+                const Point step = along_s * s + along_t * t;
+                ChainEnd start = chain.start;
+                if (is_far)
+                    start.position = start.position + step;
                 std::optional<WalkChain> beside;
                 for (int tries = 0; tries < 200; ++tries) {
-                    beside = walker.sampler.sample(chain.start, direction + along_s * s + along_t * t, 8, 0, events);
+                    beside = walker.sampler.sample(start, is_far ? direction : direction + step, 8, 0, events);
                     if (beside && beside->vertices.size() == chain.vertices.size() &&
                         length(beside->end.position - chain.end.position) < 0.05)
                         break;
@@ -390,11 +432,14 @@ TEST(ManifoldWalkOf, JacobiansAreThoseOfDifferences) {
             const WalkResult *five = &results[5 * i];
             if (std::any_of(five, five + 5, [](const WalkResult &r) { return r.outcome != walk_arrived; }))
                 continue;
-            const auto direction = [&](std::size_t j) {
-                return unit(five[j].vertices[0].position - chains[i].start.position);
+            const Point d = chains[i].start.is_far() ? chains[i].start.normal
+                                                     : unit(five[4].vertices[0].position - chains[i].start.position);
+            const auto beside = [&](std::size_t j) { // a direction, or a place across the rays
+                const Point way = five[j].vertices[0].position - chains[i].start.position;
+                return chains[i].start.is_far() ? way : unit(way);
             };
-            const auto by = [&](std::size_t more) { return 0.5 / h * (direction(more) - direction(more + 1)); };
-            const Point a = by(0), b = by(2), d = direction(4);
+            const auto by = [&](std::size_t more) { return 0.5 / h * (beside(more) - beside(more + 1)); };
+            const Point a = by(0), b = by(2);
             const double measured = std::fabs(d[0] * (a[1] * b[2] - a[2] * b[1]) + d[1] * (a[2] * b[0] - a[0] * b[2]) +
                                               d[2] * (a[0] * b[1] - a[1] * b[0]));
             const double computed = double(
