@@ -1,7 +1,4 @@
 // Textures in the renderer: exact values where the light is the same from everywhere.
-#include "kernels/lib/additive_sequence.h"
-#include "kernels/lib/random.h"
-#include "kernels/shared/scene_records.h"
 #include "runtime/error.h"
 #include "runtime/scene/camera_record.h"
 #include "tests/support/gradient_layers.h"
@@ -12,6 +9,10 @@
 #include <array>
 #include <functional>
 #include <numbers>
+
+#include "kernels/lib/additive_sequence.h"
+#include "kernels/lib/random.h"
+#include "kernels/shared/scene_records.h"
 
 namespace gradus::testing {
 namespace {

@@ -58,7 +58,6 @@ REFERENCES = {
     "lamps": ("../tests/scenes/lamps.xml", 48, {}, 16384),
     "instances": ("../tests/scenes/instances.xml", 48, {}, 16384),
     "plastics": ("plastics.xml", 48, {}, 32768),
-    "pool": ("pool.xml", 48, {}, 131072),
 }
 
 # Parameters for Mitsuba alone. Its path tracer finds no point or directional light through a null surface, since light
