@@ -4,6 +4,7 @@
 #include "driver/memory_check.h"
 #include "driver/standard_streams.h"
 #include "runtime/error.h"
+#include "runtime/version.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -2,6 +2,7 @@
 
 #include "runtime/companion_file.h"
 #include "runtime/error.h"
+#include "runtime/version.h"
 
 #include <fmt/format.h>
 

@@ -136,8 +136,12 @@ TEST_P(Filter, EqualsAFineImageFilteredAfterwards) {
     Scene coarse_scene = own_scene("cornell-box.xml", size, size);
     coarse_scene.settings.samples_per_pixel = 128;
     GetParam().set(coarse_scene.film);
-    Scene fine_scene = own_scene("cornell-box.xml", size * fine, size * fine);
-    fine_scene.settings.samples_per_pixel = 2;
+    // The same for all filters.
+    static const std::vector<Image> fine_images = [] {
+        Scene scene = own_scene("cornell-box.xml", size * fine, size * fine);
+        scene.settings.samples_per_pixel = 2;
+        return render_seeds(scene, seeds, {}, 100);
+    }();
 
     // Weights of the fine pixels around the center of a coarse one.
     constexpr std::uint32_t reach = (2 * margin + 1) * fine;
@@ -165,7 +169,7 @@ TEST_P(Filter, EqualsAFineImageFilteredAfterwards) {
         filtered.push_back(inner_image(image, [&](const std::vector<float> &values, std::uint32_t x, std::uint32_t y) {
             return values[(y + margin) * size + x + margin];
         }));
-    for (const Image &image : render_seeds(fine_scene, seeds, {}, 100))
+    for (const Image &image : fine_images)
         convolved.push_back(inner_image(image, [&](const std::vector<float> &values, std::uint32_t x, std::uint32_t y) {
             double sum = 0;
             for (std::uint32_t j = 0; j < reach; ++j)

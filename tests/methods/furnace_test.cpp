@@ -171,8 +171,8 @@ TEST_P(FurnaceWalk, IsReproduced) {
     RenderOptions options = with(RenderOptions::Strategy::mis);
     options.aov = true;
     for (const ConvexShape shape : both_shapes) {
-        const Image image = render(furnace(shape, material_of(bsdf), 32, 256).scene, options).image;
-        const WalkMean expected = walk(shape, bsdf, view_of(shape), 200'000);
+        const Image image = render(furnace(shape, material_of(bsdf), 32, 64).scene, options).image;
+        const WalkMean expected = walk(shape, bsdf, view_of(shape), 50'000);
         for (int c = 0; c < 3; ++c) {
             SCOPED_TRACE(fmt::format("{} {} {}", GetParam().name, name_of(shape), channels[c]));
             const Spread spread = estimate(image, channels[c]);

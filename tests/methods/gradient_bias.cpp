@@ -36,12 +36,11 @@ std::vector<double> values_of_both(const Image &right, const Image &down) {
 
 /// For values_of_both(): the sum of both pixels of a difference, of the primal layer; 0 at the border.
 std::vector<double> sums_of_both(const Image &image) {
+    const Layer primal(image, "primal");
     const auto sums = [&](bool right) {
         return image_of(image.width, image.height, [&](int c, std::uint32_t x, std::uint32_t y) {
             const std::uint32_t to_x = right ? x + 1 : x, to_y = right ? y : y + 1;
-            return to_x < image.width && to_y < image.height
-                       ? layer(image, "primal", c, to_x, to_y) + layer(image, "primal", c, x, y)
-                       : 0.0;
+            return to_x < image.width && to_y < image.height ? primal(c, to_x, to_y) + primal(c, x, y) : 0.0;
         });
     };
     return values_of_both(sums(true), sums(false));
@@ -108,8 +107,9 @@ GradientBias gradient_bias(const Scene &scene, const Scene &path_traced, const G
     with_gradients.settings.samples_per_pixel = samples.gradient_domain;
     without.settings.samples_per_pixel = samples.path_tracing;
     std::vector<std::vector<double>> primal, change, true_primal, true_change, carried_sums, carried_changes;
-    RenderOptions unweighted; // of all samples; the reconstruction is not looked at
-    unweighted.reconstruction = Reconstruction::l1;
+    RenderOptions unweighted; // of all samples; the reconstruction, the fastest one, is not looked at
+    unweighted.reconstruction = Reconstruction::l2;
+    unweighted.alpha = 0.2;
     RenderOptions of_truth;
     if (samples.by_tree) {
         unweighted.lights = RenderOptions::Lights::tree;

@@ -14,7 +14,7 @@
 namespace gradus::testing {
 namespace {
 
-constexpr std::size_t mean_seeds = 64;
+constexpr std::size_t mean_seeds = 16;
 
 /// At a fixed alpha the reconstruction is linear in samples that are unbiased; at one from their variances it is not.
 TEST(GradientMean, OfL2IsUnbiased) {
@@ -40,7 +40,7 @@ TEST(GradientMean, OfL2IsUnbiased) {
         }
         record_stability(
             {"Reconstruction", "a biased estimate of an unbiased one",
-             fixed ? "L2 at alpha 0.2, 64 seeds of 4 samples" : "L2 at alpha from the variances, 64 seeds of 4 samples",
+             fixed ? "L2 at alpha 0.2, 16 seeds of 4 samples" : "L2 at alpha from the variances, 16 seeds of 4 samples",
              fixed ? "unbiased" : "hardly biased", "bias at most", bias.at_most(), 0.02});
     }
 }
@@ -68,7 +68,7 @@ class GradientMeanOf : public ::testing::TestWithParam<const char *> {};
 /// noise, so their difference shows the bias soonest.
 TEST_P(GradientMeanOf, L1BlocksIsThePrimals) {
     constexpr std::size_t side = 3, values = 3 * side * side;
-    constexpr double count = 16;
+    constexpr double count = 8;
     const char *const name = GetParam();
     Scene scene = own_scene(fmt::format("{}.xml", name), 32 * side, 32 * side);
     scene.settings.samples_per_pixel = 16;
@@ -104,10 +104,10 @@ TEST_P(GradientMeanOf, L1BlocksIsThePrimals) {
                 "image's by %.3f %%\n",
                 name, 100 * worst, 100 * noise, 100 * std::fabs(total / all));
     record_stability({"Reconstruction", "L1 loses light where noise is skewed",
-                      fmt::format("scenes/{}.xml, 16 seeds of 16 samples", name), "keeps local means by a correction",
+                      fmt::format("scenes/{}.xml, 8 seeds of 16 samples", name), "keeps local means by a correction",
                       "deviation of the mean of a block of 32 x 32, less two standard errors", worst, 0.01});
     record_stability({"Reconstruction", "L1 loses light where noise is skewed",
-                      fmt::format("scenes/{}.xml, 16 seeds of 16 samples", name), "keeps the mean of the image",
+                      fmt::format("scenes/{}.xml, 8 seeds of 16 samples", name), "keeps the mean of the image",
                       "deviation of the mean of the image", std::fabs(total / all), 0.002});
 }
 

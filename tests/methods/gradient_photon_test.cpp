@@ -37,10 +37,10 @@ RenderOptions few_photons(bool direct_photons = false) {
 /// Of one render, the differences less those of its primal, times the sign that these have in an independent image:
 /// differences that are too small everywhere show in every block.
 Image deviations(const Image &image, const Image &signs, bool right) {
-    const Image primal = differences(image, "primal", right);
+    const Image of_primal = differences(image, "primal", right);
+    const Layer change(image, right ? "dx" : "dy"), primal(of_primal, ""), sign(signs, "");
     return image_of(image.width, image.height, [&](int c, std::uint32_t x, std::uint32_t y) {
-        const double deviation = layer(image, right ? "dx" : "dy", c, x, y) - layer(primal, "", c, x, y);
-        return deviation * (layer(signs, "", c, x, y) < 0 ? -1 : 1);
+        return (change(c, x, y) - primal(c, x, y)) * (sign(c, x, y) < 0 ? -1 : 1);
     });
 }
 
@@ -148,12 +148,13 @@ TEST(GradientPhotonImage, HasDifferencesOfThePrimalUnderWallsOfPlastic) {
 
 INSTANTIATE_TEST_SUITE_P(Image, GradientPhotons,
                          ::testing::Values(PhotonCase{"cornell-box"}, PhotonCase{"cornell-box", true},
-                                           PhotonCase{"slab-and-ball"}, PhotonCase{"metal-ring"}),
+                                           PhotonCase{"metal-ring"}),
                          name_of);
 INSTANTIATE_TEST_SUITE_P(Full, GradientPhotons,
                          ::testing::Values(PhotonCase{"torus-rough-glass"}, PhotonCase{"plates"},
                                            PhotonCase{"door-ajar"}, PhotonCase{"materials"}, PhotonCase{"lamp-in-egg"},
-                                           PhotonCase{"textures"}, PhotonCase{"plastics"}, PhotonCase{"sundial"}),
+                                           PhotonCase{"textures"}, PhotonCase{"plastics"}, PhotonCase{"sundial"},
+                                           PhotonCase{"slab-and-ball"}),
                          name_of);
 
 class GradientPhotonsOf : public ::testing::TestWithParam<const char *> {

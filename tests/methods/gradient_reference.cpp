@@ -17,11 +17,10 @@ class SignedDifferences {
         expected_.name += right ? "-dx" : "-dy";
         expected_.mean = signed_by(differences(reference.mean, "", right));
         const Image &variance = reference.variance;
+        const Layer of(variance, "");
         expected_.variance = image_of(variance.width, variance.height, [&](int c, std::uint32_t x, std::uint32_t y) {
             const std::uint32_t to_x = right ? x + 1 : x, to_y = right ? y : y + 1;
-            return to_x < variance.width && to_y < variance.height
-                       ? layer(variance, "", c, to_x, to_y) + layer(variance, "", c, x, y)
-                       : 0.0;
+            return to_x < variance.width && to_y < variance.height ? of(c, to_x, to_y) + of(c, x, y) : 0.0;
         });
         expected_.samples_per_pixel = 0; // the noise of differences is none of the reference's
     }
@@ -35,8 +34,9 @@ class SignedDifferences {
 
   private:
     Image signed_by(const Image &image) const {
+        const Layer of(image, ""), signs(signs_, "");
         return image_of(image.width, image.height, [&](int c, std::uint32_t x, std::uint32_t y) {
-            return layer(image, "", c, x, y) * (layer(signs_, "", c, x, y) < 0 ? -1 : 1);
+            return of(c, x, y) * (signs(c, x, y) < 0 ? -1 : 1);
         });
     }
 
@@ -89,24 +89,25 @@ double expect_gradients(const ReferenceScene &reference, const std::vector<Image
     options.seed = 4711;
     const Image independent = render(scene, options).image;
     double score = 0;
-    const auto expect = [&](const std::vector<Image> &ours, const std::vector<Image> &without,
-                            const ReferenceScene &expected) {
+    // `of` makes what is tested of the layers.
+    const auto expect = [&](const auto &of, const std::vector<std::string> &missing, const ReferenceScene &expected) {
+        const std::vector<Image> ours = of(images);
         EXPECT_TRUE(agrees(ours, samples_per_pixel, expected));
         score = std::max(score, largest_score(ours, samples_per_pixel, expected));
         if (planted.empty())
             return;
-        const double seen = least_seen(planted, ours, without, samples_per_pixel, expected);
+        const double seen =
+            least_seen(planted, ours, of(without_layers(images, missing)), samples_per_pixel, expected);
         std::printf(seen > 0 ? "%s: %g %% too little would be seen, in some block\n"
                              : "%s: not even %g %% too little would be seen: blunt\n",
                     expected.name.c_str(), 100 * (seen > 0 ? seen : planted.back()));
     };
     ReferenceScene expected = reference;
     expected.name += "-primal";
-    expect(wholes(images), wholes(without_layers(images, {"primal"})), expected);
-    const std::vector<Image> alike = without_layers(images, {"dx", "dy"});
+    expect(wholes, {"primal"}, expected);
     for (const bool right : {true, false}) {
         const SignedDifferences changes(reference, independent, right);
-        expect(changes.of(images), changes.of(alike), changes.expected());
+        expect([&](const std::vector<Image> &layers) { return changes.of(layers); }, {"dx", "dy"}, changes.expected());
     }
     return score;
 }
@@ -116,8 +117,9 @@ double noise_left_by_reconstruction(const ReferenceScene &reference, const std::
     double ours = 0, plain = 0;
     std::vector<double> ratios;
     for (const Image &image : images) {
+        const Layer reconstructed(image, "");
         const Image final = image_of(image.width, image.height, [&](int c, std::uint32_t x, std::uint32_t y) {
-            return layer(image, "", c, x, y);
+            return reconstructed(c, x, y);
         });
         ratios.push_back(compare_means(final, whole(image)).ratio);
         ours += relative_mse(final, reference.mean) / count;

@@ -10,7 +10,7 @@ namespace gradus::testing {
 namespace {
 
 constexpr std::uint32_t width = 200, height = 17;
-constexpr std::uint64_t samples_per_pixel = 5;
+constexpr std::uint64_t strip_samples = 5;
 
 /// Batches for passes (four batches long) of so many rows of the crop, or of so many frames.
 struct StripCase {
@@ -41,12 +41,12 @@ class GradientStrips : public ::testing::TestWithParam<const char *> {
 };
 
 TEST_P(GradientStrips, OfAnyHeightMakeTheSameImage) {
-    const Image whole = image_of(samples_per_pixel);
+    const Image whole = image_of(strip_samples);
     for (const char *layer : {"R", "primal.G", "dx.G", "dy.G", "albedo.R"})
         ASSERT_NE(whole.find(layer), nullptr) << layer;
     for (const StripCase &c : strip_cases) {
         const std::unique_ptr<Method> method =
-            make_method("gpt", shared_device(), scene(samples_per_pixel), options(c.batch_size));
+            make_method("gpt", shared_device(), scene(strip_samples), options(c.batch_size));
         std::uint64_t before = 0, passes = 0;
         while (method->done_samples() < method->total_samples()) {
             method->render_batch();
@@ -55,7 +55,7 @@ TEST_P(GradientStrips, OfAnyHeightMakeTheSameImage) {
             const std::uint64_t first = before % (width * height) / width;
             const std::uint64_t rows = std::min<std::uint64_t>(c.rows, height - first);
             const std::uint64_t frames =
-                c.rows == height ? std::min<std::uint64_t>(c.frames, samples_per_pixel - before / (width * height)) : 1;
+                c.rows == height ? std::min<std::uint64_t>(c.frames, strip_samples - before / (width * height)) : 1;
             ASSERT_EQ(done - before, rows * frames * width) << "pass " << passes << " of batches of " << c.batch_size;
             before = done;
             ++passes;

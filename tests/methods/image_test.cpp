@@ -36,29 +36,44 @@ TEST(Image, OfAnEvenMapIsThatOfAConstantEnvironment) {
     EXPECT_TRUE(agree("even-map", images(true, 1), images(false, 100), 64));
 }
 
-class OwnReference : public ::testing::TestWithParam<const char *> {};
-
-TEST_P(OwnReference, IsMet) { EXPECT_TRUE(renders_as_referenced(own_reference(GetParam()), 64)); }
-
-INSTANTIATE_TEST_SUITE_P(Image, OwnReference,
-                         ::testing::Values("cornell-box", "torus-rough-glass", "plates", "materials", "plastics",
-                                           "torus-smooth-glass-soft", "sundial", "thin-lens", "orthographic", "clipped",
-                                           "clipped-mitchell", "textures", "lamps"),
-                         name_of_scene);
-INSTANTIATE_TEST_SUITE_P(Full, OwnReference,
-                         ::testing::Values("metal-ring-soft", "lanterns", "holes-7", "holes-14", "holes-28",
-                                           "door-ajar", "cornell-box-glossy", "slab-and-ball-soft", "lamp-in-egg-soft",
-                                           "relief"),
-                         name_of_scene);
-
-struct SharedCase {
+/// Scenes whose paths find light by chance, and filters whose weights have signs, need more samples before scores have
+/// the tails that their limits know.
+struct ReferenceCase {
     const char *reference;
-    std::uint64_t samples_per_pixel;
+    std::uint64_t samples_per_pixel = 16;
 };
 
-void PrintTo(const SharedCase &c, std::ostream *out) { *out << c.reference; }
+void PrintTo(const ReferenceCase &c, std::ostream *out) { *out << c.reference; }
 
-class SharedReferenceTest : public ::testing::TestWithParam<SharedCase> {};
+std::string name_of_case(const ::testing::TestParamInfo<ReferenceCase> &info) {
+    return test_name(info.param.reference);
+}
+
+class OwnReference : public ::testing::TestWithParam<ReferenceCase> {};
+
+TEST_P(OwnReference, IsMet) {
+    EXPECT_TRUE(renders_as_referenced(own_reference(GetParam().reference), GetParam().samples_per_pixel));
+}
+
+INSTANTIATE_TEST_SUITE_P(Image, OwnReference,
+                         ::testing::Values(ReferenceCase{"cornell-box"}, ReferenceCase{"torus-rough-glass"},
+                                           ReferenceCase{"plates"}, ReferenceCase{"materials"},
+                                           ReferenceCase{"plastics"}, ReferenceCase{"torus-smooth-glass-soft", 64},
+                                           ReferenceCase{"sundial"}, ReferenceCase{"thin-lens"},
+                                           ReferenceCase{"orthographic"}, ReferenceCase{"clipped"},
+                                           ReferenceCase{"clipped-mitchell", 64}, ReferenceCase{"textures"},
+                                           ReferenceCase{"lamps"}),
+                         name_of_case);
+INSTANTIATE_TEST_SUITE_P(Full, OwnReference,
+                         ::testing::Values(ReferenceCase{"metal-ring-soft", 64}, ReferenceCase{"lanterns", 64},
+                                           ReferenceCase{"holes-7", 64}, ReferenceCase{"holes-14", 64},
+                                           ReferenceCase{"holes-28", 64}, ReferenceCase{"door-ajar", 64},
+                                           ReferenceCase{"cornell-box-glossy", 64},
+                                           ReferenceCase{"slab-and-ball-soft", 64},
+                                           ReferenceCase{"lamp-in-egg-soft", 64}, ReferenceCase{"relief", 64}),
+                         name_of_case);
+
+class SharedReferenceTest : public ::testing::TestWithParam<ReferenceCase> {};
 
 TEST_P(SharedReferenceTest, IsMet) {
     if (!has_shared_references())
@@ -67,15 +82,16 @@ TEST_P(SharedReferenceTest, IsMet) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Image, SharedReferenceTest,
-                         ::testing::Values(SharedCase{"cornell-box", 16}, SharedCase{"torus-soft", 32},
-                                           SharedCase{"veach-mis", 64}, SharedCase{"bathroom", 8}),
-                         [](const auto &info) { return test_name(info.param.reference); });
+                         ::testing::Values(ReferenceCase{"cornell-box", 4}, ReferenceCase{"torus-soft", 8},
+                                           ReferenceCase{"veach-mis", 16}, ReferenceCase{"bathroom", 4}),
+                         name_of_case);
 
-// Defects that the tests above must see at the same sample counts. Two that they do not see: paths of 11 edges instead
+// Defects that the tests above must see, at the same sample counts those of ./check. Two that they do not see: paths of 11 edges instead
 // of 12 in the Cornell box (0.05 % of its light), and a rough glass ball of an index 5 % too high.
 struct Defect {
     std::string name, reference;
     std::function<void(Scene &)> plant;
+    std::uint64_t samples_per_pixel = 64;
 };
 
 void PrintTo(const Defect &defect, std::ostream *out) { *out << defect.name; }
@@ -86,7 +102,7 @@ TEST_P(PlantedDefect, IsSeen) {
     ReferenceScene reference = own_reference(GetParam().reference);
     GetParam().plant(reference.scene);
     reference.name = "planted-" + GetParam().name;
-    EXPECT_FALSE(renders_as_referenced(reference, 64));
+    EXPECT_FALSE(renders_as_referenced(reference, GetParam().samples_per_pixel));
 }
 
 Material &material_named(Scene &scene, const std::string &shape) {
@@ -112,13 +128,15 @@ INSTANTIATE_TEST_SUITE_P(Image, PlantedDefect,
                          ::testing::Values(Defect{"lamp_3_percent_brighter", "cornell-box",
                                                   [](Scene &scene) {
                                                       scale_emitters(scene, Emitter::Kind::area, 1.03f);
-                                                  }},
+                                                  },
+                                                  16},
                                            Defect{"texture_upside_down", "textures",
                                                   [](Scene &scene) {
                                                       for (Texture &texture : scene.textures)
                                                           if (texture.bitmap && texture.is_nearest)
                                                               texture.to_uv[4] *= -1;
-                                                  }}),
+                                                  },
+                                                  16}),
                          name_of_defect);
 INSTANTIATE_TEST_SUITE_P(
     Full, PlantedDefect,

@@ -22,6 +22,7 @@ double extent(const Scene &scene) {
     return length(subtract(high, low));
 }
 
+constexpr std::uint64_t placed_samples = 16; // a pixel
 constexpr const char *area = "Numbers";
 constexpr const char *other_size = "scenes of another size: distances below any fixed epsilon, or areas out of range";
 constexpr const char *far_away = "far from the origin positions lose the bits that the scene needs";
@@ -31,9 +32,9 @@ constexpr const char *offsets = "rays start off surfaces by what their coordinat
 /// The path tracer's image against the reference.
 void expect_agreement(const ReferenceScene &reference, const char *failure, const std::string &provoked_by) {
     const std::vector<Image> images = render_seeds(reference.scene, 8);
-    EXPECT_TRUE(agrees(images, 32, reference));
+    EXPECT_TRUE(agrees(images, double(placed_samples), reference));
     record_stability({area, failure, provoked_by + ", path tracing", offsets,
-                      "largest score of a block of 16 x 16 pixels over its limit", largest_score(images, 32, reference),
+                      "largest score of a block of 16 x 16 pixels over its limit", largest_score(images, double(placed_samples), reference),
                       1});
 }
 
@@ -43,7 +44,7 @@ TEST_P(Scaled, CornellBoxStaysAsItIs) {
     ReferenceScene reference = own_reference("cornell-box");
     reference.name = fmt::format("cornell-box-times-{}", GetParam());
     place(reference.scene, GetParam(), {0, 0, 0});
-    reference.scene.settings.samples_per_pixel = 32;
+    reference.scene.settings.samples_per_pixel = placed_samples;
     expect_agreement(reference, other_size, fmt::format("scenes/cornell-box.xml times {}", GetParam()));
 }
 
@@ -57,7 +58,7 @@ TEST_P(OwnScale, CornellBoxStaysAsItIs) {
     reference.name = fmt::format("cornell-box-times-{}", GetParam());
     place(reference.scene, GetParam(), {0, 0, 0});
     bring_to_own_scale(reference.scene);
-    reference.scene.settings.samples_per_pixel = 32;
+    reference.scene.settings.samples_per_pixel = placed_samples;
     expect_agreement(reference, other_size, fmt::format("scenes/cornell-box.xml times {}", GetParam()));
 }
 
@@ -69,7 +70,7 @@ ReferenceScene moved(double extents) {
     reference.name = fmt::format("cornell-box-{}-extents-away", extents);
     const double offset = extents * extent(reference.scene) / std::sqrt(3.0);
     place(reference.scene, 1, {offset, -offset, offset});
-    reference.scene.settings.samples_per_pixel = 32;
+    reference.scene.settings.samples_per_pixel = placed_samples;
     return reference;
 }
 
@@ -89,7 +90,7 @@ struct BlockError {
 
 BlockError block_error(const std::vector<Image> &images, const ReferenceScene &reference) {
     const BlockTest blocks =
-        block_z_test(images, reference.mean, reference.variance, 32, reference.samples_per_pixel, 16);
+        block_z_test(images, reference.mean, reference.variance, double(placed_samples), reference.samples_per_pixel, 16);
     EXPECT_EQ(blocks.non_finite, 0u);
     const std::size_t per_channel = blocks.z.size() / blocks.channels.size();
     BlockError error{compare_means(mean_image(images), reference.mean).ratio, 0, 0};

@@ -27,6 +27,10 @@ class Threads : public ProgramTest, public ::testing::WithParamInterface<std::pa
         EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
         return read_image(at(output));
     }
+    void expect_one_photon_image(const std::string &scene, const std::string &precision) const {
+        expect_one_image(scene, {"--method", "sppm", "--size", "96x72", "--spp", "2", "--photons", "20000",
+                                 "--precision", precision});
+    }
     void expect_one_image(const std::string &scene, const std::vector<std::string> &settings) const {
         const Image one = render(scene, settings, "one.exr", "1", "0");
         for (const char *batch_size : {"0", "1000"}) {
@@ -46,9 +50,11 @@ TEST_P(Threads, DoNotChangeTheImage) {
     const auto [scene, precision] = GetParam();
     for (const char *method : {"pt", "gpt"})
         expect_one_image(scene, {"--method", method, "--size", "96x72", "--spp", "4", "--precision", precision});
-    expect_one_image(
-        scene, {"--method", "sppm", "--size", "96x72", "--spp", "2", "--photons", "20000", "--precision", precision});
+    if (testing::is_full())
+        expect_one_photon_image(scene, precision);
 }
+
+TEST_F(Threads, DoNotChangePhotons) { expect_one_photon_image("cornell-box", "single"); }
 
 /// Enough samples for a pilot.
 TEST_F(Threads, DoNotChangeWhichMethodIsChosen) {

@@ -37,28 +37,45 @@ inline double layer(const Image &image, const std::string &name, int c, std::uin
     return pixel(image, x, y, name.empty() ? colors[c] : name + "." + colors[c]);
 }
 
+/// One layer, for many reads: its channels are found once.
+class Layer {
+  public:
+    Layer(const Image &image, const std::string &name) : width_(image.width) {
+        for (int c = 0; c < 3; ++c)
+            values_[c] = &image.find(name.empty() ? colors[c] : name + "." + colors[c])->values;
+    }
+    double operator()(int c, std::uint32_t x, std::uint32_t y) const {
+        return values_[c]->at(std::size_t(y) * width_ + x);
+    }
+
+  private:
+    std::uint32_t width_;
+    const std::vector<float> *values_[3];
+};
+
 /// The primal image and what the camera sees of lights: what the path tracer estimates.
 inline Image whole(const Image &image) {
+    const Layer primal(image, "primal"), direct(image, "direct");
     return image_of(image.width, image.height, [&](int c, std::uint32_t x, std::uint32_t y) {
-        return layer(image, "primal", c, x, y) + layer(image, "direct", c, x, y);
+        return primal(c, x, y) + direct(c, x, y);
     });
 }
 
 /// Differences to the right or downwards of one layer; 0 at the border.
 inline Image differences(const Image &image, const std::string &name, bool right) {
+    const Layer of(image, name);
     return image_of(image.width, image.height, [&](int c, std::uint32_t x, std::uint32_t y) {
         const std::uint32_t to_x = right ? x + 1 : x, to_y = right ? y : y + 1;
-        return to_x < image.width && to_y < image.height
-                   ? layer(image, name, c, to_x, to_y) - layer(image, name, c, x, y)
-                   : 0.0;
+        return to_x < image.width && to_y < image.height ? of(c, to_x, to_y) - of(c, x, y) : 0.0;
     });
 }
 
 /// dx or dy, with the differences of what the camera sees of lights: an estimate of the differences of whole().
 inline Image whole_differences(const Image &image, bool right) {
-    const Image seen = differences(image, "direct", right);
+    const Image differences_seen = differences(image, "direct", right);
+    const Layer of(image, right ? "dx" : "dy"), seen(differences_seen, "");
     return image_of(image.width, image.height, [&](int c, std::uint32_t x, std::uint32_t y) {
-        return layer(image, right ? "dx" : "dy", c, x, y) + layer(seen, "", c, x, y);
+        return of(c, x, y) + seen(c, x, y);
     });
 }
 
