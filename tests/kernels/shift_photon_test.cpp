@@ -180,6 +180,50 @@ TEST(PhotonShift, AlongNormalsComesBackAndKeepsItsArea) {
     EXPECT_LT(worst, 1e-6);
 }
 
+/// Along parallel rays, from a light at infinity: there and back, wherever on its ray the photon lies, and the area across
+/// the rays against differences.
+TEST(PhotonShift, AlongParallelRaysComesBackAndItsJacobianIsThatOfTheMap) {
+    PhotonCases cases(5, 1.5);
+    long double farthest = 0, worst = 0;
+    int no_cosines = 0, no_scale = 0, count = 0;
+    for (int i = 0; i < sample_count / 100; ++i) {
+        const PhotonCase c = cases.draw();
+        const lib::photon_disc base = c.base.as_lib(), offset = c.offset.as_lib();
+        const LongVector way = normalized(c.photon - c.from);
+        const lib::shifted_photon there = lib::photon_shift_parallel(as_real(way), as_real(c.photon), base, offset);
+        if (!there.is_valid || std::fabs(dot(way, c.offset.normal)) < 0.05L)
+            continue;
+        const LongVector arrived = as_long(there.target) + (long double)(0.1 * (2 * cases.uniform() - 1)) * way;
+        const lib::shifted_photon home = lib::photon_shift_parallel(as_real(way), as_real(arrived), offset, base);
+        ASSERT_TRUE(home.is_valid);
+        farthest = std::max(farthest, length(cross(as_long(home.target) - c.photon, way)));
+        if (!is_double || i % 10 != 0)
+            continue;
+        const auto shifted = [&](LongVector from) {
+            return as_long(lib::photon_shift_parallel(as_real(way), as_real(from), base, offset).target);
+        };
+        const LongVector first = perpendicular(way), second = cross(way, first);
+        long double error;
+        const long double step = 0.05L * c.base.radius;
+        const LongVector a = derivative([&](long double t) { return shifted(c.photon + t * first); }, step, error);
+        const LongVector b = derivative([&](long double t) { return shifted(c.photon + t * second); }, step, error);
+        const long double numerical = std::fabs(dot(cross(a, b), way));
+        worst = std::max<long double>(worst, std::fabs(there.jacobian / numerical - 1));
+        const long double scale = c.offset.radius / c.base.radius;
+        const auto is_wrong = [&](long double value) { return std::fabs(value / numerical - 1) > 1e-4L; };
+        no_cosines += is_wrong(scale * scale);
+        no_scale += is_wrong(there.jacobian / (scale * scale));
+        ++count;
+    }
+    std::printf("back to %.2Lg, area to %.2Lg\n", farthest, worst);
+    EXPECT_LT(farthest, bound(1e-5, 2e-14)); // as along normals, at cosines from 0.05
+    if (!is_double)
+        return;
+    EXPECT_LT(worst, 1e-6);
+    EXPECT_GT(no_cosines, 0.9 * count);
+    EXPECT_GT(no_scale, 0.9 * count);
+}
+
 /// On a plane, with equal radii: photons that count at one gather point alone arrive where they count at the other
 /// alone, all of them.
 TEST(PhotonShift, TakesThePhotonsOfOneDiscAloneToThoseOfTheOther) {
