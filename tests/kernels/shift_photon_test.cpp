@@ -180,8 +180,8 @@ TEST(PhotonShift, AlongNormalsComesBackAndKeepsItsArea) {
     EXPECT_LT(worst, 1e-6);
 }
 
-/// Along parallel rays, from a light at infinity: there and back, wherever on its ray the photon lies, and the area across
-/// the rays against differences.
+/// Along parallel rays, from a light at infinity: there and back, wherever on its ray the photon lies, and the area
+/// across the rays against differences.
 TEST(PhotonShift, AlongParallelRaysComesBackAndItsJacobianIsThatOfTheMap) {
     PhotonCases cases(5, 1.5);
     long double farthest = 0, worst = 0;

@@ -85,7 +85,7 @@ double least_seen(const std::vector<double> &planted, const std::vector<Image> &
 double expect_gradients(const ReferenceScene &reference, const std::vector<Image> &images, double samples_per_pixel,
                         RenderOptions options, const std::vector<double> &planted) {
     Scene scene = reference.scene;
-    scene.settings.samples_per_pixel = 16;
+    scene.settings.samples_per_pixel = 64;
     options.seed = 4711;
     const Image independent = render(scene, options).image;
     double score = 0;
@@ -96,8 +96,7 @@ double expect_gradients(const ReferenceScene &reference, const std::vector<Image
         score = std::max(score, largest_score(ours, samples_per_pixel, expected));
         if (planted.empty())
             return;
-        const double seen =
-            least_seen(planted, ours, of(without_layers(images, missing)), samples_per_pixel, expected);
+        const double seen = least_seen(planted, ours, of(without_layers(images, missing)), samples_per_pixel, expected);
         std::printf(seen > 0 ? "%s: %g %% too little would be seen, in some block\n"
                              : "%s: not even %g %% too little would be seen: blunt\n",
                     expected.name.c_str(), 100 * (seen > 0 ? seen : planted.back()));
@@ -118,9 +117,8 @@ double noise_left_by_reconstruction(const ReferenceScene &reference, const std::
     std::vector<double> ratios;
     for (const Image &image : images) {
         const Layer reconstructed(image, "");
-        const Image final = image_of(image.width, image.height, [&](int c, std::uint32_t x, std::uint32_t y) {
-            return reconstructed(c, x, y);
-        });
+        const Image final = image_of(image.width, image.height,
+                                     [&](int c, std::uint32_t x, std::uint32_t y) { return reconstructed(c, x, y); });
         ratios.push_back(compare_means(final, whole(image)).ratio);
         ours += relative_mse(final, reference.mean) / count;
         plain += relative_mse(whole(image), reference.mean) / count;

@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(Image, SharedReferenceTest,
                                            ReferenceCase{"veach-mis", 16}, ReferenceCase{"bathroom", 4}),
                          name_of_case);
 
-// Defects that the tests above must see, at the same sample counts those of ./check. Two that they do not see: paths of 11 edges instead
+// Defects that the tests above must see at the same sample counts. Two that they do not see: paths of 11 edges instead
 // of 12 in the Cornell box (0.05 % of its light), and a rough glass ball of an index 5 % too high.
 struct Defect {
     std::string name, reference;
@@ -124,20 +124,18 @@ void scale_emitters(Scene &scene, Emitter::Kind kind, float factor) {
 
 std::string name_of_defect(const ::testing::TestParamInfo<Defect> &info) { return info.param.name; }
 
-INSTANTIATE_TEST_SUITE_P(Image, PlantedDefect,
-                         ::testing::Values(Defect{"lamp_3_percent_brighter", "cornell-box",
-                                                  [](Scene &scene) {
-                                                      scale_emitters(scene, Emitter::Kind::area, 1.03f);
-                                                  },
-                                                  16},
-                                           Defect{"texture_upside_down", "textures",
-                                                  [](Scene &scene) {
-                                                      for (Texture &texture : scene.textures)
-                                                          if (texture.bitmap && texture.is_nearest)
-                                                              texture.to_uv[4] *= -1;
-                                                  },
-                                                  16}),
-                         name_of_defect);
+INSTANTIATE_TEST_SUITE_P(
+    Image, PlantedDefect,
+    ::testing::Values(Defect{"lamp_3_percent_brighter", "cornell-box",
+                             [](Scene &scene) { scale_emitters(scene, Emitter::Kind::area, 1.03f); }, 16},
+                      Defect{"texture_upside_down", "textures",
+                             [](Scene &scene) {
+                                 for (Texture &texture : scene.textures)
+                                     if (texture.bitmap && texture.is_nearest)
+                                         texture.to_uv[4] *= -1;
+                             },
+                             16}),
+    name_of_defect);
 INSTANTIATE_TEST_SUITE_P(
     Full, PlantedDefect,
     ::testing::Values(Defect{"paths_of_8_edges_at_most", "cornell-box",

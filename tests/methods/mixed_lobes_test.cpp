@@ -9,7 +9,7 @@ namespace {
 
 // A room of plastic that mirrors much, so that paths come to vertices by either lobe and leave by the other one; a ball
 // of plastic and a mirror before it, whose neighbours are of other kinds.
-TEST(MixedLobes, AreUnbiasedInARoomOfPlastic) {
+TEST(FullMixedLobes, AreUnbiasedInARoomOfPlastic) {
     SceneMaker scene = scene_for_bias(6);
     const std::uint32_t white = scene.material(two_sided(plastic(0.6, 2.2)));
     const std::uint32_t dark = scene.material(two_sided(plastic(0.15, 1.5)));
@@ -47,7 +47,7 @@ TEST(MixedLobes, AreUnbiasedWhereTheyThrowACaustic) {
 // A floor of plastic mirrors a lamp, and a wall of rough metal mirrors the floor. Paths from the wall reconnect to the
 // floor and then take its mirror: from where the offset path comes that shows something else than the lamp. Strips of
 // smoother metal, where paths copy, so that some offset paths are connected there and some are not.
-TEST(MixedLobes, AreUnbiasedWhereMetalShowsWhatPlasticMirrors) {
+TEST(FullMixedLobes, AreUnbiasedWhereMetalShowsWhatPlasticMirrors) {
     SceneMaker scene = scene_for_bias(4);
     const std::uint32_t black = scene.material(two_sided(diffuse(0)));
     scene.floor(-2, 2, 2, scene.material(two_sided(plastic(0.1, 4))), -1);

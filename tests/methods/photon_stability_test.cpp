@@ -180,9 +180,9 @@ TEST(PhotonStability, AtSilhouettes) {
          0.03});
 }
 
-class PhotonStabilityUnder : public ::testing::TestWithParam<const char *> {};
+class FullPhotonStabilityUnder : public ::testing::TestWithParam<const char *> {};
 
-TEST_P(PhotonStabilityUnder, Glass) {
+TEST_P(FullPhotonStabilityUnder, Glass) {
     SceneMaker maker(24, 4);
     add_floor_under_glass(maker, GetParam());
     const Scene &scene = maker.scene;
@@ -202,7 +202,8 @@ TEST_P(PhotonStabilityUnder, Glass) {
                       bias_at_most, largest_bias(means_of(scene, options), means_of(traced, {}, "pt")), 0.05});
 }
 
-INSTANTIATE_TEST_SUITE_P(Photons, PhotonStabilityUnder, ::testing::Values("a block", "a coarse lens", "a smooth lens"));
+INSTANTIATE_TEST_SUITE_P(Full, FullPhotonStabilityUnder,
+                         ::testing::Values("a block", "a coarse lens", "a smooth lens"));
 
 // The same random numbers in a scene of another size: rounding decides some paths otherwise, and nothing else may.
 TEST(PhotonStability, InScenesOfAnotherSize) {

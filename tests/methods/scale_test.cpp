@@ -34,8 +34,8 @@ void expect_agreement(const ReferenceScene &reference, const char *failure, cons
     const std::vector<Image> images = render_seeds(reference.scene, 8);
     EXPECT_TRUE(agrees(images, double(placed_samples), reference));
     record_stability({area, failure, provoked_by + ", path tracing", offsets,
-                      "largest score of a block of 16 x 16 pixels over its limit", largest_score(images, double(placed_samples), reference),
-                      1});
+                      "largest score of a block of 16 x 16 pixels over its limit",
+                      largest_score(images, double(placed_samples), reference), 1});
 }
 
 class Scaled : public ::testing::TestWithParam<double> {};
@@ -89,8 +89,8 @@ struct BlockError {
 };
 
 BlockError block_error(const std::vector<Image> &images, const ReferenceScene &reference) {
-    const BlockTest blocks =
-        block_z_test(images, reference.mean, reference.variance, double(placed_samples), reference.samples_per_pixel, 16);
+    const BlockTest blocks = block_z_test(images, reference.mean, reference.variance, double(placed_samples),
+                                          reference.samples_per_pixel, 16);
     EXPECT_EQ(blocks.non_finite, 0u);
     const std::size_t per_channel = blocks.z.size() / blocks.channels.size();
     BlockError error{compare_means(mean_image(images), reference.mean).ratio, 0, 0};

@@ -56,9 +56,8 @@ class Layer {
 /// The primal image and what the camera sees of lights: what the path tracer estimates.
 inline Image whole(const Image &image) {
     const Layer primal(image, "primal"), direct(image, "direct");
-    return image_of(image.width, image.height, [&](int c, std::uint32_t x, std::uint32_t y) {
-        return primal(c, x, y) + direct(c, x, y);
-    });
+    return image_of(image.width, image.height,
+                    [&](int c, std::uint32_t x, std::uint32_t y) { return primal(c, x, y) + direct(c, x, y); });
 }
 
 /// Differences to the right or downwards of one layer; 0 at the border.
@@ -74,9 +73,8 @@ inline Image differences(const Image &image, const std::string &name, bool right
 inline Image whole_differences(const Image &image, bool right) {
     const Image differences_seen = differences(image, "direct", right);
     const Layer of(image, right ? "dx" : "dy"), seen(differences_seen, "");
-    return image_of(image.width, image.height, [&](int c, std::uint32_t x, std::uint32_t y) {
-        return of(c, x, y) + seen(c, x, y);
-    });
+    return image_of(image.width, image.height,
+                    [&](int c, std::uint32_t x, std::uint32_t y) { return of(c, x, y) + seen(c, x, y); });
 }
 
 } // namespace gradus::testing
