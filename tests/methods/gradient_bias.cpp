@@ -107,10 +107,8 @@ GradientBias gradient_bias(const Scene &scene, const Scene &path_traced, const G
     with_gradients.settings.samples_per_pixel = samples.gradient_domain;
     without.settings.samples_per_pixel = samples.path_tracing;
     std::vector<std::vector<double>> primal, change, true_primal, true_change, carried_sums, carried_changes;
-    RenderOptions unweighted; // of all samples; the reconstruction, the fastest one, is not looked at
-    unweighted.reconstruction = Reconstruction::l2;
-    unweighted.alpha = 0.2;
-    RenderOptions of_truth;
+    RenderOptions unweighted, of_truth;
+    do_not_weigh(unweighted);
     if (samples.by_tree) {
         unweighted.lights = RenderOptions::Lights::tree;
         of_truth.lights = RenderOptions::Lights::power;

@@ -62,6 +62,12 @@ inline double pixel(const Image &image, std::uint32_t x, std::uint32_t y, const 
     return image.find(channel)->values.at(std::size_t(y) * image.width + x);
 }
 
+/// For tests that look at layers alone: all samples in one image, by the fastest reconstruction.
+inline void do_not_weigh(RenderOptions &options) {
+    options.reconstruction = Reconstruction::l2;
+    options.alpha = 0.2;
+}
+
 /// Mean, standard error and extremes of a set of values.
 struct Spread {
     double mean = 0, standard_error = 0, least = INFINITY, most = -INFINITY;
