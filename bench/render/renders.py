@@ -21,7 +21,7 @@ SHARED_SCENES = {"cornell-box-256": ("cornell-box/scene.xml", 256, 256, 30, "cor
                  "torus-soft-256": ("torus/scene-soft.xml", 256, 192, 30, "torus-soft")}
 # Light that paths from the camera find by chance alone, so that their errors are those of another kind of scene.
 PHOTON_SCENES = ["metal-ring", "metal-ring-soft", "torus-smooth-glass-soft", "slab-and-ball-soft", "lamp-in-egg-soft",
-                 "cornell-box-glossy"]
+                 "cornell-box-glossy", "pool"]
 NO_ROULETTE = 1_000_000  # a depth at which no path begins with Russian roulette
 NO_GRADIENTS = 6  # gradus's exit code for an input image that does not fit
 

@@ -19,7 +19,7 @@ TEST_P(PhotonReference, IsMetWithinTheBiasOfTheRadius) {
     ReferenceScene reference = own_reference(GetParam());
     constexpr std::size_t seeds = 5;
     // Light that goes round in glass takes its time: ./check --full has more of it.
-    const bool is_short = !is_full() && reference.name.ends_with("-soft");
+    const bool is_short = !is_full() && (reference.name.ends_with("-soft") || reference.name == "pool");
     reference.scene.settings.samples_per_pixel = is_short ? 2 : 6;
     std::vector<Image> images[2];
     for (int i = 0; i < 2; ++i) {
@@ -56,7 +56,8 @@ TEST_P(PhotonReference, IsMetWithinTheBiasOfTheRadius) {
 
 /// The scenes of which a lamp's light comes through smooth glass or from polished metal onto a surface, and is seen
 /// through glass: with larger lamps, which the reference's path tracer can find. Its noise is in its variance.
-INSTANTIATE_TEST_SUITE_P(Photons, PhotonReference, ::testing::Values("cornell-box", "lamp-in-egg-soft"), name_of_scene);
+INSTANTIATE_TEST_SUITE_P(Photons, PhotonReference, ::testing::Values("cornell-box", "lamp-in-egg-soft", "pool"),
+                         name_of_scene);
 INSTANTIATE_TEST_SUITE_P(Full, PhotonReference,
                          ::testing::Values("door-ajar", "plates", "lamp-in-egg-soft", "torus-rough-glass",
                                            "torus-smooth-glass-soft", "slab-and-ball-soft", "metal-ring-soft",

@@ -46,6 +46,7 @@ REFERENCES = {
     "metal-ring": ("metal-ring.xml", 96, {}, 65536),
     "sundial": ("sundial.xml", 96, {}, 16384),
     "lanterns": ("lanterns.xml", 96, {}, 16384),
+    "pool": ("pool.xml", 48, {}, 131072),
     # Small ones, of filters: the outermost pixels see less than theirs.
     "cornell-box-gaussian": ("cornell-box.xml", 64, {"rfilter": "gaussian"}, 16384),
     "cornell-box-tent": ("cornell-box.xml", 64, {"rfilter": "tent"}, 16384),
