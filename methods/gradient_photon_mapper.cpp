@@ -28,31 +28,51 @@ constexpr std::uint32_t most_inner = 6;
 // before them, those straight from a light behind them.
 constexpr std::uint32_t chain_bin = 0, first_kind_bin = 1;
 
-bool has_specular(const Session &session) {
-    return std::any_of(session.scene.kinds.begin(), session.scene.kinds.end(), bsdf_kind_is_dirac);
+/// Whether walks move a vertex there: a specular one, or a glossy one, whose half vector is kept (Hua et al. 2017,
+/// section 4.2): held where it is, it would scatter what it sends to its left another way. Not with textures, which
+/// nobody reads where a walk passes.
+bool is_walked(const Bsdf &bsdf, const RenderOptions &options) {
+    const BsdfKindTraits &kind = bsdf_kind_traits(bsdf.kind);
+    return kind.is_dirac ||
+           (!is_rough(bsdf, options.gather_roughness) && !kind.is_mixed && distinct_textures(bsdf).empty());
+}
+
+/// The kinds of such surfaces.
+std::vector<std::string> walked_kinds(const Scene &scene, const RenderOptions &options) {
+    std::vector<std::string> kinds;
+    for_each_bsdf(scene, [&](const Bsdf &bsdf) {
+        if (const std::string kind = bsdf_kind_name(bsdf);
+            is_walked(bsdf, options) && std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
+            kinds.push_back(kind);
+    });
+    return kinds;
 }
 
 /// By material record.
-std::vector<std::uint32_t> material_bins(const Scene &scene, const Session &session) {
+std::vector<std::uint32_t> material_bins(const Scene &scene, const Session &session, const RenderOptions &options) {
     const std::vector<std::string> &kinds = session.scene.kinds;
+    const std::vector<Bsdf> records = material_records(scene);
     std::vector<std::uint32_t> bins;
-    for (const Bsdf &bsdf : material_records(scene)) {
+    for (const Bsdf &bsdf : records) {
         const auto kind = std::find(kinds.begin(), kinds.end(), bsdf_kind_name(bsdf));
-        const bool is_dirac = bsdf_kind_is_dirac(bsdf_kind_name(bsdf));
-        bins.push_back(is_dirac || kind == kinds.end() ? chain_bin
-                                                       : first_kind_bin + std::uint32_t(kind - kinds.begin()));
+        // A walk does not know which part of a blend it meets; the last records are such parts.
+        const bool is_part = bins.size() + scene.blended.size() >= records.size();
+        const bool is_in_chain = is_part ? bsdf_kind_traits(bsdf.kind).is_dirac : is_walked(bsdf, options);
+        bins.push_back(is_in_chain || kind == kinds.end() ? chain_bin
+                                                          : first_kind_bin + std::uint32_t(kind - kinds.begin()));
     }
     return bins;
 }
 
 /// Where light may come straight from a light, or by specular vertices alone, shifts ask how it left.
 TraitMap light_vertex_traits(const Scene &scene, const RenderOptions &options) {
-    return {{"TRAIT_LIGHT_VERTICES", 1},
-            {"TRAIT_LIGHT_STARTS", options.direct_photons || options.all_traits || has_dirac_bsdf(scene)},
-            {"TRAIT_ONLY_CHAINS", options.only_chains},
-            {"TRAIT_LOBE_LEVELS", options.sampler == RenderOptions::Sampler::sobol},
-            {"TRAIT_AOV", options.all_traits || needs_features(options)},
-            {"TRAIT_PART_BITS", part_bits(options, needs_halves(options.reconstruction))}};
+    return {
+        {"TRAIT_LIGHT_VERTICES", 1},
+        {"TRAIT_LIGHT_STARTS", options.direct_photons || options.all_traits || !walked_kinds(scene, options).empty()},
+        {"TRAIT_ONLY_CHAINS", options.only_chains},
+        {"TRAIT_LOBE_LEVELS", options.sampler == RenderOptions::Sampler::sobol},
+        {"TRAIT_AOV", options.all_traits || needs_features(options)},
+        {"TRAIT_PART_BITS", part_bits(options, needs_halves(options.reconstruction))}};
 }
 
 const Scene &checked(const Scene &scene, const RenderOptions &options) {
@@ -104,7 +124,7 @@ std::string reason_against_gpm(const Scene &scene, const RenderOptions &options)
 GradientPhotonMapper::GradientPhotonMapper(Device &device, const Scene &scene, const RenderOptions &options)
     : options_(options), session_(device, checked_for_gathering(checked(scene, options), options), options,
                                   light_vertex_traits(scene, options)),
-      paths_(session_, stages_, scene, options, true),
+      walked_kinds_(walked_kinds(scene, options)), paths_(session_, stages_, scene, options, true),
       photons_(session_, stages_, scene, options, 0.5, needs_halves(options.reconstruction)), pairs_(stages_, true),
       bin_(stages_.add({.name = "gather_bin"})),
       order_(stages_, "gather", first_kind_bin + std::uint32_t(session_.scene.kinds.size()), RowsOf::slot),
@@ -113,20 +133,20 @@ GradientPhotonMapper::GradientPhotonMapper(Device &device, const Scene &scene, c
       moved_(stages_, "moved", light_bin() + 1, RowsOf::path, 4 * PhotonPairs::pair_rows(1)),
       reconnect_(stages_.add(leaving_stage("photon_reconnect", false, true, {"first", "pairs"}))),
       reconnect_light_(stages_.add(leaving_stage("photon_reconnect", true, true, {"first", "pairs"}))),
-      project_(
-          stages_.add({.name = "photon_project", .is_wanted = has_specular(session_), .numbers = {"first", "pairs"}})),
-      walk_(stages_.add({.name = "photon_walk", .is_wanted = has_specular(session_), .numbers = chain_numbers})),
-      leave_(stages_.add(leaving_stage("photon_leave", false, has_specular(session_), leave_numbers))),
-      leave_light_(stages_.add(leaving_stage("photon_leave", true, has_specular(session_), leave_numbers))),
+      project_(stages_.add({.name = "photon_project", .is_wanted = has_chains(), .numbers = {"first", "pairs"}})),
+      walk_(stages_.add({.name = "photon_walk", .is_wanted = has_chains(), .numbers = chain_numbers})),
+      leave_(stages_.add(leaving_stage("photon_leave", false, has_chains(), leave_numbers))),
+      leave_light_(stages_.add(leaving_stage("photon_leave", true, has_chains(), leave_numbers))),
       pass_(stages_.add({.name = "photon_pass",
                          .definitions = {{"LAST_KIND", "0"}},
                          .by_kind = true,
-                         .is_wanted = has_specular(session_),
+                         .only_kinds = walked_kinds_,
+                         .is_wanted = has_chains(),
                          .numbers = chain_numbers})),
       end_(stages_.add({.name = "photon_pass end",
                         .file = "photon_pass",
                         .definitions = {{"LAST_KIND", "1"}},
-                        .is_wanted = has_specular(session_),
+                        .is_wanted = has_chains(),
                         .numbers = {"first", "chain_rows", "chain_vertices"}})),
       count_(stages_.add({.name = "photon_count",
                           .definitions = {{"PARTITION_CHUNK", std::to_string(partition_chunk)}},
@@ -138,9 +158,9 @@ GradientPhotonMapper::GradientPhotonMapper(Device &device, const Scene &scene, c
       gradient_gather_(stages_.add({.name = "gradient_gather"})), film_(session_, stages_, options_, "photon_found") {
     check_error(options, "gpm");
     film_.tell_no_error();
-    if (has_specular(session_))
+    if (has_chains())
         manifold_walk_.emplace(session_, stages_, RowsOf::path, 1, WalkSettings{.most_vertices = most_inner});
-    const std::vector<std::uint32_t> bins = material_bins(scene, session_);
+    const std::vector<std::uint32_t> bins = material_bins(scene, session_, options);
     session_.scene_buffers.emplace_back(device, "material_bin", bins.data(), bins.size() * sizeof(bins[0]));
     statistics_.surfaces = gathering_surfaces(scene, options.gather_roughness);
     total_ = std::uint64_t(session_.pixels()) * session_.settings.samples_per_pixel;
@@ -151,7 +171,7 @@ TableList GradientPhotonMapper::tables() const {
     const std::uint32_t pairs = PhotonPairs::pair_rows(1);
     return {{.name = "pair_difference", .multiple = 4 * pairs, .columns = pair_difference_columns},
             {.name = "moved", .multiple = 4 * pairs, .columns = moved_columns},
-            {.name = "moved_link", .columns = std::uint32_t(has_specular(session_) ? moved_link_columns : 0)},
+            {.name = "moved_link", .columns = std::uint32_t(has_chains() ? moved_link_columns : 0)},
             {.name = "photon_found", .multiple = 2, .is_uint = true, .is_cleared = true}};
 }
 
@@ -315,9 +335,11 @@ void GradientPhotonMapper::move_chains(Range chains, std::uint32_t pairs) {
                                  {"chain_rows", rows},
                                  {"chain_vertices", vertices},
                                  {"leave_bin", light_bin()}});
-        const auto specular = std::find_if(kinds.begin(), kinds.end(), bsdf_kind_is_dirac); // one serves them all
-        pass_.run_kind(std::size_t(specular - kinds.begin()), count,
-                       {{"first", first}, {"pairs", pairs}, {"chain_rows", rows}, {"chain_vertices", vertices}});
+        for (std::uint32_t kind = 0; kind < kinds.size(); ++kind)
+            if (pass_.is_first_of_kernel(kind))
+                pass_.run_kind(
+                    kind, count,
+                    {{"first", first}, {"pairs", pairs}, {"chain_rows", rows}, {"chain_vertices", vertices}});
         end_.run(count, {{"first", first}, {"chain_rows", rows}, {"chain_vertices", vertices}});
     }
 }

@@ -60,10 +60,12 @@ class GradientPhotonMapper final : public Method {
     void move_chains(Range chains, std::uint32_t pairs);
     std::uint32_t light_bin() const;
     Image make_image(bool layers, bool last);
+    bool has_chains() const { return !walked_kinds_.empty(); }
 
     RenderOptions options_;
     Session session_;
     Stages stages_;
+    const std::vector<std::string> walked_kinds_; ///< BSDF kinds of surfaces whose vertices walks move
     GatherPaths paths_;
     PassPhotons photons_;
     PhotonPairs pairs_;

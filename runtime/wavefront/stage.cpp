@@ -187,7 +187,9 @@ void Stages::build(Session &session, const Tables &tables) {
         const std::size_t others = declaration.by_kind ? kinds.size() : declaration.variants.empty() ? 1 : 0;
         for (std::size_t k = 0; k < others; ++k) {
             const bool is_dirac = declaration.by_kind && bsdf_kind_is_dirac(kinds[k]);
-            const bool is_left_out = is_dirac && declaration.dirac == DiracKinds::left_out;
+            const std::vector<std::string> &only = declaration.only_kinds;
+            const bool is_left_out = (is_dirac && declaration.dirac == DiracKinds::left_out) ||
+                                     (!only.empty() && std::find(only.begin(), only.end(), kinds[k]) == only.end());
             const bool by_class = declaration.by_kind && !session.scene.kind_classes.empty();
             const std::uint32_t of_class = by_class ? session.scene.kind_classes[k] : class_of_blends_and_maps;
             if (is_left_out || (is_dirac && for_dirac.contains(of_class))) {

@@ -36,6 +36,8 @@ struct StageDeclaration {
     /// of their class themselves.
     std::string textured_file = {};
     DiracKinds dirac = DiracKinds::chosen; ///< with by_kind
+    /// With by_kind: the kinds that anything is launched on, if not all.
+    std::vector<std::string> only_kinds = {};
     /// Where there are any, a kernel for each, compiled with these definitions too.
     std::vector<std::map<std::string, std::string>> variants = {};
     bool is_wanted = true; ///< false: nothing is built, and launches do nothing

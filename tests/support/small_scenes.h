@@ -75,8 +75,12 @@ struct SceneMaker {
     void point_light(Rgb intensity, Vector3 position) {
         scene.emitters[std::size_t(emitter(Emitter::Kind::point, intensity))].position = position;
     }
+    /// `direction`, of any length: the way that light travels.
     void directional_light(Rgb irradiance, Vector3 direction) {
-        scene.emitters[std::size_t(emitter(Emitter::Kind::directional, irradiance))].direction = direction;
+        const float length =
+            std::sqrt(direction.x * direction.x + direction.y * direction.y + direction.z * direction.z);
+        scene.emitters[std::size_t(emitter(Emitter::Kind::directional, irradiance))].direction = {
+            direction.x / length, direction.y / length, direction.z / length};
     }
     /// An environment map of grey texels, by `radiance(column, row)`.
     template <class Radiance>
