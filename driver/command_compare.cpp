@@ -1,6 +1,7 @@
 #include "driver/commands.h"
 #include "driver/comparison.h"
 #include "driver/limits_option.h"
+#include "driver/number_checks.h"
 #include "driver/output_files.h"
 #include "driver/standard_streams.h"
 #include "runtime/error.h"
@@ -103,29 +104,29 @@ void add_compare_command(CLI::App &app, std::function<int()> &chosen) {
         ->type_name("IMAGE")
         ->group(group);
     command.add_option("--spp", request.samples_per_pixel, "Samples a pixel of each image; else as its metadata says")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->group(group);
     command
         .add_option("--reference-spp", request.reference_spp,
                     "Samples a pixel of the reference; else as its metadata says. With --variance it gives a floor to "
                     "the variance of our images")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->group(group);
     command
         .add_option("--reference-batches", request.reference_batches,
                     "Independent batches that the reference's variance was estimated from")
-        ->check(CLI::Range(2, 1 << 30))
+        ->transform(whole_number_between(2, 1 << 30))
         ->capture_default_str()
         ->group(group);
     command.add_option("--block", request.block, "Side of the blocks in pixels")
-        ->check(CLI::Range(1, 65536))
+        ->transform(whole_number_between(1, 65536))
         ->capture_default_str()
         ->group(group);
     command.add_option("--threshold", request.threshold, "Largest |z| of a block that passes")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->group(group);
     command.add_option("--max-relmse", request.largest_relative_mse, "Largest relMSE of the images' mean that passes")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->group(group);
     command.add_flag("--check", arguments->check, "Exit with 1 unless the comparison holds")->group(group);
     add_limits_option(command, request.limits, "Images");

@@ -1,4 +1,5 @@
 #include "driver/commands.h"
+#include "driver/number_checks.h"
 #include "driver/phase_watch.h"
 #include "driver/scene_request.h"
 #include "driver/scene_summary.h"
@@ -163,7 +164,7 @@ void add_inspect_command(CLI::App &app, const Services &services, std::function<
     command
         .add_option("--gather-roughness", arguments->gather_roughness,
                     "Roughness (alpha) from which on photon methods gather photons at a surface")
-        ->check(CLI::Range(0.0, 1.0))
+        ->check(number_between(0, 1))
         ->capture_default_str();
     command.callback([arguments, &services, &chosen] {
         chosen = [arguments, &services] {

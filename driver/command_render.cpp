@@ -1,10 +1,11 @@
 #include "driver/commands.h"
-#include "driver/reconstruction_options.h"
+#include "driver/number_checks.h"
 #include "driver/render_job.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <limits>
 #include <memory>
 
 namespace gradus {
@@ -46,7 +47,7 @@ void add_render_command(CLI::App &app, const Services &services, std::function<i
         ->group(output);
     command.add_option("--write-partial", request->partial_interval, "Write the image so far every so many seconds")
         ->type_name("SECONDS")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->group(output);
     command.add_flag("-q,--quiet", request->quiet, "Print errors only")->group(output);
 
@@ -55,7 +56,7 @@ void add_render_command(CLI::App &app, const Services &services, std::function<i
         .add_option("--time", request->time_limit,
                     "Render for so many seconds, kernels compiled; the file's sample count is then no limit, --spp is")
         ->type_name("SECONDS")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->group(samples);
     command
         .add_option_function<std::string>(
@@ -68,14 +69,10 @@ void add_render_command(CLI::App &app, const Services &services, std::function<i
             "this or less (pt, gpt): 0.01 is noise of a tenth. Looked at after 16, 32, 64 ... samples a pixel; the "
             "file's sample count is then no limit, --spp and --time are. Implies --error")
         ->type_name("RELMSE")
-        ->check(CLI::Validator(complain_unless_positive, ""))
+        ->check(positive_number())
         ->group(samples);
     command.add_option("--seed", request->method.options.seed, "Images of different seeds are independent")
-        ->check(CLI::Validator(
-            [](const std::string &text) { // CLI11 would wrap a negative number around
-                return text.find('-') == std::string::npos ? "" : "a seed is not negative";
-            },
-            "UINT"))
+        ->transform(whole_number_between(0, std::numeric_limits<std::uint64_t>::max()))
         ->capture_default_str()
         ->group(samples);
 

@@ -1,5 +1,6 @@
 #include "driver/commands.h"
 #include "driver/limits_option.h"
+#include "driver/number_checks.h"
 #include "driver/reconstruction_options.h"
 #include "driver/solve_job.h"
 #include "runtime/error.h"
@@ -202,7 +203,7 @@ void add_solver_options(CLI::App &command, SolveRequest &request) {
             "--iterations", options.iterations,
             "At most so many steps or cycles (L2) or reweightings (L1); else what the tolerance takes as a rule")
         ->type_name("N")
-        ->check(CLI::Range(1, 1 << 30))
+        ->transform(whole_number_between(1, 1 << 30))
         ->group(group);
     command.add_option("--damping", request.damping, "Of jacobi, above 0 and at most 1, which is the plain method")
         ->type_name("NUMBER")
@@ -211,13 +212,13 @@ void add_solver_options(CLI::App &command, SolveRequest &request) {
     command.add_option("--device", request.device, "OpenCL device: a number of `gradus devices` or a part of its name")
         ->group(group);
     command.add_option("--nthreads", request.threads, "Processor threads; 0: all")
-        ->check(CLI::Range(0, 4096))
+        ->transform(whole_number_between(0, 4096))
         ->capture_default_str()
         ->group(group);
     command
         .add_option("--repeats", request.repeats,
                     "Solve so often, for measuring: the figures are the last one's, without compiling")
-        ->check(CLI::Range(1, 1000))
+        ->transform(whole_number_between(1, 1000))
         ->capture_default_str()
         ->group(group);
 }

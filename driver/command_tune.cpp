@@ -1,4 +1,5 @@
 #include "driver/commands.h"
+#include "driver/number_checks.h"
 #include "driver/scene_request.h"
 #include "driver/standard_streams.h"
 #include "driver/tuning_store.h"
@@ -58,7 +59,7 @@ void add_tune_command(CLI::App &app, const Services &services, std::function<int
     command.add_option("--device", request->device,
                        "OpenCL device: a number of `gradus devices` or a part of its name");
     command.add_option("--nthreads", request->threads, "Processor threads; 0: all")
-        ->check(CLI::Range(0, 4096))
+        ->transform(whole_number_between(0, 4096))
         ->capture_default_str();
     command.callback(
         [request, &services, &chosen] { chosen = [request, &services] { return run_tune(*request, services); }; });

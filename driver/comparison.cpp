@@ -58,11 +58,12 @@ Comparison::Figures figures_of(const std::string &name, const Image &image, cons
 }
 
 /// The same seed twice is one sample, not two.
-void check_independence(const std::vector<Image> &images, const std::vector<std::string> &names, Comparison &result) {
+void check_independence(const std::vector<const Image *> &images, const std::vector<std::string> &names,
+                        Comparison &result) {
     std::map<std::string, std::size_t> seen;
     for (std::size_t i = 0; i < images.size(); ++i) {
-        const auto at = images[i].metadata.find("seed");
-        if (at == images[i].metadata.end())
+        const auto at = images[i]->metadata.find("seed");
+        if (at == images[i]->metadata.end())
             continue;
         const auto [first, fresh] = seen.emplace(at->second, i);
         if (!fresh)
@@ -213,12 +214,20 @@ Comparison compare_images(const CompareRequest &request) {
     if (result.reference_non_finite > 0)
         result.failures.push_back(
             fmt::format("the reference holds {} values that are not finite", result.reference_non_finite));
-    check_independence(images, request.images, result);
     find_sample_counts(request, images, reference, result);
     result.mean_image = mean_image(images);
     if (images.size() > 1)
         result.mean = figures_of(fmt::format("mean of {} images", images.size()), result.mean_image, reference);
     run_tests(request, images, reference, variance, result);
+    std::vector<const Image *> independent;
+    std::vector<std::string> names = request.images;
+    for (const Image &image : images)
+        independent.push_back(&image);
+    if (result.whole) { // its scores take the reference for another sample
+        independent.push_back(&reference);
+        names.push_back(request.reference);
+    }
+    check_independence(independent, names, result);
     const double judged = result.mean ? result.mean->relative_mse : result.images[0].relative_mse;
     // Negated, so that NaN fails.
     if (request.largest_relative_mse > 0 && !(judged <= request.largest_relative_mse))

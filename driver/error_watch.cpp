@@ -3,16 +3,16 @@
 namespace gradus {
 
 ErrorWatch::ErrorWatch(Method &method, double aim, std::uint64_t pixels) : method_(method), aim_(aim), pixels_(pixels) {
-    method_.pause_at(next_ * pixels_);
+    method_.pause_at(next_look());
 }
 
 bool ErrorWatch::is_reached() {
-    if (pixels_ == 0 || method_.done_samples() < next_ * pixels_)
+    if (pixels_ == 0 || method_.done_samples() < next_look())
         return false;
     method_.image();
     estimate_ = method_.statistics().estimated_error;
     next_ *= 2;
-    method_.pause_at(next_ * pixels_);
+    method_.pause_at(next_look());
     return estimate_ && *estimate_ <= aim_; // NaN is not
 }
 

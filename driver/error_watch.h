@@ -32,6 +32,8 @@ class ErrorWatch {
     /// Of the last look, and the samples of each pixel that it was at.
     std::optional<double> estimate() const { return estimate_; }
     std::uint64_t samples() const { return next_ / 2; }
+    /// The samples of all pixels together at which it looks again.
+    std::uint64_t next_look() const { return next_ * pixels_; }
 
     static constexpr std::uint64_t first_look = 16;
     /// A render that nothing else ends has no more samples of each pixel than this.

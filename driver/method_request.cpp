@@ -1,6 +1,7 @@
 #include "driver/method_request.h"
 #include "planning/make_method.h"
 
+#include "driver/number_checks.h"
 #include "driver/photon_options.h"
 #include "driver/reconstruction_options.h"
 
@@ -25,14 +26,14 @@ void add_method_options(CLI::App &command, const Services &services, MethodReque
     command.add_option("--device", request.device, "OpenCL device: a number of `gradus devices` or a part of its name")
         ->group(group);
     command.add_option("--nthreads", request.options.threads, "Processor threads; 0: all")
-        ->check(CLI::Range(0, 4096))
+        ->transform(whole_number_between(0, 4096))
         ->capture_default_str()
         ->group(group);
     command
         .add_option("--batch-size", request.options.batch_size,
                     "Paths in flight at once; 0: what `gradus tune` found, or the device's default. The image does "
                     "not depend on it")
-        ->check(CLI::Range(std::uint32_t(0), std::uint32_t(1) << 28))
+        ->transform(whole_number_between(0, std::uint32_t(1) << 28))
         ->capture_default_str()
         ->group(group);
     const std::map<std::string, Precision> precisions{
@@ -85,13 +86,16 @@ void add_method_options(CLI::App &command, const Services &services, MethodReque
     const char *reconstruction = "Reconstruction (gpt, gpm, auto)";
     add_reconstruction_option(command, reconstruction, request.options.reconstruction,
                               [&request](Reconstruction name) { request.options.reconstruction = name; });
-    add_guide_option(command, reconstruction, [&request](Guide guide) { request.options.guide = guide; });
+    add_guide_option(command, reconstruction, [&request](Guide guide) {
+        request.options.guide = guide;
+        request.guide_is_given = true;
+    });
     add_alpha_option(command, reconstruction, "auto",
                      "Weight of the primal image against its differences; auto: from their variances",
                      [&request](std::optional<double> alpha) { request.options.alpha = alpha; });
     const auto add_shift_option = [&command](const char *name, double &value, const char *text) {
         command.add_option(name, value, text)
-            ->check(CLI::Range(0.0, 1.0))
+            ->check(number_between(0, 1))
             ->capture_default_str()
             ->group("Shifts (gpt)");
     };

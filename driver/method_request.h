@@ -15,6 +15,7 @@ struct MethodRequest {
     std::string method = "gpt";
     std::string device; ///< Device's selector
     RenderOptions options;
+    bool guide_is_given = false;
 };
 
 /// Adds the options that fill `request` to a command.

@@ -46,6 +46,14 @@ bool is_same_file(const std::string &first, const std::string &second) {
 
 } // namespace
 
+void check_folder(const std::string &path) {
+    std::error_code failure;
+    std::filesystem::create_directories(path, failure);
+    if (failure)
+        throw Error(ExitCode::output, fmt::format("cannot make the folder '{}': {}", path, failure.message()));
+    check_writable((std::filesystem::path(path) / "file").string());
+}
+
 void check_distinct(const std::vector<NamedFile> &outputs, const std::vector<std::string> &inputs) {
     std::vector<NamedFile> written;
     for (const NamedFile &output : outputs) {

@@ -18,6 +18,9 @@ struct OutputFiles {
 /// written.
 void check_outputs(const OutputFiles &files);
 
+/// Makes the folder where it is not there. Throws Error(ExitCode::output) where that fails or it takes no files.
+void check_folder(const std::string &path);
+
 /// Files that a command reads and writes, by what they are for ("--stats"). Throws Error(ExitCode::usage) where two
 /// outputs are one file, or one is a file that is read, however their paths are written: by links, by folders and back.
 /// Outputs that cannot be written throw Error(ExitCode::output). Empty paths and "-" are none.

@@ -1,6 +1,6 @@
 #include "driver/photon_options.h"
 
-#include "driver/reconstruction_options.h"
+#include "driver/number_checks.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -25,7 +25,7 @@ void add_photon_options(CLI::App &command, RenderOptions &options) {
         .add_option("--photons", options.photons,
                     "Light paths a pass, one pass a sample a pixel; 0: as many as leave about five photons a pixel, a "
                     "million at most")
-        ->check(CLI::Range(std::uint64_t(0), std::uint64_t(std::numeric_limits<std::int32_t>::max())))
+        ->transform(whole_number_between(0, std::numeric_limits<std::int32_t>::max()))
         ->capture_default_str()
         ->group(group);
     command
@@ -33,7 +33,7 @@ void add_photon_options(CLI::App &command, RenderOptions &options) {
             "--gather-roughness", options.gather_roughness,
             "Roughness (alpha) from which on photons are gathered at a surface; from smoother ones camera paths "
             "go on")
-        ->check(CLI::Range(0.0, 1.0))
+        ->check(number_between(0, 1))
         ->capture_default_str()
         ->group(group);
     command

@@ -79,6 +79,9 @@ int run_program(int argc, const char *const *argv, const Services &services) {
         app.set_version_flag("--version", fmt::format("gradus {}", version()));
         app.require_subcommand(1);
         app.footer(examples);
+        app.failure_message([](const CLI::App *command, const CLI::Error &error) {
+            return "gradus: error: " + CLI::FailureMessage::simple(command, error);
+        });
         add_render_command(app, services, chosen);
         add_inspect_command(app, services, chosen);
         add_plugins_command(app, chosen);

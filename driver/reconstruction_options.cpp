@@ -1,29 +1,15 @@
 #include "driver/reconstruction_options.h"
 
+#include "driver/number_checks.h"
 #include "runtime/error.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cmath>
 #include <map>
 #include <vector>
 
 namespace gradus {
-
-std::optional<double> finite_number(const std::string &text) {
-    double number = 0;
-    const auto [stop, failure] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (failure != std::errc{} || stop != text.data() + text.size() || !std::isfinite(number))
-        return std::nullopt;
-    return number;
-}
-
-std::string complain_unless_positive(std::string &text) {
-    const auto number = finite_number(text);
-    return number && *number > 0 ? "" : fmt::format("'{}' is not a number above 0", text);
-}
 
 void add_reconstruction_option(CLI::App &command, const char *group, Reconstruction standard,
                                std::function<void(Reconstruction)> set) {
@@ -65,22 +51,30 @@ void add_guide_option(CLI::App &command, const char *group, std::function<void(G
         ->group(group);
 }
 
-void check_alpha(Reconstruction reconstruction, bool given) {
+void check_alpha(Reconstruction reconstruction, bool given, double alpha) {
     if (given && needs_halves(reconstruction))
         throw Error(
             ExitCode::usage,
             fmt::format("--alpha is one weight of the primal; --reconstruction {} gives each pixel its own: add "
                         "--reconstruction l1 or l2",
                         reconstruction_name(reconstruction)));
+    if (given && reconstruction == Reconstruction::l1 && alpha > 0 && alpha < least_alpha_of_absolute_values)
+        throw Error(ExitCode::usage,
+                    fmt::format("--alpha {} is lost in rounding beside the differences: --reconstruction l1 takes 0, "
+                                "or {} and more",
+                                alpha, least_alpha_of_absolute_values));
 }
+
+// Its square and the sums of many weights are to be finite in single precision.
+constexpr double largest_alpha = 1e12;
 
 void add_alpha_option(CLI::App &command, const char *group, const char *standard, const char *text,
                       std::function<void(std::optional<double>)> set) {
     const auto complaint = [](std::string &value) {
         const auto number = finite_number(value);
-        return value == "auto" || (number && *number >= 0)
+        return value == "auto" || (number && *number >= 0 && *number <= largest_alpha)
                    ? std::string()
-                   : fmt::format("'{}' is neither a number from 0 on nor auto", value);
+                   : fmt::format("'{}' is neither a number from 0 to {:g} nor auto", value, largest_alpha);
     };
     command
         .add_option_function<std::string>(

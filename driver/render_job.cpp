@@ -22,6 +22,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <exception>
 #include <new>
 #include <optional>
 
@@ -53,8 +54,19 @@ class RenderJob {
             throw;
         }
         record_.interrupted = watch_->requested();
-        if (record_.interrupted)
+        if (record_.interrupted) {
             record_.stopped_by = "interrupt";
+            if (has_nothing_to_show()) {
+                progress_.message(
+                    fmt::format("interrupted before the first samples; {} is as it was", request_.outputs.image));
+                return static_cast<int>(ExitCode::interrupted);
+            }
+            progress_.message("interrupted; making the image of the samples so far: a second time ends at once");
+        }
+        if (has_nothing_to_show())
+            throw Error(ExitCode::failure, fmt::format("no sample was done after {:.0f} s, so there is no image: give "
+                                                       "more --time, or a smaller --size or --max-depth",
+                                                       seconds_since(render_start_)));
         write_results();
         if (black_pixels_ > 0)
             return static_cast<int>(ExitCode::failure);
@@ -72,7 +84,7 @@ class RenderJob {
             &phases_);
         check_distinct(output_list(request_.outputs), files_read_);
         check_counts(scene);
-        check_alpha(request_.method.options.reconstruction, request_.method.options.alpha.has_value());
+        check_reconstruction_options();
         check_memory(scene, request_.method.options);
         if (!is_limited_by_samples())
             scene.settings.samples_per_pixel =
@@ -124,6 +136,20 @@ class RenderJob {
         return (request_.time_limit <= 0 && request_.until_error <= 0) || request_.scene.samples_per_pixel;
     }
 
+    /// Options of a reconstruction that another, or a method without, would leave unread.
+    void check_reconstruction_options() const {
+        const MethodRequest &method = request_.method;
+        const bool has_gradients = method.method != "pt" && method.method != "sppm";
+        if (has_gradients)
+            check_alpha(method.options.reconstruction, method.options.alpha.has_value(),
+                        method.options.alpha.value_or(0));
+        else if (method.options.alpha)
+            throw Error(ExitCode::usage,
+                        fmt::format("--alpha weighs an image against its differences, and {} has none", method.method));
+        if (method.guide_is_given && method.options.reconstruction != Reconstruction::guided)
+            throw Error(ExitCode::usage, "--guide is of one reconstruction: add --reconstruction guided");
+    }
+
     /// Samples are counted in 64 bits, with room for sums and for what methods add to each.
     static void check_counts(const Scene &scene) {
         constexpr std::uint64_t most = std::uint64_t(1) << 56;
@@ -145,26 +171,43 @@ class RenderJob {
         if (error_watch_) {
             state.error_limit = error_watch_->aim();
             state.error = error_watch_->estimate();
-            state.samples_of_error = error_watch_->samples() * record_.width * record_.height;
+            state.samples_of_error = error_watch_->samples() * pixels();
         }
         return state;
+    }
+
+    std::uint64_t pixels() const { return std::uint64_t(record_.width) * record_.height; }
+
+    /// Whether there is not one sample, though there should be.
+    bool has_nothing_to_show() const {
+        return prepared_.method->done_samples() == 0 && prepared_.method->total_samples() > 0;
+    }
+
+    /// Whether the time is over. An image with holes, or none, is of no use, so a sample of each pixel is waited for,
+    /// but not for ever.
+    bool is_over(double patience) const {
+        constexpr double times_longer = 10, least_wait = 5;
+        const bool is_whole = prepared_.method->done_samples() >= pixels();
+        const double limit = is_whole ? request_.time_limit + patience
+                                      : std::max(times_longer * request_.time_limit, least_wait);
+        return request_.time_limit > 0 && seconds_since(render_start_) >= limit;
     }
 
     /// Whether a batch that is under way is to be given up: at once when interrupted, but for a time limit only after a
     /// second more, so that batches of usual length are not lost.
     bool is_to_stop() const {
         constexpr double patience = 1;
-        return watch_ && (watch_->requested() ||
-                          (request_.time_limit > 0 && seconds_since(render_start_) > request_.time_limit + patience));
+        return watch_ && (watch_->requested() || is_over(patience));
     }
 
     /// The next batch; false after the last, or where it was given up.
     bool render_batch() {
         // Until a time: one sample a pixel, then as many as are done. A batch of the device's own size may take longer
         // than there is time, and would be lost.
-        if (request_.time_limit > 0 && !error_watch_) {
+        if (request_.time_limit > 0) {
             const std::uint64_t done = prepared_.method->done_samples();
-            prepared_.method->pause_at(done + std::max(done, std::uint64_t(record_.width) * record_.height));
+            const std::uint64_t next = done + std::max(done, pixels());
+            prepared_.method->pause_at(error_watch_ ? std::min(next, error_watch_->next_look()) : next);
         }
         try {
             return prepared_.method->render_batch();
@@ -180,8 +223,7 @@ class RenderJob {
         auto last_partial = Clock::now();
         progress_.update(state());
         if (request_.until_error > 0)
-            error_watch_.emplace(*prepared_.method, request_.until_error,
-                                 std::uint64_t(record_.width) * record_.height);
+            error_watch_.emplace(*prepared_.method, request_.until_error, pixels());
         bool more = true;
         while (more) {
             more = render_batch();
@@ -193,7 +235,7 @@ class RenderJob {
             progress_.update(now);
             if (record_.stopped_by == "error")
                 break;
-            if (request_.time_limit > 0 && now.elapsed >= request_.time_limit) {
+            if (is_over(0)) {
                 record_.stopped_by = "time";
                 break;
             }
@@ -202,6 +244,9 @@ class RenderJob {
                 last_partial = Clock::now();
             }
         }
+        if (record_.stopped_by == "time" && prepared_.method->done_samples() < pixels() && !has_nothing_to_show())
+            progress_.message(
+                "gradus: warning: the time was over before each pixel had a sample: the others are black");
         progress_.finish(state());
     }
 
@@ -277,22 +322,35 @@ class RenderJob {
         return image;
     }
 
+    /// What cannot be written takes nothing else with it: the disk of the image may be full, that of the statistics
+    /// not.
     void write_results() {
         const Image image = current_image(record_.interrupted, true);
-        write_image(image, request_.outputs.image);
+        std::exception_ptr failure;
+        const auto write = [&](const auto &output) {
+            try {
+                output();
+            } catch (const Error &error) {
+                if (failure)
+                    print_message(fmt::format("gradus: error: {}\n", error.what()));
+                else
+                    failure = std::current_exception();
+            }
+        };
+        write([&] { write_image(image, request_.outputs.image); });
         if (request_.outputs.png)
-            write_png(image, png_path(request_.outputs.image));
+            write([&] { write_png(image, png_path(request_.outputs.image)); });
         const Statistics statistics = prepared_.method->statistics();
         record_.wall_seconds = seconds_since(job_start_);
         if (!request_.outputs.statistics.empty())
-            write_json(statistics_to_json(record_, statistics), request_.outputs.statistics);
+            write([&] { write_json(statistics_to_json(record_, statistics), request_.outputs.statistics); });
+        if (failure)
+            std::rethrow_exception(failure);
         if (statistics.non_finite > 0)
             progress_.message(fmt::format("gradus: warning: {} samples were NaN or infinite and were left out",
                                           statistics.non_finite));
         if (!statistics.reconstruction.note.empty())
             progress_.message("gradus: warning: " + statistics.reconstruction.note);
-        if (prepared_.method->done_samples() == 0 && prepared_.method->total_samples() > 0)
-            progress_.message("gradus: warning: no batch of samples came to its end, so the image is black");
         if (black_pixels_ > 0)
             print_message(fmt::format("gradus: error: {} pixels have a value that is NaN or infinite, which the image "
                                       "holds as 0: the scene's numbers are too large or too small\n",
@@ -326,6 +384,8 @@ class RenderJob {
 
 int run_render(const RenderRequest &request, const Services &services) {
     check_outputs(request.outputs);
+    if (!request.method.options.dump_kernels.empty())
+        check_folder(request.method.options.dump_kernels);
     return RenderJob(request, services).run();
 }
 

@@ -20,7 +20,8 @@ struct RenderRequest {
 };
 
 /// Renders and writes. Returns ExitCode::success, or ExitCode::interrupted after a signal, when the image of the
-/// samples so far was written. Throws Error. That the outputs can be written is checked before anything else.
+/// samples so far was written, if there are any. Where there is no sample, no file is touched. Throws Error. That the
+/// outputs can be written is checked before anything else.
 int run_render(const RenderRequest &request, const Services &services);
 
 } // namespace gradus

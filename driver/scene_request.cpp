@@ -1,6 +1,7 @@
 #include "driver/scene_request.h"
 
 #include "driver/limits_option.h"
+#include "driver/number_checks.h"
 #include "runtime/error.h"
 
 #include <CLI/CLI.hpp>
@@ -122,13 +123,13 @@ void add_scene_options(CLI::App &command, SceneRequest &request) {
         ->group(group);
     command
         .add_option("--max-depth", request.max_depth, "Edges of a path at most; 1: lights seen directly; -1: no limit")
-        ->check(CLI::Range(-1, 1 << 30))
+        ->transform(whole_number_between(-1, 1 << 30))
         ->group(group);
     command.add_option("--rr-depth", request.rr_depth, "Russian roulette from this depth on")
-        ->check(CLI::Range(1, 1 << 30))
+        ->transform(whole_number_between(1, 1 << 30))
         ->group(group);
     command.add_option("--spp", request.samples_per_pixel, "Samples a pixel; without it what the file says")
-        ->check(CLI::Range(std::uint64_t(1), std::uint64_t(1) << 30))
+        ->transform(whole_number_between(1, 1 << 30))
         ->group(group);
 }
 

@@ -14,8 +14,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <new>
 
@@ -37,10 +39,10 @@ void check_inputs_are_kept(const SolveRequest &request) {
 void check_options(const SolveRequest &request) {
     if (request.options.weigh_by_variance && request.options.norm == PoissonNorm::l1)
         refuse("--weights variance is for the norm L2: add --norm L2");
-    check_alpha(request.reconstruction, request.alpha_is_given);
+    check_alpha(request.reconstruction, request.alpha_is_given, request.options.alpha);
     if (needs_halves(request.reconstruction) && !(request.options == PoissonOptions{.norm = PoissonNorm::l2}))
         refuse(fmt::format("--reconstruction {} chooses weights and method by itself: leave --weights, --method, "
-                           "--tolerance and --iterations out",
+                           "--tolerance, --iterations and --per-channel out",
                            reconstruction_name(request.reconstruction)));
     if (request.guide && request.reconstruction != Reconstruction::guided)
         refuse("--guide is of one reconstruction: add --reconstruction guided");
@@ -58,7 +60,8 @@ class SolveJob {
         request_.sources.features = request_.reconstruction == Reconstruction::guided;
     }
 
-    void run() {
+    /// Whether all values of the image are finite.
+    bool run() {
         if (!request_.sources.variances)
             for (const auto &[layer, path] : request_.sources.files)
                 if (is_variance(layer))
@@ -67,7 +70,7 @@ class SolveJob {
         if (request_.sources.features && images_.channels.size() != 3)
             throw Error(ExitCode::image, "--reconstruction guided is for images of R, G and B");
         solve();
-        write_results();
+        return write_results();
     }
 
   private:
@@ -173,11 +176,17 @@ class SolveJob {
         return image;
     }
 
-    void write_results() {
+    bool write_results() {
         Image image = result_image();
+        const std::uint64_t non_finite = count_non_finite(image);
+        for (Channel &channel : image.channels)
+            std::replace_if(
+                channel.values.begin(), channel.values.end(), [](float value) { return !std::isfinite(value); }, 0.0f);
         write_image(image, request_.outputs.image);
-        if (const std::uint64_t count = count_non_finite(image); count > 0)
-            warn(fmt::format("{} values of the image are NaN or infinite", count));
+        if (non_finite > 0)
+            print_message(fmt::format("gradus: error: {} values of the image are NaN or infinite; the file holds them "
+                                      "as 0\n",
+                                      non_finite));
         // L1 comes ever closer and is stopped by count as a rule; L2 that does not arrive is not the solution.
         if (!report_.converged && request_.options.iterations == 0 && request_.options.norm == PoissonNorm::l2)
             warn("the tolerance was not reached");
@@ -192,6 +201,7 @@ class SolveJob {
             write_json(solve_report_json(record_, report_), request_.outputs.statistics);
         if (!request_.quiet && request_.outputs.statistics != "-")
             print_result(solve_report_text(report_));
+        return non_finite == 0;
     }
 
     SolveRequest request_;
@@ -221,11 +231,11 @@ int run_solve(SolveRequest request, const Services &services) {
     check_outputs(request.outputs);
     check_inputs_are_kept(request);
     try {
-        SolveJob(std::move(request), services).run();
+        const bool is_finite = SolveJob(std::move(request), services).run();
+        return static_cast<int>(is_finite ? ExitCode::success : ExitCode::failure);
     } catch (const std::bad_alloc &) {
         throw Error(ExitCode::device, "out of memory: the images are too large for this machine");
     }
-    return static_cast<int>(ExitCode::success);
 }
 
 } // namespace gradus

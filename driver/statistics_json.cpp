@@ -103,14 +103,9 @@ nlohmann::json statistics_to_json(const RenderRecord &record, const Statistics &
                    {"estimated_error", number_or_null(statistics.estimated_error)},
                    {"samples", statistics.samples},
                    {"samples_per_second", rate(double(statistics.samples))},
-                   {"light_paths", statistics.light_paths},
-                   {"photons", statistics.photons},
-                   {"gathering", gathering_json(statistics)},
                    {"stages", stages},
                    {"rays", rays},
                    {"rays_per_second", rate(double(ray_count))},
-                   {"shifts", statistics.shifts},
-                   {"walks", statistics.walks},
                    {"non_finite", statistics.non_finite},
                    {"compile_seconds", {{"total", compile_total}, {"kernels", statistics.compile_seconds}}},
                    {"memory",
@@ -120,6 +115,16 @@ nlohmann::json statistics_to_json(const RenderRecord &record, const Statistics &
                    {"prepare_seconds", record.prepare_seconds},
                    {"render_seconds", seconds},
                    {"wall_seconds", record.wall_seconds}};
+    // Each where its method is.
+    if (!statistics.surfaces.gathered.empty()) {
+        result["light_paths"] = statistics.light_paths;
+        result["photons"] = statistics.photons;
+        result["gathering"] = gathering_json(statistics);
+    }
+    if (!statistics.shifts.empty())
+        result["shifts"] = statistics.shifts;
+    if (!statistics.walks.empty())
+        result["walks"] = statistics.walks;
     if (statistics.choice)
         result["choice"] = choice_json(*statistics.choice);
     return result;

@@ -26,8 +26,6 @@ PhotonMapper::PhotonMapper(Device &device, const Scene &scene, const RenderOptio
       add_(stages_.add({.name = "gather_add", .numbers = {"first"}})), bias_(session_, stages_, pairs_, options, false),
       film_(session_, stages_) {
     check_error(options, "sppm");
-    if (options.only_chains)
-        throw Error(ExitCode::usage, "--only-chains is of gpm");
     statistics_.surfaces = gathering_surfaces(scene, options.gather_roughness);
     total_ = std::uint64_t(session_.pixels()) * session_.settings.samples_per_pixel;
     allocate();

@@ -29,6 +29,8 @@ std::vector<std::string> method_names() {
 
 std::unique_ptr<Method> make_method(const std::string &name, Device &device, const Scene &scene,
                                     const RenderOptions &options) {
+    if (options.only_chains && name != "gpm")
+        throw Error(ExitCode::usage, "--only-chains is of gpm");
 #define GRADUS_METHOD_OF_NAME(method, function)                                                                        \
     if (name == method)                                                                                                \
         return function(device, scene, options);

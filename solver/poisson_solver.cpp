@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -175,6 +176,8 @@ PoissonReport PoissonSolver::Implementation::solve(const Inputs &images, const P
         all_read();
     report.alpha = options.alpha_from_variances ? problem.alpha_from_variances() : options.alpha;
     const bool l2 = options.norm == PoissonNorm::l2;
+    if (!l2 && options.alpha_from_variances && report.alpha > 0)
+        report.alpha = std::max(report.alpha, least_alpha_of_absolute_values);
     if (l2)
         least_squares(images, options, report.alpha, report);
     else

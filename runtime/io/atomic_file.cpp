@@ -81,6 +81,15 @@ void remove_abandoned(const fs::path &folder) {
     }
 }
 
+/// Whether a sticky folder, as /tmp is, lets this process put a file in the place of that.
+bool may_replace(const fs::path &target) {
+    struct stat file = {}, folder = {};
+    if (::lstat(target.c_str(), &file) != 0 || ::stat(target.parent_path().c_str(), &folder) != 0)
+        return true;
+    const uid_t user = ::geteuid();
+    return (folder.st_mode & S_ISVTX) == 0 || user == 0 || file.st_uid == user || folder.st_uid == user;
+}
+
 /// A new file beside its target that removes itself unless it was given the target's name. It is locked while its
 /// process lives, so that others can tell it from what a killed one left.
 class TemporaryFile {
@@ -169,6 +178,12 @@ void check_writable(const std::string &path) {
     const fs::path target = resolve_target(path);
     remove_abandoned(target.parent_path());
     const TemporaryFile probe(path, target);
+    // What the probe, whose name is another, does not meet.
+    const long longest = ::pathconf(target.parent_path().c_str(), _PC_NAME_MAX);
+    if (longest > 0 && target.filename().string().size() > std::size_t(longest))
+        fail(path, std::strerror(ENAMETOOLONG));
+    if (!may_replace(target))
+        fail(path, "it is somebody else's, in a folder where only owners may replace files");
 }
 
 } // namespace gradus

@@ -17,6 +17,7 @@ struct LoadLimits {
     std::uint64_t mesh_bytes = 4ull << 30;    ///< of mesh files, as often as shapes read them; compressed ones unfolded
     std::uint64_t geometry_bytes = 4ull << 30; ///< of vertices and triangles of all shapes
     std::uint64_t texture_bytes = 4ull << 30;  ///< of all textures' pixels, as they are kept
+    std::uint64_t blend_parts = 1000;          ///< BSDFs in one blend, as often as it holds them
     std::uint64_t unfolding = 64;              ///< how many times its size a compressed mesh may unfold to, ...
     std::uint64_t unfolded_bytes = 64u << 20;  ///< ... if that is more than this
     std::uint64_t images = 1;                  ///< times what read_image() takes
@@ -25,7 +26,7 @@ struct LoadLimits {
         LoadLimits more = *this;
         for (std::uint64_t *limit : {&more.xml_bytes, &more.includes, &more.elements, &more.value_bytes,
                                      &more.expanded_bytes, &more.mesh_bytes, &more.geometry_bytes, &more.texture_bytes,
-                                     &more.unfolding, &more.unfolded_bytes, &more.images})
+                                     &more.blend_parts, &more.unfolding, &more.unfolded_bytes, &more.images})
             *limit *= factor;
         return more;
     }

@@ -75,8 +75,8 @@ class SceneBuilder {
     FoundTexture texture(const Element &element, double lowest, double highest);
     /// What texture() or a parameter has given an index of.
     const Texture &texture_at(std::int32_t index) const { return scene_.textures[std::size_t(index)]; }
-    /// A mixture of two sides of surfaces (Blend in runtime/scene/scene.h).
-    Bsdf blend(const Bsdf &first, const Bsdf &second, const Number &weight);
+    /// A mixture of two sides of surfaces (Blend in runtime/scene/scene.h). Throws SceneError where it has too many parts.
+    Bsdf blend(const Bsdf &first, const Bsdf &second, const Number &weight, const Location &location);
     /// The material with a map under it, or under each part of a blend. Throws SceneError where one has a map already.
     Material with_map(Material material, const NormalTexture &map, const Location &location);
     /// Whether light passes a side of a surface, or any part of a blend there.
@@ -156,6 +156,7 @@ class SceneBuilder {
     /// Each is built once, however many refer to it, and fails once.
     std::map<const Element *, std::variant<Material, SceneError>> built_materials_;
     std::vector<std::string> wanted_attributes_;
+    std::vector<std::uint64_t> blend_parts_; ///< of each of the scene's blends
     std::map<const Element *, Emitter> area_emitters_;
     std::map<const Element *, std::variant<Texture, SceneError>> built_textures_;
     std::map<std::tuple<const Element *, double, double>, FoundTexture> textures_;

@@ -55,7 +55,16 @@ std::uint32_t SceneBuilder::boundary_material() {
     return std::uint32_t(boundary_material_);
 }
 
-Bsdf SceneBuilder::blend(const Bsdf &first, const Bsdf &second, const Number &weight) {
+Bsdf SceneBuilder::blend(const Bsdf &first, const Bsdf &second, const Number &weight, const Location &location) {
+    // Whatever goes through a blend meets a part as often as it is held, and blends of a blend twice are soon millions.
+    const auto parts_of = [this](const Bsdf &part) {
+        return part.blend == no_blend ? 1 : blend_parts_[std::size_t(part.blend)];
+    };
+    const std::uint64_t parts = parts_of(first) + parts_of(second);
+    if (parts > limits_.blend_parts)
+        throw SceneError(location,
+                         "a blend of more than " + std::to_string(limits_.blend_parts) + " BSDFs" + limits_hint);
+    blend_parts_.push_back(parts);
     Blend blend;
     blend.weight = weight;
     blend.first = std::uint32_t(scene_.blended.size());
@@ -72,7 +81,7 @@ Bsdf SceneBuilder::with_map(const Bsdf &bsdf, const NormalTexture &map, const Lo
     if (bsdf.blend != no_blend) {
         const Blend parts = scene_.blends[std::size_t(bsdf.blend)];
         const Bsdf first = with_map(Bsdf(scene_.blended[parts.first]), map, location);
-        return blend(first, with_map(Bsdf(scene_.blended[parts.second]), map, location), parts.weight);
+        return blend(first, with_map(Bsdf(scene_.blended[parts.second]), map, location), parts.weight, location);
     }
     if (bsdf.map.kind != NormalTexture::Kind::none)
         throw SceneError(location, "a normal map or bump map around another one is not supported");

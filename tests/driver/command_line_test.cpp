@@ -1,4 +1,5 @@
 // The command line: help, versions, mistakes, and the small commands.
+#include "runtime/io/image_io.h"
 #include "tests/driver/child_process.h"
 
 #include <gmock/gmock.h>
@@ -64,6 +65,14 @@ TEST_F(CommandLine, OptionsMayStandAnywhereAndDefinitionsTakeOneWordEach) {
     EXPECT_EQ(run({"render", "-D", "a=1", "scene.xml", "-Db=2", "-o", "out.exr", "--max-depth", "-1", "-D", "c=x=y"})
                   .exit_code,
               0);
+}
+
+/// As `seq -w` writes them.
+TEST_F(CommandLine, WholeNumbersAreDecimal) {
+    ASSERT_EQ(run({"render", "scene.xml", "-o", "out.exr", "--seed", "010", "--spp", "08"}).exit_code, 0);
+    const Image image = read_image(at("out.exr"));
+    EXPECT_EQ(image.metadata.at("seed"), "10");
+    EXPECT_EQ(image.metadata.at("spp"), "8");
 }
 
 TEST_F(CommandLine, InspectPrintsSceneAndTraits) {

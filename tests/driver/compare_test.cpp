@@ -138,6 +138,11 @@ TEST_F(Compare, TheSameSeedTwiceFails) {
     const Outcome outcome = run({"compare", "seed1.exr", "seed1.exr", "reference.exr", "--check"});
     EXPECT_EQ(outcome.exit_code, 1);
     EXPECT_THAT(outcome.out, HasSubstr("the same seed 1"));
+    // Nor is a reference of that seed another sample. relMSE alone may be measured against it.
+    const Outcome reference = run({"compare", "seed1.exr", "seed1.exr", "--variance", "variance.exr", "--check"});
+    EXPECT_EQ(reference.exit_code, 1);
+    EXPECT_THAT(reference.out, HasSubstr("the same seed 1"));
+    EXPECT_EQ(run({"compare", "seed1.exr", "seed1.exr", "--max-relmse", "1", "--check"}).exit_code, 0);
 }
 
 TEST_F(Compare, ACheckNeedsSomethingToJudgeBy) {

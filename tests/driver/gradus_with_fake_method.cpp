@@ -1,5 +1,7 @@
 // The gradus program with a scene loader and a method that tests control by scene parameters (-D):
 //   batch_ms=N   what a batch of one sample a pixel takes (0)
+//   patient_ms=N the first batch takes so long, but for being told to stop
+//   endless=N    after N samples a pixel batches end only by being told to stop
 //   fail=memory  the render runs out of memory; fail=strange: throws what is no exception; memory-later, device-later:
 //                after three samples a pixel; memory-image: and in image(), too; memory-partial: in the first image()
 //   reads=FILE   the loader says that it read this file, too
@@ -16,6 +18,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <map>
 #include <new>
@@ -51,8 +54,8 @@ LoadedScene load_fake_scene(const std::string &path, const LoadOptions &options)
 class FakeMethod : public Method {
   public:
     FakeMethod(const std::string &method, const Scene &scene, const RenderOptions &options)
-        : automatic_(method == "auto"), seed_(options.seed), aov_(options.aov), error_(options.error),
-          samples_per_pixel_(scene.settings.samples_per_pixel) {
+        : stop_(options.stop), automatic_(method == "auto"), seed_(options.seed), aov_(options.aov),
+          error_(options.error), samples_per_pixel_(scene.settings.samples_per_pixel) {
         width_ = scene.film.crop_width > 0 ? scene.film.crop_width : scene.film.width;
         height_ = scene.film.crop_height > 0 ? scene.film.crop_height : scene.film.height;
         if (options.on_compiled)
@@ -75,6 +78,11 @@ class FakeMethod : public Method {
             throw Error(ExitCode::device, "the fake device is lost");
         if (!parameter("batch_ms").empty())
             std::this_thread::sleep_for(std::chrono::milliseconds(std::stoi(parameter("batch_ms"))));
+        if (done_ == 0 && !parameter("patient_ms").empty())
+            for (int slept = 0; slept < std::stoi(parameter("patient_ms")); slept += 2)
+                sleep_or_stop();
+        while (!parameter("endless").empty() && done_ >= std::stoull(parameter("endless")))
+            sleep_or_stop();
         ++done_;
         return done_ < samples_per_pixel_;
     }
@@ -111,8 +119,14 @@ class FakeMethod : public Method {
     }
 
   private:
+    void sleep_or_stop() const {
+        if (stop_())
+            throw Stopped();
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
     std::uint64_t pixels() const { return std::uint64_t(width_) * height_; }
 
+    std::function<bool()> stop_;
     bool automatic_;
     std::uint64_t seed_;
     bool aov_, error_;

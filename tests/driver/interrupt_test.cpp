@@ -58,6 +58,16 @@ TEST_F(Interrupt, ASignalDuringThePilotEndsAtOnceAndLeavesNothing) {
     EXPECT_THAT(files(), ElementsAre("scene.xml"));
 }
 
+TEST_F(Interrupt, ASignalBeforeTheFirstSamplesTouchesNoFile) {
+    ChildProcess process({"render", "scene.xml", "-o", "out.exr", "--stats", "out.json", "-D", "endless=0"}, folder);
+    sleep_ms(500);
+    process.send(SIGINT);
+    const Outcome outcome = process.wait();
+    EXPECT_EQ(outcome.exit_code, 130) << outcome.err;
+    EXPECT_THAT(outcome.err, ::testing::HasSubstr("interrupted before the first samples"));
+    EXPECT_THAT(files(), ElementsAre("scene.xml"));
+}
+
 TEST_F(Interrupt, ASecondSignalEndsAtOnce) {
     // The file is there once the first batch is done; the second takes another 1.5 s.
     ChildProcess process(

@@ -131,6 +131,31 @@ TEST_F(Render, TimeEndsTheRender) {
     EXPECT_EQ(std::stof(image.metadata.at("spp")), samples);
 }
 
+TEST_F(Render, ASampleOfEachPixelIsWaitedForLongerThanTheTime) {
+    ASSERT_EQ(render({"-o", "out.exr", "--time", "0.01", "-D", "patient_ms=1500"}).exit_code, 0);
+    EXPECT_EQ(value(read_image(at("out.exr")), "G"), 1);
+    const std::string before = text_of("out.exr");
+    const auto start = std::chrono::steady_clock::now();
+    const Outcome outcome = render({"-o", "out.exr", "--time", "0.01", "--seed", "3", "-D", "endless=0"});
+    EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 20);
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_THAT(outcome.err, HasSubstr("gradus: error: no sample was done"));
+    EXPECT_EQ(text_of("out.exr"), before);
+}
+
+TEST_F(Render, ABatchThatTakesFarLongerThanTheTimeIsGivenUp) {
+    ASSERT_EQ(render({"-o", "out.exr", "--time", "0.01", "-D", "endless=1"}).exit_code, 0);
+    EXPECT_EQ(value(read_image(at("out.exr")), "G"), 1);
+}
+
+/// The error is first looked at after 16 samples a pixel: the time ends it before.
+TEST_F(Render, TimeEndsARenderThatWaitsForItsError) {
+    ASSERT_EQ(render({"-o", "out.exr", "--time", "0.1", "--until-error", "1e-6", "-D", "error=1", "-D", "endless=3"})
+                  .exit_code,
+              0);
+    EXPECT_EQ(value(read_image(at("out.exr")), "G"), 3);
+}
+
 TEST_F(Render, SamplesEndATimedRenderWhereBothAreGiven) {
     ASSERT_EQ(render({"-o", "out.exr", "--time", "50", "--spp", "3"}).exit_code, 0);
     EXPECT_EQ(value(read_image(at("out.exr")), "G"), 3);
@@ -291,6 +316,7 @@ TEST_F(Render, OutputsAreCheckedBeforeTheRender) {
     const std::vector<std::vector<std::string>> cases = {{"-o", "missing/out.exr"},
                                                          {"-o", "/proc/out.exr"},
                                                          {"-o", "scene.xml/out.exr"},
+                                                         {"-o", std::string(300, 'a') + ".exr"},
                                                          {"-o", "out.exr", "--stats", "missing/out.json"}};
     for (std::vector<std::string> options : cases) {
         options.insert(options.end(), {"-D", "batch_ms=60000"});
@@ -299,6 +325,8 @@ TEST_F(Render, OutputsAreCheckedBeforeTheRender) {
         EXPECT_THAT(outcome.err, HasSubstr("gradus: error: cannot write"));
         EXPECT_THAT(files(), ElementsAre("scene.xml"));
     }
+    for (const char *dump : {"scene.xml", "/proc/kernels"})
+        EXPECT_EQ(render({"-o", "out.exr", "--dump-kernels", dump, "-D", "batch_ms=60000"}).exit_code, 5) << dump;
     std::filesystem::create_directory(folder / "folder.exr");
     EXPECT_EQ(render({"-o", "folder.exr"}).exit_code, 5);
 }
@@ -308,6 +336,12 @@ TEST_F(Render, AFullDiskLeavesNothingHalfWritten) {
     EXPECT_EQ(outcome.exit_code, 5) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("File too large"));
     EXPECT_THAT(files(), ElementsAre("scene.xml"));
+}
+
+TEST_F(Render, AnImageThatCannotBeWrittenTakesNoStatisticsWithIt) {
+    const Outcome outcome = render({"-o", "out.exr", "--size", "1000x1000", "--stats", "-"}, 5000);
+    EXPECT_EQ(outcome.exit_code, 5) << outcome.err;
+    EXPECT_EQ(nlohmann::json::parse(outcome.out).at("samples"), 4000000);
 }
 
 TEST_F(Render, AFailedWriteKeepsTheOldImage) {

@@ -2,6 +2,8 @@
 #include "driver/program.h"
 #include "driver/solve_job.h"
 #include "runtime/error.h"
+#include "runtime/film/metrics.h"
+#include "runtime/io/image_io.h"
 #include "tests/driver/gradient_images.h"
 
 #include <gmock/gmock.h>
@@ -233,7 +235,7 @@ TEST_F(SolveOptions, MetadataSaysWhatWasDone) {
 TEST_F(SolveOptions, MistakesOfTheCall) {
     const std::string layers = write_layers("layers.exr");
     const std::vector<std::pair<std::vector<std::string>, const char *>> cases = {
-        {{"--alpha", "-0.1"}, "'-0.1' is neither a number from 0 on nor auto"},
+        {{"--alpha", "-0.1"}, "'-0.1' is neither a number from 0 to 1e+12 nor auto"},
         {{"--alpha", "nan"}, "'nan' is neither"},
         {{"--alpha", "inf"}, "'inf' is neither"},
         {{"--alpha", "1e999"}, "'1e999' is neither"},
@@ -253,6 +255,7 @@ TEST_F(SolveOptions, MistakesOfTheCall) {
         {{"--method", "jacobi", "--damping", "1.1"}, "'1.1' is not above 0"},
         {{"--method", "jacobi", "--damping", "nan"}, "'nan' is not above 0"},
         {{"--damping", "0.5"}, "--damping is for one method: add --method jacobi"},
+        {{"--alpha", "1e-5"}, "--alpha 1e-05 is lost in rounding"},
         {{"--weights", "other"}, "--weights"},
         {{"--weights", "variance"}, "--weights variance is for the norm L2: add --norm L2"},
         {{"--layer", "dx"}, "'dx' names no layer: write IMAGE=NAME"},
@@ -344,9 +347,10 @@ TEST_F(SolveOptions, WarnsWhereTheResultIsNotAsAskedFor) {
     Image image = counting_image(3, 2, layers({{"primal", 100}, {"dx", 200}, {"dy", 300}}));
     image.channels[0].values[0] = std::numeric_limits<float>::infinity();
     const std::string path = write("infinite.exr", image);
-    EXPECT_THAT(run({path, "-o", at("out.exr")}).err, HasSubstr("warning: 1 values of the image are NaN or infinite"));
-    const Result quiet = run({path, "-o", at("out.exr"), "--quiet"});
-    EXPECT_EQ(quiet.err + quiet.out, "");
+    const Result infinite = run({path, "-o", at("out.exr"), "--quiet"});
+    EXPECT_EQ(infinite.exit_code, 1);
+    EXPECT_THAT(infinite.err, HasSubstr("error: 1 values of the image are NaN or infinite"));
+    EXPECT_EQ(count_non_finite(read_image(at("out.exr"))), 0u);
 }
 
 } // namespace

@@ -63,6 +63,8 @@ TEST(StatisticsJson, ARenderOfNoTimeHasNoInfiniteRates) {
     Statistics statistics;
     statistics.rays = {{"extension", 1}};
     statistics.samples = 1;
+    EXPECT_FALSE(statistics_to_json({}, statistics).contains("gathering")) << "no photons were asked for";
+    statistics.surfaces.gathered["diffuse"] = 1;
     const nlohmann::json json = statistics_to_json({}, statistics);
     EXPECT_EQ(json.at("rays_per_second"), 0);
     EXPECT_EQ(json.at("samples_per_second"), 0);

@@ -180,6 +180,21 @@ TEST_F(HostileScene, ReferencesInChains) {
                 HasSubstr("deep through <ref>s"));
 }
 
+/// Twice as many BSDFs with each.
+TEST_F(HostileScene, BlendsOfBlends) {
+    const auto nested = [](int depth) {
+        std::string text = "<bsdf type=\"diffuse\" id=\"b0\"/>\n";
+        for (int i = 1; i <= depth; ++i) {
+            const std::string before = "<ref id=\"b" + std::to_string(i - 1) + "\"/>";
+            text += "<bsdf type=\"blendbsdf\" id=\"b" + std::to_string(i) + "\">" + before + before +
+                    "<float name=\"weight\" value=\"0.5\"/></bsdf>\n";
+        }
+        return scene_around(text + "<shape type=\"cube\"><ref id=\"b" + std::to_string(depth) + "\"/></shape>");
+    };
+    EXPECT_THAT(error_of_text(nested(39)), HasSubstr("a blend of more than 1000 BSDFs"));
+    EXPECT_EQ(error_of_text(nested(9)), "");
+}
+
 /// A long spectrum is read once, not for each surface that has it.
 TEST_F(HostileScene, OneSpectrumForManySurfaces) {
     std::string spectrum;

@@ -42,12 +42,12 @@ Material bsdf_blendbsdf(Properties &properties, SceneBuilder &builder) {
             if (builder.transmits(part.front))
                 throw SceneError(properties.location(),
                                  "a blend of a two-sided BSDF and of one that lets light through is not supported");
-    material.front = builder.blend(parts[0].front, parts[1].front, weight);
+    material.front = builder.blend(parts[0].front, parts[1].front, weight, properties.location());
     if (material.two_sided)
         material.back = parts[0].back == parts[0].front && parts[1].back == parts[1].front && parts[0].two_sided &&
                                 parts[1].two_sided
                             ? material.front
-                            : builder.blend(back_of(parts[0]), back_of(parts[1]), weight);
+                            : builder.blend(back_of(parts[0]), back_of(parts[1]), weight, properties.location());
     return material;
 }
 
