@@ -211,5 +211,11 @@ TEST_F(FullOclgrind, GradientsOfPhotons) {
                               "photon_pass end", "pair_difference_sum", "gradient_gather"}));
 }
 
+TEST_F(FullOclgrind, GradientsOfPhotonsByGlossySurfaces) {
+    EXPECT_THAT(render("cornell-box-glossy.xml", {"--method", "gpm", "--norm", "L2", "--size", "6x5", "--photons",
+                                                  "150", "--radius", "10%", "--batch-size", "64", "--spp", "1"}),
+                IsSupersetOf({"photon_pass roughconductor_ggx", "photon_pass roughdielectric_ggx"}));
+}
+
 } // namespace
 } // namespace gradus
