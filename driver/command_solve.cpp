@@ -196,7 +196,7 @@ void add_solver_options(CLI::App &command, SolveRequest &request) {
         .add_option("--tolerance", options.tolerance,
                     "Where to stop. L2: relative residual, 1e-5; L1: relative decrease of the sum by a step, 1e-4")
         ->type_name("NUMBER")
-        ->check(check("", complain_unless_positive))
+        ->check(positive_number())
         ->group(group);
     command
         .add_option(

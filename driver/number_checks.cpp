@@ -26,12 +26,13 @@ std::optional<double> finite_number(const std::string &text) {
     return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
-std::string complain_unless_positive(std::string &text) {
-    const auto number = finite_number(text);
-    return number && *number > 0 ? "" : fmt::format("'{}' is not a number above 0", text);
+CLI::Validator positive_number() {
+    const auto complaint = [](const std::string &text) {
+        const auto number = finite_number(text);
+        return number && *number > 0 ? std::string() : fmt::format("'{}' is not a number above 0", text);
+    };
+    return CLI::Validator(complaint, "above 0");
 }
-
-CLI::Validator positive_number() { return CLI::Validator(complain_unless_positive, "above 0"); }
 
 CLI::Validator number_between(double least, double most) {
     const auto complaint = [least, most](const std::string &text) {
@@ -48,7 +49,8 @@ CLI::Validator whole_number_between(std::int64_t least, std::uint64_t most) {
         const bool is_negative = text.starts_with('-');
         const auto below = is_negative ? number_of<std::int64_t>(text) : std::nullopt;
         const auto above = is_negative ? std::nullopt : number_of<std::uint64_t>(text);
-        if (below ? *below < least : !above || *above > most || (least > 0 && *above < std::uint64_t(least)))
+        const bool is_enough = below ? *below >= least : least < 0 || (above && *above >= std::uint64_t(least));
+        if (!is_enough || !(below || (above && *above <= most)))
             return fmt::format("'{}' is not a whole number from {} to {}", text, least, most);
         text = below ? fmt::format("{}", *below) : fmt::format("{}", *above);
         return std::string();

@@ -15,9 +15,6 @@ namespace gradus {
 /// The number that the whole text is, or nothing; NaN and infinity are none.
 std::optional<double> finite_number(const std::string &text);
 
-/// A complaint about a text that is not a number above 0, or nothing: a check for CLI11.
-std::string complain_unless_positive(std::string &text);
-
 /// Checks, for Option::check(): a number above 0; a number from `least` to `most`.
 CLI::Validator positive_number();
 CLI::Validator number_between(double least, double most);

@@ -56,7 +56,8 @@ inline constexpr double least_alpha_of_absolute_values = 1e-4;
 
 struct PoissonOptions {
     PoissonNorm norm = PoissonNorm::l1;
-    /// At least 0; of L1, 0 or least_alpha_of_absolute_values. With 0, I0 decides the mean of each channel and nothing else.
+    /// 0, or at least least_alpha_of_absolute_values with L1, above 0 with L2. With 0, I0 decides the mean of each
+    /// channel and nothing else.
     double alpha = 0.2;
     /// alpha^2 = (mean variance of dx and dy) / (mean variance of primal) instead (Kettunen et al. 2015, eq. 12). Needs
     /// the variances.

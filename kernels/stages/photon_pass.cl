@@ -36,7 +36,8 @@ STAGE photon_pass(uint count, uint unit, uint first, uint pairs, uint photon_row
 #endif
         if (is_served) {
             const vec3 out = v3_normalize(v3_sub(next, position)), back = AT_V3(walked_vertex, wi, vertex);
-            const material m = material_load(materials, AT_UINT(walked_vertex, material, vertex), unit);
+            const uint there = AT_UINT(walked_vertex, material, vertex);
+            const material m = material_load(materials, there, unit);
             const frame axes = VERTEX_FRAME(walked_vertex, vertex, m);
             const vec3 wi = frame_to_local(axes, back), wo = frame_to_local(axes, out);
 #if BSDF_IS_DIRAC
@@ -49,9 +50,8 @@ STAGE photon_pass(uint count, uint unit, uint first, uint pairs, uint photon_row
             f.pdf = is_that ? s.pdf : R(0);
             f.value = rgb_scale(s.weight, f.pdf);
 #else
-            const uint record_there = AT_UINT(walked_vertex, material, vertex);
             bsdf_value f = PASTE(BSDF, _evaluate)(m, wi, wo, transport_importance);
-            f.pdf = material_bin[record_there] == chain_bin ? f.pdf : R(0); /* or no walk would lead back */
+            f.pdf = material_bin[there] == chain_bin ? f.pdf : R(0); /* or no walk would lead back */
 #endif
             real turned = R(1);
 #if TRAIT_SHADING_NORMALS

@@ -75,7 +75,8 @@ class SceneBuilder {
     FoundTexture texture(const Element &element, double lowest, double highest);
     /// What texture() or a parameter has given an index of.
     const Texture &texture_at(std::int32_t index) const { return scene_.textures[std::size_t(index)]; }
-    /// A mixture of two sides of surfaces (Blend in runtime/scene/scene.h). Throws SceneError where it has too many parts.
+    /// A mixture of two sides of surfaces (Blend in runtime/scene/scene.h). Throws SceneError where it has too many
+    /// parts.
     Bsdf blend(const Bsdf &first, const Bsdf &second, const Number &weight, const Location &location);
     /// The material with a map under it, or under each part of a blend. Throws SceneError where one has a map already.
     Material with_map(Material material, const NormalTexture &map, const Location &location);

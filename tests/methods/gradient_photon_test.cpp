@@ -145,7 +145,6 @@ double difference_of_stripes(const Bsdf &pane, const Bsdf &wall) {
     options.photons = 400'000;
     options.radius->value = 0.5;
     options.only_chains = true;
-
     do_not_weigh(options);
     const Rendered rendered = render(maker.scene, options, "gpm");
     EXPECT_GT(rendered.statistics.shifts.at("walked"), 1000u);
