@@ -159,7 +159,7 @@ GradientPhotonMapper::GradientPhotonMapper(Device &device, const Scene &scene, c
     check_error(options, "gpm");
     film_.tell_no_error();
     if (has_chains())
-        manifold_walk_.emplace(session_, stages_, RowsOf::path, 1, WalkSettings{.most_vertices = most_inner});
+        manifold_walk_.emplace(session_, stages_, WalkSettings{.most_vertices = most_inner});
     const std::vector<std::uint32_t> bins = material_bins(scene, session_, options);
     session_.scene_buffers.emplace_back(device, "material_bin", bins.data(), bins.size() * sizeof(bins[0]));
     statistics_.surfaces = gathering_surfaces(scene, options.gather_roughness);

@@ -44,7 +44,7 @@ TableList joined(TableList a, const TableList &b) {
 }
 
 TableRows table_rows(const Session &session, std::uint32_t batch, std::uint32_t slots) {
-    return {batch, slot_rows(slots), session.pixels(), session.film.crop_width, chunks_of(batch)};
+    return {batch, odd_lines(slots), session.pixels(), session.film.crop_width, chunks_of(batch), odd_lines(batch)};
 }
 
 std::uint32_t begin_camera_paths(Stage &camera, Wavefront &paths, std::uint32_t first_pixel,

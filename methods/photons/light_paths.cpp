@@ -193,7 +193,7 @@ LightPaths::LightPaths(Session &session, Stages &consumers, const Scene &scene, 
 TableList LightPaths::tables() const {
     const double usual = 1.1 * photons_a_pass(film_pixels(session_)),
                  rows = wanted_ ? std::min(double(wanted_), usual) : usual;
-    const auto photons = slot_rows(std::uint32_t(rows));
+    const auto photons = odd_lines(std::uint32_t(rows));
     TableList list = {
         {.name = "photon",
          .rows = RowsOf::one,
@@ -320,7 +320,7 @@ void LightPaths::make_room(std::uint64_t rows) {
         return;
     if (rows > most_photons)
         throw Error(ExitCode::device, "these are more photons a pass than there can be; ask for fewer light paths");
-    const std::uint32_t more = slot_rows(std::uint32_t(std::min(rows + rows / 4, most_photons)));
+    const std::uint32_t more = odd_lines(std::uint32_t(std::min(rows + rows / 4, most_photons)));
     for (const char *table : {"photon", "photon_origin", "photon_order"})
         tables_->grow(table, more);
     bind_tables();

@@ -66,9 +66,8 @@ struct ManifoldWalk::Side {
     const char *chain, *vertex, *walked, *walked_vertex;
 };
 
-ManifoldWalk::ManifoldWalk(Session &session, Stages &stages, RowsOf rows_of, std::uint32_t multiple,
-                           const WalkSettings &settings)
-    : session_(session), rows_of_(rows_of), multiple_(multiple), settings_(settings),
+ManifoldWalk::ManifoldWalk(Session &session, Stages &stages, const WalkSettings &settings)
+    : session_(session), settings_(settings),
       events_(stages.add(walk_stage("events", "walk_events", "walk_events", {}))),
       queue_(stages.add(walk_stage("queue", "walk_queue", "walk_queue", {"most_vertices"}))),
       aim_(stages.add(walk_stage("aim", "walk_aim", "walk_aim", {}, {{"walk_old", "walk_next"}}))),
@@ -97,11 +96,10 @@ ManifoldWalk::ManifoldWalk(Session &session, Stages &stages, RowsOf rows_of, std
 TableList ManifoldWalk::tables() const {
     const std::uint32_t not_needed = session_.vertex_columns_not_needed();
     const auto of = [&](const char *name, std::uint32_t columns, std::uint32_t vertices = 1) -> TableDeclaration {
-        return {
-            .name = name, .rows = rows_of_, .multiple = multiple_ * vertices, .columns = columns, .is_cleared = true};
+        return {.name = name, .rows = RowsOf::chain, .multiple = vertices, .columns = columns, .is_cleared = true};
     };
     const auto of_uints = [&](const char *name) -> TableDeclaration {
-        return {.name = name, .rows = rows_of_, .multiple = multiple_, .is_uint = true};
+        return {.name = name, .rows = RowsOf::chain, .is_uint = true};
     };
     const std::uint32_t most = settings_.most_vertices;
     TableList list = {of("chain", chain_columns),
@@ -122,12 +120,7 @@ TableList ManifoldWalk::tables() const {
     for (const char *name : {"walk_bin", "walk_index"})
         list.push_back(of_uints(name));
     // Enough, and cleared for oclgrind, which takes some of it for never written.
-    list.push_back({.name = "walk_chunk",
-                    .rows = rows_of_,
-                    .multiple = multiple_,
-                    .columns = most,
-                    .is_uint = true,
-                    .is_cleared = true});
+    list.push_back({.name = "walk_chunk", .rows = RowsOf::chain, .columns = most, .is_uint = true, .is_cleared = true});
     list.push_back({.name = "walk_range", .rows = RowsOf::one, .columns = most + 1, .is_uint = true});
     list.push_back({.name = "walk_found", .rows = RowsOf::one, .columns = walk_outcomes + 1, .is_uint = true});
     return list;
@@ -135,7 +128,7 @@ TableList ManifoldWalk::tables() const {
 
 void ManifoldWalk::attach(Tables &tables) {
     tables_ = &tables;
-    chain_rows_ = static_cast<std::uint32_t>(tables.rows().of(rows_of_)) * multiple_;
+    chain_rows_ = tables.rows().chains;
 }
 
 void ManifoldWalk::run(std::uint32_t count) {

@@ -35,9 +35,8 @@ struct WalkSettings {
 /// chain is specular where that has kind_is_dirac, else glossy; the new one must be of the same kind, flags included.
 class ManifoldWalk {
   public:
-    /// Declares the stages `walk ...`. There is room for `multiple` chains for each of `rows_of`.
-    ManifoldWalk(Session &session, Stages &stages, RowsOf rows_of, std::uint32_t multiple,
-                 const WalkSettings &settings);
+    /// Declares the stages `walk ...`. There is room for TableRows::chains.
+    ManifoldWalk(Session &session, Stages &stages, const WalkSettings &settings);
 
     /// Tables to be written: `chain` and `chain_vertex`; to be read: `walked` and `walked_vertex`
     /// (kernels/shared/walk_tables.h), in the kernels of which `chain_rows` is the first two's rows and
@@ -66,8 +65,6 @@ class ManifoldWalk {
     void add_counts(std::uint32_t count);
 
     Session &session_;
-    RowsOf rows_of_;
-    std::uint32_t multiple_;
     WalkSettings settings_;
     Stage &events_, &queue_, &aim_, &follow_, &land_, &count_bins_, &scan_, &scatter_, &link_, &seen_, &turn_,
         &turn_vertices_, &return_, &count_;

@@ -30,6 +30,8 @@ std::uint64_t TableRows::of(RowsOf kind) const {
         return paths;
     case RowsOf::slot:
         return slots;
+    case RowsOf::chain:
+        return chains;
     case RowsOf::pixel:
         return pixels;
     case RowsOf::image_row:
@@ -104,9 +106,9 @@ void Tables::release_all_but(const std::vector<std::string> &kept) {
                   [&](const auto &entry) { return std::find(kept.begin(), kept.end(), entry.first) == kept.end(); });
 }
 
-std::uint32_t slot_rows(std::uint32_t paths) {
+std::uint32_t odd_lines(std::uint32_t rows) {
     constexpr std::uint32_t line = 64 / sizeof(float);
-    return ((paths + line - 1) / line | 1u) * line;
+    return ((rows + line - 1) / line | 1u) * line;
 }
 
 std::uint32_t default_batch_size(const Device &device) {
@@ -117,7 +119,7 @@ std::uint32_t choose_batch_size(Device &device, std::uint32_t requested, std::ui
                                 Precision precision) {
     const DeviceDescription &d = device.description();
     // By a batch of one path: what does not grow with the batch is small, or is the film, which must fit anyway.
-    const TableRows none = {}, one = {1, batches_a_pass, 0, 0, 0};
+    const TableRows none = {}, one = {1, batches_a_pass, 0, 0, 0, 1};
     std::uint64_t of_path = 0, largest_table = 1;
     for (const TableDeclaration &table : list) {
         const std::uint64_t bytes = table_bytes(table, one, precision) - table_bytes(table, none, precision);

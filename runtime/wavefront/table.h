@@ -14,7 +14,7 @@ namespace gradus {
 
 /// What a table has rows for. A batch is the paths that are in flight at once; a pass is more paths than that, and each
 /// has a slot: when some end, others begin in their rows.
-enum class RowsOf { path, slot, pixel, image_row, chunk, one };
+enum class RowsOf { path, slot, chain, pixel, image_row, chunk, one };
 
 /// A structure of arrays (kernels/shared/tables.h): `columns` columns of `multiple` rows for each path, slot, pixel...
 /// A table of no columns is not allocated.
@@ -44,6 +44,7 @@ struct TableRows {
     std::uint32_t pixels = 0; ///< of the crop
     std::uint32_t width = 0;  ///< of the crop
     std::uint32_t chunks = 0; ///< of the partition
+    std::uint32_t chains = 0; ///< that are walked at once
 
     std::uint64_t of(RowsOf rows) const;
 };
@@ -106,10 +107,10 @@ class Tables {
     std::uint64_t grown_ = 0;
 };
 
-/// Slots of a pass of so many paths, a few more than those. Kernels write many columns of these tables at once, at rows
-/// that are not quite in order: columns a power of two apart would share the same few lines of the caches, so they are
-/// an odd number of lines apart.
-std::uint32_t slot_rows(std::uint32_t paths);
+/// Rows for so many, a few more than those: an odd number of cache lines. For tables of which kernels read or write many
+/// columns at once, at rows that are not quite in order: columns a power of two apart would share the same few lines of
+/// the caches. Where rows are in order, as most of paths are, it gains nothing.
+std::uint32_t odd_lines(std::uint32_t rows);
 
 /// Passes are this many batches long.
 constexpr std::uint32_t batches_a_pass = 4;

@@ -98,7 +98,7 @@ void expect_differences_under_walls(const std::string &name, SceneMaker maker, c
 }
 
 /// What textures replace is far from what they are worth.
-TEST(GradientPhotonImage, HasDifferencesOfThePrimalUnderTexturedWalls) {
+TEST(FullGradientPhotonImage, HasDifferencesOfThePrimalUnderTexturedWalls) {
     SceneMaker maker(24, passes);
     maker.scene.textures = {random_texture(3, 3, Bitmap::Format::word), random_texture(4, 3, Bitmap::Format::word)};
     maker.scene.textures[0].scale = {0.2f, 0.2f, 0.2f};
@@ -192,8 +192,8 @@ TEST_P(GradientPhotonsFromInfinity, HaveDifferencesOfThePrimal) {
     EXPECT_GT(double(shifts.at("reconnected")), 0.5 * all);
     expect_differences_of_the_primal("infinity-" + light, maker.scene, options);
 }
-INSTANTIATE_TEST_SUITE_P(Image, GradientPhotonsFromInfinity, ::testing::Values("sun", "map", "constant"),
-                         [](const auto &info) { return std::string(info.param); });
+INSTANTIATE_TEST_SUITE_P(Image, GradientPhotonsFromInfinity, ::testing::Values("sun"), name_of_scene);
+INSTANTIATE_TEST_SUITE_P(Full, GradientPhotonsFromInfinity, ::testing::Values("map", "constant"), name_of_scene);
 
 /// Seen straight from above, a floor in the sun has no differences but for rounding: each photon is shared, or moved to
 /// where it is worth the same. A few, within rounding of a disc's border, have no shift.
@@ -225,7 +225,7 @@ TEST(GradientPhotonImage, HasNoDifferencesWhereASunShinesOnAFloor) {
 }
 
 /// Walls that mirror some photons and scatter others.
-TEST(GradientPhotonImage, HasDifferencesOfThePrimalUnderWallsOfPlastic) {
+TEST(FullGradientPhotonImage, HasDifferencesOfThePrimalUnderWallsOfPlastic) {
     SceneMaker maker(24, passes);
     maker.floor(-1, 1, 1, maker.material(diffuse(0.5)));
     expect_differences_under_walls("plastic-walls", maker, plastic(0.2, 2.2), plastic(0.5, 1.5), 48);

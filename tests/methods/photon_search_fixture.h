@@ -36,23 +36,23 @@ class PhotonSearch {
     /// The scene is a box between these corners; there is room for so many photons and gather points.
     PhotonSearch(Device &device, Vector3 low, Vector3 high, std::uint32_t photons, std::uint32_t gather_points)
         : maker_(4, 1), session_(device, with_box(maker_, low, high), {}, {}),
-          map_(session_, stages_, slot_rows(photons)), pairs_(stages_) {
+          map_(session_, stages_, odd_lines(photons)), pairs_(stages_) {
         using namespace lib_float;
         TableList list = map_.tables();
         for (const TableDeclaration &table : pairs_.tables())
             list.push_back(table);
         list.push_back({.name = "photon",
                         .rows = RowsOf::one,
-                        .multiple = slot_rows(photons),
+                        .multiple = odd_lines(photons),
                         .columns = photon_columns,
                         .is_cleared = true,
                         .grows = true});
-        list.push_back({.name = "photon_order", .rows = RowsOf::one, .multiple = slot_rows(photons), .is_uint = true});
+        list.push_back({.name = "photon_order", .rows = RowsOf::one, .multiple = odd_lines(photons), .is_uint = true});
         list.push_back({.name = "gather", .columns = gather_columns, .is_cleared = true});
         tables_.emplace(device, list, TableRows{gather_points, gather_points, 16, 4, 1}, Precision::single);
         session_.numbers["capacity"] = gather_points;
         session_.numbers["gather_rows"] = gather_points;
-        session_.numbers["photon_rows"] = slot_rows(photons);
+        session_.numbers["photon_rows"] = odd_lines(photons);
         session_.numbers["pair_rows"] = PhotonPairs::pair_rows(gather_points);
         stages_.build(session_, *tables_);
         map_.attach(*tables_);

@@ -73,13 +73,15 @@ TEST_P(PrecisionOfKernels, HasOneImageForAllBatchesAndThreads) {
         EXPECT_TRUE(equal_bits(image, image_of(scene, precision(), 1, 0, threads))) << threads << " threads that trace";
 }
 
+std::string name_of_case(const ::testing::TestParamInfo<std::tuple<const char *, Precision>> &info) {
+    return fmt::format("{}_{}", std::get<0>(info.param), precision_name(std::get<1>(info.param)));
+}
 INSTANTIATE_TEST_SUITE_P(Methods, PrecisionOfKernels,
-                         ::testing::Combine(::testing::Values("pt", "gpt"),
-                                            ::testing::Values(Precision::double_, Precision::relaxed)),
-                         [](const auto &info) {
-                             return fmt::format("{}_{}", std::get<0>(info.param),
-                                                precision_name(std::get<1>(info.param)));
-                         });
+                         ::testing::Values(std::tuple("gpt", Precision::double_), std::tuple("pt", Precision::relaxed)),
+                         name_of_case);
+INSTANTIATE_TEST_SUITE_P(Full, PrecisionOfKernels,
+                         ::testing::Values(std::tuple("pt", Precision::double_), std::tuple("gpt", Precision::relaxed)),
+                         name_of_case);
 
 } // namespace
 } // namespace gradus::testing

@@ -176,7 +176,7 @@ TEST_F(Oclgrind, AnisotropicRoughness) { render("plates.xml", {"--size", "8x8"})
 
 TEST_F(FullOclgrind, OneMaterialOneLight) { render("cornell-box.xml", {"--size", "8x8", "-D", "rfilter=gaussian"}); }
 
-TEST_F(Oclgrind, AnEnvironmentMapAndASpot) {
+TEST_F(FullOclgrind, AnEnvironmentMapAndASpot) {
     render("sundial.xml", {"--method", "gpt", "--norm", "L2", "--size", "6x5"});
 }
 
@@ -189,7 +189,7 @@ TEST_F(FullOclgrind, ACropAndRussianRoulette) {
 }
 
 // Photons by both estimators of direct light, with growing tables and several windows of pairs.
-TEST_F(Oclgrind, Photons) {
+TEST_F(FullOclgrind, Photons) {
     std::vector<std::string> expected = {"travel",       "gather",        "photon_cells",       "photon_copy",
                                          "photon_lines", "photon_starts", "photon_pairs count", "photon_pairs list",
                                          "pair_scan",    "pair_sum",      "gather_add"};

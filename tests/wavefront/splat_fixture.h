@@ -31,7 +31,7 @@ class SplatFilm {
         TableList list = film.tables();
         for (const TableDeclaration &table : splats.tables())
             list.push_back(table);
-        const std::uint32_t pixels = side * side, slots = slot_rows(pixels);
+        const std::uint32_t pixels = side * side, slots = odd_lines(pixels);
         tables.emplace(device, list, TableRows{(room + 1) / 2, slots, pixels, side, 1}, options.precision);
         session_.numbers["slots"] = slots;
         stages_.build(session_, *tables);

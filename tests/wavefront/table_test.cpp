@@ -36,7 +36,7 @@ class BatchSize : public ::testing::Test {
     /// Allocates the tables of a batch; each allocation is checked against what the device says.
     std::uint64_t allocate(std::uint32_t size, bool all) {
         const std::uint64_t before = device.implementation().allocated_bytes;
-        const Tables tables(device, list(all), {size, slot_rows(size * batches_a_pass), 8, 4, chunks_of(size)},
+        const Tables tables(device, list(all), {size, odd_lines(size * batches_a_pass), 8, 4, chunks_of(size)},
                             Precision::single);
         return device.implementation().allocated_bytes - before;
     }

@@ -50,10 +50,11 @@ class Walker {
   public:
     Walker(const Scene &scene, std::uint32_t capacity, const WalkSettings &settings = {},
            const SessionOptions &options = {}, Device &device = walk_device())
-        : session(device, scene, options, {}), walk(session, stages_, RowsOf::path, 1, settings),
-          kinds(material_kinds(scene)), sampler(scene, kinds, session.tracer) {
+        : session(device, scene, options, {}), walk(session, stages_, settings), kinds(material_kinds(scene)),
+          sampler(scene, kinds, session.tracer) {
         session.scene_buffers.emplace_back(device, "material_kind", kinds.data(), kinds.size() * sizeof(kinds[0]));
-        tables.emplace(device, walk.tables(), TableRows{capacity, capacity, 16, 4, chunks_of(capacity)},
+        tables.emplace(device, walk.tables(),
+                       TableRows{capacity, capacity, 16, 4, chunks_of(capacity), odd_lines(capacity)},
                        options.precision);
         stages_.build(session, *tables);
         walk.attach(*tables);
