@@ -107,6 +107,7 @@ class RenderJob {
             progress_.compiled(kernel, ready, total, seconds);
         };
         options.phases = &phases_;
+        options.time_limit = request_.time_limit;
         options.stop = [this] { return is_to_stop(); };
         options.on_pilot = [this](std::uint64_t samples) {
             progress_.message(fmt::format("pilot of {} samples a pixel, to choose the method", samples));

@@ -51,6 +51,8 @@ struct RenderOptions : SessionOptions {
     /// surface too smooth to gather at.
     bool only_chains = false;
     double radius_alpha = 0.9; ///< how slowly the radius shrinks, in (0, 1]; 1: not at all
+    /// Seconds that the render ends after; 0: it does not. The pilots of the method `auto` are small beside them.
+    double time_limit = 0;
     /// Called before the method `auto` renders a pilot, with its samples a pixel.
     std::function<void(std::uint64_t)> on_pilot;
 };

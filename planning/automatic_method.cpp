@@ -48,6 +48,10 @@ constexpr double samples_of_endless = 1024;
 // Passes are a render's samples: with fewer, radii hardly shrink, and nobody knows alpha.
 constexpr double fewest_passes = 16;
 
+// A render until a time asks for photons if it expects so many samples: both halves are a quarter of it then, no tenth,
+// for without photons all of it may be for nothing.
+constexpr std::uint64_t samples_for_photons = 8 * half_samples;
+
 // Rays that take as long as what gpt does once an image and once a pixel: launching more kernels and the solver's, some
 // 50 ms, and solving. From measured times, of two cores.
 constexpr double rays_an_image = 1'100'000, rays_a_pixel = 18;
@@ -179,9 +183,12 @@ std::unique_ptr<Method> make_automatic_method(Device &device, const Scene &scene
     };
     const auto [width, height] = image_size(scene.film);
     const std::uint64_t samples = scene.settings.samples_per_pixel, pixels = std::uint64_t(width) * height;
+    const bool is_timed = options.time_limit > 0;
     // gpm does not tell its error.
-    const bool asks_for_photons = has_room_for_halves(samples) && !options.error && may_ask_for_photons(scene, options);
-    const std::uint32_t rows = rows_of_pilot(width, height, samples, asks_for_photons);
+    bool asks_for_photons =
+        !options.error && may_ask_for_photons(scene, options) && (is_timed || has_room_for_halves(samples));
+    const std::uint32_t rows =
+        is_timed ? rows_of_timed_pilot(width, height) : rows_of_pilot(width, height, samples, asks_for_photons);
     if (rows == 0 || sees_only_lights(scene.settings)) {
         const MethodChoice choice = choose_by_rule(scene, options, double(pixels));
         return chosen(choice, make_method(choice.method, device, scene, options));
@@ -189,12 +196,21 @@ std::unique_ptr<Method> make_automatic_method(Device &device, const Scene &scene
     auto method = std::make_unique<GradientPathTracer>(device, scene, options);
     if (options.on_pilot)
         options.on_pilot(pilot_samples);
-    PhotonChoice found{choose_by_pilot(run_row_pilot(*method, rows), options.reconstruction, samples, pixels), samples,
-                       0};
+    const RowPilot of_rows = run_row_pilot(*method, rows);
+    // Until a time nobody knows how many samples there will be: at least so many as the pilot's own time tells.
+    std::uint64_t expected = samples;
+    if (is_timed) {
+        expected = std::min(samples, samples_within(options.time_limit, of_rows, rows, height));
+        asks_for_photons = asks_for_photons && expected >= samples_for_photons;
+    }
+    PhotonChoice found{choose_by_pilot(of_rows, options.reconstruction, expected, pixels), samples, 0};
     if (asks_for_photons) {
         const Pilot pilot = run_pilot(*method);
         found.choice.pilot_seconds += pilot.seconds;
-        found = choose_by_photons(found.choice, run_photon_pilot(device, scene, options, pilot), samples, options);
+        const PhotonPilot of_photons = run_photon_pilot(device, scene, options, pilot, expected);
+        found = choose_by_photons(found.choice, of_photons, expected, options);
+        // A render until a time goes on beyond what was expected.
+        found.samples = std::uint64_t(std::min(double(found.samples) * (double(samples) / double(expected)), 0x1p62));
     }
     if (found.choice.method == "gpt") {
         method->restart(0, samples);

@@ -82,14 +82,15 @@ PhotonErrors estimate_photon_errors(const Image &photons_1, const Image &photons
     return errors;
 }
 
-PhotonPilot run_photon_pilot(Device &device, const Scene &scene, const RenderOptions &options, const Pilot &pilot) {
+PhotonPilot run_photon_pilot(Device &device, const Scene &scene, const RenderOptions &options, const Pilot &pilot,
+                             std::uint64_t samples_per_pixel) {
     PhotonPilot found;
     Scene one_pass = scene;
     one_pass.settings.samples_per_pixel = 1;
     RenderOptions with = options;
     const auto [width, height] = image_size(scene.film);
     const std::uint64_t pixels = std::uint64_t(width) * height;
-    const std::uint64_t samples = std::min(scene.settings.samples_per_pixel, most_light_paths * samples_a_light_path);
+    const std::uint64_t samples = std::min(samples_per_pixel, most_light_paths * samples_a_light_path);
     with.photons = std::clamp(samples * pixels / samples_a_light_path, fewest_light_paths, most_light_paths);
     if (options.photons > 0)
         with.photons = std::min(with.photons, options.photons);

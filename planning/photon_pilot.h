@@ -41,7 +41,8 @@ struct PhotonPilot {
 };
 
 /// Renders a pass of each of two seeds that are far from the render's, with so few photons that this is a small part of
-/// the render.
-PhotonPilot run_photon_pilot(Device &device, const Scene &scene, const RenderOptions &options, const Pilot &pilot);
+/// a render of so many samples a pixel.
+PhotonPilot run_photon_pilot(Device &device, const Scene &scene, const RenderOptions &options, const Pilot &pilot,
+                             std::uint64_t samples_per_pixel);
 
 } // namespace gradus

@@ -16,8 +16,8 @@ namespace {
 /// Of the film's 64-bit sample numbers.
 constexpr std::uint64_t first_sample = (std::uint64_t(1) << 62) + (std::uint64_t(2) << 32);
 
-/// A render has a pilot if it has so many paths: launching the pilot's kernels takes as long as some 50,000.
-constexpr std::uint64_t fewest_paths = 400'000;
+/// Launching the pilot's kernels takes as long as so many paths; a render has a pilot if it has so many.
+constexpr std::uint64_t paths_like_launches = 50'000, fewest_paths = 400'000;
 constexpr std::uint64_t paths_a_path_of_pilot = 64;
 constexpr std::uint64_t fewest_rows = 8, most_rows = 64;
 
@@ -121,6 +121,18 @@ std::uint32_t rows_of_pilot(std::uint32_t width, std::uint32_t height, std::uint
     const double rows = std::clamp(paths / double(paths_a_path_of_pilot * pilot_samples * width), double(fewest_rows),
                                    double(most_rows));
     return std::min(std::uint32_t(rows), height) / 2 * 2;
+}
+
+std::uint32_t rows_of_timed_pilot(std::uint32_t width, std::uint32_t height) {
+    if (height < 2 || width < 2)
+        return 0;
+    const std::uint64_t rows = std::clamp(paths_like_launches / (pilot_samples * width), fewest_rows, most_rows);
+    return std::min(std::uint32_t(rows), height) / 2 * 2;
+}
+
+std::uint64_t samples_within(double seconds, const RowPilot &pilot, std::uint32_t rows, std::uint32_t height) {
+    const double of_a_sample = pilot.seconds / double(pilot_samples) * double(height) / double(rows);
+    return std::uint64_t(std::clamp(seconds / std::max(of_a_sample, 1e-9), 1.0, 0x1p40));
 }
 
 RowPilot run_row_pilot(GradientPathTracer &method, std::uint32_t rows) {

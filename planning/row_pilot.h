@@ -37,6 +37,13 @@ double part_left(double across, double down);
 std::uint32_t rows_of_pilot(std::uint32_t width, std::uint32_t height, std::uint64_t samples_per_pixel,
                             bool must = false);
 
+/// The same of a render until a time, which is not to lose much of that.
+std::uint32_t rows_of_timed_pilot(std::uint32_t width, std::uint32_t height);
+
+/// Samples a pixel that gpt takes in so many seconds, by the time that a pilot of some of the image's rows took: fewer
+/// than in truth where launches are most of that, as in small images.
+std::uint64_t samples_within(double seconds, const RowPilot &pilot, std::uint32_t rows, std::uint32_t height);
+
 /// Renders so many rows with `method`, which is to be restarted afterwards. Its samples have numbers that no render
 /// reaches.
 RowPilot run_row_pilot(GradientPathTracer &method, std::uint32_t rows);

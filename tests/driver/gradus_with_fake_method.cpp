@@ -15,6 +15,8 @@
 #include "driver/program.h"
 #include "runtime/error.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -58,6 +60,8 @@ class FakeMethod : public Method {
           error_(options.error), samples_per_pixel_(scene.settings.samples_per_pixel) {
         width_ = scene.film.crop_width > 0 ? scene.film.crop_width : scene.film.width;
         height_ = scene.film.crop_height > 0 ? scene.film.crop_height : scene.film.height;
+        if (options.time_limit > 0)
+            reason_ += fmt::format(", within {} s", options.time_limit);
         if (options.on_compiled)
             options.on_compiled("fake_kernel", 1, 1, 0.25);
         if (automatic_ && options.on_pilot)
@@ -114,7 +118,7 @@ class FakeMethod : public Method {
         if (error_ && !parameter("error").empty())
             statistics.estimated_error = std::stod(parameter("error")) / double(imaged_);
         if (automatic_)
-            statistics.choice = MethodChoice{"gpt", "it was told to", 6, 0.5, {{"pt", {2, 3}}, {"gpt", {0.25, 6}}}, 4};
+            statistics.choice = MethodChoice{"gpt", reason_, 6, 0.5, {{"pt", {2, 3}}, {"gpt", {0.25, 6}}}, 4};
         return statistics;
     }
 
@@ -128,6 +132,7 @@ class FakeMethod : public Method {
 
     std::function<bool()> stop_;
     bool automatic_;
+    std::string reason_ = "it was told to";
     std::uint64_t seed_;
     bool aov_, error_;
     std::uint64_t samples_per_pixel_, done_ = 0, imaged_ = 0;

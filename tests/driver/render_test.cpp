@@ -102,6 +102,8 @@ TEST_F(Render, SaysWhichMethodWasChosenAndWhy) {
     EXPECT_EQ(choice.at("estimates").at("pt").at("cost"), 3);
     EXPECT_EQ(choice.at("gain"), 4);
     EXPECT_EQ(render({"-o", "out.exr", "--method", "auto", "--quiet"}).err, "");
+    EXPECT_THAT(render({"-o", "out.exr", "--method", "auto", "--time", "0.75", "--spp", "1"}).err,
+                HasSubstr("method gpt: it was told to, within 0.75 s\n"));
 }
 
 TEST_F(Render, AMethodThatWasAskedForIsNoChoice) {

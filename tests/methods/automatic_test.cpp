@@ -87,6 +87,21 @@ TEST(RowPilot, IsAFewRowsOfTheImage) {
     EXPECT_EQ(rows_of_pilot(16, 16, 80, true), 8u);
 }
 
+/// As many paths as launches take, in pairs of rows.
+TEST(RowPilot, OfARenderUntilATimeTellsItsSamples) {
+    EXPECT_EQ(rows_of_timed_pilot(64, 64), 64u);
+    EXPECT_EQ(rows_of_timed_pilot(256, 256), 24u); // 50,000 / 8 / 256 is 24.4
+    EXPECT_EQ(rows_of_timed_pilot(1920, 1080), 8u);
+    EXPECT_EQ(rows_of_timed_pilot(64, 7), 6u);
+    EXPECT_EQ(rows_of_timed_pilot(64, 1), 0u);
+    RowPilot pilot;
+    pilot.seconds = 0.2; // 8 samples of a tenth of the image: a quarter of a second each
+    EXPECT_EQ(samples_within(10, pilot, 24, 240), 40u);
+    EXPECT_EQ(samples_within(0.01, pilot, 24, 240), 1u);
+    pilot.seconds = 0;
+    EXPECT_GT(samples_within(10, pilot, 24, 240), 1u << 30);
+}
+
 /// Means over frequencies, against sums of 256 x 256 of them. Frequencies that lie evenly tell the mean of a smooth
 /// periodic function to rounding; the least width of its peak, 1 / sqrt(100), is twice the distance of the 64.
 TEST(RowPilot, KnowsWhatLeastSquaresLeave) {
@@ -370,6 +385,25 @@ TEST(FullAutomatic, TakesGpmWhereLightComesThroughGlass) {
         options.photons = automatic.statistics.light_paths / passes;
         EXPECT_TRUE(equal_bits(automatic.image, render(same, options, "gpm").image));
     }
+}
+
+/// A render until a time asks for photons where there is time for it, and goes on until then whatever it picked.
+TEST(Automatic, HasTimeForAPilot) {
+    Scene scene = lamp_in_glass(true);
+    scene.settings.samples_per_pixel = std::uint64_t(1) << 30;
+    const auto prepared = [&](double seconds) {
+        RenderOptions options;
+        options.time_limit = seconds;
+        const std::unique_ptr<Method> method = make_method("auto", shared_device(), scene, options);
+        EXPECT_GT(method->total_samples(), std::uint64_t(24 * 24) << 20) << seconds;
+        return method->statistics().choice.value();
+    };
+    const MethodChoice hasty = prepared(1e-4), patient = prepared(60);
+    EXPECT_EQ(hasty.estimates.count("gpm"), 0u);
+    EXPECT_EQ(hasty.pilot_samples, pilot_samples);
+    EXPECT_EQ(patient.estimates.count("gpm"), 1u);
+    EXPECT_EQ(patient.method, "gpm") << patient.reason;
+    EXPECT_LT(hasty.pilot_seconds, patient.pilot_seconds);
 }
 
 /// Glass is there, and what lights the floor does not come through it.
