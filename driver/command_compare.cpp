@@ -91,7 +91,7 @@ void add_compare_command(CLI::App &app, std::function<int()> &chosen) {
     command.add_option("IMAGES", arguments->files, "One image or several of independent seeds, then the reference")
         ->required()
         ->expected(2, 1 << 20)
-        ->type_name("IMAGE... REFERENCE");
+        ->option_text("IMAGE... REFERENCE REQUIRED");
     command.add_option("--layer", request.layer, "Compare this layer (albedo, normal, ...) instead of R, G, B");
     command.add_option("--error-image", arguments->error_image,
                        "Write signed relative errors: .png red too bright, blue too dark, white equal; .exr values");

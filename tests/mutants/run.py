@@ -22,6 +22,7 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 LIST = pathlib.Path(__file__).resolve().parent / "mutants.txt"
+LONGEST_TEST = 1200  # seconds; a test that hangs has found its defect, too
 NOT_COPIED = {"build", "build-asan", ".git", ".cache"}
 
 
@@ -90,9 +91,13 @@ def find_program(tree, name):
 
 
 def test(tree, mutant, environment):
-    """Whether the tests pass, and how many ran."""
-    result = subprocess.run([find_program(tree, mutant.program), f"--gtest_filter={mutant.filter}"], text=True,
-                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env=environment)
+    """Whether the tests pass, and whether any ran."""
+    try:
+        result = subprocess.run([find_program(tree, mutant.program), f"--gtest_filter={mutant.filter}"], text=True,
+                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env=environment, cwd=tree / "build",
+                                timeout=LONGEST_TEST)
+    except subprocess.TimeoutExpired:
+        return False, True
     return result.returncode == 0, "[  PASSED  ] 0 tests" not in result.stdout or "FAILED" in result.stdout
 
 
@@ -125,7 +130,7 @@ def main():
     if arguments.check:
         print(f"{len(mutants)} mutants can be planted")
         return 0
-    tree = arguments.tree or make_copy(mutants)
+    tree = arguments.tree.resolve() if arguments.tree else make_copy(mutants)
     # Kernels of defects shall not stay in anybody's cache.
     environment = {**os.environ, "GRADUS_CACHE_DIR": str(tree / "build" / "mutant-cache")}
     found = {}
