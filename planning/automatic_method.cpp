@@ -185,10 +185,10 @@ std::unique_ptr<Method> make_automatic_method(Device &device, const Scene &scene
     const std::uint64_t samples = scene.settings.samples_per_pixel, pixels = std::uint64_t(width) * height;
     const bool is_timed = options.time_limit > 0;
     // gpm does not tell its error.
-    bool asks_for_photons =
-        !options.error && may_ask_for_photons(scene, options) && (is_timed || has_room_for_halves(samples));
-    const std::uint32_t rows =
-        is_timed ? rows_of_timed_pilot(width, height) : rows_of_pilot(width, height, samples, asks_for_photons);
+    bool asks_for_photons = !options.error && may_ask_for_photons(scene, options) && has_room_for_halves(samples);
+    std::uint32_t rows = rows_of_pilot(width, height, samples, asks_for_photons);
+    if (is_timed)
+        rows = std::min(rows, rows_of_timed_pilot(width, height));
     if (rows == 0 || sees_only_lights(scene.settings)) {
         const MethodChoice choice = choose_by_rule(scene, options, double(pixels));
         return chosen(choice, make_method(choice.method, device, scene, options));
