@@ -232,13 +232,18 @@ def differences(page, fresh, rows):
     return found
 
 
+def filter_of(tests):
+    """Suites and cases by their plain names, without further instantiations (Full/...) of those that ./check runs."""
+    further = [f"Full*/{test}*" for test in tests if not test.startswith("Full")]
+    return ":".join(f"{test}*:*/{test}*" for test in tests) + ("-" + ":".join(further) if further else "")
+
+
 def run(programs, results, wanted):
-    """Runs the tests of a filter, or those that the page names, without the cases (Full/...) that ./check leaves out."""
+    """Runs the tests of a filter, or those that the page names."""
     named = re.findall(r"`(\w+): ([\w.]+)`", PAGE.read_text()) if PAGE.exists() else []
     for program in programs:
-        tests = wanted or ":".join(f"*{test}*" for name, test in named if name == program.name)
+        tests = wanted or filter_of(sorted({test for name, test in named if name == program.name}))
         if tests:
-            tests += "" if wanted else "-Full/*"
             output = results / program.name / "run.xml"
             subprocess.run([program, f"--gtest_filter={tests}", f"--gtest_output=xml:{output}", "--gtest_brief=1"],
                            stdout=sys.stderr)
