@@ -19,7 +19,7 @@ constexpr std::uint64_t first_sample = (std::uint64_t(1) << 62) + (std::uint64_t
 /// Launching the pilot's kernels takes as long as so many paths; a render has a pilot if it has so many.
 constexpr std::uint64_t paths_like_launches = 50'000, fewest_paths = 400'000;
 constexpr std::uint64_t paths_a_path_of_pilot = 64;
-constexpr std::uint64_t fewest_rows = 8, most_rows = 64;
+constexpr double fewest_rows = 8, most_rows = 64;
 
 /// Columns of a block; its rows are a pair.
 constexpr std::size_t block_columns = 16;
@@ -102,6 +102,14 @@ PathCosts costs_of(const GradientPathTracer &method, const Statistics &statistic
     return {costs.pt / samples, costs.gpt / samples};
 }
 
+/// Rows, in pairs, that so many paths of the pilot make.
+std::uint32_t rows_of_paths(double paths, std::uint32_t width, std::uint32_t height) {
+    if (height < 2 || width < 2)
+        return 0;
+    const double rows = std::clamp(paths / (double(pilot_samples) * width), fewest_rows, most_rows);
+    return std::min(std::uint32_t(rows), height) / 2 * 2;
+}
+
 } // namespace
 
 double part_left(double across, double down) {
@@ -116,18 +124,13 @@ double part_left(double across, double down) {
 
 std::uint32_t rows_of_pilot(std::uint32_t width, std::uint32_t height, std::uint64_t samples_per_pixel, bool must) {
     const double paths = double(width) * height * double(samples_per_pixel);
-    if (height < 2 || width < 2 || (paths < double(fewest_paths) && !must))
+    if (paths < double(fewest_paths) && !must)
         return 0;
-    const double rows = std::clamp(paths / double(paths_a_path_of_pilot * pilot_samples * width), double(fewest_rows),
-                                   double(most_rows));
-    return std::min(std::uint32_t(rows), height) / 2 * 2;
+    return rows_of_paths(paths / double(paths_a_path_of_pilot), width, height);
 }
 
 std::uint32_t rows_of_timed_pilot(std::uint32_t width, std::uint32_t height) {
-    if (height < 2 || width < 2)
-        return 0;
-    const std::uint64_t rows = std::clamp(paths_like_launches / (pilot_samples * width), fewest_rows, most_rows);
-    return std::min(std::uint32_t(rows), height) / 2 * 2;
+    return rows_of_paths(double(paths_like_launches), width, height);
 }
 
 std::uint64_t samples_within(double seconds, const RowPilot &pilot, std::uint32_t rows, std::uint32_t height) {
