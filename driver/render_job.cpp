@@ -1,6 +1,7 @@
 #include "driver/render_job.h"
 
 #include "driver/error_watch.h"
+#include "driver/finite_values.h"
 #include "driver/interrupt.h"
 #include "driver/memory_check.h"
 #include "driver/phase_watch.h"
@@ -20,7 +21,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -277,18 +277,6 @@ class RenderJob {
         }
     }
 
-    /// Values that are NaN or infinite have no place in a file: what reads it spreads them. They become 0.
-    void settle_values(Image &image) {
-        std::vector<bool> is_bad(std::size_t(image.width) * image.height);
-        for (Channel &channel : image.channels)
-            for (std::size_t i = 0; i < channel.values.size(); ++i)
-                if (!std::isfinite(channel.values[i])) {
-                    channel.values[i] = 0;
-                    is_bad[i] = true;
-                }
-        black_pixels_ = std::uint64_t(std::count(is_bad.begin(), is_bad.end(), true));
-    }
-
     /// `last`: the method may let go of its film.
     Image current_image(bool partial, bool last) {
         Image image = last ? prepared_.method->last_image() : prepared_.method->image();
@@ -296,7 +284,7 @@ class RenderJob {
             if (own_scale_ != 1 && channel.name == "depth.Z")
                 for (float &value : channel.values)
                     value = float(value / own_scale_);
-        settle_values(image);
+        black_pixels_ = settle_values(image).pixels;
         const std::uint64_t done = prepared_.method->done_samples();
         const double pixels = double(image.width) * double(image.height);
         record_.samples_per_pixel = pixels > 0 ? double(done) / pixels : 0;

@@ -1,11 +1,11 @@
 #include "driver/solve_job.h"
 
+#include "driver/finite_values.h"
 #include "driver/program.h"
 #include "driver/reconstruction_options.h"
 #include "driver/solve_report.h"
 #include "driver/standard_streams.h"
 #include "runtime/error.h"
-#include "runtime/film/metrics.h"
 #include "runtime/io/image_io.h"
 #include "runtime/seconds_since.h"
 #include "runtime/wavefront/sample_parts.h"
@@ -14,10 +14,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <array>
 #include <chrono>
-#include <cmath>
 #include <cstdlib>
 #include <new>
 
@@ -178,10 +176,7 @@ class SolveJob {
 
     bool write_results() {
         Image image = result_image();
-        const std::uint64_t non_finite = count_non_finite(image);
-        for (Channel &channel : image.channels)
-            std::replace_if(
-                channel.values.begin(), channel.values.end(), [](float value) { return !std::isfinite(value); }, 0.0f);
+        const std::uint64_t non_finite = settle_values(image).values;
         write_image(image, request_.outputs.image);
         if (non_finite > 0)
             print_message(fmt::format("gradus: error: {} values of the image are NaN or infinite; the file holds them "

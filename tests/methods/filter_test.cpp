@@ -181,18 +181,19 @@ TEST_P(Filter, EqualsAFineImageFilteredAfterwards) {
     EXPECT_TRUE(agree("filter-" + GetParam().name, convolved, filtered, 128));
 }
 
+std::string name_of_filter(const ::testing::TestParamInfo<FilterCase> &info) { return info.param.name; }
 INSTANTIATE_TEST_SUITE_P(Film, Filter,
                          ::testing::Values(FilterCase{"box", FilmSettings::Filter::box, 0.5f, 0.5f},
                                            FilterCase{"tent", FilmSettings::Filter::tent, 1, 0.5f},
                                            FilterCase{"gaussian", FilmSettings::Filter::gaussian, 2, 0.5f},
                                            FilterCase{"mitchell", FilmSettings::Filter::mitchell, 2, 0.5f},
                                            FilterCase{"lanczos", FilmSettings::Filter::lanczos, 3, 0.5f}),
-                         [](const auto &info) { return info.param.name; });
+                         name_of_filter);
 INSTANTIATE_TEST_SUITE_P(Full, Filter,
                          ::testing::Values(FilterCase{"wide_tent", FilmSettings::Filter::tent, 1.7f, 0.5f},
                                            FilterCase{"cut_gaussian", FilmSettings::Filter::gaussian, 1.2f, 0.8f},
                                            FilterCase{"catmullrom", FilmSettings::Filter::catmullrom, 2, 0.5f}),
-                         [](const auto &info) { return info.param.name; });
+                         name_of_filter);
 
 TEST(ConstantImage, StaysUnderAnyFilter) {
     for (const auto filter : {FilmSettings::Filter::box, FilmSettings::Filter::tent, FilmSettings::Filter::gaussian}) {
