@@ -9,6 +9,10 @@
 namespace gradus {
 
 std::string solve_report_text(const PoissonReport &report) {
+    if (report.method == no_system)
+        return fmt::format("method       none: without differences there is no system, pixels and guide are mixed\n"
+                           "seconds      {:.3f}\n",
+                           report.seconds);
     std::string text = fmt::format("method       {}\n", report.method);
     text += fmt::format("alpha        {:.6g}\n", report.alpha);
     text += fmt::format("iterations   {}", report.iterations);

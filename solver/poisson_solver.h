@@ -92,8 +92,11 @@ struct KernelTime {
     std::uint64_t launches = 0;
 };
 
+/// The method of a report on images without differences, of which there is no system to solve.
+constexpr const char *no_system = "none";
+
 struct PoissonReport {
-    std::string method; ///< "multigrid", or "irls, pcg" and the like
+    std::string method; ///< "multigrid", or "irls, pcg" and the like; or no_system
     double alpha = 0;   ///< as used
     int iterations = 0; ///< steps or cycles in all
     int reweightings = 0;

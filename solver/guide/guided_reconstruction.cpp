@@ -60,8 +60,11 @@ PoissonReport GuidedReconstruction::solve(const HalvedImages &halves, const Guid
         for (Buffer &solution : solutions)
             solution = Buffer(device_, "half_solution", result.bytes());
         report = WeightedReconstruction(device_, solver_).solve_both(halves, solutions);
-    } else
+    } else {
         solutions = {halves[0].primal, halves[1].primal};
+        report.method = no_system;
+        report.converged = true;
+    }
 
     std::array<Buffer, 2> guides;
     for (Buffer &guide : guides)
