@@ -42,6 +42,13 @@ double length_of(const float *record, int field) {
     return std::hypot(record[field], record[field + 1], record[field + 2]);
 }
 
+/// Before anything is compiled.
+Session &checked_for_light(Session &session) {
+    if (session.scene.light_count == 0)
+        throw Error(ExitCode::usage, "there is no light in the scene, and so no photon to gather");
+    return session;
+}
+
 } // namespace
 
 double radius_shrinkage(std::uint64_t pass, double alpha) {
@@ -82,10 +89,8 @@ const Scene &checked_for_gathering(const Scene &scene, const RenderOptions &opti
 PassPhotons::PassPhotons(Session &session, Stages &stages, const Scene &scene, const RenderOptions &options,
                          double pixel_widths, bool halves)
     : options_(options), has_halves_(halves), stages_(stages),
-      light_paths_(session, stages, scene, options, direct_of(options)),
+      light_paths_(checked_for_light(session), stages, scene, options, direct_of(options)),
       map_(session, stages, photon_rows(light_paths_)) {
-    if (session.scene.light_count == 0)
-        throw Error(ExitCode::usage, "there is no light in the scene, and so no photon to gather");
     set_radius(session, options.radius.value_or(RenderOptions::GatherRadius{pixel_widths, false}));
 }
 

@@ -376,6 +376,11 @@ TEST_F(EndToEndPhotons, WhereNothingCanBeGatheredTheErrorSaysWhy) {
         EXPECT_EQ(outcome.exit_code, 2) << bad[0] << " " << bad[1];
         EXPECT_THAT(outcome.err, HasSubstr(bad[0]));
     }
+}
+
+class FullEndToEndPhotons : public EndToEndPhotons {};
+
+TEST_F(FullEndToEndPhotons, AreGatheredWhereTheRoughnessThatIsAskedForIsThere) {
     const Outcome rougher = render_ball(metal, light, {"--gather-roughness", "0.01"});
     EXPECT_EQ(rougher.exit_code, 0) << rougher.err;
 }

@@ -188,16 +188,20 @@ TEST_P(FurnaceWalk, IsReproduced) {
     }
 }
 
-std::vector<WalkCase> walk_cases() {
+std::vector<WalkCase> walks_of_roughness(const std::vector<std::pair<double, double>> &roughness) {
     std::vector<WalkCase> cases;
-    const double roughness[][2] = {{0.02, 0.02}, {0.2, 0.2}, {0.6, 0.6}, {0.1, 0.5}};
     for (const BsdfKind kind : {BsdfKind::roughconductor_ggx, BsdfKind::roughconductor_beckmann,
                                 BsdfKind::roughdielectric_ggx, BsdfKind::roughdielectric_beckmann})
-        for (const auto &alpha : roughness) {
-            const Bsdf bsdf = rough(kind, alpha[0], alpha[1]);
+        for (const auto &[alpha_u, alpha_v] : roughness) {
+            const Bsdf bsdf = rough(kind, alpha_u, alpha_v);
             cases.push_back(
-                {fmt::format("{}_{:.0f}_{:.0f}", bsdf_kind_name(bsdf), 100 * alpha[0], 100 * alpha[1]), bsdf});
+                {fmt::format("{}_{:.0f}_{:.0f}", bsdf_kind_name(bsdf), 100 * alpha_u, 100 * alpha_v), bsdf});
         }
+    return cases;
+}
+
+std::vector<WalkCase> walk_cases() {
+    std::vector<WalkCase> cases = walks_of_roughness({{0.2, 0.2}, {0.1, 0.5}});
     Bsdf copper = mirror();
     copper.eta = {0.271f, 0.677f, 1.317f};
     copper.k = {3.61f, 2.625f, 2.292f};
@@ -219,6 +223,8 @@ std::vector<WalkCase> walk_cases() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Furnace, FurnaceWalk, ::testing::ValuesIn(walk_cases()),
+                         [](const auto &info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(Full, FurnaceWalk, ::testing::ValuesIn(walks_of_roughness({{0.02, 0.02}, {0.6, 0.6}})),
                          [](const auto &info) { return info.param.name; });
 
 // Every point of a closed room of emission E and albedo a has radiance E (1 + a + a^2 + ...).

@@ -74,7 +74,7 @@ TEST(GradientStability, UnderASunOfOneTexel) {
 }
 
 // What a mirror shows of a map: base and offset path leave the scene in directions of their own.
-TEST(GradientStability, WhereAMirrorShowsAMap) {
+TEST(FullGradientStability, WhereAMirrorShowsAMap) {
     SceneMaker scene = scene_for_bias();
     add_wall(scene, scene.material(two_sided(diffuse(0.3))));
     scene.sphere({0, 0, -0.5f}, 0.45f, scene.material(mirror()));

@@ -34,7 +34,7 @@ GradientRow row(const std::string &failure, const std::string &provoked_by, doub
 }
 
 // Two mirrors that face each other show the wall and the lamp after one to four reflections.
-TEST(HalfVectorStability, InAChainOfMirrors) {
+TEST(FullHalfVectorStability, InAChainOfMirrors) {
     SceneMaker scene = room();
     const std::uint32_t polished = scene.material(two_sided(mirror()));
     scene.parallelogram({-0.5f, -0.9f, 0.6f}, {0.2f, 1.8f, 0}, {0.9f, 0, -0.3f}, polished);
@@ -64,7 +64,7 @@ TEST(HalfVectorStability, ThroughClearGlass) {
 }
 
 // Twelve faces of glass behind each other, all of which a path passes, or is mirrored between.
-TEST(HalfVectorStability, DeepInGlass) {
+TEST(FullHalfVectorStability, DeepInGlass) {
     SceneMaker scene = room();
     scene.scene.settings.max_depth = 20;
     const std::uint32_t clear = scene.material(glass(1.5));

@@ -96,7 +96,7 @@ TEST(ReconnectionStability, FromChalkBesideMirrors) {
 }
 
 // Stripes of metal whose roughness is just under and just over 0.01, and far under it, beside chalk.
-TEST(ReconnectionStability, FromMetalAboutTheRoughnessThreshold) {
+TEST(FullReconnectionStability, FromMetalAboutTheRoughnessThreshold) {
     SceneMaker scene = scene_for_bias();
     const std::uint32_t under = scene.material(rough_metal(0.0099)), over = scene.material(rough_metal(0.0101));
     const std::uint32_t chalk = scene.material(two_sided(diffuse(0.5))), far_under = scene.material(rough_metal(0.002));

@@ -46,6 +46,8 @@ class Threads : public ProgramTest, public ::testing::WithParamInterface<std::pa
     }
 };
 
+class FullThreads : public Threads {};
+
 TEST_P(Threads, DoNotChangeTheImage) {
     const auto [scene, precision] = GetParam();
     for (const char *method : {"pt", "gpt"})
@@ -57,7 +59,7 @@ TEST_P(Threads, DoNotChangeTheImage) {
 TEST_F(Threads, DoNotChangePhotons) { expect_one_photon_image("cornell-box", "single"); }
 
 /// Enough samples for a pilot.
-TEST_F(Threads, DoNotChangeWhichMethodIsChosen) {
+TEST_F(FullThreads, DoNotChangeWhichMethodIsChosen) {
     expect_one_image("cornell-box", {"--size", "48x36", "--spp", "240", "--method", "auto"});
 }
 

@@ -172,7 +172,7 @@ TEST_F(Oclgrind, KernelsWithEveryTrait) {
     render("materials.xml", {"--size", "8x8", "--all-traits", "-D", "rfilter=tent"});
 }
 
-TEST_F(Oclgrind, AnisotropicRoughness) { render("plates.xml", {"--size", "8x8"}); }
+TEST_F(FullOclgrind, AnisotropicRoughness) { render("plates.xml", {"--size", "8x8"}); }
 
 TEST_F(FullOclgrind, OneMaterialOneLight) { render("cornell-box.xml", {"--size", "8x8", "-D", "rfilter=gaussian"}); }
 
