@@ -115,7 +115,7 @@ TEST_P(SharedGradientReference, IsMetByPrimalAndDifferences) {
     noise_left_by_reconstruction(reference, images);
 }
 
-// The torus is lit by paths found by chance (above): of 32 samples a block scored 4.9, of 128 none more than 3.3.
+// Of the torus light is found by chance (above): with 32 samples a block of dx scored 4.9, with 128 none above 3.3.
 INSTANTIATE_TEST_SUITE_P(Full, SharedGradientReference,
                          ::testing::Values(planted_in("cornell-box"), planted_in("torus-soft", 128),
                                            planted_in("veach-mis"), planted_in("bathroom", 8)),
