@@ -133,7 +133,10 @@ SceneSummary summarize(const Scene &scene) {
     for (const Shape &shape : scene.shapes) {
         if (shape.group != no_group)
             triangles_of_group[std::size_t(shape.group)] += scene.meshes[shape.geometry].triangles.size();
-        ++(shape.kind == Shape::Kind::sphere ? summary.spheres : summary.meshes);
+        if (shape.kind == Shape::Kind::mesh)
+            ++summary.meshes;
+        else if (scene.spheres[shape.geometry].side != Sphere::Side::left) // the same one once more
+            ++summary.spheres;
     }
     const Bounds bounds = world_bounds(scene);
     for (const Mesh &mesh : scene.meshes) {

@@ -27,7 +27,7 @@ GRADUS_FN primitive_hit sphere_hit_on_line(vec3 center, real radius, real facing
     primitive_hit hit;
     hit.u = R(0);
     hit.v = R(0);
-    hit.position = v3_mad(center, radius, normal);
+    hit.position = v3_mad(center, r_abs(radius), normal);
     hit.normal = v3_scale(normal, facing);
     return hit;
 }
@@ -75,7 +75,8 @@ GRADUS_FN normal_change normal_change_of(GRADUS_GLOBAL const real *triangles,
 #endif
 #if TRAIT_SPHERES
     const uint sphere = SPHERE_OF(primitive);
-    const real curvature = turn * FIELD_OF(sphere, spheres, sphere, facing) / FIELD_OF(sphere, spheres, sphere, radius);
+    const real curvature =
+        turn * FIELD_OF(sphere, spheres, sphere, facing) / r_abs(FIELD_OF(sphere, spheres, sphere, radius));
     change.curvature = TRAIT_TRIANGLES && primitive < triangle_count ? R(0) : curvature;
 #endif
     return change;

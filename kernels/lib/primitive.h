@@ -37,24 +37,26 @@ GRADUS_FN primitive_hit triangle_hit(vec3 p0, vec3 e1, vec3 e2, vec3 origin, vec
     return hit;
 }
 
-/* The nearest point in front of origin where the ray meets a sphere. The discriminant is formed from the vector
- * between center and line (Haines et al., Ray Tracing Gems, chapter 7), which keeps its precision for small and far
- * spheres; the point is then put back on the sphere. facing is 1 or -1. */
+/* The nearest point in front of origin where the ray meets a sphere, or with a radius below 0 the farther one. The
+ * discriminant is formed from the vector between center and line (Haines et al., Ray Tracing Gems, chapter 7), which
+ * keeps its precision for small and far spheres; the point is then put back on the sphere. facing is 1 or -1. */
 GRADUS_FN primitive_hit sphere_hit(vec3 center, real radius, real facing, vec3 origin, vec3 direction) {
     const vec3 f = v3_sub(origin, center);
     const real b = -v3_dot(f, direction);
     const vec3 closest = v3_mad(f, b, direction);
     const real discriminant = r_max(radius * radius - v3_dot(closest, closest), R(0));
+    const int is_far_side = radius < R(0);
     const real c = v3_dot(f, f) - radius * radius;
     const real q = b + r_copysign1(b) * r_sqrt(discriminant);
     const real t_near = c / (q == R(0) ? R(1) : q);
     /* With q > 0 the roots are c / q <= q, else q <= c / q; an origin inside has c < 0. At the center b is 0. */
-    const real t = (c > R(0)) == (q > R(0)) ? t_near : q;
+    const real t_nearest = (c > R(0)) == (q > R(0)) ? t_near : q;
+    const real t = is_far_side ? r_max(t_near, q) : t_nearest;
     const vec3 normal = v3_normalize(v3_mad(f, t, direction));
     primitive_hit hit;
     hit.u = R(0);
     hit.v = R(0);
-    hit.position = v3_mad(center, radius, normal);
+    hit.position = v3_mad(center, r_abs(radius), normal);
     hit.normal = v3_scale(normal, facing);
     return hit;
 }

@@ -78,7 +78,7 @@
     FIELD(sphere, center_x, "")                                                                                        \
     FIELD(sphere, center_y, "")                                                                                        \
     FIELD(sphere, center_z, "")                                                                                        \
-    FIELD(sphere, radius, "")                                                                                          \
+    FIELD(sphere, radius, "below 0 where it is of the far side alone (Sphere::Side)")                                  \
     FIELD(sphere, facing, "1: the normal points out; -1: to the center")                                               \
     FIELD(sphere, offset, "what its size adds to how far rays start off")
 

@@ -167,7 +167,7 @@ STAGE read_material(uint count, uint unit, uint first, uint traced_rows, uint pa
     const vec3 second_axis = FIELD_V3(sphere_axes, sphere_axes, sphere, second);
     const vec3 third_axis = FIELD_V3(sphere_axes, sphere_axes, sphere, third);
     const real sine = r_sqrt(x * x + y * y), inverse_sine = sine > R(0) ? R(1) / sine : R(0);
-    const real half_turn = R(3.14159265358979) * FIELD_OF(sphere, spheres, sphere, radius);
+    const real half_turn = R(3.14159265358979) * r_abs(FIELD_OF(sphere, spheres, sphere, radius));
     const vec3 meridian =
         v3_sub(v3_scale(v3_mad(v3_scale(first_axis, x), y, second_axis), z * inverse_sine), v3_scale(third_axis, sine));
     along_u =

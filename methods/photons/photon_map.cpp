@@ -60,9 +60,9 @@ Box box_of(const SceneTables &tables) {
     }
     for (std::size_t i = tables.triangle_count; i < tables.primitive_count; ++i) {
         const float *record = &tables.spheres[(i - tables.triangle_count) * sphere_stride];
+        const double radius = std::fabs(record[sphere_radius]);
         for (int axis = 0; axis < 3; ++axis)
-            add(axis, double(record[sphere_center_x + axis]) - record[sphere_radius],
-                double(record[sphere_center_x + axis]) + record[sphere_radius]);
+            add(axis, record[sphere_center_x + axis] - radius, record[sphere_center_x + axis] + radius);
     }
     if (!(box.low[0] <= box.high[0]))
         box = {};

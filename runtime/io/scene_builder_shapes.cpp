@@ -219,6 +219,13 @@ void SceneBuilder::add_shape(const Element &element, std::variant<BuiltMesh, Sph
         shape.kind = Shape::Kind::sphere;
         shape.geometry = std::uint32_t(scene_.spheres.size());
         scene_.spheres.push_back(*sphere);
+        if (shape.emitter < 0 && material.opacity < 1) {
+            scene_.spheres.back().side = Sphere::Side::entered;
+            scene_.shapes.push_back(shape);
+            shape.geometry = std::uint32_t(scene_.spheres.size());
+            scene_.spheres.push_back(*sphere);
+            scene_.spheres.back().side = Sphere::Side::left;
+        }
     } else {
         shape.kind = Shape::Kind::mesh;
         shape.geometry = std::uint32_t(scene_.meshes.size());

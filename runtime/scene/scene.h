@@ -87,9 +87,13 @@ inline const MeshAttribute *find_attribute(const Mesh &mesh, const std::string &
 }
 
 struct Sphere {
+    /// What rays meet of it. Of a sphere that rays may pass (opacity below 1) they must pass each side by itself, so
+    /// that is two spheres of the scene: the side on which they come in, and that on which they leave.
+    enum class Side { both, entered, left };
     Vector3 center;
     float radius = 1;
     bool flip_normals = false; ///< true: the normal points to the center
+    Side side = Side::both;
     /// Unit vectors along which its own x, y and z lie: (u, v) turns with them. A mirrored sphere's are left-handed.
     std::array<Vector3, 3> axes{Vector3{1, 0, 0}, Vector3{0, 1, 0}, Vector3{0, 0, 1}};
 };

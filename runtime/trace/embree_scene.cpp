@@ -34,7 +34,11 @@ void drop_passed(const RTCFilterFunctionNArguments *hits) {
                              RTCRayN_org_z(rays, hits->N, lane)};
         const Vector3 direction{RTCRayN_dir_x(rays, hits->N, lane), RTCRayN_dir_y(rays, hits->N, lane),
                                 RTCRayN_dir_z(rays, hits->N, lane)};
-        if (!opacity.is_met(RTCHitN_primID(hits->hit, hits->N, lane), origin, direction))
+        const unsigned number = RTCHitN_primID(hits->hit, hits->N, lane);
+        const float outward = direction.x * RTCHitN_Ng_x(hits->hit, hits->N, lane) +
+                              direction.y * RTCHitN_Ng_y(hits->hit, hits->N, lane) +
+                              direction.z * RTCHitN_Ng_z(hits->hit, hits->N, lane);
+        if (!opacity.has_side(number, outward) || !opacity.is_met(number, origin, direction))
             hits->valid[lane] = 0;
     }
 }

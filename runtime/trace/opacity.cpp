@@ -22,7 +22,9 @@ bool is_passable(const Scene &scene, const Shape &shape) {
 
 void Opacity::add(const Scene &scene, const Shape &shape, std::size_t triangle, std::uint32_t primitive) {
     const Number &opacity = scene.materials[shape.material].opacity;
-    primitives_.push_back({primitive, opacity.value, -1});
+    primitives_.push_back({primitive, opacity.value, -1, Sphere::Side::both});
+    if (shape.kind == Shape::Kind::sphere)
+        primitives_.back().side = scene.spheres[shape.geometry].side;
     if (opacity.texture == no_texture || shape.kind != Shape::Kind::mesh)
         return;
     const auto [known, is_new] = known_.emplace(opacity.texture, std::uint32_t(textures_.size()));

@@ -27,6 +27,12 @@ class Opacity {
     bool empty() const { return primitives_.empty(); }
     /// In the scene's numbering.
     std::uint32_t primitive(std::size_t i) const { return primitives_[i].number; }
+    /// Whether a hit is on a side of the i-th primitive that is of it: all but a sphere's have both. `outward`: the
+    /// product of the ray's direction and the normal away from the center.
+    bool has_side(std::size_t i, float outward) const {
+        const Sphere::Side side = primitives_[i].side;
+        return side == Sphere::Side::both || (side == Sphere::Side::left) == (outward > 0);
+    }
     /// Whether the ray meets the i-th primitive, which lies in its way.
     bool is_met(std::size_t i, const Vector3 &origin, const Vector3 &direction) const;
     /// The same of an instance of the group that the primitive is of, by its number from 1 on and where it stands. Each
@@ -46,6 +52,7 @@ class Opacity {
         std::uint32_t number;
         float opacity;
         std::int64_t textured; ///< index into triangles_, or -1
+        Sphere::Side side;
     };
     float opacity_of(const TexturedTriangle &triangle, const Vector3 &origin, const Vector3 &direction) const;
     bool decide(const Primitive &primitive, float opacity, const Vector3 &origin, const Vector3 &direction,

@@ -56,6 +56,40 @@ TEST_P(ThroughAScreen, LightIsWhatItsHolesLetThrough) {
 
 INSTANTIATE_TEST_SUITE_P(Methods, ThroughAScreen, ::testing::Values("pt", "gpt", "sppm"));
 
+/// A black ball of opacity 0.5 before light from everywhere, met on both of its sides as the loader has it: a quarter
+/// of the light comes through.
+TEST(HalfOpenBall, IsPassedOnEachSideByItself) {
+    SceneMaker maker(8, 1024);
+    maker.look({0, 0, -4}, {0, 0, 0}, 8); // within the ball
+    maker.environment(1);
+    const std::uint32_t material = maker.material(black_screen(0.5f));
+    for (const Sphere::Side side : {Sphere::Side::entered, Sphere::Side::left}) {
+        maker.sphere({0, 0, 0}, 1, material);
+        maker.scene.spheres.back().side = side;
+    }
+    // From within there is one side to pass.
+    SceneMaker away = maker;
+    away.look({0, 0, -4}, {0, 0, -8}, 8);
+    SceneMaker within = maker;
+    within.look({0.1, 0.2, -0.3}, {0, 0, 1}, 8);
+    for (const char *method : {"pt", "gpt"}) {
+        RenderOptions options;
+        options.reconstruction = Reconstruction::l2;
+        // Of 65536 samples, a deviation of 0.5 at most; gpt's pixels share numbers.
+        const double slack = std::string(method) == "gpt" ? 0.02 : 5 * 0.5 / 256;
+        const auto mean_of = [&](const Scene &scene) {
+            const Image image = render(scene, options, method).image;
+            double mean = 0;
+            for (const float value : image.find("R")->values)
+                mean += value / 64;
+            return mean;
+        };
+        const double light = mean_of(away.scene);
+        EXPECT_NEAR(mean_of(maker.scene) / light, 0.25, slack) << method;
+        EXPECT_NEAR(mean_of(within.scene) / light, 0.5, slack) << method;
+    }
+}
+
 // A fence of screens, some open, some half open, before a wall: seen through, and between the lamp and the wall.
 TEST(GradientStability, ThroughSurfacesThatAreHalfOpen) {
     SceneMaker scene = scene_for_bias();
