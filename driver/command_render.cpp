@@ -77,8 +77,10 @@ void add_render_command(CLI::App &app, const Services &services, std::function<i
         ->group(samples);
 
     add_method_options(command, services, request->method);
-    command.callback(
-        [request, &services, &chosen] { chosen = [request, &services] { return run_render(*request, services); }; });
+    command.callback([request, &command, &services, &chosen] {
+        request->method.given = given_options(command);
+        chosen = [request, &services] { return run_render(*request, services); };
+    });
 }
 
 } // namespace gradus

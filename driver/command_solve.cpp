@@ -21,7 +21,7 @@ namespace {
 constexpr const char *notes_of_solve = R"(Examples:
   gradus solve layers.exr -o out.exr                      layers primal, dx, dy, and direct if there is one
   gradus solve --primal p.exr --dx dx.exr --dy dy.exr --direct d.exr -o out.exr
-  gradus solve layers.exr -o out.exr --reconstruction l2 --alpha auto --stats out.json
+  gradus solve layers.exr -o out.exr --reconstruction l2 --alpha auto     with the layers of `render --layers --aov`
   gradus solve layers.exr -o out.exr --layer primal=noisy --layer dx=d_right --layer dy=d_down
 
 Sought is the image I with the differences Gx to the right and Gy downwards, and near to the primal I0:

@@ -1,5 +1,7 @@
 #include "driver/commands.h"
+#include "driver/memory_check.h"
 #include "driver/method_request.h"
+#include "driver/options_of_method.h"
 #include "driver/scene_request.h"
 #include "driver/standard_streams.h"
 #include "runtime/error.h"
@@ -20,9 +22,12 @@ struct WarmRequest {
 
 int run_warm(const WarmRequest &request, const Services &services) {
     const auto start = std::chrono::steady_clock::now();
-    const Scene scene = load_requested_scene(request.scene, services, [](const std::string &warning) {
-        print_message("gradus: warning: " + warning + "\n");
-    });
+    check_method_options(request.method);
+    const auto warn = [](const std::string &warning) { print_message("gradus: warning: " + warning + "\n"); };
+    const Scene scene = load_requested_scene(request.scene, services, warn);
+    for (const std::string &sentence : unread_options(request.method, request.method.method))
+        warn(sentence);
+    check_memory(scene, request.method.options);
     RenderOptions options = request.method.options;
     options.on_compiled = [](const std::string &kernel, std::size_t ready, std::size_t total, double seconds) {
         print_message(fmt::format("{:8.3f} s  {} ({} of {})\n", seconds, kernel, ready, total));
@@ -46,8 +51,10 @@ void add_warm_command(CLI::App &app, const Services &services, std::function<int
                    "batch is rendered and thrown away. Kernels that come from the cache print no line.");
     add_scene_options(command, request->scene);
     add_method_options(command, services, request->method);
-    command.callback(
-        [request, &services, &chosen] { chosen = [request, &services] { return run_warm(*request, services); }; });
+    command.callback([request, &command, &services, &chosen] {
+        request->method.given = given_options(command);
+        chosen = [request, &services] { return run_warm(*request, services); };
+    });
 }
 
 } // namespace gradus

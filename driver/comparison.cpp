@@ -31,6 +31,15 @@ Image read_variance(const CompareRequest &request) {
     return request.layer.empty() && image.find("variance.R") ? select_layer(image, "variance") : image;
 }
 
+/// Scores of what is no variance would tell nothing.
+void check_variance(const Image &variance, const Image &reference, const std::string &path) {
+    for (const Channel *channel : compared_channels(variance, reference))
+        for (const float value : channel->values)
+            if (value < 0)
+                throw Error(ExitCode::image,
+                            fmt::format("{}: a variance is below 0 in channel {}: {:g}", path, channel->name, value));
+}
+
 /// Samples a pixel as our own files state them; 0 where the file does not say.
 double stated_samples(const Image &image) {
     const auto at = image.metadata.find("spp");
@@ -125,8 +134,9 @@ void run_tests(const CompareRequest &request, const std::vector<Image> &images, 
 
 std::string figures_line(const Comparison::Figures &figures) {
     return fmt::format(
-               "{}\n  relMSE {:.4e}   trimmed {:.4e}   PSNR {:.2f} dB   mean ratio {:.6f}   bias {:+.3e}{}\n",
-               figures.name, figures.relative_mse, figures.trimmed_relative_mse, figures.psnr, figures.mean.ratio,
+               "{}\n  relMSE {:.4e}   trimmed {:.4e}   PSNR {:.2f} dB   mean ratio {}   bias {:+.3e}{}\n", figures.name,
+               figures.relative_mse, figures.trimmed_relative_mse, figures.psnr,
+               std::isfinite(figures.mean.ratio) ? fmt::format("{:.6f}", figures.mean.ratio) : "none",
                figures.mean.bias,
                figures.non_finite > 0
                    ? fmt::format("\n  {} values are NaN or infinite; their pixels are left out", figures.non_finite)
@@ -197,8 +207,10 @@ Comparison compare_images(const CompareRequest &request) {
     result.variance_given = !request.variance.empty();
     const Image reference = read_selected(request.reference, request);
     const Image variance = result.variance_given ? read_variance(request) : Image();
-    if (result.variance_given)
+    if (result.variance_given) {
         result.reference_relative_mse = relative_variance(variance, reference);
+        check_variance(variance, reference, request.variance);
+    }
     std::vector<Image> images;
     for (const std::string &path : request.images) {
         images.push_back(read_selected(path, request));
@@ -286,7 +298,7 @@ nlohmann::json comparison_json(const Comparison &comparison) {
                         {"notes", comparison.notes},
                         {"failures", comparison.failures},
                         {"judged", comparison.judged},
-                        {"holds", comparison.failures.empty()}};
+                        {"holds", comparison.judged && comparison.failures.empty()}};
     if (comparison.reference_relative_mse)
         json["reference_relative_mse"] = *comparison.reference_relative_mse;
     if (comparison.mean)

@@ -165,6 +165,11 @@ bool is_asked_for(GradientLayer layer, const GradientSources &sources) {
     return is_of_half(layer) == sources.halves && (!is_variance(layer) || sources.halves || sources.variances);
 }
 
+/// The render that writes layers of halves.
+std::string layers_with(const GradientSources &sources) {
+    return fmt::format("`gradus render --layers --reconstruction {}`", sources.features ? "guided" : "weighted");
+}
+
 /// Which images each file holds, so that every file is read once.
 std::map<std::string, std::vector<GradientLayer>> files_to_read(const GradientSources &sources) {
     std::map<std::string, std::vector<GradientLayer>> files;
@@ -177,10 +182,8 @@ std::map<std::string, std::vector<GradientLayer>> files_to_read(const GradientSo
         else if (!sources.layered.empty())
             files[sources.layered].push_back(layer);
         else if (sources.halves && layer != GradientLayer::direct)
-            throw Error(ExitCode::usage,
-                        fmt::format("there is no {}: give a file with layers, of `gradus render --layers "
-                                    "--reconstruction {}`",
-                                    layer_name(layer), sources.features ? "guided" : "weighted"));
+            throw Error(ExitCode::usage, fmt::format("there is no {}: give a file with layers, of {}",
+                                                     layer_name(layer), layers_with(sources)));
         else if (layer != GradientLayer::direct)
             throw Error(ExitCode::usage, fmt::format("there is no {}: give {} FILE, or one file with layers",
                                                      layer_name(layer), all_names.at(layer).option));
@@ -191,6 +194,15 @@ std::map<std::string, std::vector<GradientLayer>> files_to_read(const GradientSo
 /// That which sizes, channels and metadata go by.
 GradientLayer main_layer(const GradientSources &sources) {
     return sources.halves ? GradientLayer::primal_even : GradientLayer::primal;
+}
+
+/// What to do where a file has not the layer that is asked for.
+std::string remedy(GradientLayer layer, const GradientSources &sources) {
+    const std::string writer = sources.halves       ? layers_with(sources)
+                               : is_variance(layer) ? "`gradus render --layers --aov`"
+                                                    : "";
+    return fmt::format("{}{}Name it with --layer {}=NAME", writer, writer.empty() ? "" : " writes it. ",
+                       layer_name(layer));
 }
 
 /// Adds what one file holds to `found`, and the metadata of the primal's file to `images`.
@@ -204,8 +216,8 @@ void read_file(const std::string &path, const std::vector<GradientLayer> &wanted
         if (!name && may_be_missing(layer, sources) && !alone && !sources.names.count(layer))
             continue;
         if (!name)
-            fail_to_read(fmt::format("'{}' has no layer for {}; it has: {}. Name it with --layer {}=NAME", path,
-                                     layer_name(layer), list_of(layers), layer_name(layer)));
+            fail_to_read(fmt::format("'{}' has no layer for {}; it has: {}. {}", path, layer_name(layer),
+                                     list_of(layers), remedy(layer, sources)));
         const std::string where = name->empty() ? fmt::format("'{}'", path) : fmt::format("{} of '{}'", *name, path);
         found[layer] = take_channels(layer, image, layers.at(*name), where);
         if (layer == main_layer(sources))

@@ -19,7 +19,8 @@ void add_method_options(CLI::App &command, const Services &services, MethodReque
         .add_option(
             "--method", request.method,
             "Rendering method: pt, path tracing; gpt, gradient-domain path tracing; sppm, stochastic progressive "
-            "photon mapping; auto, whichever of pt, gpt and gpm a short pilot render finds better")
+            "photon mapping; gpm, gradient-domain photon mapping; auto, whichever of pt, gpt and gpm a short pilot "
+            "render finds better")
         ->check(CLI::IsMember(services.method_names()))
         ->capture_default_str()
         ->group(group);
@@ -86,10 +87,7 @@ void add_method_options(CLI::App &command, const Services &services, MethodReque
     const char *reconstruction = "Reconstruction (gpt, gpm, auto)";
     add_reconstruction_option(command, reconstruction, request.options.reconstruction,
                               [&request](Reconstruction name) { request.options.reconstruction = name; });
-    add_guide_option(command, reconstruction, [&request](Guide guide) {
-        request.options.guide = guide;
-        request.guide_is_given = true;
-    });
+    add_guide_option(command, reconstruction, [&request](Guide guide) { request.options.guide = guide; });
     add_alpha_option(command, reconstruction, "auto",
                      "Weight of the primal image against its differences; auto: from their variances",
                      [&request](std::optional<double> alpha) { request.options.alpha = alpha; });
@@ -126,6 +124,15 @@ void add_method_options(CLI::App &command, const Services &services, MethodReque
         ->check(CLI::IsMember({"mis", "light", "bsdf"}))
         ->default_str("mis")
         ->group(measuring);
+}
+
+std::set<std::string> given_options(const CLI::App &command) {
+    std::set<std::string> given;
+    for (const CLI::Option *option : command.get_options())
+        if (option->count() > 0)
+            for (const std::string &name : option->get_lnames())
+                given.insert("--" + name);
+    return given;
 }
 
 } // namespace gradus

@@ -4,10 +4,10 @@
 #include "driver/finite_values.h"
 #include "driver/interrupt.h"
 #include "driver/memory_check.h"
+#include "driver/options_of_method.h"
 #include "driver/phase_watch.h"
 #include "driver/program.h"
 #include "driver/progress.h"
-#include "driver/reconstruction_options.h"
 #include "driver/standard_streams.h"
 #include "driver/statistics_json.h"
 #include "runtime/error.h"
@@ -84,7 +84,7 @@ class RenderJob {
             &phases_);
         check_distinct(output_list(request_.outputs), files_read_);
         check_counts(scene);
-        check_reconstruction_options();
+        warn_of_unread_options(request_.method.method);
         check_memory(scene, request_.method.options);
         if (!is_limited_by_samples())
             scene.settings.samples_per_pixel =
@@ -122,6 +122,7 @@ class RenderJob {
             record_.method = choice->method;
             pilot_seconds_ = choice->pilot_seconds;
             progress_.message(fmt::format("method {}: {}", choice->method, choice->reason));
+            warn_of_unread_options(choice->method);
         }
         std::string aim = is_limited_by_samples() ? fmt::format("{} samples a pixel", scene.settings.samples_per_pixel)
                           : request_.time_limit > 0 ? fmt::format("{} s", request_.time_limit)
@@ -137,18 +138,9 @@ class RenderJob {
         return (request_.time_limit <= 0 && request_.until_error <= 0) || request_.scene.samples_per_pixel;
     }
 
-    /// Options of a reconstruction that another, or a method without, would leave unread.
-    void check_reconstruction_options() const {
-        const MethodRequest &method = request_.method;
-        const bool has_gradients = method.method != "pt" && method.method != "sppm";
-        if (has_gradients)
-            check_alpha(method.options.reconstruction, method.options.alpha.has_value(),
-                        method.options.alpha.value_or(0));
-        else if (method.options.alpha)
-            throw Error(ExitCode::usage,
-                        fmt::format("--alpha weighs an image against its differences, and {} has none", method.method));
-        if (method.guide_is_given && method.options.reconstruction != Reconstruction::guided)
-            throw Error(ExitCode::usage, "--guide is of one reconstruction: add --reconstruction guided");
+    void warn_of_unread_options(const std::string &method) {
+        for (const std::string &sentence : unread_options(request_.method, method))
+            progress_.message("gradus: warning: " + sentence);
     }
 
     /// Samples are counted in 64 bits, with room for sums and for what methods add to each.
@@ -298,6 +290,8 @@ class RenderJob {
         image.metadata["reconstruction"] = used.name;
         if (!used.guide.empty())
             image.metadata["guide"] = used.guide;
+        if (used.alpha)
+            image.metadata["alpha"] = fmt::format("{}", *used.alpha);
         image.metadata["accuracy"] = used.accuracy;
         image.metadata["samples"] = std::to_string(done);
         image.metadata["spp"] = fmt::format("{}", record_.samples_per_pixel);
@@ -373,6 +367,7 @@ class RenderJob {
 
 int run_render(const RenderRequest &request, const Services &services) {
     check_outputs(request.outputs);
+    check_method_options(request.method);
     if (!request.method.options.dump_kernels.empty())
         check_folder(request.method.options.dump_kernels);
     return RenderJob(request, services).run();

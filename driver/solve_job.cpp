@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdlib>
@@ -36,7 +37,7 @@ void check_inputs_are_kept(const SolveRequest &request) {
 
 void check_options(const SolveRequest &request) {
     if (request.options.weigh_by_variance && request.options.norm == PoissonNorm::l1)
-        refuse("--weights variance is for the norm L2: add --norm L2");
+        refuse("--weights variance is for l2: add --reconstruction l2");
     check_alpha(request.reconstruction, request.alpha_is_given, request.options.alpha);
     if (needs_halves(request.reconstruction) && !(request.options == PoissonOptions{.norm = PoissonNorm::l2}))
         refuse(fmt::format("--reconstruction {} chooses weights and method by itself: leave --weights, --method, "
@@ -65,6 +66,10 @@ class SolveJob {
                 if (is_variance(layer))
                     warn(fmt::format("'{}' is not read: only --alpha auto and --weights variance use variances", path));
         images_ = read_gradient_images(request_.sources);
+        if (request_.options.alpha_from_variances && !varies(GradientLayer::primal_variance) &&
+            !varies(GradientLayer::dx_variance) && !varies(GradientLayer::dy_variance))
+            warn(fmt::format("all variances are 0, as of one sample a pixel: they tell no alpha, so it is {}",
+                             request_.options.alpha));
         if (request_.sources.features && images_.channels.size() != 3)
             throw Error(ExitCode::image, "--reconstruction guided is for images of R, G and B");
         solve();
@@ -75,6 +80,12 @@ class SolveJob {
     void warn(const std::string &text) const {
         if (!request_.quiet)
             print_message("gradus: warning: " + text + "\n");
+    }
+
+    bool varies(GradientLayer layer) const {
+        const float *plane = images_.find(layer);
+        const std::size_t values = std::size_t(images_.width) * images_.height * images_.channels.size();
+        return plane && std::any_of(plane, plane + values, [](float value) { return value != 0; });
     }
 
     void solve() {
@@ -185,6 +196,8 @@ class SolveJob {
         // L1 comes ever closer and is stopped by count as a rule; L2 that does not arrive is not the solution.
         if (!report_.converged && request_.options.iterations == 0 && request_.options.norm == PoissonNorm::l2)
             warn("the tolerance was not reached");
+        if (report_.missing_primal == std::uint64_t(images_.width) * images_.height)
+            warn("no pixel of the primal has a finite value");
         if (request_.outputs.png) {
             if (image.channels.size() == 1) // a picture has three
                 image.channels = {

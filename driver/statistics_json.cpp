@@ -35,12 +35,16 @@ nlohmann::json choice_json(const MethodChoice &choice) {
             {"gain", choice.gain > 0 ? json(choice.gain) : json()}};
 }
 
-nlohmann::json reconstruction_json(const ReconstructionUsed &used) {
-    return {{"name", used.name}, {"guide", used.guide}, {"accuracy", used.accuracy}, {"note", used.note}};
-}
-
 static nlohmann::json number_or_null(const std::optional<double> &number) {
     return number ? nlohmann::json(*number) : nlohmann::json();
+}
+
+nlohmann::json reconstruction_json(const ReconstructionUsed &used) {
+    return {{"name", used.name},
+            {"guide", used.guide},
+            {"alpha", number_or_null(used.alpha)},
+            {"accuracy", used.accuracy},
+            {"note", used.note}};
 }
 
 nlohmann::json gathering_json(const Statistics &statistics) {

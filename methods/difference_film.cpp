@@ -137,7 +137,6 @@ Image DifferenceFilm::image(std::uint64_t samples, bool layers, bool last, std::
     if (!solver_)
         solver_ =
             std::make_unique<PoissonSolver>(session_.device, session_.film.crop_width, session_.film.crop_height, 3);
-    used_ = reconstruction_used(options_, samples, session_.pixels());
     relative_error_.reset();
     Image image = reconstruct(
         session_.device, *solver_, std::move(whole), films(samples), edges(samples, last), options_, layers,
@@ -145,7 +144,7 @@ Image DifferenceFilm::image(std::uint64_t samples, bool layers, bool last, std::
             if (last)
                 tables_->release_all_but({counts_});
         },
-        tells_error_ && has_error_layer(options_, keeps_halves(options_)) ? &relative_error_ : nullptr);
+        used_, tells_error_ && has_error_layer(options_, keeps_halves(options_)) ? &relative_error_ : nullptr);
     if (last)
         solver_.reset();
     return image;

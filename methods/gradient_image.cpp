@@ -66,19 +66,21 @@ std::vector<Channel> layers_of(const Image &direct, const GradientFilms &films, 
 }
 
 /// The result takes the place of the direct image, which is added to it.
-void reconstruct_from_film(PoissonSolver &solver, Image &whole, GradientFilms &films, const PoissonOptions &poisson,
-                           const std::function<void()> &films_are_read) {
+/// The weight of the primal, as it was used.
+double reconstruct_from_film(PoissonSolver &solver, Image &whole, GradientFilms &films, const PoissonOptions &poisson,
+                             const std::function<void()> &films_are_read) {
     ImageSources images = films.images();
     const auto plane_of = [&whole](std::uint32_t c) { return whole.channels[c].values.data(); };
     const std::size_t pixels = films.pixels();
     images.direct = [&](std::uint32_t c, float *plane) { std::copy_n(plane_of(c), pixels, plane); };
-    solver.solve(
+    const PoissonReport report = solver.solve(
         images, poisson, [&](std::uint32_t c, const float *plane) { std::copy_n(plane, pixels, plane_of(c)); },
         [&] {
             films = GradientFilms();
             if (films_are_read)
                 films_are_read();
         });
+    return report.alpha;
 }
 
 /// A half in device memory, with its variances.
@@ -123,24 +125,8 @@ void reconstruct_from_halves(Device &device, PoissonSolver &solver, Image &whole
     }
 }
 
-} // namespace
-
-PoissonOptions poisson_options(const RenderOptions &options, std::uint64_t frames) {
-    PoissonOptions poisson;
-    poisson.norm = options.reconstruction == Reconstruction::l2 ? PoissonNorm::l2 : PoissonNorm::l1;
-    poisson.alpha_from_variances = !options.alpha && frames > 1;
-    poisson.alpha = options.alpha.value_or(poisson.alpha);
-    return poisson;
-}
-
-void compile_reconstruction(Device &device, const RenderOptions &options, std::uint64_t frames) {
-    if (needs_halves(options.reconstruction) && halves_have_variances(frames, 1))
-        options.reconstruction == Reconstruction::guided ? GuidedReconstruction::compile(device)
-                                                         : WeightedReconstruction::compile(device);
-    else
-        PoissonSolver::compile(device, poisson_options(options, frames));
-}
-
+/// How an image of so many samples is reconstructed, and what its mean tends to. Halves of one sample have no
+/// variances to judge each other by: l1 then.
 ReconstructionUsed reconstruction_used(const RenderOptions &options, std::uint64_t samples, std::uint64_t pixels) {
     Reconstruction reconstruction = options.reconstruction;
     ReconstructionUsed used;
@@ -160,9 +146,29 @@ ReconstructionUsed reconstruction_used(const RenderOptions &options, std::uint64
     return used;
 }
 
+} // namespace
+
+PoissonOptions poisson_options(const RenderOptions &options, std::uint64_t frames) {
+    PoissonOptions poisson;
+    poisson.norm = options.reconstruction == Reconstruction::l2 ? PoissonNorm::l2 : PoissonNorm::l1;
+    poisson.alpha_from_variances = !options.alpha && frames > 1;
+    poisson.alpha = options.alpha.value_or(poisson.alpha);
+    return poisson;
+}
+
+void compile_reconstruction(Device &device, const RenderOptions &options, std::uint64_t frames) {
+    if (needs_halves(options.reconstruction) && halves_have_variances(frames, 1))
+        options.reconstruction == Reconstruction::guided ? GuidedReconstruction::compile(device)
+                                                         : WeightedReconstruction::compile(device);
+    else
+        PoissonSolver::compile(device, poisson_options(options, frames));
+}
+
 Image reconstruct(Device &device, PoissonSolver &solver, Image whole, GradientFilms films,
                   const std::vector<DirectPixel> &edges, const RenderOptions &options, bool layers,
-                  const std::function<void()> &films_are_read, std::optional<double> *relative_error) {
+                  const std::function<void()> &films_are_read, ReconstructionUsed &used,
+                  std::optional<double> *relative_error) {
+    used = reconstruction_used(options, films.samples(), films.pixels());
     take_primal_off(whole, films, edges);
     std::vector<Channel> more;
     if (layers)
@@ -175,7 +181,7 @@ Image reconstruct(Device &device, PoissonSolver &solver, Image whole, GradientFi
         const PoissonOptions poisson = poisson_options(options, films.frames());
         if (tells_error)
             errors = errors_of_solves(solver, films, poisson);
-        reconstruct_from_film(solver, whole, films, poisson, films_are_read);
+        used.alpha = reconstruct_from_film(solver, whole, films, poisson, films_are_read);
     }
     if (!options.aov && !layers) // features, if any, were there for the guide
         whole.channels.resize(3);

@@ -17,20 +17,17 @@ namespace gradus {
 /// What `whole` has and the primal has not is what the camera sees of lights, and `edges` know it better where they
 /// are; it is added at last, as it is. alpha comes from the variances unless the options say otherwise. `films` are
 /// two where options need halves; they go once they have been read, and then `films_are_read` is called, before the
-/// solver needs its memory. `relative_error`: where given and halves have samples, the image gets the layer of errors,
-/// and this the estimate of relMSE.
+/// solver needs its memory. `used`: how it was done. `relative_error`: where given and halves have samples, the image
+/// gets the layer of errors, and this the estimate of relMSE.
 Image reconstruct(Device &device, PoissonSolver &solver, Image whole, GradientFilms films,
                   const std::vector<DirectPixel> &edges, const RenderOptions &options, bool layers,
-                  const std::function<void()> &films_are_read = {}, std::optional<double> *relative_error = nullptr);
+                  const std::function<void()> &films_are_read, ReconstructionUsed &used,
+                  std::optional<double> *relative_error = nullptr);
 
 /// Compiles what reconstructing so many frames needs; as PoissonSolver::compile().
 void compile_reconstruction(Device &device, const RenderOptions &options, std::uint64_t frames);
 
 /// What options ask of the solver.
 PoissonOptions poisson_options(const RenderOptions &options, std::uint64_t frames);
-
-/// How an image of so many samples is reconstructed, and what its mean tends to. Halves of one sample have no
-/// variances to judge each other by: l1 then.
-ReconstructionUsed reconstruction_used(const RenderOptions &options, std::uint64_t samples, std::uint64_t pixels);
 
 } // namespace gradus

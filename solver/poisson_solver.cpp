@@ -174,7 +174,7 @@ PoissonReport PoissonSolver::Implementation::solve(const Inputs &images, const P
         problem.import_variances(images, options.weigh_by_variance);
     if (all_read)
         all_read();
-    report.alpha = options.alpha_from_variances ? problem.alpha_from_variances() : options.alpha;
+    report.alpha = options.alpha_from_variances ? problem.alpha_from_variances(options.alpha) : options.alpha;
     const bool l2 = options.norm == PoissonNorm::l2;
     if (!l2 && options.alpha_from_variances && report.alpha > 0)
         report.alpha = std::max(report.alpha, least_alpha_of_absolute_values);

@@ -89,8 +89,10 @@ void Problem::import_variances(const Inputs &images, bool keep) {
         primal_variance_ = dx_variance_ = dy_variance_ = Buffer();
 }
 
-double Problem::alpha_from_variances() const {
-    return mean_primal_variance_ > 0 ? std::sqrt(std::max(gradient_variance_, 0.0) / mean_primal_variance_) : 1;
+double Problem::alpha_from_variances(double otherwise) const {
+    if (mean_primal_variance_ > 0)
+        return std::sqrt(std::max(gradient_variance_, 0.0) / mean_primal_variance_);
+    return gradient_variance_ > 0 ? 1 : otherwise;
 }
 
 void Problem::make_base_weights(Kernels &kernels, bool by_variance, double largest_weight) {

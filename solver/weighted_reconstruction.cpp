@@ -144,6 +144,7 @@ WeightedReconstruction::WeightedReconstruction(Device &device, PoissonSolver &so
 PoissonOptions WeightedReconstruction::options() {
     PoissonOptions options;
     options.norm = PoissonNorm::l2;
+    options.alpha = 1; // where nothing varies
     options.alpha_from_variances = true;
     options.weigh_by_variance = true;
     options.largest_weight = largest_weight;

@@ -54,8 +54,12 @@ GRADUS_FN surface_point surface_point_at(GRADUS_GLOBAL const real *triangles,
     geometric = v3_scale(geometric, turn);
     shading = v3_scale(shading, turn);
 #endif
-    point.along = v3(-hit.normal.y, hit.normal.x, R(0)); /* spheres: around the z axis */
+    point.along = v3(R(0), R(0), R(0));
 #if TRAIT_ANISOTROPIC
+#if TRAIT_SPHERES
+    /* Around the pole; only the direction counts, not its sign. */
+    point.along = v3_cross(FIELD_V3(sphere, spheres, SPHERE_OF(primitive), pole), hit.normal);
+#endif
 #if TRAIT_INDEXED
     const scene_triangle triangle = scene_triangle_of(triangles, unit, TRIANGLE_OF(primitive) INSTANCE_OF_HIT);
     const vec3 of_triangle = tangent_of_corners(triangle_tangents, unit, triangle);

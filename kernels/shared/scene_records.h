@@ -80,7 +80,10 @@
     FIELD(sphere, center_z, "")                                                                                        \
     FIELD(sphere, radius, "below 0 where it is of the far side alone (Sphere::Side)")                                  \
     FIELD(sphere, facing, "1: the normal points out; -1: to the center")                                               \
-    FIELD(sphere, offset, "what its size adds to how far rays start off")
+    FIELD(sphere, offset, "what its size adds to how far rays start off")                                              \
+    FIELD(sphere, pole_x, "its own z axis, unit: with TRAIT_ANISOTROPIC dp/du goes around it")                         \
+    FIELD(sphere, pole_y, "")                                                                                          \
+    FIELD(sphere, pole_z, "")
 
 /* A light is one emitting triangle or sphere, a point, a spot, a direction or the environment, constant or a map. Which
  * members of p and the edges mean what is said by kind: triangle: p0, e1, e2; sphere: center, radius in e1_x, facing in

@@ -50,6 +50,9 @@ bool is_of_mitsuba(const std::string &tag, const std::string &type) {
 } // namespace
 
 std::string unknown_plugin(const std::string &category, const std::string &type) {
+    if (category == "spectrum")
+        return "the spectrum \"" + type + "\" is not known here: write value=\"wavelength:value, ...\", or one of " +
+               "type d65, srgb or uniform";
     const std::vector<std::string> known = plugin_names(category);
     std::string message =
         type.empty() ? "<" + category + "> needs a type" : "unknown " + category + " plugin \"" + type + "\"";

@@ -8,8 +8,11 @@
 #include <pugixml.hpp>
 
 #include <algorithm>
+#include <cerrno>
 #include <iterator>
 #include <string_view>
+#include <system_error>
+#include <unistd.h>
 
 namespace gradus {
 namespace fs = std::filesystem;
@@ -88,6 +91,21 @@ class Reader {
     std::uint64_t xml_bytes_ = 0, includes_ = 0, elements_ = 0;
 };
 
+/// Why a file cannot be read, where that is known: ": ...".
+std::string why_not(const fs::path &path) {
+    std::error_code failure;
+    const fs::file_status status = fs::status(path, failure);
+    if (status.type() == fs::file_type::not_found)
+        return ": there is none of that name";
+    if (fs::is_directory(status))
+        return ": it is a folder";
+    if (failure)
+        return ": " + failure.message();
+    if (!fs::is_regular_file(status))
+        return ": it is no regular file";
+    return ::access(path.c_str(), R_OK) != 0 ? ": " + std::generic_category().message(errno) : "";
+}
+
 /// opened: nullptr where it cannot be read.
 std::unique_ptr<File> Reader::open(const std::shared_ptr<const OpenFile> &opened, const fs::path &path, int version) {
     auto file = std::make_unique<File>();
@@ -101,8 +119,8 @@ std::unique_ptr<File> Reader::open(const std::shared_ptr<const OpenFile> &opened
         fail(whole, "the scene's files have more than " + std::to_string(limits_.xml_bytes >> 20) + " MiB of XML" +
                         limits_hint);
     std::optional<std::string> text = opened ? opened->read() : std::nullopt;
-    if (!text)
-        fail(whole, "cannot read this scene file");
+    if (!text) // of files that a stranger's scene names it stays untold whether they are there
+        fail(whole, "cannot read this scene file" + (version == 0 ? why_not(path) : ""));
     file->line_starts.push_back(0);
     for (std::size_t i = 0; i < text->size(); ++i)
         if ((*text)[i] == '\n')

@@ -161,7 +161,8 @@ const Element *Properties::texture_of(const Element &property) {
     if (!read_texture_)
         return nullptr;
     const Element &target = property.tag == "ref" ? resolve_(property) : property;
-    return target.tag == "texture" ? &target : nullptr;
+    const bool is_plugin = target.tag == "texture" || (target.tag == "spectrum" && target.attribute("type"));
+    return is_plugin ? &target : nullptr;
 }
 
 std::int64_t Properties::integer(const std::string &name) {

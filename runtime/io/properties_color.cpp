@@ -65,9 +65,6 @@ Rgb Properties::read_spectrum(const Element &property, const std::string &name, 
     if (property.attribute("filename"))
         throw SceneError(property.location, "\"" + name + "\": spectra in files of their own are not supported; " +
                                                 "write value=\"wavelength:value, ...\"");
-    if (property.attribute("type"))
-        throw SceneError(property.location, "spectrum plugin \"" + property.attribute_or("type", "") +
-                                                "\" is not known here; give a value");
     const std::string &text = value_of(property);
     if (text.find(':') != std::string::npos) {
         const SampledSpectrum samples = parse_samples(property, text);
@@ -108,9 +105,12 @@ Double3 Properties::read_rgb(const std::string &text, const Parameter &parameter
 
 Rgb Properties::read_color(const Element &property, const Parameter &parameter, ColorUse use) {
     const std::string &name = parameter.name;
-    const Element &target = property.tag == "ref" ? resolve_(property) : property;
-    if (target.tag == "texture")
-        throw SceneError(property.location, "\"" + name + "\" cannot be a texture; give it as <rgb> or <spectrum>");
+    if (const Element *texture = texture_of(property)) {
+        const Color color = color_of_texture(*texture, std::numeric_limits<float>::max());
+        if (color.texture != no_texture)
+            throw SceneError(property.location, "\"" + name + "\" cannot be a texture; give it as <rgb> or <spectrum>");
+        return color;
+    }
     if (property.tag == "spectrum")
         return read_spectrum(property, name, use);
     const bool gamma_coded = property.tag == "srgb";

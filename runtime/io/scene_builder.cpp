@@ -26,8 +26,9 @@ SceneBuilder::SceneBuilder(const Document &document, const LoadOptions &options,
     : document_(document), limits_(options.limits), ignore_media_(options.ignore_media), phases_(options.phases),
       finder_(finder), diagnostics_(diagnostics),
       resolve_([this](const Element &reference) -> const Element & { return resolve(reference); }),
-      read_texture_(
-          [this](const Element &element, double lowest, double highest) { return texture(element, lowest, highest); }),
+      read_texture_([this](const Element &element, double lowest, double highest) {
+          return texture(element, lowest, highest, OneColor::is_no_texture);
+      }),
       instance_choice_(options.instances), most_copied_bytes_(options.most_copied_bytes) {}
 
 /// Reports tags that mean nothing, in every object.

@@ -71,8 +71,11 @@ class SceneBuilder {
     /// SceneError.
     std::shared_ptr<const Bitmap> bitmap(const std::filesystem::path &path, bool is_linear, const std::string &channel,
                                          const Location &location, bool &is_srgb);
+    /// Whether a texture that is the same everywhere becomes one of the scene's, or its range tells all of it.
+    enum class OneColor { is_texture, is_no_texture };
     /// The texture that an element describes, with its values clamped to the range: one of the scene's.
-    FoundTexture texture(const Element &element, double lowest, double highest);
+    FoundTexture texture(const Element &element, double lowest, double highest,
+                         OneColor one_color = OneColor::is_texture);
     /// What texture() or a parameter has given an index of.
     const Texture &texture_at(std::int32_t index) const { return scene_.textures[std::size_t(index)]; }
     /// A mixture of two sides of surfaces (Blend in runtime/scene/scene.h). Throws SceneError where it has too many
@@ -160,7 +163,7 @@ class SceneBuilder {
     std::vector<std::uint64_t> blend_parts_; ///< of each of the scene's blends
     std::map<const Element *, Emitter> area_emitters_;
     std::map<const Element *, std::variant<Texture, SceneError>> built_textures_;
-    std::map<std::tuple<const Element *, double, double>, FoundTexture> textures_;
+    std::map<std::tuple<const Element *, double, double, OneColor>, FoundTexture> textures_;
     struct DecodedBitmap {
         std::shared_ptr<const Bitmap> bitmap;
         bool is_srgb;

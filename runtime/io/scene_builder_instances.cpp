@@ -48,6 +48,8 @@ void SceneBuilder::copy_prototype(const Element &element, const Prototype &proto
         Sphere placed = *sphere;
         placed.center = to_float(transform_point(to_world, to_double(sphere->center)));
         placed.radius = float(sphere->radius * factor);
+        for (Vector3 &axis : placed.axes)
+            axis = to_float(scale(transform_vector(to_world, to_double(axis)), 1 / factor));
         if (!std::isnormal(placed.radius) || !std::isfinite(placed.center.x + placed.center.y + placed.center.z))
             throw SceneError(element.location, "a sphere in this instance is out of range");
         add_shape(*prototype.element, placed);

@@ -44,8 +44,8 @@ std::shared_ptr<const Bitmap> SceneBuilder::bitmap(const std::filesystem::path &
     return known->second.bitmap;
 }
 
-FoundTexture SceneBuilder::texture(const Element &element, double lowest, double highest) {
-    const auto key = std::make_tuple(&element, lowest, highest);
+FoundTexture SceneBuilder::texture(const Element &element, double lowest, double highest, OneColor one_color) {
+    const auto key = std::make_tuple(&element, lowest, highest, one_color);
     if (const auto known = textures_.find(key); known != textures_.end())
         return known->second;
     auto built = built_textures_.find(&element);
@@ -77,6 +77,11 @@ FoundTexture SceneBuilder::texture(const Element &element, double lowest, double
                                           "{:.4g}",
                                           least, most, lowest, highest));
         found.range = texture_range(texture);
+    }
+    const bool is_one_color = texture.kind == Texture::Kind::checkerboard && found.range.least == found.range.most;
+    if (is_one_color && one_color == OneColor::is_no_texture) {
+        textures_.emplace(key, found);
+        return found;
     }
     found.index = std::int32_t(scene_.textures.size());
     scene_.textures.push_back(std::move(texture));

@@ -94,7 +94,8 @@ struct Sphere {
     float radius = 1;
     bool flip_normals = false; ///< true: the normal points to the center
     Side side = Side::both;
-    /// Unit vectors along which its own x, y and z lie: (u, v) turns with them. A mirrored sphere's are left-handed.
+    /// Unit vectors along which its own x, y and z lie: (u, v) and anisotropy turn with them. A mirrored sphere's are
+    /// left-handed.
     std::array<Vector3, 3> axes{Vector3{1, 0, 0}, Vector3{0, 1, 0}, Vector3{0, 0, 1}};
 };
 

@@ -256,6 +256,7 @@ void add_sphere(const Scene &scene, const Shape &shape, const SurfaceOfShape &su
     record[sphere_radius] = sphere.side == Sphere::Side::left ? -sphere.radius : sphere.radius;
     record[sphere_facing] = facing;
     record[sphere_offset] = offset;
+    put(record, sphere_pole_x, sphere.axes[2]);
 
     std::uint32_t light = no_light;
     if (shape.emitter >= 0) {

@@ -51,10 +51,14 @@ class Chunks {
 } // namespace
 
 struct Tracer::Implementation {
-    Implementation(const Scene &s, int threads, const SceneTables *tables)
-        : arena(threads > 0 ? threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()))),
+    /// More threads than the machine runs at once gain nothing, and TBB would complain of them.
+    Implementation(const Scene &s, int wanted_threads, const SceneTables *tables)
+        : threads(std::min(wanted_threads, processors())), arena(threads > 0 ? threads : processors()),
           scene(s, threads, arena, tables), coherent(scene.primitives() <= beam_limit && !scene.has_instances()) {}
 
+    static int processors() { return int(std::max(1u, std::thread::hardware_concurrency())); }
+
+    int threads; ///< 0: all
     tbb::task_arena arena;
     EmbreeScene scene;
     RayOrder extension_order = RayOrder::cell, shadow_order = RayOrder::cell;

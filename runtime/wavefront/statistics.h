@@ -27,10 +27,11 @@ struct MethodChoice {
 
 /// How an image was made of its samples.
 struct ReconstructionUsed {
-    std::string name;     ///< "l1", "weighted"; "none": the mean of the samples
-    std::string accuracy; ///< "unbiased", "consistent" or "neither"
-    std::string note;     ///< a sentence where it is not the one that was asked for, else empty
-    std::string guide{};  ///< of "guided": "filter" or "denoiser"; else empty
+    std::string name;              ///< "l1", "weighted"; "none": the mean of the samples
+    std::string accuracy;          ///< "unbiased", "consistent" or "neither"
+    std::string note;              ///< a sentence where it is not the one that was asked for, else empty
+    std::string guide{};           ///< of "guided": "filter" or "denoiser"; else empty
+    std::optional<double> alpha{}; ///< of "l1" and "l2": the weight of the primal
 };
 
 /// What a stage took.

@@ -98,6 +98,11 @@ TEST_F(CommandLine, WarmNamesTheKernels) {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("0.250 s  fake_kernel (1 of 1)"));
     EXPECT_THAT(files(), ::testing::ElementsAre("scene.xml"));
+    // What a render would refuse or warn of.
+    EXPECT_EQ(run({"warm", "scene.xml", "--method", "pt", "--alpha", "0.5"}).exit_code, 2);
+    EXPECT_EQ(run({"warm", "scene.xml", "--guide", "filter"}).exit_code, 2);
+    EXPECT_EQ(run({"warm", "scene.xml", "--size", "65536x65536"}).exit_code, 4);
+    EXPECT_THAT(run({"warm", "scene.xml", "--photons", "5"}).err, HasSubstr("--photons changes nothing with gpt"));
 }
 
 } // namespace

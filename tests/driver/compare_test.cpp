@@ -1,4 +1,5 @@
 // `gradus compare` as a process: figures, verdict and exit codes.
+#include "runtime/error.h"
 #include "runtime/io/image_io.h"
 #include "tests/driver/child_process.h"
 #include "tests/film/make_image.h"
@@ -122,6 +123,16 @@ TEST_F(Compare, AVarianceMayBeALayerOfTheReference) {
     EXPECT_THAT(outcome.out, HasSubstr("its own relMSE 1.2497e-01"));
 }
 
+TEST_F(Compare, AVarianceBelowZeroIsRefused) {
+    write_set(0.05f); // not equal
+    std::vector<float> values(side * side, 1.0f / 6400);
+    values[side] = -1;
+    write_image(make_gray(side, side, values), at("variance.exr"));
+    const Outcome outcome = run(all({"--variance", "variance.exr", "--reference-spp", "6400", "--check"}));
+    EXPECT_EQ(outcome.exit_code, int(ExitCode::image));
+    EXPECT_THAT(outcome.err, HasSubstr("variance.exr: a variance is below 0 in channel R: -1"));
+}
+
 TEST_F(Compare, AnErrorInOneBlockFails) {
     write_set(0.05f);
     const std::vector<std::string> checked = all({"--variance", "variance.exr", "--reference-spp", "6400", "--check"});
@@ -151,6 +162,9 @@ TEST_F(Compare, ACheckNeedsSomethingToJudgeBy) {
     EXPECT_EQ(outcome.exit_code, 1);
     EXPECT_THAT(outcome.err, HasSubstr("nothing to judge by: give several seeds"));
     EXPECT_EQ(run({"compare", "image.exr", "image.exr"}).exit_code, 0);
+    const nlohmann::json json = nlohmann::json::parse(run({"compare", "image.exr", "image.exr", "--json", "-"}).out);
+    EXPECT_EQ(json.at("judged"), false);
+    EXPECT_EQ(json.at("holds"), false) << "as --check says";
     EXPECT_EQ(run({"compare", "image.exr", "image.exr", "--check", "--max-relmse", "1"}).exit_code, 0);
     // What differs beyond doubt needs no measure.
     write_image(make_gray(2, 1, {1, std::numeric_limits<float>::infinity()}), at("infinite.exr"));

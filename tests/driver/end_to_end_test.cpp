@@ -115,6 +115,7 @@ TEST_P(EndToEndLayers, AreWrittenOnlyOnRequest) {
     const Image again = read_image(at("again.exr"));
     for (const Channel &channel : again.channels)
         EXPECT_EQ(channel.values, all.find(channel.name)->values);
+    EXPECT_EQ(again.metadata.at("alpha"), all.metadata.at("alpha"));
     // And without them there is nothing to make it from.
     EXPECT_EQ(run({"solve", "plain.exr", "-o", "again.exr"}).exit_code, 6);
 }
@@ -131,6 +132,8 @@ TEST_P(EndToEndLayers, HaveBothHalvesForTheWeightedReconstruction) {
     EXPECT_EQ(used.at("name"), "weighted");
     EXPECT_EQ(used.at("accuracy"), accuracy);
     EXPECT_EQ(used.at("note"), "");
+    EXPECT_TRUE(used.at("alpha").is_null());
+    EXPECT_EQ(image.metadata.count("alpha"), 0u);
     ASSERT_EQ(run({"solve", "halves.exr", "-o", "again.exr", "--reconstruction", "weighted", "-q"}).exit_code, 0);
     const Image again = read_image(at("again.exr"));
     for (const char *color : {"R", "G", "B"})

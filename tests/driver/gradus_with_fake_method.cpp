@@ -8,6 +8,7 @@
 //   spp=N        the samples that the scene asks for (4)
 //   nan=1        one value of the image is NaN
 //   warn=TEXT    the loader warns
+//   choice=NAME  what the method auto chooses (gpt)
 //   pilot_ms=N   what the pilot of method auto takes (0)
 //   error=X      with --error, the estimated error of the image of one sample a pixel; it falls as 1 over the samples
 // The image is R = seed, G = samples a pixel so far, B = 0.5; the film is 8x6 with 4 samples a pixel.
@@ -118,7 +119,12 @@ class FakeMethod : public Method {
         if (error_ && !parameter("error").empty())
             statistics.estimated_error = std::stod(parameter("error")) / double(imaged_);
         if (automatic_)
-            statistics.choice = MethodChoice{"gpt", reason_, 6, 0.5, {{"pt", {2, 3}}, {"gpt", {0.25, 6}}}, 4};
+            statistics.choice = MethodChoice{parameter("choice").empty() ? "gpt" : parameter("choice"),
+                                             reason_,
+                                             6,
+                                             0.5,
+                                             {{"pt", {2, 3}}, {"gpt", {0.25, 6}}},
+                                             4};
         return statistics;
     }
 
@@ -165,7 +171,7 @@ int main(int argc, char **argv) {
     gradus::Services services;
     services.load_scene = gradus::load_fake_scene;
     services.list_devices = [] { return std::vector<gradus::DeviceDescription>(); };
-    services.method_names = [] { return std::vector<std::string>{"pt", "gpt", "auto"}; };
+    services.method_names = [] { return std::vector<std::string>{"pt", "gpt", "sppm", "gpm", "auto"}; };
     services.traits = [](const gradus::Scene &) {
         return std::vector<std::pair<std::string, int>>{{"HAS_DIFFUSE", 1}, {"HAS_CONSTANT", 0}};
     };

@@ -211,6 +211,42 @@ TEST_F(Render, WarnsOfTheScene) {
     EXPECT_THAT(outcome.err, HasSubstr("warning: scene.xml:2: a strange parameter"));
 }
 
+TEST_F(Render, WarnsOfOptionsThatTheMethodDoesNotRead) {
+    const auto warnings = [&](std::vector<std::string> options) {
+        options.insert(options.end(), {"-o", "out.exr"});
+        const Outcome outcome = render(options);
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        return outcome.err;
+    };
+    const auto changes_nothing = [](const std::string &option) {
+        return HasSubstr("warning: " + option + " changes nothing with ");
+    };
+    const auto says = [&](std::vector<std::string> options, const std::string &option) {
+        return warnings(options).find(option + " changes nothing with ") != std::string::npos;
+    };
+    EXPECT_THAT(warnings({"--method", "pt", "--layers"}),
+                HasSubstr("gradus: warning: --layers changes nothing with pt: it is for gpt and gpm"));
+    for (const char *option : {"--reconstruction=l1", "--norm=L2", "--shift-distance=0.1", "--shift-threshold=0",
+                               "--photons=5", "--direct=photons", "--radius=1", "--radius-alpha=0.5",
+                               "--gather-roughness=0.1", "--reconstruction=weighted"}) {
+        const std::string name = std::string(option).substr(0, std::string(option).find('='));
+        const bool is_of_shifts = name.starts_with("--shift");
+        const bool is_of_reconstruction = name == "--reconstruction" || name == "--norm";
+        EXPECT_TRUE(says({"--method", "pt", option}, name)) << option;
+        EXPECT_EQ(says({option}, name), !is_of_shifts && !is_of_reconstruction) << option << " with gpt";
+        EXPECT_EQ(says({"--method", "gpm", option}, name), is_of_shifts) << option << " with gpm";
+    }
+    EXPECT_THAT(warnings({"--method", "sppm", "--reconstruction", "guided", "--guide", "denoiser"}),
+                changes_nothing("--guide"));
+    EXPECT_THAT(warnings({"--method", "pt", "--reconstruction", "guided", "--guide", "filter", "--layers"}),
+                Not(HasSubstr("changes nothing")));
+    // auto may choose a method that reads them, but what is to be written depends on the choice.
+    EXPECT_THAT(warnings({"--method", "auto", "--photons", "5", "--shift-distance", "0.1"}),
+                Not(HasSubstr("changes nothing")));
+    EXPECT_THAT(warnings({"--method", "auto", "--layers"}), Not(HasSubstr("changes nothing")));
+    EXPECT_THAT(warnings({"--method", "auto", "--layers", "-D", "choice=pt"}), changes_nothing("--layers"));
+}
+
 TEST_F(Render, ValuesThatAreNotFiniteAreAnErrorAndNotInTheFile) {
     for (const char *partial : {"1000", "1e-9"}) {
         const Outcome outcome = render({"-o", "out.exr", "-D", "nan=1", "--quiet", "--write-partial", partial});

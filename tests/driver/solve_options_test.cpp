@@ -180,6 +180,16 @@ TEST_F(SolveOptions, VariancesAreReadWhereTheyAreUsed) {
     EXPECT_EQ(asked.dx_variance.at(0), 600);
     EXPECT_NE(asked.images.primal_variance, nullptr);
     EXPECT_NE(asked.images.dy_variance, nullptr);
+    EXPECT_EQ(run({"--layers", path, "-o", at("out.exr"), "--alpha", "auto", "-q"}).err, "");
+    Image zero = read_image(at("out.exr"));
+    for (Channel &channel : zero.channels)
+        channel.values.assign(channel.values.size(), 0);
+    const std::string none = write("none.exr", zero);
+    const Result of_one_sample = run({path, "-o", at("out.exr"), "--alpha", "auto", "--variance-primal", none,
+                                      "--variance-dx", none, "--variance-dy", none});
+    EXPECT_EQ(of_one_sample.exit_code, 0);
+    EXPECT_THAT(of_one_sample.err, HasSubstr("all variances are 0, as of one sample a pixel: they tell no alpha, so it "
+                                             "is 0.2"));
     const std::string own = write_colours("own.exr", 7);
     ASSERT_EQ(run({path, "-o", at("out.exr"), "--norm", "L2", "--weights", "variance", "--variance-dx", own}).exit_code,
               0);
@@ -257,7 +267,7 @@ TEST_F(SolveOptions, MistakesOfTheCall) {
         {{"--damping", "0.5"}, "--damping is for one method: add --method jacobi"},
         {{"--alpha", "1e-5"}, "--alpha 1e-05 is lost in rounding"},
         {{"--weights", "other"}, "--weights"},
-        {{"--weights", "variance"}, "--weights variance is for the norm L2: add --norm L2"},
+        {{"--weights", "variance"}, "--weights variance is for l2: add --reconstruction l2"},
         {{"--layer", "dx"}, "'dx' names no layer: write IMAGE=NAME"},
         {{"--layer", "shadow=Z"}, "'shadow' is none of primal, dx"},
         {{"--nthreads", "-1"}, "--nthreads"},
@@ -351,6 +361,10 @@ TEST_F(SolveOptions, WarnsWhereTheResultIsNotAsAskedFor) {
     EXPECT_EQ(infinite.exit_code, 1);
     EXPECT_THAT(infinite.err, HasSubstr("error: 1 values of the image are NaN or infinite"));
     EXPECT_EQ(count_non_finite(read_image(at("out.exr"))), 0u);
+    report.missing_primal = 6; // pixels, all of them
+    EXPECT_THAT(solve({}).err, HasSubstr("warning: no pixel of the primal has a finite value"));
+    report.missing_primal = 5;
+    EXPECT_EQ(solve({}).err, "");
 }
 
 } // namespace

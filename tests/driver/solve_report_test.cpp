@@ -100,6 +100,8 @@ TEST(SolveReport, TextNamesEachFigure) {
     const std::string text = solve_report_text(report);
     EXPECT_THAT(text, HasSubstr("iterations   5, not converged\n"));
     EXPECT_THAT(text, Not(HasSubstr("residual")));
+    report.reweightings = 2;
+    EXPECT_THAT(solve_report_text(report), HasSubstr("iterations   5 in 2 reweightings, stopped by count\n"));
 }
 
 } // namespace

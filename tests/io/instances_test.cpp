@@ -106,6 +106,19 @@ TEST(KeptInstances, CopyWhatTheyCannotBe) {
     EXPECT_EQ(shared, 1u);
 }
 
+// Its textures and what is brushed turn with it.
+TEST(CopiedInstances, TurnTheAxesOfSpheres) {
+    const Scene scene = loaded_as(
+        group_of("<shape type=\"sphere\"><transform name=\"to_world\"><rotate x=\"1\" angle=\"90\"/></transform>"
+                 "</shape>") +
+            instance_of("<rotate z=\"1\" angle=\"90\"/><scale value=\"3\"/>"),
+        InstanceChoice::automatic);
+    const auto [x, y, z] = scene.spheres.at(0).axes; // x to y; y to z; z to -y to x
+    expect_vector(x, 0, 1, 0);
+    expect_vector(y, 0, 0, 1);
+    expect_vector(z, 1, 0, 0);
+}
+
 TEST(KeptInstances, OfASingularMapAreErrorsWithTheirLine) {
     const std::string body = group_of("<shape type=\"cube\"/>") + instance_of("\n<scale x=\"0\"/>");
     const std::string message = error_of_text(scene_around(body, "3.0.0", ""));

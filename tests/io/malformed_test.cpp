@@ -7,6 +7,11 @@
 namespace gradus {
 namespace {
 
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
 struct Case {
     const char *name;
     std::string text; ///< the whole file
@@ -260,7 +265,7 @@ const std::vector<Case> cases{
     {"conductor_name",
      in_bsdf("<bsdf type=\"conductor\">\n<string name=\"material\" value=\"Unobtainium\"/></bsdf>"),
      "scene.xml:5",
-     {"Unobtainium", "Ag, Al, Au"}},
+     {"Unobtainium", "Ag, Al, AlAs"}},
     {"conductor_half",
      in_bsdf("<bsdf type=\"conductor\">\n<rgb name=\"eta\" value=\"1\"/></bsdf>"),
      "scene.xml:5",
@@ -395,6 +400,27 @@ TEST(MalformedScenes, ErrorsInIncludedFilesNameThatFile) {
     const std::string message =
         error_of(folder.write("scene.xml", scene_around("<include filename=\"parts/light.xml\"/>")));
     EXPECT_THAT(message, testing::HasSubstr("light.xml:3: unknown emitter plugin \"lamp\""));
+}
+
+TEST(SceneFileItself, SaysWhyItCannotBeRead) {
+    TemporaryFolder folder;
+    EXPECT_THAT(error_of((folder.path() / "absent.xml").string()),
+                HasSubstr("cannot read this scene file: there is none"));
+    EXPECT_THAT(error_of(folder.path().string()), HasSubstr("cannot read this scene file: it is a folder"));
+    EXPECT_THAT(error_of("/dev/null"), HasSubstr("cannot read this scene file: it is no regular file"));
+    // What a scene includes may be anywhere, and its author is not to learn what there is.
+    const auto path = folder.write("scene.xml", scene_around("<include filename=\"" + folder.path().string() + "\"/>"));
+    EXPECT_THAT(error_of(path), Not(HasSubstr("folder:")));
+}
+
+TEST(SceneSettings, ADepthOfNothingIsWarnedOf) {
+    const auto warnings = [](const char *depth) {
+        return load_text(scene_around("<integrator type=\"path\"><integer name=\"max_depth\" value=\"" +
+                                      std::string(depth) + "\"/></integrator><emitter type=\"constant\"/>"))
+            .warnings;
+    };
+    EXPECT_THAT(warnings("0"), ElementsAre(HasSubstr("max_depth 0 leaves no path")));
+    EXPECT_THAT(warnings("1"), IsEmpty());
 }
 
 } // namespace

@@ -144,8 +144,12 @@ TEST(RefractiveIndex, Names) {
     EXPECT_DOUBLE_EQ(dielectric_index("diamond").value(), 2.419);
     EXPECT_FALSE(dielectric_index("kryptonite"));
     EXPECT_TRUE(conductor_index("au"));
-    EXPECT_TRUE(conductor_index("Cu_palik"));
+    EXPECT_NE(conductor_index("Cu_palik")->eta.r, conductor_index("Cu")->eta.r) << "two measurements";
+    EXPECT_EQ(conductor_index("W_palik")->eta.r, conductor_index("W")->eta.r);
     EXPECT_TRUE(conductor_index("Ni"));
+    for (const char *name : {"AlAs", "AlSb", "MgO", "Se-e", "SiC", "SnTe", "Te-e_palik", "ThF4", "TiO2", "TiO2-e"})
+        EXPECT_TRUE(conductor_index(name)) << name;
+    EXPECT_NE(conductor_index("TiO2-e_palik")->eta.r, conductor_index("TiO2")->eta.r);
     EXPECT_FALSE(conductor_index("palik"));
     const ConductorIndex mirror = conductor_index("none").value();
     expect_rgb(mirror.eta, 0, 0, 0, 0);

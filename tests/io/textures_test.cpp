@@ -156,6 +156,64 @@ TEST_F(TexturePlugin, Checkerboard) {
     EXPECT_EQ(texture_value(legacy, 0.1, 0.1), (std::array<double, 3>{1, 0, 0}));
 }
 
+/// As Mitsuba's RGB mode has them. They are numbers, not textures: nothing is looked up.
+TEST(TextureOfOneColor, IsANumber) {
+    const auto named = [](const std::string &tag, const std::string &name, const std::string &type_and_rest) {
+        return "<" + tag + " name=\"" + name + "\" type=" + type_and_rest + "</" + tag + ">";
+    };
+    const auto loaded = [](const std::string &inside) {
+        const LoadedScene scene = load_text(scene_around(inside + "<emitter type='constant'/>"));
+        EXPECT_THAT(scene.warnings, IsEmpty()) << inside;
+        EXPECT_THAT(scene.scene.textures, IsEmpty()) << inside;
+        return scene.scene;
+    };
+    const auto bsdf = [&](const std::string &type, const std::string &inside) {
+        return loaded("<shape type=\"cube\"><bsdf type=\"" + type + "\">" + inside + "</bsdf></shape>")
+            .materials.at(0)
+            .front;
+    };
+    const std::string uniform = "'uniform'><float name='value' value='0.25'/>",
+                      srgb = "'srgb'><rgb name='color' value='0.1 0.2 0.3'/>",
+                      d65 = "'d65'><rgb name='color' value='0.25 0.5 1'/><float name='scale' value='0.5'/>",
+                      board = "'checkerboard'><float name='color0' value='0.5'/><float name='color1' value='0.5'/>";
+    for (const char *tag : {"spectrum", "texture"}) {
+        const auto reflectance = [&](const std::string &rest) {
+            return bsdf("diffuse", named(tag, "reflectance", rest)).reflectance;
+        };
+        expect_rgb(reflectance(uniform), 0.25, 0.25, 0.25);
+        expect_rgb(reflectance(srgb), 0.1, 0.2, 0.3);
+        expect_rgb(reflectance(d65), 0.125, 0.25, 0.5);
+        expect_rgb(reflectance("'d65'>"), 1, 1, 1);
+        expect_rgb(reflectance(board), 0.5, 0.5, 0.5);
+        EXPECT_EQ(reflectance(board).texture, no_texture);
+        // A light takes more than 1 and has no tint; a roughness and an index take a number.
+        const Scene lights =
+            loaded("<shape type='cube'><emitter type='area'>" +
+                   named(tag, "radiance", "'uniform'><float name='value' value='7'/>") +
+                   "</emitter></shape><emitter type='point'>" + named(tag, "intensity", d65) + "</emitter>");
+        expect_rgb(lights.emitters.back().value, 7, 7, 7);
+        expect_rgb(lights.emitters.front().value, 0.125, 0.25, 0.5);
+        EXPECT_EQ(bsdf("roughconductor", named(tag, "alpha", uniform)).alpha_u, 0.25f);
+        const Bsdf metal = bsdf("conductor", named(tag, "eta", uniform) + named(tag, "k", srgb));
+        expect_rgb(metal.eta, 0.25, 0.25, 0.25);
+        expect_rgb(metal.k, 0.1, 0.2, 0.3);
+    }
+    EXPECT_THAT(error_of_text(scene_around("<shape type='cube'><bsdf type='diffuse'>" +
+                                           named("spectrum", "reflectance", "'blackbody'>") + "</bsdf></shape>")),
+                HasSubstr("the spectrum \"blackbody\" is not known here"));
+    EXPECT_THAT(error_of_text(scene_around("<emitter type='point'>" + named("texture", "intensity", "'checkerboard'>") +
+                                           "</emitter>")),
+                HasSubstr("cannot be a texture"));
+    // A map has a slope to look for.
+    EXPECT_THAT(
+        load_text(
+            scene_around(
+                "<emitter type='constant'/><shape type='cube'><bsdf type='bumpmap'><texture type='uniform'/><bsdf "
+                "type='diffuse'/></bsdf></shape>"))
+            .warnings,
+        ElementsAre(HasSubstr("has no slope")));
+}
+
 TEST_F(TexturePlugin, Scale) {
     const Texture found = texture(
         "<texture type=\"scale\"><texture type=\"checkerboard\"/><float name=\"scale\" value=\"0.5\"/></texture>",

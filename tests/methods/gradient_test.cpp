@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(Full, GradientReference,
                                            ReferenceCase{"sundial"}, ReferenceCase{"door-ajar"},
                                            ReferenceCase{"orthographic"}, ReferenceCase{"clipped"},
                                            ReferenceCase{"clipped-mitchell"}, ReferenceCase{"cornell-box-glossy"},
-                                           ReferenceCase{"lanterns"}),
+                                           ReferenceCase{"lanterns"}, ReferenceCase{"brushed"}),
                          name_of_reference);
 
 ReferenceCase planted_in(const char *scene, std::uint64_t samples = samples_per_pixel) {

@@ -60,7 +60,7 @@ INSTANTIATE_TEST_SUITE_P(Image, OwnReference,
                                            ReferenceCase{"plates"}, ReferenceCase{"materials"},
                                            ReferenceCase{"plastics"}, ReferenceCase{"sundial"},
                                            ReferenceCase{"thin-lens"}, ReferenceCase{"clipped"},
-                                           ReferenceCase{"textures"}, ReferenceCase{"lamps"}),
+                                           ReferenceCase{"textures"}, ReferenceCase{"lamps"}, ReferenceCase{"brushed"}),
                          name_of_case);
 INSTANTIATE_TEST_SUITE_P(Full, OwnReference,
                          ::testing::Values(ReferenceCase{"torus-smooth-glass-soft", 64}, ReferenceCase{"orthographic"},

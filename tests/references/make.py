@@ -57,6 +57,7 @@ REFERENCES = {
     "clipped": ("../tests/scenes/clipped.xml", 48, {}, 16384),
     "clipped-mitchell": ("../tests/scenes/clipped.xml", 48, {"rfilter": "mitchell"}, 65536),
     "lamps": ("../tests/scenes/lamps.xml", 48, {}, 16384),
+    "brushed": ("../tests/scenes/brushed.xml", 48, {}, 16384),
     "instances": ("../tests/scenes/instances.xml", 48, {}, 16384),
     "plastics": ("plastics.xml", 48, {}, 32768),
 }

@@ -150,6 +150,19 @@ TEST(VariancesAlpha, IsTheirRatio) {
     }
 }
 
+/// As those of one sample are. Where the primal's alone are, it is trusted as much as the differences.
+TEST(VariancesAlpha, IsAsGivenWhereAllAreZero) {
+    PoissonProblem problem = make_poisson_problem(75, 43, 3, 5);
+    PoissonOptions options;
+    options.alpha_from_variances = true;
+    std::fill(problem.primal_variance.begin(), problem.primal_variance.end(), 0.0f);
+    EXPECT_EQ(solve_with_variances(problem, options).report.alpha, 1);
+    for (std::vector<float> *plane : {&problem.dx_variance, &problem.dy_variance})
+        std::fill(plane->begin(), plane->end(), 0.0f);
+    options.alpha = 0.3;
+    EXPECT_EQ(solve_with_variances(problem, options).report.alpha, 0.3);
+}
+
 /// Variances that no estimate has: they are refused or lead to a finite image, and an infinite one to no more weight
 /// than a missing input has.
 TEST(VariancesThatAreOdd, DoNotSpread) {

@@ -19,6 +19,9 @@ Declaration declare_integrator_path() {
 RenderSettings integrator_path(Properties &properties, SceneBuilder &) {
     RenderSettings settings;
     settings.max_depth = int(properties.integer("max_depth"));
+    if (settings.max_depth == 0)
+        properties.diagnostics().warn(properties.location_of("max_depth"),
+                                      "max_depth 0 leaves no path: the image will be black");
     settings.rr_depth = int(properties.integer("rr_depth"));
     settings.hide_emitters = properties.boolean("hide_emitters");
     return settings;

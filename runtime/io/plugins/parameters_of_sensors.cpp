@@ -70,13 +70,14 @@ void read_camera(Properties &properties, Camera &camera) {
 }
 
 void read_field_of_view(Properties &properties, Camera &camera) {
+    const Camera::FovAxis axis = read_axis(properties);
     if (properties.has("fov")) {
         if (properties.has("focal_length"))
             throw properties.error("focal_length", "give a camera's fov or its focal_length, not both");
         camera.fov = properties.number("fov");
         if (!(camera.fov > 0 && camera.fov < 180))
             throw properties.error("fov", "\"fov\" must be between 0 and 180 degrees");
-        camera.fov_axis = read_axis(properties);
+        camera.fov_axis = axis;
     } else {
         camera.fov = fov_of_lens(properties);
         camera.fov_axis = Camera::FovAxis::diagonal;

@@ -18,4 +18,11 @@ void read_to_uv(Properties &properties, Texture &texture) {
                      float(v_scale * map.m[4]), float(v_scale * map.m[5]), float(v_scale * map.m[7] + v_offset)};
 }
 
+Texture one_color(const Rgb &color) {
+    Texture texture;
+    texture.kind = Texture::Kind::checkerboard;
+    texture.color_0 = texture.color_1 = {color.r, color.g, color.b};
+    return texture;
+}
+
 } // namespace gradus

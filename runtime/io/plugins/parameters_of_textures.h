@@ -10,4 +10,7 @@ ParameterList parameters_of_coordinates();
 /// By these, the map of the surface's (u, v).
 void read_to_uv(Properties &properties, Texture &texture);
 
+/// The same everywhere.
+Texture one_color(const Rgb &color);
+
 } // namespace gradus
