@@ -72,6 +72,7 @@ std::string device_json(const std::vector<DeviceDescription> &devices) {
 void add_devices_command(CLI::App &app, const Services &services, std::function<int()> &chosen) {
     CLI::App &command = *app.add_subcommand("devices", "List the OpenCL devices; exit code 4 where there is none");
     const auto as_json = std::make_shared<bool>(false);
+    command.footer("`--device` of other commands takes a number of this list or a part of a name.");
     command.add_flag("--json", *as_json, "Print JSON");
     command.callback([as_json, &services, &chosen] {
         chosen = [as_json, &services] {

@@ -159,6 +159,10 @@ void add_inspect_command(CLI::App &app, const Services &services, std::function<
         double gather_roughness = RenderOptions().gather_roughness;
     };
     const auto arguments = std::make_shared<Arguments>();
+    command.footer("Examples:\n"
+                   "  gradus inspect scene.xml                  shapes, materials, lights, camera, memory, traits\n"
+                   "  gradus inspect scene.xml -D spp=16        with a parameter of the file set\n"
+                   "  gradus inspect scene.xml --json           the same for programs");
     add_scene_options(command, arguments->scene);
     command.add_flag("--json", arguments->json, "Print JSON");
     command
