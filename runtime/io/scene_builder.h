@@ -78,6 +78,8 @@ class SceneBuilder {
                          OneColor one_color = OneColor::is_texture);
     /// What texture() or a parameter has given an index of.
     const Texture &texture_at(std::int32_t index) const { return scene_.textures[std::size_t(index)]; }
+    /// Such a texture, times a factor from 0 to 1.
+    std::int32_t scaled(std::int32_t index, float factor);
     /// A mixture of two sides of surfaces (Blend in runtime/scene/scene.h). Throws SceneError where it has too many
     /// parts.
     Bsdf blend(const Bsdf &first, const Bsdf &second, const Number &weight, const Location &location);

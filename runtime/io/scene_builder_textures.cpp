@@ -89,6 +89,16 @@ FoundTexture SceneBuilder::texture(const Element &element, double lowest, double
     return found;
 }
 
+std::int32_t SceneBuilder::scaled(std::int32_t index, float factor) {
+    if (factor == 1)
+        return index;
+    Texture texture = texture_at(index);
+    for (float &scale : texture.scale)
+        scale *= factor;
+    scene_.textures.push_back(std::move(texture));
+    return std::int32_t(scene_.textures.size()) - 1;
+}
+
 /// Before shapes are read: of a texture that names a mesh attribute, the name.
 void SceneBuilder::want_attribute(const Element &texture) {
     const std::string type(trimmed(texture.attribute_or("type", "")));

@@ -316,6 +316,48 @@ TEST(BsdfPlugin, Mask) {
     EXPECT_EQ(textured.opacity.texture, 0);
 }
 
+// Rays must meet both masks, or the mask of the part of a blend that they meet.
+TEST(BsdfPlugin, MasksInMasksAndBlends) {
+    const std::string red = "<bsdf type='diffuse'><rgb name='reflectance' value='0.7 0.1 0.1'/></bsdf>",
+                      mirror = "<bsdf type='roughconductor'/>";
+    const auto mask = [](const std::string &opacity, const std::string &nested) {
+        return "<bsdf type='mask'><float name='opacity' value='" + opacity + "'/>" + nested + "</bsdf>";
+    };
+    const std::string board = "<texture name='opacity' type='checkerboard'/>";
+    const auto textured = [&](const std::string &nested) { return "<bsdf type='mask'>" + board + nested + "</bsdf>"; };
+    const auto blend = [](const std::string &weight, const std::string &parts) {
+        return "<bsdf type='blendbsdf'><float name='weight' value='" + weight + "'/>" + parts + "</bsdf>";
+    };
+    const auto loaded = [](const std::string &bsdf) {
+        return load_text(scene_around("<shape type='cube'>" + bsdf + "</shape><emitter type='constant'/>", "3.0.0", ""))
+            .scene;
+    };
+    EXPECT_FLOAT_EQ(loaded(mask("0.5", mask("0.4", red))).materials.at(0).opacity, 0.2f);
+    for (const std::string &bsdf : {mask("0.5", textured(red)), textured(mask("0.5", red))}) {
+        const Scene scene = loaded(bsdf);
+        const Number opacity = scene.materials.at(0).opacity;
+        EXPECT_FLOAT_EQ(float(texture_value(scene.textures.at(std::size_t(opacity.texture)), 0.1, 0.1)[0]), 0.2f);
+    }
+    // 0.7 of 0.5, and 0.3 of 0.2.
+    const Scene numbers = loaded(blend("0.3", mask("0.5", red) + mask("0.2", mirror)));
+    EXPECT_FLOAT_EQ(numbers.materials.at(0).opacity, 0.41f);
+    EXPECT_FLOAT_EQ(numbers.blends.at(0).weight, 0.06f / 0.41f);
+    EXPECT_EQ(numbers.materials.at(0).front.blend, 0);
+    const Scene alike = loaded(blend("0.3", mask("0.5", red) + mask("0.5", mirror)));
+    EXPECT_FLOAT_EQ(alike.materials.at(0).opacity, 0.5f);
+    EXPECT_FLOAT_EQ(alike.blends.at(0).weight, 0.3f);
+    // Holes of a texture are a part: of one blend in the other.
+    const Scene holes = loaded(blend("0.3", textured(red) + mirror));
+    EXPECT_EQ(holes.materials.at(0).opacity, 1.0f);
+    ASSERT_EQ(holes.blends.size(), 2u);
+    const Blend &inner = holes.blends.at(0), &outer = holes.blends.at(1);
+    EXPECT_EQ(holes.blended.at(inner.first).kind, BsdfKind::null);
+    EXPECT_EQ(holes.blended.at(inner.second).kind, BsdfKind::diffuse);
+    EXPECT_EQ(inner.weight.texture, 0);
+    EXPECT_FLOAT_EQ(outer.weight, 0.3f);
+    EXPECT_EQ(holes.blended.at(outer.first).blend, 0);
+}
+
 // Light passes them as if they were not there, so they are not; but for those that shine.
 TEST(BsdfPlugin, SurfacesThatNoRayMeetsAreLeftOut) {
     const std::string never =

@@ -1,6 +1,8 @@
 // <bsdf type="blendbsdf">: a mixture of two BSDFs, which may be mixtures again.
 #include "runtime/io/plugins/plugin.h"
 
+#include <algorithm>
+
 namespace gradus {
 
 namespace {
@@ -12,6 +14,32 @@ Bsdf back_of(const Material &material) {
     Bsdf black;
     black.reflectance = {0, 0, 0};
     return black;
+}
+
+/// The opacity of a blend of masks, which leaves them as parts without holes. Rays meet either part with its share: the
+/// blend has holes, and where it has none the weight is another one. Where textures make that another one at each
+/// place, the holes are a part of the blend instead.
+Number common_opacity(Material (&parts)[2], Number &weight, SceneBuilder &builder, const Location &location) {
+    const Number first = parts[0].opacity, second = parts[1].opacity;
+    parts[0].opacity = parts[1].opacity = 1;
+    if (first == second)
+        return first;
+    if (first.texture == no_texture && second.texture == no_texture && weight.texture == no_texture) {
+        const float opacity = (1 - weight) * first + weight * second;
+        weight = opacity > 0 ? Number(std::min(weight * second / opacity, 1.0f)) : weight;
+        return opacity;
+    }
+    Bsdf hole;
+    hole.kind = BsdfKind::null;
+    const Number opacities[] = {first, second};
+    for (std::size_t i = 0; i < 2; ++i) {
+        if (opacities[i] == 1.0f)
+            continue;
+        if (parts[i].two_sided)
+            throw SceneError(location, "a blend of two-sided masks with different textures is not supported");
+        parts[i].front = builder.blend(hole, parts[i].front, opacities[i], location);
+    }
+    return 1;
 }
 
 } // namespace
@@ -29,13 +57,11 @@ Material bsdf_blendbsdf(Properties &properties, SceneBuilder &builder) {
         throw SceneError(properties.location(),
                          "blendbsdf needs two nested BSDFs, not " + std::to_string(nested.size()));
     Material parts[2];
-    for (std::size_t i = 0; i < 2; ++i) {
+    for (std::size_t i = 0; i < 2; ++i)
         parts[i] = builder.build_object<Material>(*nested[i].element);
-        if (parts[i].opacity != 1.0f)
-            throw SceneError(nested[i].location, "mask inside blendbsdf is not supported: put the blend into the mask");
-    }
-    const Number weight = properties.textured_number("weight");
+    Number weight = properties.textured_number("weight");
     Material material;
+    material.opacity = common_opacity(parts, weight, builder, properties.location());
     material.two_sided = parts[0].two_sided || parts[1].two_sided;
     if (material.two_sided)
         for (const Material &part : parts)

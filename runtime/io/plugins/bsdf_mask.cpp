@@ -4,7 +4,7 @@
 namespace gradus {
 
 Declaration declare_bsdf_mask() {
-    return {"a BSDF in a surface with holes. A shape that emits is met by all rays",
+    return {"a BSDF in a surface with holes, also in another mask or a blend. A shape that emits is met by all rays",
             {{"opacity", Takes::reflectance, "0.5",
               "share of the rays that meet the surface, of a colour its luminance; the others pass as with `null`"},
              {"bsdf", Takes::objects, nullptr, "one"}}};
@@ -15,11 +15,20 @@ Material bsdf_mask(Properties &properties, SceneBuilder &builder) {
     if (nested.size() != 1)
         throw SceneError(properties.location(), "mask needs one nested BSDF, not " + std::to_string(nested.size()));
     Material material = builder.build_object<Material>(*nested.front().element);
-    if (material.opacity != 1.0f)
-        throw SceneError(nested.front().location, "mask inside mask is not supported: give one of them both opacities");
-    const Color opacity = properties.color("opacity");
-    material.opacity = 0.2126f * opacity.r + 0.7152f * opacity.g + 0.0722f * opacity.b;
-    material.opacity.texture = opacity.texture;
+    const Color color = properties.color("opacity");
+    Number opacity(0.2126f * color.r + 0.7152f * color.g + 0.0722f * color.b);
+    opacity.texture = color.texture;
+    // Of a mask in a mask rays must meet both.
+    const Number within = material.opacity;
+    if (opacity.texture != no_texture && within.texture != no_texture)
+        throw SceneError(nested.front().location,
+                         "a mask inside a mask, both with textures, is not supported: give one texture their product");
+    if (opacity.texture != no_texture)
+        opacity.texture = builder.scaled(opacity.texture, within);
+    if (within.texture != no_texture)
+        opacity.texture = builder.scaled(within.texture, opacity);
+    opacity *= within;
+    material.opacity = opacity;
     return material;
 }
 
