@@ -208,9 +208,6 @@ void SceneBuilder::add_shape(const Element &element, std::variant<BuiltMesh, Sph
     const Material &material = scene_.materials[shape.material];
     if (shape.emitter < 0 && is_never_met(material))
         return;
-    if (shape.emitter < 0 && material.opacity.texture != no_texture && std::holds_alternative<Sphere>(geometry))
-        throw SceneError(element.location,
-                         "the opacity of a sphere cannot be a texture; give it as a number, or use a mesh");
     const auto *with_mesh = std::get_if<BuiltMesh>(&geometry);
     check_attributes(shape, with_mesh ? &with_mesh->mesh : nullptr, element.location);
     if (shape.emitter >= 0 && material.opacity < 1)
@@ -219,7 +216,7 @@ void SceneBuilder::add_shape(const Element &element, std::variant<BuiltMesh, Sph
         shape.kind = Shape::Kind::sphere;
         shape.geometry = std::uint32_t(scene_.spheres.size());
         scene_.spheres.push_back(*sphere);
-        if (shape.emitter < 0 && material.opacity < 1) {
+        if (shape.emitter < 0 && (material.opacity.texture != no_texture || material.opacity < 1)) {
             scene_.spheres.back().side = Sphere::Side::entered;
             scene_.shapes.push_back(shape);
             shape.geometry = std::uint32_t(scene_.spheres.size());

@@ -2,9 +2,11 @@
 
 #include "kernels/lib/primitive.h"
 #include "kernels/lib/random.h"
+#include "kernels/lib/surface_uv.h"
 #include "runtime/scene/transform.h"
 
 #include <bit>
+#include <tuple>
 
 namespace gradus {
 
@@ -13,6 +15,9 @@ using namespace lib_float;
 namespace {
 Vector3 operator-(Vector3 a, Vector3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 vec3 to_vec3(Vector3 v) { return v3(v.x, v.y, v.z); }
+float luminance(const std::array<double, 3> &color) {
+    return float(0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2]);
+}
 } // namespace
 
 bool is_passable(const Scene &scene, const Shape &shape) {
@@ -20,25 +25,42 @@ bool is_passable(const Scene &scene, const Shape &shape) {
     return shape.emitter < 0 && (opacity.texture != no_texture || opacity.value < 1);
 }
 
+std::uint32_t Opacity::own_texture(const Scene &scene, std::int32_t texture) {
+    const auto [known, is_new] = known_.emplace(texture, std::uint32_t(textures_.size()));
+    if (is_new)
+        textures_.push_back(scene.textures[std::size_t(texture)]);
+    return known->second;
+}
+
 void Opacity::add(const Scene &scene, const Shape &shape, std::size_t triangle, std::uint32_t primitive) {
     const Number &opacity = scene.materials[shape.material].opacity;
-    primitives_.push_back({primitive, opacity.value, -1, Sphere::Side::both});
-    if (shape.kind == Shape::Kind::sphere)
+    const bool is_sphere = shape.kind == Shape::Kind::sphere;
+    primitives_.push_back({primitive, opacity.value, -1, Sphere::Side::both, is_sphere});
+    if (is_sphere)
         primitives_.back().side = scene.spheres[shape.geometry].side;
-    if (opacity.texture == no_texture || shape.kind != Shape::Kind::mesh)
+    if (opacity.texture == no_texture)
         return;
-    const auto [known, is_new] = known_.emplace(opacity.texture, std::uint32_t(textures_.size()));
-    if (is_new)
-        textures_.push_back(scene.textures[std::size_t(opacity.texture)]);
+    const std::uint32_t texture = own_texture(scene, opacity.texture);
+    if (is_sphere) {
+        const Sphere &sphere = scene.spheres[shape.geometry];
+        TexturedSphere textured{
+            texture, sphere.center, sphere.side == Sphere::Side::left ? -sphere.radius : sphere.radius, {}};
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            std::tie(textured.axes[3 * axis], textured.axes[3 * axis + 1], textured.axes[3 * axis + 2]) =
+                std::tie(sphere.axes[axis].x, sphere.axes[axis].y, sphere.axes[axis].z);
+        primitives_.back().textured = std::int64_t(spheres_.size());
+        spheres_.push_back(textured);
+        return;
+    }
     const Mesh &mesh = scene.meshes[shape.geometry];
     const auto &corners = mesh.triangles[triangle];
-    TexturedTriangle textured{known->second, mesh.positions[corners[0]], {}, {}, {{{0, 0}, {1, 0}, {0, 1}}}, {}};
+    TexturedTriangle textured{texture, mesh.positions[corners[0]], {}, {}, {{{0, 0}, {1, 0}, {0, 1}}}, {}};
     textured.e1 = mesh.positions[corners[1]] - textured.p0;
     textured.e2 = mesh.positions[corners[2]] - textured.p0;
     if (!mesh.texcoords.empty())
         for (std::size_t corner = 0; corner < 3; ++corner)
             textured.texcoords[corner] = mesh.texcoords[corners[corner]];
-    if (const MeshAttribute *attribute = find_attribute(mesh, textures_[known->second].attribute))
+    if (const MeshAttribute *attribute = find_attribute(mesh, textures_[texture].attribute))
         for (std::size_t corner = 0; corner < 3; ++corner)
             for (std::size_t c = 0; c < 3; ++c) {
                 const std::size_t element = is_by_face(attribute->name) ? triangle : corners[corner];
@@ -68,14 +90,23 @@ float Opacity::opacity_of(const TexturedTriangle &triangle, const Vector3 &origi
     } else {
         value = texture_value(texture, at[0], at[1]);
     }
-    return float(0.2126 * value[0] + 0.7152 * value[1] + 0.0722 * value[2]);
+    return luminance(value);
+}
+
+float Opacity::opacity_of(const TexturedSphere &sphere, const Vector3 &origin, const Vector3 &direction) const {
+    // Shadow rays are as long as their way.
+    const vec3 unit_direction = v3_normalize(to_vec3(direction));
+    const primitive_hit hit = sphere_hit(to_vec3(sphere.center), sphere.radius, 1, to_vec3(origin), unit_direction);
+    const texture_point at = point_of_sphere(sphere_place(sphere.axes.data(), 1, 0, hit.normal));
+    return luminance(texture_value(textures_[sphere.texture], at.u, at.v));
 }
 
 bool Opacity::is_met(std::size_t i, const Vector3 &origin, const Vector3 &direction) const {
     const Primitive &primitive = primitives_[i];
-    const float opacity = primitive.textured < 0
-                              ? primitive.opacity
-                              : opacity_of(triangles_[std::size_t(primitive.textured)], origin, direction);
+    float opacity = primitive.opacity;
+    if (const auto place = std::size_t(primitive.textured); primitive.textured >= 0)
+        opacity = primitive.is_sphere ? opacity_of(spheres_[place], origin, direction)
+                                      : opacity_of(triangles_[place], origin, direction);
     return decide(primitive, opacity, origin, direction, 0);
 }
 

@@ -22,7 +22,7 @@ bool is_passable(const Scene &scene, const Shape &shape);
 class Opacity {
   public:
     /// Adds a primitive of the scene's numbering, of a mesh the triangle of that index. In the order of the geometry
-    /// that holds them. Spheres have one opacity all over.
+    /// that holds them.
     void add(const Scene &scene, const Shape &shape, std::size_t triangle, std::uint32_t primitive);
     bool empty() const { return primitives_.empty(); }
     /// In the scene's numbering.
@@ -48,18 +48,28 @@ class Opacity {
         std::array<std::array<float, 2>, 3> texcoords;
         std::array<std::array<float, 3>, 3> attribute; ///< colours at the corners, of a mesh attribute
     };
+    struct TexturedSphere {
+        std::uint32_t texture;
+        Vector3 center;
+        float radius; ///< below 0 where rays leave it, as kernels have it
+        std::array<float, 9> axes;
+    };
     struct Primitive {
         std::uint32_t number;
         float opacity;
-        std::int64_t textured; ///< index into triangles_, or -1
+        std::int64_t textured; ///< index into triangles_, or of a sphere into spheres_; -1: one opacity all over
         Sphere::Side side;
+        bool is_sphere;
     };
     float opacity_of(const TexturedTriangle &triangle, const Vector3 &origin, const Vector3 &direction) const;
+    float opacity_of(const TexturedSphere &sphere, const Vector3 &origin, const Vector3 &direction) const;
+    std::uint32_t own_texture(const Scene &scene, std::int32_t texture);
     bool decide(const Primitive &primitive, float opacity, const Vector3 &origin, const Vector3 &direction,
                 std::uint32_t instance) const;
 
     std::vector<Primitive> primitives_;
     std::vector<TexturedTriangle> triangles_;
+    std::vector<TexturedSphere> spheres_;
     std::vector<Texture> textures_;               ///< those that are asked for
     std::map<std::int32_t, std::uint32_t> known_; ///< their places, by those in the scene
 };

@@ -82,11 +82,6 @@ const std::vector<Case> cases{
              "type=\"diffuse\"/></bsdf>"),
      "scene.xml:4",
      {"one opacity"}},
-    {"sphere_of_textured_opacity",
-     "<scene version=\"3.0.0\">\n<sensor type=\"perspective\"/>\n<shape type=\"sphere\"><bsdf type=\"mask\"><texture "
-     "name=\"opacity\" type=\"checkerboard\"/><bsdf type=\"diffuse\"/></bsdf></shape></scene>",
-     "scene.xml:3",
-     {"opacity of a sphere"}},
     {"sky", scene_around("<emitter type=\"sunsky\"/>"), "scene.xml:3", {"sunsky", "envmap"}},
     {"unknown_sensor",
      "<scene version=\"3.0.0\">\n<sensor type=\"fisheye\"/><shape type=\"cube\"/></scene>",

@@ -3,6 +3,7 @@
 #include "tests/support/render.h"
 #include "tests/support/small_scenes.h"
 #include "tests/support/stability.h"
+#include "tests/support/textures.h"
 
 #include <fmt/format.h>
 
@@ -87,6 +88,33 @@ TEST(HalfOpenBall, IsPassedOnEachSideByItself) {
         const double light = mean_of(away.scene);
         EXPECT_NEAR(mean_of(maker.scene) / light, 0.25, slack) << method;
         EXPECT_NEAR(mean_of(within.scene) / light, 0.5, slack) << method;
+    }
+}
+
+/// A white ball with holes by a texture, turned, before light from everywhere: it is not to be seen. Where rays in and
+/// rays out, of whatever length, did not find the same holes, it would be.
+TEST(PaintedBall, IsLostInAFurnace) {
+    SceneMaker maker(8, 2048);
+    maker.look({0, 0, -4}, {0, 0, 0}, 20); // the ball is wider
+    maker.environment(1);
+    maker.scene.textures = {random_texture(2, 2)};
+    maker.scene.textures[0].is_nearest = true;
+    Material white = two_sided(diffuse(1));
+    white.opacity.texture = 0;
+    const std::uint32_t material = maker.material(white);
+    for (const Sphere::Side side : {Sphere::Side::entered, Sphere::Side::left}) {
+        maker.sphere({0, 0, 0}, 1, material);
+        maker.scene.spheres.back().side = side;
+        maker.scene.spheres.back().axes = {Vector3{0, 0.6f, 0.8f}, Vector3{1, 0, 0}, Vector3{0, 0.8f, -0.6f}};
+    }
+    maker.scene.settings.max_depth = -1;
+    maker.scene.settings.rr_depth = 1000;
+    for (const char *method : {"pt", "gpt"}) {
+        RenderOptions options;
+        options.reconstruction = Reconstruction::l2;
+        const Spread light = spread_of(render(maker.scene, options, method).image);
+        fmt::print("{}: {:.4f} +- {:.4f}\n", method, light.mean, light.standard_error);
+        EXPECT_NEAR(light.mean, 1, 0.004) << method; // seven standard errors
     }
 }
 
