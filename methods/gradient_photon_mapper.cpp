@@ -66,13 +66,14 @@ std::vector<std::uint32_t> material_bins(const Scene &scene, const Session &sess
 
 /// Where light may come straight from a light, or by specular vertices alone, shifts ask how it left.
 TraitMap light_vertex_traits(const Scene &scene, const RenderOptions &options) {
-    return {
+    TraitMap traits = {
         {"TRAIT_LIGHT_VERTICES", 1},
         {"TRAIT_LIGHT_STARTS", options.direct_photons || options.all_traits || !walked_kinds(scene, options).empty()},
         {"TRAIT_ONLY_CHAINS", options.only_chains},
-        {"TRAIT_LOBE_LEVELS", options.sampler == RenderOptions::Sampler::sobol},
         {"TRAIT_AOV", options.all_traits || needs_features(options)},
         {"TRAIT_PART_BITS", part_bits(options, needs_halves(options.reconstruction))}};
+    traits.merge(gather_traits(scene, options));
+    return traits;
 }
 
 const Scene &checked(const Scene &scene, const RenderOptions &options) {

@@ -18,8 +18,8 @@ namespace gradus {
 using namespace lib_float;
 
 PhotonMapper::PhotonMapper(Device &device, const Scene &scene, const RenderOptions &options)
-    : options_(options), session_(device, checked_for_gathering(scene, options), options,
-                                  {{"TRAIT_LOBE_LEVELS", options.sampler == RenderOptions::Sampler::sobol}}),
+    : options_(options),
+      session_(device, checked_for_gathering(scene, options), options, gather_traits(scene, options)),
       paths_(session_, stages_, scene, options, false), photons_(session_, stages_, scene, options, 2, false),
       pairs_(stages_),
       evaluate_(stages_.add({.name = "photon_evaluate", .by_kind = true, .dirac = DiracKinds::left_out})),

@@ -20,7 +20,8 @@
     REAL(ray, direction_y, "")                                                                                         \
     REAL(ray, direction_z, "")                                                                                         \
     UINT(ray, primitive, "before tracing: ray_pending or ray_none; after: the primitive hit, ray_escaped, ray_none")   \
-    UINT(ray, instance, "only with TRAIT_INSTANCES: record of the instance that was hit, if anything was")
+    UINT(ray, instance, "only with TRAIT_INSTANCES: record of the instance that was hit, if anything was")             \
+    UINT(ray, opacity, "only with TRAIT_OPACITY: share of the rays that meet what was hit there, in ray_opacity_one")
 
 /* The connection of a path's vertex to a light point, from origin along direction to distance 1. */
 #define GRADUS_SHADOW_COLUMNS(REAL, UINT)                                                                              \
@@ -466,6 +467,9 @@ GRADUS_COLUMN_ENUM(splat, GRADUS_SPLAT_COLUMNS) /* its rows are its writer's */
 #define gathers_nowhere 0u  /* too smooth */
 #define gathers_in_front 1u /* what arrives from behind is absorbed */
 #define gathers_around 2u   /* on both sides */
+
+/* ray_opacity where all rays meet the surface. */
+#define ray_opacity_one 0x80000000u
 
 /* Values of ray_primitive that are no primitive. */
 #define ray_escaped 0xFFFFFFFFu /* traced, and nothing was hit */

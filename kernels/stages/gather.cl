@@ -7,7 +7,10 @@
  *
  * BY_SLOT: in the rows of their slots instead.
  *
+ * TRAIT_OPACITY: `throughput`, which is for photons alone, makes up for those that passed.
+ *
  * FEATURES: also leaves the features that the camera sees, in the place of `shade` (by BSDF kind). */
+//! traits: TRAIT_OPACITY
 #include "kernels/lib/bsdf.h"
 #include "kernels/lib/bsdf_frame.h"
 #include "kernels/lib/seen_features.h"
@@ -54,7 +57,13 @@ STAGE gather(uint count, uint unit, uint first, uint to, uint capacity, uint gat
     AT_UINT(gather, deepest, row) = max_depth - depth - 1u;
     const real first_radius = r_clamp(length * radius_slope, radius_start, radius_most);
     AT(gather, radius, row) = r_max(first_radius * radius_scale, radius_least);
+#if TRAIT_OPACITY
+    /* Photons are here in the share that the surface meets, and so is this path: one of both is enough. */
+    const real met = (real)AT_UINT_IN(ray_old, ray, opacity, old) * (R(1) / (real)ray_opacity_one);
+    SET_RGB(gather, throughput, row, rgb_scale(throughput, R(1) / r_max(met, R(1e-6))));
+#else
     SET_RGB(gather, throughput, row, throughput);
+#endif
     SET_RGB(gather, sum, row, rgb_gray(R(0)));
     SET_SURFACE_VERTEX(gather, row, material_kind[point.material], point, direction)
     SET_VERTEX_TEXTURED(gather, row, capacity, old)

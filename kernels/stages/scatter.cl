@@ -3,6 +3,9 @@
  * that are not Dirac write rows `to_photon` on of `photon` and `photon_origin`, with no ordinal where there is no
  * photon. LEAVES_PHOTONS 0: none do.
  *
+ * Of a blend any part keeps photons, also a Dirac one, where one of them gathers: the light path draws a part to go on
+ * by, the camera path draws another one, and the light that comes to the surface is all there for that.
+ *
  * Power is scaled as importance's adjoint is: no squared index where light is refracted, but the ratio of shading and
  * geometric cosines on both sides (Veach 1997, eq. 5.19), since what a shading normal turns is the BSDF and not the
  * surface. A BSDF's sample has f |wo.ns| over its density; the path's power changes by f |wi.ns| / |wi.ng| |wo.ng|.
@@ -16,7 +19,7 @@
  *
  * TRAIT_ONLY_CHAINS: leaves a photon only where the vertex before is too smooth to gather at. */
 //! traits: TRAIT_SHADING_NORMALS TRAIT_ANISOTROPIC TRAIT_LIGHT_VERTICES TRAIT_ONLY_CHAINS TRAIT_TEXTURED_NORMALS
-//! traits: TRAIT_TEXTURED TRAIT_MIXED_LOBES
+//! traits: TRAIT_TEXTURED TRAIT_MIXED_LOBES TRAIT_BLENDS
 #include "kernels/lib/bsdf.h"
 #include "kernels/lib/bsdf_frame.h"
 #include "kernels/lib/random.h"
@@ -32,9 +35,9 @@ STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint ma
               __global const real *triangle_normals, __global const real *triangle_tangents,
               __global const real *spheres, uint triangle_count, __global const uint *primitive_material,
               __global const uint *material_back, __global const real *materials SURFACE_ARGUMENT
-#if LEAVES_PHOTONS && !BSDF_IS_DIRAC
+#if LEAVES_PHOTONS && (!BSDF_IS_DIRAC || TRAIT_BLENDS)
               ,
-              __global const uint *material_gathers, __global real *photon, __global real *photon_origin,
+              __global const uint *material_keeps, __global real *photon, __global real *photon_origin,
               __global uint *photon_place, uint to_photon, uint photon_rows
 #endif
 #if TRAIT_LIGHT_VERTICES
@@ -90,15 +93,15 @@ STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint ma
 #endif
 
     uint left = left_before;
-#if LEAVES_PHOTONS && !BSDF_IS_DIRAC
-    const uint gathers = material_gathers[point.material];
+#if LEAVES_PHOTONS && (!BSDF_IS_DIRAC || TRAIT_BLENDS)
+    const uint gathers = material_keeps[point.material];
     const int is_kept = (gathers == gathers_around) | ((gathers == gathers_in_front) & (front > R(0)));
 #if TRAIT_ONLY_CHAINS
     const int is_after_one = vertex_before != light_vertex_none;
     const uint last = FIELD_OF(light_vertex_mark, light_vertex_marks, is_after_one ? vertex_before : 0u, material);
     const int is_after_surface = is_after_one & !light_vertex_is_light(last);
     const int is_photon =
-        is_kept & is_after_surface & (material_gathers[is_after_surface ? last : 0u] == gathers_nowhere);
+        is_kept & is_after_surface & (material_keeps[is_after_surface ? last : 0u] == gathers_nowhere);
 #else
     const int is_photon = is_kept;
 #endif

@@ -3,6 +3,7 @@
 #include "kernels/shared/tables.h"
 #include "methods/path_stages.h"
 #include "methods/photons/pass_photons.h"
+#include "runtime/trace/opacity.h"
 
 #include <fmt/format.h>
 
@@ -34,6 +35,11 @@ StageDeclaration defined_as(StageDeclaration stage, const char *definition, bool
 }
 
 } // namespace
+
+TraitMap gather_traits(const Scene &scene, const RenderOptions &options) {
+    return {{"TRAIT_LOBE_LEVELS", options.sampler == RenderOptions::Sampler::sobol},
+            {"TRAIT_OPACITY", options.all_traits || has_passable_shapes(scene)}};
+}
 
 GatherPaths::GatherPaths(Session &session, Stages &stages, const Scene &scene, const RenderOptions &options,
                          bool planes)

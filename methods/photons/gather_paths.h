@@ -10,6 +10,9 @@
 
 namespace gradus {
 
+/// What camera paths to gather points ask of a session.
+TraitMap gather_traits(const Scene &scene, const RenderOptions &options);
+
 class GatherPaths {
   public:
     /// planes: paths of five planes of pixels (kernels/stages/camera.cl). Then gather points lie in the rows of their

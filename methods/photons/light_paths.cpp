@@ -53,6 +53,29 @@ std::vector<std::uint32_t> gathers_by_material(const Scene &scene, double roughn
     return gathers;
 }
 
+/// The same of where light paths leave photons: wherever any part of a blend gathers them.
+std::vector<std::uint32_t> keeps_by_material(const Scene &scene, double roughness) {
+    std::vector<std::uint32_t> keeps = gathers_by_material(scene, roughness);
+    const std::size_t first_part = keeps.size() - scene.blended.size();
+    const auto settle = [&](const Bsdf &bsdf) {
+        std::uint32_t most = gathers_nowhere;
+        for_each_part(scene, bsdf, [&](const Bsdf &part) {
+            const std::uint32_t at = gathers_at(part, roughness);
+            most = most == gathers_around || at == gathers_nowhere ? most : at;
+        });
+        for_each_part(scene, bsdf, [&](const Bsdf &part) {
+            if (bsdf.blend != no_blend)
+                keeps[first_part + std::size_t(&part - scene.blended.data())] = most;
+        });
+    };
+    for (const Material &material : scene.materials) {
+        settle(material.front);
+        if (material.two_sided)
+            settle(material.back);
+    }
+    return keeps;
+}
+
 StageDeclaration photons_stage(const char *step, std::vector<std::string> numbers) {
     return {.name = std::string("photons ") + step,
             .file = "photons",
@@ -171,6 +194,8 @@ LightPaths::LightPaths(Session &session, Stages &consumers, const Scene &scene, 
     const std::vector<std::uint32_t> gathers = gathers_by_material(scene, options.gather_roughness);
     session.scene_buffers.emplace_back(session.device, "material_gathers", gathers.data(),
                                        gathers.size() * sizeof(gathers[0]));
+    const std::vector<std::uint32_t> keeps = keeps_by_material(scene, options.gather_roughness);
+    session.scene_buffers.emplace_back(session.device, "material_keeps", keeps.data(), keeps.size() * sizeof(keeps[0]));
     const TableList list = own_tables(session, paths_);
     const std::uint32_t batch =
         choose_batch_size(session.device, session.options.batch_size,
@@ -298,7 +323,8 @@ void LightPaths::scatter(const Hits &hits, std::uint32_t phase, std::size_t kind
     } else {
         scatter_.run_kind(kind, rows.count,
                           {{"first", from}, {"to", rows.first}, {"to_photon", rows_}, {"to_vertex", vertices_}});
-        rows_ += bsdf_kind_is_dirac(session_.scene.kinds[kind]) ? 0 : rows.count;
+        const bool leaves_none = bsdf_kind_is_dirac(session_.scene.kinds[kind]) && !session_.has("TRAIT_BLENDS");
+        rows_ += leaves_none ? 0 : rows.count;
     }
     vertices_ += has_vertices(session_) ? rows.count : 0;
 }

@@ -43,11 +43,6 @@ void drop_passed(const RTCFilterFunctionNArguments *hits) {
     }
 }
 
-/// A ray of the world that a filter is asked about within an instance.
-Vector3 axis_values(const float *const (&columns)[3], std::size_t at) {
-    return {columns[0][at], columns[1][at], columns[2][at]};
-}
-
 /// Calls visit(shape, number of its first primitive) for the shapes of that kind that are passable, or those that
 /// aren't.
 template <class Visit>
@@ -94,6 +89,18 @@ EmbreeScene::EmbreeScene(const Scene &s, int threads, tbb::task_arena &arena, co
     rtcGetSceneBounds(scene_.get(), &bounds);
     low_ = {bounds.lower_x, bounds.lower_y, bounds.lower_z};
     high_ = {bounds.upper_x, bounds.upper_y, bounds.upper_z};
+}
+
+float EmbreeScene::opacity_of(unsigned instance, unsigned geometry, unsigned number, const Vector3 &origin,
+                              const Vector3 &direction) const {
+    if (instance == RTC_INVALID_GEOMETRY_ID)
+        return geometry < passable_triangles ? 1
+                                             : passable_[geometry - passable_triangles].at(number, origin, direction);
+    const std::size_t placed = instance - first_instance;
+    for (const std::unique_ptr<PassableShape> &shape : groups_[group_of_[placed]].passable)
+        if (shape->geometry == geometry)
+            return shape->opacity.at(number, origin, direction, matrix_of(instances_[placed]));
+    return 1;
 }
 
 void EmbreeScene::check(const char *doing) {
@@ -274,7 +281,8 @@ void EmbreeScene::add_groups(const Scene &s, const SceneTables *tables) {
             RTCGeometry geometry = new_triangles(mesh, first, tables);
             rtcSetGeometryMask(geometry, 0xFFFFFFFFu);
             if (is_passable(s, shape)) {
-                group.passable.push_back(std::make_unique<PassableShape>(PassableShape{this, {}}));
+                group.passable.push_back(
+                    std::make_unique<PassableShape>(PassableShape{this, {}, unsigned(group.first.size())}));
                 for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
                     group.passable.back()->opacity.add(s, shape, i, first + std::uint32_t(i));
                 rtcSetGeometryUserData(geometry, group.passable.back().get());

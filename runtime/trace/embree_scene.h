@@ -18,6 +18,11 @@
 
 namespace gradus {
 
+/// A row of three columns.
+inline Vector3 axis_values(const float *const (&columns)[3], std::size_t row) {
+    return {columns[0][row], columns[1][row], columns[2][row]};
+}
+
 class EmbreeScene {
   public:
     /// As Tracer's. Builds on the threads of `arena`.
@@ -37,6 +42,9 @@ class EmbreeScene {
         const std::vector<std::uint32_t> &named = numbers_[geometry];
         return !named.empty() ? named[number] : geometry == opaque_triangles ? number : triangles_ + number;
     }
+    /// Of what a ray has hit, as primitive_of(): the share of such rays that meet it there.
+    float opacity_of(unsigned instance, unsigned geometry, unsigned number, const Vector3 &origin,
+                     const Vector3 &direction) const;
     /// RayColumns::instance
     std::uint32_t instance_record(unsigned instance) const {
         return instance == RTC_INVALID_GEOMETRY_ID ? no_instance_ : no_instance_ + 1 + (instance - first_instance);
@@ -80,6 +88,7 @@ class EmbreeScene {
     struct PassableShape {
         const EmbreeScene *scene;
         Opacity opacity;
+        unsigned geometry; ///< in its group
     };
     /// Shapes are geometries, with their numbers: the first primitive of each is known.
     struct Group {

@@ -5,6 +5,7 @@
 #include "kernels/lib/surface_uv.h"
 #include "runtime/scene/transform.h"
 
+#include <algorithm>
 #include <bit>
 #include <tuple>
 
@@ -23,6 +24,11 @@ float luminance(const std::array<double, 3> &color) {
 bool is_passable(const Scene &scene, const Shape &shape) {
     const Number &opacity = scene.materials[shape.material].opacity;
     return shape.emitter < 0 && (opacity.texture != no_texture || opacity.value < 1);
+}
+
+bool has_passable_shapes(const Scene &scene) {
+    return std::any_of(scene.shapes.begin(), scene.shapes.end(),
+                       [&](const Shape &shape) { return is_passable(scene, shape); });
 }
 
 std::uint32_t Opacity::own_texture(const Scene &scene, std::int32_t texture) {
@@ -101,27 +107,33 @@ float Opacity::opacity_of(const TexturedSphere &sphere, const Vector3 &origin, c
     return luminance(texture_value(textures_[sphere.texture], at.u, at.v));
 }
 
-bool Opacity::is_met(std::size_t i, const Vector3 &origin, const Vector3 &direction) const {
+float Opacity::at(std::size_t i, const Vector3 &origin, const Vector3 &direction) const {
     const Primitive &primitive = primitives_[i];
-    float opacity = primitive.opacity;
-    if (const auto place = std::size_t(primitive.textured); primitive.textured >= 0)
-        opacity = primitive.is_sphere ? opacity_of(spheres_[place], origin, direction)
-                                      : opacity_of(triangles_[place], origin, direction);
-    return decide(primitive, opacity, origin, direction, 0);
+    if (primitive.textured < 0)
+        return primitive.opacity;
+    const auto place = std::size_t(primitive.textured);
+    return primitive.is_sphere ? opacity_of(spheres_[place], origin, direction)
+                               : opacity_of(triangles_[place], origin, direction);
+}
+
+float Opacity::at(std::size_t i, const Vector3 &origin, const Vector3 &direction, const Matrix4 &to_world) const {
+    const Primitive &primitive = primitives_[i];
+    if (primitive.textured < 0)
+        return primitive.opacity;
+    TexturedTriangle placed = triangles_[std::size_t(primitive.textured)];
+    placed.p0 = to_float(transform_point(to_world, to_double(placed.p0)));
+    placed.e1 = to_float(transform_vector(to_world, to_double(placed.e1)));
+    placed.e2 = to_float(transform_vector(to_world, to_double(placed.e2)));
+    return opacity_of(placed, origin, direction);
+}
+
+bool Opacity::is_met(std::size_t i, const Vector3 &origin, const Vector3 &direction) const {
+    return decide(primitives_[i], at(i, origin, direction), origin, direction, 0);
 }
 
 bool Opacity::is_met(std::size_t i, const Vector3 &origin, const Vector3 &direction, std::uint32_t instance,
                      const Matrix4 &to_world) const {
-    const Primitive &primitive = primitives_[i];
-    float opacity = primitive.opacity;
-    if (primitive.textured >= 0) {
-        TexturedTriangle placed = triangles_[std::size_t(primitive.textured)];
-        placed.p0 = to_float(transform_point(to_world, to_double(placed.p0)));
-        placed.e1 = to_float(transform_vector(to_world, to_double(placed.e1)));
-        placed.e2 = to_float(transform_vector(to_world, to_double(placed.e2)));
-        opacity = opacity_of(placed, origin, direction);
-    }
-    return decide(primitive, opacity, origin, direction, instance);
+    return decide(primitives_[i], at(i, origin, direction, to_world), origin, direction, instance);
 }
 
 bool Opacity::decide(const Primitive &primitive, float opacity, const Vector3 &origin, const Vector3 &direction,

@@ -15,6 +15,8 @@ namespace gradus {
 /// emit are met by all rays.
 bool is_passable(const Scene &scene, const Shape &shape);
 
+bool has_passable_shapes(const Scene &scene);
+
 /// Decides whether rays meet the surfaces that are passable. A ray meets one with the probability of its opacity there
 /// and passes it else, as if nothing were there: light samples and sampled directions find a light behind it alike, and
 /// their weights stay those without it. The number that decides is a hash of ray and primitive, so the answer depends
@@ -33,6 +35,9 @@ class Opacity {
         const Sphere::Side side = primitives_[i].side;
         return side == Sphere::Side::both || (side == Sphere::Side::left) == (outward > 0);
     }
+    /// The opacity of the i-th primitive where the ray comes to it; with `to_world`, of an instance of its group.
+    float at(std::size_t i, const Vector3 &origin, const Vector3 &direction) const;
+    float at(std::size_t i, const Vector3 &origin, const Vector3 &direction, const Matrix4 &to_world) const;
     /// Whether the ray meets the i-th primitive, which lies in its way.
     bool is_met(std::size_t i, const Vector3 &origin, const Vector3 &direction) const;
     /// The same of an instance of the group that the primitive is of, by its number from 1 on and where it stands. Each

@@ -135,6 +135,11 @@ std::uint64_t Tracer::Implementation::trace_extension(const RayColumns &ray, con
                                            : scene.primitive_of(instance, geometry, packet.hit.primID[lane]);
             if (ray.instance && geometry != RTC_INVALID_GEOMETRY_ID)
                 ray.instance[row[lane]] = scene.instance_record(instance);
+            if (ray.opacity && geometry != RTC_INVALID_GEOMETRY_ID)
+                ray.opacity[row[lane]] = std::uint32_t(double(ray_opacity_one) *
+                                                       scene.opacity_of(instance, geometry, packet.hit.primID[lane],
+                                                                        axis_values(ray.origin, row[lane]),
+                                                                        axis_values(ray.direction, row[lane])));
         }
     });
     return rows.size();

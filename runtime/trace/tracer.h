@@ -17,6 +17,9 @@ struct RayColumns : SegmentColumns {
     std::uint32_t *primitive = nullptr; ///< in: ray_pending or ray_none; out: what was hit, or ray_escaped
     /// Out, of what was hit: the record of its instance (SceneTables::no_instance); null where there are none.
     std::uint32_t *instance = nullptr;
+    /// Out, where asked for: the opacity of what was hit, there, in ray_opacity_one. A surface of opacity 0.5 is hit by
+    /// half of the rays, and photons on it are half of those that arrive.
+    std::uint32_t *opacity = nullptr;
 };
 
 /// The host's view of the columns of a shadow table: see GRADUS_SHADOW_COLUMNS.

@@ -28,6 +28,8 @@ class Segments {
             answer = reinterpret_cast<std::uint32_t *>(reals + places.answer * capacity);
             if (places.instance >= 0)
                 instance = reinterpret_cast<std::uint32_t *>(reals + places.instance * capacity);
+            if (places.opacity >= 0)
+                opacity = reinterpret_cast<std::uint32_t *>(reals + places.opacity * capacity);
             return;
         }
         const double *reals = view_.as<double>();
@@ -35,32 +37,35 @@ class Segments {
             columns.origin[axis] = copy(origin_[axis], reals + (places.origin + axis) * capacity);
             columns.direction[axis] = copy(direction_[axis], reals + (places.direction + axis) * capacity);
         }
-        wide_answer_ = view_.as<std::uint32_t>() + 2 * places.answer * capacity;
-        answer_.resize(rows);
-        for (std::size_t row = 0; row < rows; ++row)
-            answer_[row] = wide_answer_[2 * row];
-        answer = answer_.data();
-        if (places.instance >= 0) {
-            wide_instance_ = view_.as<std::uint32_t>() + 2 * places.instance * capacity;
-            instance_.resize(rows);
-            for (std::size_t row = 0; row < rows; ++row)
-                instance_[row] = wide_instance_[2 * row];
-            instance = instance_.data();
-        }
-    }
-    ~Segments() {
-        for (std::size_t row = 0; row < answer_.size(); ++row)
-            wide_answer_[2 * row] = answer_[row];
-        for (std::size_t row = 0; row < instance_.size(); ++row)
-            wide_instance_[2 * row] = instance_[row];
+        answer = answer_.take(view_.as<std::uint32_t>() + 2 * places.answer * capacity, rows);
+        if (places.instance >= 0)
+            instance = instance_.take(view_.as<std::uint32_t>() + 2 * places.instance * capacity, rows);
+        if (places.opacity >= 0)
+            opacity = opacity_.take(view_.as<std::uint32_t>() + 2 * places.opacity * capacity, rows);
     }
     Segments(const Segments &) = delete;
     Segments &operator=(const Segments &) = delete;
 
     SegmentColumns columns{};
-    std::uint32_t *answer, *instance = nullptr;
+    std::uint32_t *answer, *instance = nullptr, *opacity = nullptr;
 
   private:
+    /// A column of answers of a double table, where every other number is one: copied, and put back at the end.
+    struct Answers {
+        std::uint32_t *take(std::uint32_t *from, std::size_t rows) {
+            wide = from;
+            values.resize(rows);
+            for (std::size_t row = 0; row < rows; ++row)
+                values[row] = wide[2 * row];
+            return values.data();
+        }
+        ~Answers() {
+            for (std::size_t row = 0; row < values.size(); ++row)
+                wide[2 * row] = values[row];
+        }
+        std::uint32_t *wide = nullptr;
+        std::vector<std::uint32_t> values;
+    };
     const float *copy(std::vector<float> &to, const double *from) const {
         to.assign(from, from + rows_);
         return to.data();
@@ -68,8 +73,7 @@ class Segments {
     Buffer::Mapping view_;
     std::size_t rows_;
     std::vector<float> origin_[3], direction_[3];
-    std::vector<std::uint32_t> answer_, instance_;
-    std::uint32_t *wide_answer_ = nullptr, *wide_instance_ = nullptr; ///< of a double table: every other one
+    Answers answer_, instance_, opacity_;
 };
 
 } // namespace
@@ -81,7 +85,7 @@ TraceCounts trace_segments(Tracer &tracer, Precision precision, const SegmentTab
     ShadowColumns segment{};
     if (rays.count > 0) {
         ray_view.emplace(rays, precision, segments.count > 0 ? Wait::later : Wait::now);
-        ray = {ray_view->columns, ray_view->answer, ray_view->instance};
+        ray = {ray_view->columns, ray_view->answer, ray_view->instance, ray_view->opacity};
     }
     if (segments.count > 0) {
         segment_view.emplace(segments, precision, Wait::now);

@@ -21,6 +21,7 @@ struct SegmentTable {
     /// SegmentColumns::alike_from
     std::size_t alike_from = std::numeric_limits<std::size_t>::max();
     int instance = -1; ///< the column of the second answer, where there are instances: RayColumns::instance
+    int opacity = -1;  ///< that of the third, where it is asked for: RayColumns::opacity
 };
 
 /// Finds what `rays` meet first (their answers: ray_pending before, a primitive or ray_escaped after), and whether

@@ -38,6 +38,7 @@ TraitMap traits_for(const Scene &scene, const SessionOptions &options, const Tra
     traits["TRAIT_SHARED_JITTER"] = 0;
     traits["TRAIT_STRATIFIED"] = options.sampler == SessionOptions::Sampler::sobol;
     traits["TRAIT_LOBE_LEVELS"] = 0;
+    traits["TRAIT_OPACITY"] = 0;
     traits["TRAIT_PART_BITS"] = part_bits(options, false);
     traits["TRAIT_GRADIENT"] = 0;
     traits["TRAIT_LIGHT_VERTICES"] = 0;

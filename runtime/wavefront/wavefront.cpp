@@ -53,7 +53,9 @@ TableList Wavefront::tables() const {
 
 TableList Wavefront::ray_tables() const {
     const std::uint32_t bins = layout_.bins();
-    const std::uint32_t of_rays = session_.has("TRAIT_INSTANCES") ? ray_columns : ray_instance;
+    const std::uint32_t of_rays = session_.has("TRAIT_OPACITY")     ? ray_columns
+                                  : session_.has("TRAIT_INSTANCES") ? ray_opacity
+                                                                    : ray_instance;
     TableList list = {{.name = "ray", .columns = of_rays, .alternates = true},
                       {.name = "surface", .columns = session_.surface_columns(), .is_cleared = true},
                       {.name = "bin", .is_uint = true},
@@ -93,6 +95,8 @@ void Wavefront::trace() {
         ray.alike_from = vertices_;
     if (session_.has("TRAIT_INSTANCES"))
         ray.instance = ray_instance;
+    if (session_.has("TRAIT_OPACITY"))
+        ray.opacity = ray_opacity;
     const TraceCounts counts =
         trace_segments(session_.tracer, tables_->precision(), ray, connections, session_.trace_seconds);
     session_.rays["extension"] += counts.extension;
