@@ -35,10 +35,11 @@ class ObjReader {
         while (at < end) {
             ++line_;
             const char *line_end = at;
-            while (line_end < end && *line_end != '\n')
+            while (line_end < end && *line_end != '\n' && *line_end != '\r')
                 ++line_end;
             read_line(at, line_end);
-            at = line_end + 1;
+            const bool ends_twice = line_end + 1 < end && line_end[0] == '\r' && line_end[1] == '\n';
+            at = line_end + (ends_twice ? 2 : 1);
         }
         return assemble();
     }

@@ -85,19 +85,27 @@ Matrix4 read_rotation(const Element &step) {
     return rotation(axis, number_attribute(step, "angle", 0));
 }
 
+/// Where a file says none, as its program has it: of 2.0 and later, Duff et al. 2017; of 0.x, Pharr and Humphreys 2004.
+Double3 usual_up(const Double3 &view, bool is_legacy) {
+    const auto [x, y, z] = view;
+    if (is_legacy) {
+        const Double3 across = std::fabs(x) > std::fabs(y) ? Double3{z, 0, -x} : Double3{0, z, -y};
+        return cross(normalize(across), view);
+    }
+    const double sign = std::copysign(1.0, z), a = -1 / (sign + z);
+    return {1 + sign * x * x * a, sign * x * y * a, -sign * x};
+}
+
 Matrix4 read_look_at(const Element &step, Diagnostics &diagnostics) {
     const Double3 origin = triple_attribute(step, "origin"), target = triple_attribute(step, "target");
     const Double3 view = subtract(target, origin);
     if (!(length(view) > 0))
         fail(step, "origin and target are the same point");
-    Double3 up{0, 0, 0};
-    const bool given = step.attribute("up") != nullptr;
-    if (given)
-        up = triple_attribute(step, "up");
+    if (!step.attribute("up"))
+        return look_at(origin, target, usual_up(normalize(view), step.is_legacy()));
+    Double3 up = triple_attribute(step, "up");
     if (!(length(cross(normalize(view), up)) > 1e-9 * length(up))) {
-        if (given)
-            diagnostics.warn(step.location,
-                             "<" + step.tag + ">: up is zero or parallel to the view; another is chosen");
+        diagnostics.warn(step.location, "<" + step.tag + ">: up is zero or parallel to the view; another is chosen");
         up = std::fabs(view[1]) < 0.9 * length(view) ? Double3{0, 1, 0} : Double3{1, 0, 0};
     }
     return look_at(origin, target, up);

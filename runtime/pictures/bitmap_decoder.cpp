@@ -126,9 +126,7 @@ void for_each_row(OIIO::ImageInput &input, const OpenFile &file, OIIO::TypeDesc 
 ReadBitmap decode_bitmap(const OpenFile &file, const BitmapRequest &request) {
     const std::string path = file.name().string();
     check_exr(file, request.limits);
-    OIIO::ImageSpec wishes;
-    wishes.attribute("oiio:UnassociatedAlpha", 1); // colours as they are stored, not times alpha
-    const PictureInput opened = open_picture(file, &wishes);
+    const PictureInput opened = open_picture(file);
     if (!opened.input)
         refuse(path, opened.error);
     OIIO::ImageInput &input = *opened.input;

@@ -34,17 +34,19 @@ std::vector<std::unique_ptr<OIIO::ImageInput>> readers_for(const OpenFile &file)
 
 } // namespace
 
-PictureInput open_picture(const OpenFile &file, const OIIO::ImageSpec *wishes) {
+PictureInput open_picture(const OpenFile &file) {
+    OIIO::ImageSpec wishes;
+    wishes.attribute("oiio:UnassociatedAlpha", 1);
     PictureInput opened;
     if (!file.is_confined()) {
-        opened.input = OIIO::ImageInput::open(file.library_name(), wishes);
+        opened.input = OIIO::ImageInput::open(file.library_name(), &wishes);
         if (!opened.input)
             opened.error = OIIO::geterror();
         return opened;
     }
     for (std::unique_ptr<OIIO::ImageInput> &reader : readers_for(file)) {
         OIIO::ImageSpec spec;
-        if (reader->open(file.library_name(), spec, wishes ? *wishes : OIIO::ImageSpec())) {
+        if (reader->open(file.library_name(), spec, wishes)) {
             opened.input = std::move(reader);
             return opened;
         }

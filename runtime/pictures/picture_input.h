@@ -17,8 +17,8 @@ struct PictureInput {
 };
 
 /// Any format that OpenImageIO knows. Of confined files those whose readers open no file but the one: playlists of
-/// films, say, name others. wishes: as ImageInput::open() has them; may be nullptr.
-PictureInput open_picture(const OpenFile &file, const OIIO::ImageSpec *wishes = nullptr);
+/// films, say, name others. Colours are as they are stored, not times alpha.
+PictureInput open_picture(const OpenFile &file);
 
 /// Bytes of pixels that may be read of a file, as read_image() says it: a few kilobytes can declare any number.
 std::uint64_t most_pixel_bytes(const OpenFile &file, std::uint64_t limits);

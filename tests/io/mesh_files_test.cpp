@@ -47,6 +47,22 @@ TEST(Obj, PositionsOnly) {
     EXPECT_TRUE(mesh.texcoords.empty());
 }
 
+TEST(Obj, EndsOfLinesOfEverySystem) {
+    const std::string lines[] = {"v 0 0 0", "v 1 0 0", "v 0 1 0", "f 1 2 3", "f 1 2 x"};
+    for (const std::string end : {"\n", "\r\n", "\r"}) {
+        std::string text;
+        for (int i = 0; i < 4; ++i)
+            text += lines[i] + end;
+        EXPECT_EQ(parse_obj(text, "m.obj").triangles.size(), 1u);
+        try {
+            parse_obj(text + lines[4] + end, "m.obj");
+            ADD_FAILURE() << "no error";
+        } catch (const SceneError &error) {
+            EXPECT_THAT(error.what(), ::testing::HasSubstr("m.obj:5"));
+        }
+    }
+}
+
 TEST(Obj, CornersOfEveryForm) {
     const std::string head = "v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0.5 0.25\nvt 1 1 0\nvn 0 0 1\nvn 1 0 0\n";
     const Mesh full = parse_obj(head + "f 1/1/1 2/2/1 3/1/2", "m.obj");

@@ -1,4 +1,5 @@
 // Textures from scene files: plugins in both dialects, picture formats, and what is wrong with files.
+#include "runtime/io/image_io.h"
 #include "tests/io/scene_text.h"
 
 #include <OpenImageIO/imageio.h>
@@ -108,6 +109,15 @@ TEST_F(TexturePlugin, BitmapOfEachFormat) {
     EXPECT_NEAR(texel(raw, 1, 0)[2], 20479 / 65535.0, 1e-12);
     EXPECT_NEAR(texel(texture(bitmap_text("a.exr")), 1, 0)[2], 5 / 16.0, 1e-7);
     EXPECT_NEAR(texel(texture(bitmap_text("a.hdr")), 1, 0)[2], 5 / 16.0, 1 / 256.0);
+}
+
+/// An image that is compared or solved, and that of an environment, is not times its alpha either.
+TEST_F(TexturePlugin, ImagesAreNotTimesAlpha) {
+    const std::uint8_t values[] = {200, 100, 50, 0, 200, 100, 50, 128, 200, 100, 50, 255, 200, 100, 50, 1};
+    write_values("rgba.png", 2, 2, 4, OIIO::TypeDesc::UINT8, values);
+    const Image image = read_image((folder_.path() / "rgba.png").string());
+    for (const float value : image.find("G")->values)
+        EXPECT_NEAR(value, linear(100 / 255.0), 1e-6);
 }
 
 TEST_F(TexturePlugin, BitmapInHalfPrecision) {

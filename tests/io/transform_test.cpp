@@ -61,7 +61,19 @@ TEST(Transform, LookAt) {
     const std::array<double, 16> expected{-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 5, 0, 0, 0, 1};
     expect_matrix(matrix_of("<lookat origin=\"0 0 5\" target=\"0 0 0\" up=\"0, 2, 1\"/>"), expected);
     expect_matrix(matrix_of("<lookAt origin=\"0,0,5\" target=\"0,0,0\" up=\"0,1,0\"/>", "0.5.0"), expected);
-    expect_matrix(matrix_of("<lookat origin=\"0 0 5\" target=\"0 0 0\"/>"), expected);
+}
+
+/// As Mitsuba 3.9.1 has it; of 0.x the formula is that of the book that its program follows.
+TEST(Transform, LookAtWithoutUp) {
+    expect_matrix(matrix_of("<lookat origin=\"1 2 3\" target=\"0 0.5 -1\"/>"),
+                  {-0.04076095, 0.97282606, -0.22792116, 1, 0.93885857, -0.04076095, -0.34188172, 2, -0.34188172,
+                   -0.22792116, -0.91168463, 3, 0, 0, 0, 1},
+                  1e-7);
+    // up lies in the plane of the view and the axis that it is farther from, of x and y.
+    const Matrix4 old = matrix_of("<lookat origin=\"1 2 3\" target=\"0 0.5 -1\"/>", "0.6.0");
+    EXPECT_NEAR(determinant(old), 1, 1e-12);
+    EXPECT_NEAR(old.m[0], 0, 1e-12);
+    EXPECT_GT(old.m[1], 0.9);
 }
 
 TEST(Transform, LookAtAlongUpChoosesAnother) {
