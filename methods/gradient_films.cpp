@@ -36,12 +36,12 @@ GradientFilms GradientFilms::half(int number) const {
 PlaneSource GradientFilms::mean(GradientFilm::Layer layer) const {
     return [this, layer](std::uint32_t color, float *plane) {
         for (std::size_t pixel = 0; pixel < pixels(); ++pixel) {
-            double sum = 0, count = 0;
+            double sum = 0, weight = 0;
             for (const auto &film : films_) {
                 sum += film->sum(layer, color, pixel);
-                count += film->count(layer, pixel);
+                weight += film->weight(layer, pixel);
             }
-            plane[pixel] = static_cast<float>(sum / std::max(count, 1.0));
+            plane[pixel] = static_cast<float>(weight > 0 ? sum / weight : sum);
         }
     };
 }
@@ -53,7 +53,7 @@ PlaneSource GradientFilms::variance(GradientFilm::Layer layer) const {
         std::vector<Replicate> replicates(films_.size());
         for (std::size_t pixel = 0; pixel < pixels(); ++pixel) {
             for (std::size_t part = 0; part < films_.size(); ++part)
-                replicates[part] = {films_[part]->sum(layer, color, pixel), films_[part]->count(layer, pixel)};
+                replicates[part] = {films_[part]->sum(layer, color, pixel), films_[part]->weight(layer, pixel)};
             plane[pixel] = static_cast<float>(variance_of_mean(replicates));
         }
     };

@@ -13,11 +13,15 @@ namespace gradus {
 /// A table of GRADUS_GRADIENT_FILM_COLUMNS after so many samples. It is read a column at a time, where it lies.
 class GradientFilm {
   public:
+    /// What the frames that a pixel has weigh, and what with one more.
+    struct Weights {
+        double of_frames, with_one_more;
+    };
     /// Samples were taken frame by frame, and of the last one perhaps only the upper rows.
     GradientFilm(const Buffer &film, std::uint32_t width, std::uint32_t height, Precision precision,
-                 std::uint64_t samples)
+                 std::uint64_t samples, const Weights &weights)
         : table_(film, std::size_t(width) * height, precision), pixels_(std::size_t(width) * height), width_(width),
-          frames_(samples / pixels_), more_(samples % pixels_) {}
+          frames_(samples / pixels_), more_(samples % pixels_), weights_(weights) {}
 
     enum Layer { primal, dx, dy };
     std::size_t pixels() const { return pixels_; }
@@ -25,17 +29,22 @@ class GradientFilm {
     /// The sum of a pixel's samples for one of R, G and B, and their number: of a difference to the pixel below, that
     /// of both pixels.
     double sum(Layer layer, std::uint32_t color, std::size_t pixel) const;
-    double count(Layer layer, std::size_t pixel) const {
-        return double(frames_ + (pixel + (layer == dy ? width_ : 0) < more_ ? 1 : 0));
+    double count(Layer layer, std::size_t pixel) const { return double(frames_) + (has_more(layer, pixel) ? 1 : 0); }
+    /// What these samples weigh together (SharedWeights); a mean is the sum over this.
+    double weight(Layer layer, std::size_t pixel) const {
+        return has_more(layer, pixel) ? weights_.with_one_more : weights_.of_frames;
     }
     /// The sum of their squares.
     double squares(Layer layer, std::uint32_t color, std::size_t pixel) const;
 
   private:
+    bool has_more(Layer layer, std::size_t pixel) const { return pixel + (layer == dy ? width_ : 0) < more_; }
+
     HostTable table_;
     std::size_t pixels_, width_;
     std::uint64_t frames_; ///< samples of each pixel
     std::uint64_t more_;   ///< pixels that have one more
+    Weights weights_;
 };
 
 /// The film of a render, or those of the parts of its samples: of part p modulo their number, in this order.
@@ -47,9 +56,9 @@ class GradientFilms {
         : has_halves_(halves), has_replicates_(replicates) {}
 
     /// As GradientFilm has it.
-    void add(const Buffer &film, std::uint32_t width, std::uint32_t height, Precision precision,
-             std::uint64_t samples) {
-        films_.push_back(std::make_shared<const GradientFilm>(film, width, height, precision, samples));
+    void add(const Buffer &film, std::uint32_t width, std::uint32_t height, Precision precision, std::uint64_t samples,
+             const GradientFilm::Weights &weights) {
+        films_.push_back(std::make_shared<const GradientFilm>(film, width, height, precision, samples, weights));
     }
 
     bool are_halves() const { return has_halves_; }

@@ -32,6 +32,10 @@ STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ra
              uint first_sample_low, uint first_sample_high, uint pixels, uint pixels_multiplier, uint pixels_shift,
              uint width_multiplier, uint width_shift, uint crop_x, uint crop_y, uint crop_width, uint film_width,
              uint seed_low, uint seed_high
+#if TRAIT_SHARED_JITTER
+             ,
+             uint shared_start
+#endif
 #if TRAIT_AOV
              ,
              __global real *feature
@@ -75,7 +79,7 @@ STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ra
     /* All pixels of a sample share their place within the pixel. Places follow each other in a sequence that fills the
      * pixel evenly: what all pixels share does not average out over the image. */
     const sample_place shared = shared_number_at(place);
-    const random_bits start = random_key(seed_low, seed_high, 0xFFFFFFFFu, 0u, shared.high);
+    const random_bits start = random_key(seed_low, seed_high, 0xFFFFFFFFu, shared_start, shared.high);
     const point2 jitter = additive_sequence(start.x, start.y, shared.low);
     random4 u;
     u.a = jitter.x;

@@ -4,6 +4,7 @@
 #include "runtime/film/replicates.h"
 #include "runtime/wavefront/host_table.h"
 #include "runtime/wavefront/sample_parts.h"
+#include "runtime/wavefront/shared_weights.h"
 
 #include <fmt/format.h>
 
@@ -29,10 +30,17 @@ std::string film_name(std::uint32_t part) { return part == 0 ? "film" : fmt::for
 /// The sums of all parts, on the host, and how many samples they are of.
 class FilmSums {
   public:
-    FilmSums(const Tables &tables, std::uint32_t parts, std::size_t pixels, std::uint64_t samples)
+    FilmSums(const Tables &tables, std::uint32_t parts, std::size_t pixels, std::uint64_t samples,
+             const SharedWeights &weights)
         : pixels_(pixels), samples_(samples) {
-        for (std::uint32_t part = 0; part < parts; ++part)
+        const std::uint64_t frames = samples / pixels;
+        for (std::uint32_t part = 0; part < parts; ++part) {
             films_.emplace_back(tables[film_name(part)], pixels, tables.precision());
+            for (const std::uint64_t more : {0, 1}) {
+                const auto count = double(count_of_part(frames + more, part, parts));
+                weights_[more].push_back(count > 0 ? weights.of_part(frames + more, part, parts) / count : 1);
+            }
+        }
     }
 
     std::uint32_t rejected(std::size_t pixel) const {
@@ -41,7 +49,7 @@ class FilmSums {
             rejected += film.uint(film_rejected, pixel);
         return rejected;
     }
-    /// What parts have of a pixel, for one of R, G and B: `step` apart, from `first` on.
+    /// What parts have of a pixel, for one of R, G and B: `step` apart, from `first` on. Counts are what samples weigh.
     Replicate sum(int color, std::size_t pixel, std::uint32_t first = 0, std::uint32_t step = 1) const {
         Replicate all;
         for (std::uint32_t part = first; part < films_.size(); part += step) {
@@ -61,12 +69,14 @@ class FilmSums {
   private:
     Replicate part_of(int color, std::size_t pixel, std::uint32_t part) const {
         const HostTable &film = films_[part];
-        const std::uint64_t all = samples_ / pixels_ + (pixel < samples_ % pixels_ ? 1 : 0);
+        const bool has_more = pixel < samples_ % pixels_;
         const auto parts = static_cast<std::uint32_t>(films_.size());
+        const std::uint64_t count = count_of_part(samples_ / pixels_ + (has_more ? 1 : 0), part, parts);
         return {film_sum(film, color, pixel),
-                double(count_of_part(all, part, parts)) - film.uint(film_rejected, pixel)};
+                weights_[has_more ? 1 : 0][part] * (double(count) - film.uint(film_rejected, pixel))};
     }
     std::deque<HostTable> films_;
+    std::array<std::vector<double>, 2> weights_; ///< of a sample of each part, and with a frame more
     std::size_t pixels_;
     std::uint64_t samples_;
 };
@@ -128,7 +138,7 @@ void Film::add(std::uint32_t count, std::uint32_t first_pixel, std::uint64_t fir
 
 Image Film::image(std::uint64_t samples, std::uint64_t &non_finite, std::uint64_t light_paths) const {
     const std::size_t count = session_.pixels();
-    const FilmSums films(*tables_, parts_, count, samples);
+    const FilmSums films(*tables_, parts_, count, samples, SharedWeights(session_));
     std::optional<HostTable> splats;
     if (light_paths > 0 && tables_->has("splat_film"))
         splats.emplace((*tables_)["splat_film"], count, tables_->precision());
@@ -181,7 +191,7 @@ Image Film::image(std::uint64_t samples, std::uint64_t &non_finite, std::uint64_
 
 void Film::half_mean(int half, std::uint64_t samples, int color, float *plane) const {
     const std::size_t count = session_.pixels();
-    const FilmSums films(*tables_, parts_, count, samples);
+    const FilmSums films(*tables_, parts_, count, samples, SharedWeights(session_));
     for (std::size_t pixel = 0; pixel < count; ++pixel)
         plane[pixel] = static_cast<float>(mean_of(films.sum(color, pixel, static_cast<std::uint32_t>(half), 2)));
 }

@@ -8,6 +8,7 @@
 #include "runtime/scene/vertex_table.h"
 #include "runtime/wavefront/invariant_division.h"
 #include "runtime/wavefront/sample_parts.h"
+#include "runtime/wavefront/shared_weights.h"
 
 #include <fmt/format.h>
 
@@ -236,6 +237,7 @@ Session::Session(Device &session_device, const Scene &s, const SessionOptions &s
         numbers["environment_rows"] = scene.environment->rows;
         numbers["environment_strip_count"] = static_cast<std::uint32_t>(scene.environment->strips.size() / 2);
     }
+    numbers["shared_start"] = SharedWeights(*this).chosen_start();
     set_divisor(*this, "pixels", "pixels", pixels());
     set_divisor(*this, "width", "crop_width", film.crop_width);
     if (traits["TRAIT_LIGHT_TREE"]) {

@@ -2,6 +2,8 @@
 #include "tests/methods/gradient_bias.h"
 #include "tests/methods/reference_scene.h"
 #include "tests/support/gradient_layers.h"
+#include "tests/support/render.h"
+#include "tests/support/small_scenes.h"
 #include "tests/support/stability.h"
 #include "tests/support/test_name.h"
 
@@ -59,6 +61,31 @@ TEST(GradientMean, OfAFilterWithNegativeLobesAndALens) {
     EXPECT_TRUE(bias.primal.is_none()) << bias.primal.squared << ", standard error " << bias.primal.standard_error;
     EXPECT_TRUE(bias.differences.is_none())
         << bias.differences.squared << ", standard error " << bias.differences.standard_error;
+}
+
+/// Weights that all pixels share are a factor of the whole image. Of few samples the brightness of a plain wall was
+/// anything between half and twice what it is, in single renders, where the mean of many was right.
+TEST(GradientBrightness, OfOneRenderIsRightWithNegativeLobes) {
+    SceneMaker maker(24, 1);
+    maker.parallelogram({-20, -20, 1}, {0, 40, 0}, {40, 0, 0}, maker.material(two_sided(diffuse(0.5))));
+    maker.environment(1);
+    maker.look({0, 0, -3}, {0, 0, 1}, 40);
+    maker.scene.settings.max_depth = 2;
+    const double expected = spread_of(render(maker.scene, {}, "gpt").image).mean; // about 0.5, by the box filter
+    for (const auto &[filter, radius] :
+         {std::pair{FilmSettings::Filter::lanczos, 3.0f}, std::pair{FilmSettings::Filter::mitchell, 2.0f}})
+        for (const std::uint64_t samples : {1, 4, 6, 16})
+            for (const bool aov : {false, true})
+                for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+                    maker.scene.film.filter = filter;
+                    maker.scene.film.filter_radius = radius;
+                    maker.scene.settings.samples_per_pixel = samples;
+                    RenderOptions options;
+                    options.seed = seed;
+                    options.aov = aov; // whose samples are four sequences
+                    EXPECT_NEAR(spread_of(render(maker.scene, options, "gpt").image).mean, expected, 0.03 * expected)
+                        << int(filter) << ", " << samples << " samples, seed " << seed;
+                }
 }
 
 /// Blocks of 32 x 32 pixels: L1 prefers medians, and noise is skewed. The mean correction makes up for it

@@ -1,0 +1,74 @@
+#include "runtime/wavefront/shared_weights.h"
+
+#include "kernels/lib/additive_sequence.h"
+#include "kernels/lib/filter_table.h"
+#include "kernels/lib/random.h"
+#include "runtime/wavefront/sample_parts.h"
+
+#include <algorithm>
+
+namespace gradus {
+
+using namespace lib_float;
+
+namespace {
+
+constexpr double least_share = 0.4;
+
+} // namespace
+
+SharedWeights::SharedWeights(const Session &session)
+    : session_(session), are_there_(session.has("TRAIT_SHARED_JITTER") && session.has("TRAIT_FILTER_SIGNED")) {}
+
+/// As kernels/stages/camera.cl draws it.
+double SharedWeights::weight(std::uint64_t frame, std::uint32_t start_number) const {
+    // Where parts are more than two, each has a sequence of its own (kernels/lib/sample_number.h).
+    const int bits = session_.traits.at("TRAIT_PART_BITS");
+    const std::uint64_t number = bits > 1 ? frame >> bits | frame << (64 - bits) : frame;
+    const std::uint64_t seed = session_.options.seed;
+    const random_bits start = random_key(std::uint32_t(seed), std::uint32_t(seed >> 32), 0xFFFFFFFFu, start_number,
+                                         std::uint32_t(number >> 32));
+    const point2 jitter = additive_sequence(start.x, start.y, std::uint32_t(number));
+    const float *camera = session_.scene.camera.data();
+    return double(filter_table_sample(camera, 1, jitter.x).weight) * filter_table_sample(camera, 1, jitter.y).weight;
+}
+
+double SharedWeights::of_part(std::uint64_t frames, std::uint32_t part, std::uint32_t parts) const {
+    const auto count = double(count_of_part(frames, part, parts));
+    if (!are_there_)
+        return count;
+    while (weights_.size() < frames)
+        weights_.push_back(weight(weights_.size(), session_.numbers.at("shared_start")));
+    double sum = 0;
+    for (std::uint64_t frame = part; frame < frames; frame += parts)
+        sum += weights_[frame];
+    return std::max(sum, least_share * count);
+}
+
+std::uint32_t SharedWeights::chosen_start() const {
+    constexpr std::uint32_t starts = 256, few = 32;
+    constexpr double enough = 0.7;
+    if (!are_there_)
+        return 0;
+    const std::uint32_t parts = 1u << session_.traits.at("TRAIT_PART_BITS");
+    std::uint32_t best = 0;
+    double best_least = -1e30;
+    for (std::uint32_t start = 0; start < starts && best_least < enough; ++start) {
+        // The least mean weight of the first frames, of each part and of all.
+        std::vector<double> sums(parts + 1, 0.0);
+        double least = 1e30;
+        for (std::uint32_t frame = 0; frame < few; ++frame) {
+            const double weighs = weight(frame, start);
+            const std::uint32_t part = frame % parts;
+            least = std::min(least, (sums[part] += weighs) / (frame / parts + 1));
+            least = std::min(least, (sums[parts] += weighs) / (frame + 1));
+        }
+        if (least > best_least) {
+            best_least = least;
+            best = start;
+        }
+    }
+    return best;
+}
+
+} // namespace gradus

@@ -1,0 +1,37 @@
+// Of a filter with negative lobes, what the samples of a frame weigh where all pixels share their place within the
+// pixel. They share the weight then, so that its mean over the frames, which tends to 1, is a factor of the whole
+// image: after 16 frames of Lanczos's filter off by a third. So sums go over the weights' sum and not over the number
+// of frames, as those of a film that adds samples to the pixels around do.
+#pragma once
+
+#include "runtime/wavefront/session.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace gradus {
+
+class SharedWeights {
+  public:
+    /// Reads the scene's tables, which must live as long.
+    explicit SharedWeights(const Session &session);
+
+    /// Whether frames weigh other than 1.
+    bool are_there() const { return are_there_; }
+    /// What the frames of a part weigh among the first `frames` ones, at least least_share of their number: few frames
+    /// may have weights that cancel out, which tells no brightness. Their number where they weigh 1.
+    double of_part(std::uint64_t frames, std::uint32_t part, std::uint32_t parts) const;
+
+    /// Where the sequence of places is to start, of many starts: the number `shared_start` of kernels. 0 where frames
+    /// weigh 1; else one with which few frames, and few of each part, do not cancel out. It depends on the seed alone.
+    std::uint32_t chosen_start() const;
+
+  private:
+    double weight(std::uint64_t frame, std::uint32_t start) const;
+
+    const Session &session_;
+    bool are_there_;
+    mutable std::vector<double> weights_; ///< of the first frames, as far as they have been asked for
+};
+
+} // namespace gradus
