@@ -475,7 +475,8 @@ GRADUS_COLUMN_ENUM(splat, GRADUS_SPLAT_COLUMNS) /* its rows are its writer's */
 #define ray_escaped 0xFFFFFFFFu /* traced, and nothing was hit */
 #define ray_pending 0xFFFFFFFEu /* to be traced */
 #define ray_none 0xFFFFFFFDu    /* the path has ended */
-#define ray_first_special ray_none
+#define ray_unhindered 0xFFFFFFFCu /* to be traced from the camera, past surfaces that emit: TRAIT_HIDE_EMITTERS */
+#define ray_first_special ray_unhindered
 
 /* The bin of a path that has ended: it is dropped. */
 #define bin_none 0xFFFFFFFFu

@@ -8,6 +8,7 @@
  * their offset paths, which are those of the neighbours (gradient_neighbour in kernels/lib/gradient.h) with the pixel's
  * own random numbers. */
 //! traits: TRAIT_FILTER_TENT TRAIT_FILTER_GAUSSIAN TRAIT_FILTER_SIGNED TRAIT_AOV TRAIT_SHARED_JITTER
+//! traits: TRAIT_HIDE_EMITTERS
 #include "kernels/lib/additive_sequence.h"
 #include "kernels/lib/begin_path.h"
 #include "kernels/lib/camera_ray.h"
@@ -121,7 +122,7 @@ STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ra
     const camera_sight sight = camera_sight_through(camera, unit, film_x, film_y, u.c, u.d);
     SET_V3(ray, origin, row, sight.origin);
     SET_V3(ray, direction, row, sight.direction);
-    AT_UINT(ray, primitive, row) = exists ? ray_pending : ray_none;
+    AT_UINT(ray, primitive, row) = exists ? (TRAIT_HIDE_EMITTERS ? ray_unhindered : ray_pending) : ray_none;
 
     BEGIN_PATH(row, slot, key.x, key.y)
     SET_RGB(radiance, value, slot, rgb_gray(R(0)));

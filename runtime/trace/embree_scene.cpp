@@ -26,6 +26,7 @@ constexpr std::size_t most_spheres_by_packet = 256;
 /// Embree's filter of hits with what rays may pass.
 void drop_passed(const RTCFilterFunctionNArguments *hits) {
     const auto &opacity = *static_cast<const Opacity *>(hits->geometryUserPtr);
+    const bool passes_emitters = reinterpret_cast<const TraceContext *>(hits->context)->passes_emitters;
     RTCRayN *rays = hits->ray;
     for (unsigned lane = 0; lane < hits->N; ++lane) {
         if (hits->valid[lane] == 0)
@@ -38,7 +39,8 @@ void drop_passed(const RTCFilterFunctionNArguments *hits) {
         const float outward = direction.x * RTCHitN_Ng_x(hits->hit, hits->N, lane) +
                               direction.y * RTCHitN_Ng_y(hits->hit, hits->N, lane) +
                               direction.z * RTCHitN_Ng_z(hits->hit, hits->N, lane);
-        if (!opacity.has_side(number, outward) || !opacity.is_met(number, origin, direction))
+        if (!opacity.has_side(number, outward) || (passes_emitters && opacity.emits(number)) ||
+            !opacity.is_met(number, origin, direction))
             hits->valid[lane] = 0;
     }
 }
@@ -50,7 +52,7 @@ void for_each_shape(const Scene &s, Shape::Kind kind, std::uint32_t first, bool 
     for (const Shape &shape : s.shapes) {
         if (shape.kind != kind)
             continue;
-        if (shape.group == no_group && is_passable(s, shape) == are_passable)
+        if (shape.group == no_group && is_asked_about(s, shape) == are_passable)
             visit(shape, first);
         first += kind == Shape::Kind::sphere ? 1u : std::uint32_t(s.meshes[shape.geometry].triangles.size());
     }
@@ -320,10 +322,11 @@ void EmbreeScene::add_instances(const Scene &s) {
 
 void EmbreeScene::add_geometry(const Scene &s, const SceneTables *tables) {
     groups_.resize(s.groups);
+    hides_emitters_ = s.settings.hide_emitters;
     bool some_are_passable_in_groups = false;
     std::size_t vertex_count = 0, triangle_count = 0;
     for (const Shape &shape : s.shapes) {
-        some_are_passable_ |= is_passable(s, shape);
+        some_are_passable_ |= is_asked_about(s, shape);
         some_are_passable_in_groups |= shape.group != no_group && is_passable(s, shape);
         if (shape.kind == Shape::Kind::mesh) {
             vertex_count += s.meshes[shape.geometry].positions.size();

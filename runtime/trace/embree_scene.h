@@ -54,6 +54,8 @@ class EmbreeScene {
     bool has_instances() const { return !group_of_.empty(); }
     /// Whether rays may pass any of them.
     bool some_are_passable() const { return some_are_passable_; }
+    /// Whether rays may ask to pass what emits.
+    bool hides_emitters() const { return hides_emitters_; }
     /// Opposite corners of a box around all.
     const std::array<float, 3> &low() const { return low_; }
     const std::array<float, 3> &high() const { return high_; }
@@ -104,7 +106,7 @@ class EmbreeScene {
     std::array<std::vector<std::uint32_t>, 2> numbers_; ///< of the opaque ones; empty: in the scene's order
     std::array<Opacity, 2> passable_;
     std::vector<TracedSphere> traced_spheres_; ///< the opaque ones, where they are few
-    bool some_are_passable_ = false;
+    bool some_are_passable_ = false, hides_emitters_ = false;
     std::vector<Group> groups_;
     std::vector<std::uint32_t> group_of_; ///< by instance
     std::vector<Instance> instances_;     ///< where groups have what rays may pass

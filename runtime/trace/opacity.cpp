@@ -31,6 +31,10 @@ bool has_passable_shapes(const Scene &scene) {
                        [&](const Shape &shape) { return is_passable(scene, shape); });
 }
 
+bool is_asked_about(const Scene &scene, const Shape &shape) {
+    return is_passable(scene, shape) || (scene.settings.hide_emitters && shape.emitter >= 0);
+}
+
 std::uint32_t Opacity::own_texture(const Scene &scene, std::int32_t texture) {
     const auto [known, is_new] = known_.emplace(texture, std::uint32_t(textures_.size()));
     if (is_new)
@@ -41,10 +45,11 @@ std::uint32_t Opacity::own_texture(const Scene &scene, std::int32_t texture) {
 void Opacity::add(const Scene &scene, const Shape &shape, std::size_t triangle, std::uint32_t primitive) {
     const Number &opacity = scene.materials[shape.material].opacity;
     const bool is_sphere = shape.kind == Shape::Kind::sphere;
-    primitives_.push_back({primitive, opacity.value, -1, Sphere::Side::both, is_sphere});
+    const bool emits = shape.emitter >= 0;
+    primitives_.push_back({primitive, emits ? 1 : opacity.value, -1, Sphere::Side::both, is_sphere, emits});
     if (is_sphere)
         primitives_.back().side = scene.spheres[shape.geometry].side;
-    if (opacity.texture == no_texture)
+    if (opacity.texture == no_texture || emits)
         return;
     const std::uint32_t texture = own_texture(scene, opacity.texture);
     if (is_sphere) {

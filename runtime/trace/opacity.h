@@ -16,6 +16,8 @@ namespace gradus {
 bool is_passable(const Scene &scene, const Shape &shape);
 
 bool has_passable_shapes(const Scene &scene);
+/// The same, or it emits and rays of the camera pass it.
+bool is_asked_about(const Scene &scene, const Shape &shape);
 
 /// Decides whether rays meet the surfaces that are passable. A ray meets one with the probability of its opacity there
 /// and passes it else, as if nothing were there: light samples and sampled directions find a light behind it alike, and
@@ -27,6 +29,7 @@ class Opacity {
     /// that holds them.
     void add(const Scene &scene, const Shape &shape, std::size_t triangle, std::uint32_t primitive);
     bool empty() const { return primitives_.empty(); }
+    bool emits(std::size_t i) const { return primitives_[i].emits; }
     /// In the scene's numbering.
     std::uint32_t primitive(std::size_t i) const { return primitives_[i].number; }
     /// Whether a hit is on a side of the i-th primitive that is of it: all but a sphere's have both. `outward`: the
@@ -64,7 +67,7 @@ class Opacity {
         float opacity;
         std::int64_t textured; ///< index into triangles_, or of a sphere into spheres_; -1: one opacity all over
         Sphere::Side side;
-        bool is_sphere;
+        bool is_sphere, emits;
     };
     float opacity_of(const TexturedTriangle &triangle, const Vector3 &origin, const Vector3 &direction) const;
     float opacity_of(const TexturedSphere &sphere, const Vector3 &origin, const Vector3 &direction) const;

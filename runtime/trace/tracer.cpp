@@ -69,7 +69,13 @@ struct Tracer::Implementation {
     std::vector<std::vector<RecordedRays>> recorded; // by call, then by task, in the order of the rows
 
     std::uint64_t trace_extension(const RayColumns &ray, const RowLines &chunk_rows, bool of_camera,
-                                  RecordedRays *record);
+                                  RecordedRays *record) {
+        return trace_asked(ray, ray_pending, chunk_rows, of_camera, record) +
+               (scene.hides_emitters() ? trace_asked(ray, ray_unhindered, chunk_rows, of_camera, record) : 0);
+    }
+    /// Those of the rows that ask for it so.
+    std::uint64_t trace_asked(const RayColumns &ray, std::uint32_t asked, const RowLines &chunk_rows, bool of_camera,
+                              RecordedRays *record);
     std::uint64_t trace_shadow(const ShadowColumns &shadow, const RowLines &chunk_rows, RecordedRays *record);
     /// Runs task(0) to task(count - 1) on the threads that trace.
     template <class Task>
@@ -106,13 +112,14 @@ void Tracer::set_order(RayOrder extension, RayOrder shadow) {
 
 std::size_t Tracer::memory_bytes() const { return implementation_->scene.memory_bytes(); }
 
-std::uint64_t Tracer::Implementation::trace_extension(const RayColumns &ray, const RowLines &chunk_rows, bool of_camera,
-                                                      RecordedRays *record) {
+std::uint64_t Tracer::Implementation::trace_asked(const RayColumns &ray, std::uint32_t asked,
+                                                  const RowLines &chunk_rows, bool of_camera, RecordedRays *record) {
     RayOrdering &ordering = orderings.local();
     const std::vector<std::uint32_t> &rows =
-        ordering.sort(ray, ray.primitive, ray_pending, chunk_rows, of_camera ? RayOrder::octant : extension_order);
+        ordering.sort(ray, ray.primitive, asked, chunk_rows, of_camera ? RayOrder::octant : extension_order);
     const bool as_beams = of_camera || beams(extension_order);
     TraceContext context(as_beams, ray);
+    context.passes_emitters = asked == ray_unhindered;
     if (record)
         record->of_camera = of_camera;
     alignas(64) RTCRayHit16 packet;

@@ -14,7 +14,8 @@ namespace gradus {
 
 /// The host's view of the columns of a ray table: see GRADUS_RAY_COLUMNS.
 struct RayColumns : SegmentColumns {
-    std::uint32_t *primitive = nullptr; ///< in: ray_pending or ray_none; out: what was hit, or ray_escaped
+    /// In: ray_pending, ray_unhindered or ray_none; out: what was hit, or ray_escaped.
+    std::uint32_t *primitive = nullptr;
     /// Out, of what was hit: the record of its instance (SceneTables::no_instance); null where there are none.
     std::uint32_t *instance = nullptr;
     /// Out, where asked for: the opacity of what was hit, there, in ray_opacity_one. A surface of opacity 0.5 is hit by

@@ -5,7 +5,8 @@ namespace gradus {
 
 Declaration declare_integrator_direct() {
     return {"emitters and their first reflection, which are paths of two edges at most",
-            joined({{{"hide_emitters", Takes::boolean, "false", "the camera sees no emitters"}},
+            joined({{{"hide_emitters", Takes::boolean, "false",
+                      "the camera sees no emitters: its rays pass surfaces that emit"}},
                     meaningless({"strict_normals", "shading_samples", "emitter_samples", "bsdf_samples"})})};
 }
 

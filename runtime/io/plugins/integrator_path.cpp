@@ -12,7 +12,8 @@ Declaration declare_integrator_path() {
                          .in("edges")
                          .at_least(1)
                          .at_most(1000000),
-                     {"hide_emitters", Takes::boolean, "false", "the camera sees no emitters"}},
+                     {"hide_emitters", Takes::boolean, "false",
+                      "the camera sees no emitters: its rays pass surfaces that emit"}},
                     meaningless({"strict_normals"})})};
 }
 
