@@ -59,64 +59,6 @@ TEST_P(ThroughAScreen, LightIsWhatItsHolesLetThrough) {
 
 INSTANTIATE_TEST_SUITE_P(Methods, ThroughAScreen, ::testing::Values("pt", "gpt", "sppm"));
 
-/// A floor under a lamp, whose light is found by photons alone.
-Image floor_of(const Scene &parts, const Material &material, const char *method) {
-    SceneMaker maker(16, 16);
-    maker.scene.textures = parts.textures;
-    maker.scene.blended = parts.blended;
-    maker.scene.blends = parts.blends;
-    maker.floor(-4, 4, 4, maker.material(material));
-    maker.lamp({0, 3, 0}, 4, 4, 1, maker.material(diffuse(0)));
-    maker.look({0, 1, -1}, {0, 0, 0}, 40);
-    maker.scene.settings.max_depth = 2;
-    RenderOptions options;
-    options.direct_photons = true;
-    options.photons = 50'000;
-    options.radius = RenderOptions::GatherRadius{0.03, true}; // the floor is lit evenly
-    options.reconstruction = Reconstruction::l2;
-    return render(maker.scene, options, method).image;
-}
-
-class PhotonsOn : public ::testing::TestWithParam<const char *> {};
-
-// A mask of opacity 0.25 is met by a quarter of the photons and of the camera paths: 0.25 of the light, and not a
-// sixteenth.
-TEST_P(PhotonsOn, AMaskAreThoseThatArrive) {
-    const Image whole = floor_of({}, material_of(diffuse(0.5)), GetParam());
-    Material mask = material_of(diffuse(0.5));
-    mask.opacity = 0.25f;
-    Scene painted;
-    painted.textures.resize(1);
-    painted.textures[0].kind = Texture::Kind::checkerboard;
-    painted.textures[0].color_0 = {0.2f, 0.2f, 0.2f};
-    painted.textures[0].color_1 = {0.3f, 0.3f, 0.3f};
-    painted.textures[0].to_uv = {40, 0, 0, 0, 40, 0};
-    Material textured = mask;
-    textured.opacity.texture = 0;
-    const double light = spread_of(whole).mean;
-    for (const auto &[scene, material] : {std::pair{Scene(), mask}, std::pair{painted, textured}}) {
-        const Spread masked = spread_of(floor_of(scene, material, GetParam()));
-        fmt::print("{}: {:.4f} of the light\n", GetParam(), masked.mean / light);
-        EXPECT_NEAR(masked.mean / light, 0.25, 0.008);
-    }
-}
-
-INSTANTIATE_TEST_SUITE_P(Methods, PhotonsOn, ::testing::Values("sppm", "gpm"));
-
-// The same of a blend, half of which is a mirror that reflects nothing.
-TEST(PhotonsOnABlend, AreThereForThePartThatGathers) {
-    Scene parts;
-    Bsdf black = mirror(), blend;
-    black.specular_reflectance = {0, 0, 0};
-    parts.blended = {diffuse(0.5), black};
-    parts.blends = {{0, 1, 0.5f}};
-    blend.blend = 0;
-    const double light = spread_of(floor_of({}, material_of(diffuse(0.5)), "sppm")).mean;
-    const double half = spread_of(floor_of(parts, material_of(blend), "sppm")).mean / light;
-    fmt::print("{:.4f} of the light\n", half);
-    EXPECT_NEAR(half, 0.5, 0.02);
-}
-
 /// A black ball of opacity 0.5 before light from everywhere, met on both of its sides as the loader has it: a quarter
 /// of the light comes through.
 TEST(HalfOpenBall, IsPassedOnEachSideByItself) {

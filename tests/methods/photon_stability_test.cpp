@@ -7,7 +7,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace gradus::testing {
 namespace {
@@ -56,6 +59,64 @@ TEST(PhotonStability, OnMetalJustRoughEnough) {
              "the BSDF of each photon is evaluated; noisy, but as bright as path tracing has it", bias_at_most,
              largest_bias(means_of(scene, options), means_of(traced, {}, "pt")), 0.05});
     }
+}
+
+/// A floor under a lamp, whose light is found by photons alone: the mean of its image.
+double light_of_floor(const Scene &parts, const Material &material, const char *method) {
+    SceneMaker maker(16, 16);
+    maker.scene.textures = parts.textures;
+    maker.scene.blended = parts.blended;
+    maker.scene.blends = parts.blends;
+    maker.floor(-4, 4, 4, maker.material(material));
+    maker.lamp({0, 3, 0}, 4, 4, 1, maker.material(diffuse(0)));
+    maker.look({0, 1, -1}, {0, 0, 0}, 40);
+    maker.scene.settings.max_depth = 2;
+    RenderOptions options = with_radius(0.03, true); // the floor is lit evenly
+    options.direct_photons = true;
+    options.photons = 50'000;
+    options.reconstruction = Reconstruction::l2;
+    return spread_of(render(maker.scene, options, method).image).mean;
+}
+
+// A mask of opacity 0.25 is met by a quarter of the photons and of the camera paths: 0.25 of the light, and not a
+// sixteenth.
+TEST(PhotonStability, OnMasks) {
+    Material mask = material_of(diffuse(0.5));
+    mask.opacity = 0.25f;
+    Scene painted;
+    painted.textures.resize(1);
+    painted.textures[0].kind = Texture::Kind::checkerboard;
+    painted.textures[0].color_0 = {0.2f, 0.2f, 0.2f};
+    painted.textures[0].color_1 = {0.3f, 0.3f, 0.3f};
+    painted.textures[0].to_uv = {40, 0, 0, 0, 40, 0};
+    Material textured = mask;
+    textured.opacity.texture = 0;
+    double off = 0;
+    for (const char *method : {"sppm", "gpm"}) {
+        const double light = light_of_floor({}, material_of(diffuse(0.5)), method);
+        for (const auto &[scene, material] : {std::pair{Scene(), mask}, std::pair{painted, textured}})
+            off = std::max(off, std::fabs(light_of_floor(scene, material, method) / light / 0.25 - 1));
+    }
+    record_stability({area, "what is met by chance: photons and camera paths each meet a mask with its opacity",
+                      "a floor of opacity 0.25, as a number and as a texture, sppm and gpm",
+                      "photons at a gather point count one over its opacity", "relative error of the light", off,
+                      0.04});
+}
+
+// The same of a blend, half of which is a mirror that reflects nothing.
+TEST(PhotonStability, OnBlends) {
+    Scene parts;
+    Bsdf black = mirror(), blend;
+    black.specular_reflectance = {0, 0, 0};
+    parts.blended = {diffuse(0.5), black};
+    parts.blends = {{0, 1, 0.5f}};
+    blend.blend = 0;
+    const double light = light_of_floor({}, material_of(diffuse(0.5)), "sppm");
+    record_stability({area, "what is met by chance: light and camera paths each draw a part of a blend",
+                      "a floor of half a mirror and half a diffuse part, sppm",
+                      "photons are kept wherever a part gathers, whichever part the light path draws",
+                      "relative error of the light",
+                      std::fabs(light_of_floor(parts, material_of(blend), "sppm") / light / 0.5 - 1), 0.04});
 }
 
 // The radius goes by the pass and not by the photons that a pixel has seen, so there is nothing that few of them bias.
