@@ -8,6 +8,9 @@ install(TARGETS gradus-compile RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/g
 install(TARGETS gradus-pictures LIBRARY DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/gradus)
 install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# Pages that these lead to.
+install(FILES bench/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/bench)
+install(FILES tests/references/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/tests/references)
 
 # find_package(gradus), gradus::solver. Only what the solver needs is exported: an export that a library of the renderer
 # got into would fail here, for it would name targets that are not in the set.

@@ -1,5 +1,6 @@
 #include "driver/interrupt.h"
 
+#include <array>
 #include <csignal>
 #include <cstddef>
 
@@ -8,6 +9,21 @@ namespace {
 
 constexpr int watched[] = {SIGINT, SIGTERM, SIGHUP};
 constexpr std::size_t watched_count = sizeof watched / sizeof watched[0];
+
+/// As the process was started with it. Libraries that compile put handlers of their own in the place of SIG_IGN.
+bool was_ignored(std::size_t i) {
+    static const std::array<bool, watched_count> ignored = [] {
+        std::array<bool, watched_count> at_start{};
+        for (std::size_t signal = 0; signal < watched_count; ++signal) {
+            struct sigaction action = {};
+            sigaction(watched[signal], nullptr, &action);
+            at_start[signal] = action.sa_handler == SIG_IGN;
+        }
+        return at_start;
+    }();
+    return ignored[i];
+}
+[[maybe_unused]] const bool asked_before_main = was_ignored(0);
 
 volatile std::sig_atomic_t interrupted = 0;
 struct sigaction before[watched_count];
@@ -18,11 +34,19 @@ void on_signal(int) {
     struct sigaction standard = {};
     standard.sa_handler = SIG_DFL;
     for (std::size_t i = 0; i < watched_count; ++i)
-        if (before[i].sa_handler != SIG_IGN)
+        if (!was_ignored(i))
             sigaction(watched[i], &standard, nullptr);
 }
 
 } // namespace
+
+void ignore_what_was_ignored() {
+    struct sigaction ignore = {};
+    ignore.sa_handler = SIG_IGN;
+    for (std::size_t i = 0; i < watched_count; ++i)
+        if (was_ignored(i))
+            sigaction(watched[i], &ignore, nullptr);
+}
 
 InterruptWatch::InterruptWatch() {
     interrupted = 0;
@@ -30,10 +54,11 @@ InterruptWatch::InterruptWatch() {
     action.sa_handler = on_signal;
     // Calls of the file system, of Embree and of OpenCL shall not see EINTR.
     action.sa_flags = SA_RESTART;
+    ignore_what_was_ignored();
     for (std::size_t i = 0; i < watched_count; ++i)
         sigaction(watched[i], nullptr, &before[i]);
     for (std::size_t i = 0; i < watched_count; ++i)
-        if (before[i].sa_handler != SIG_IGN)
+        if (!was_ignored(i))
             sigaction(watched[i], &action, nullptr);
 }
 

@@ -3,6 +3,10 @@
 
 namespace gradus {
 
+/// Gives SIGINT, SIGTERM and SIGHUP back to nobody where the process was started to ignore them: the compiler within an
+/// OpenCL implementation takes them for itself when it is loaded.
+void ignore_what_was_ignored();
+
 /// While an object of it lives, the first SIGINT, SIGTERM or SIGHUP only sets a flag; the second ends the process at
 /// once, as it would without the object. Signals that the process was started to ignore stay ignored (nohup, a shell's
 /// background jobs). One object at a time.

@@ -1,3 +1,4 @@
+#include "driver/interrupt.h"
 #include "driver/program.h"
 #include "driver/solve_job.h"
 #include "driver/standard_streams.h"
@@ -18,6 +19,7 @@ int main(int argc, char **argv) {
         const auto device = gradus::in_phase(options.phases, gradus::phase_names::device, [&] {
             return std::make_shared<gradus::Device>(selector, options.threads);
         });
+        gradus::ignore_what_was_ignored();
         gradus::RenderOptions tuned = options;
         std::string problem;
         gradus::apply_tuning(gradus::stored_tuning(device->description(), &problem), tuned);
@@ -29,11 +31,13 @@ int main(int argc, char **argv) {
     services.tune = [](const std::string &selector, int threads, const gradus::Scene &scene,
                        const gradus::TuningOptions &options) {
         gradus::Device device(selector, threads);
+        gradus::ignore_what_was_ignored();
         return gradus::TunedDevice{device.description(), gradus::tune(device, "pt", scene, options)};
     };
     services.prepare_solver = [](const std::string &selector, int threads, std::uint32_t width, std::uint32_t height,
                                  std::uint32_t channels) {
         const auto device = std::make_shared<gradus::Device>(selector, threads);
+        gradus::ignore_what_was_ignored();
         gradus::check_images_fit(device->description(), width, height, channels);
         const auto solver = std::make_shared<gradus::PoissonSolver>(*device, width, height, channels);
         gradus::PreparedSolver prepared;

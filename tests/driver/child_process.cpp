@@ -29,7 +29,7 @@ fs::path printed_folder(const fs::path &folder) { return folder.string() + "-pri
 } // namespace
 
 ChildProcess::ChildProcess(const std::vector<std::string> &arguments, const fs::path &folder,
-                           std::size_t file_size_limit, std::size_t address_limit) {
+                           std::size_t file_size_limit, std::size_t address_limit, int ignored) {
     static int count = 0;
     out_ = printed_folder(folder) / ("out" + std::to_string(count));
     err_ = printed_folder(folder) / ("err" + std::to_string(count++));
@@ -44,7 +44,7 @@ ChildProcess::ChildProcess(const std::vector<std::string> &arguments, const fs::
         return;
     // The test may itself run where these are ignored.
     for (const int number : {SIGINT, SIGTERM, SIGHUP})
-        std::signal(number, SIG_DFL);
+        std::signal(number, number == ignored ? SIG_IGN : SIG_DFL);
     const int out = ::open(out_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     const int err = ::open(err_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     ::dup2(out, 1);

@@ -21,9 +21,9 @@ struct Outcome {
 class ChildProcess {
   public:
     /// Starts GRADUS_PROGRAM with the arguments in the folder; limits of its files and of its address space in bytes,
-    /// 0: none.
+    /// 0: none. `ignored`: a signal that it is started to ignore, as by nohup; 0: none.
     ChildProcess(const std::vector<std::string> &arguments, const std::filesystem::path &folder,
-                 std::size_t file_size_limit = 0, std::size_t address_limit = 0);
+                 std::size_t file_size_limit = 0, std::size_t address_limit = 0, int ignored = 0);
     ~ChildProcess();
     ChildProcess(const ChildProcess &) = delete;
     ChildProcess &operator=(const ChildProcess &) = delete;

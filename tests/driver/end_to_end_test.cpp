@@ -85,6 +85,18 @@ std::vector<std::string> names_of(const Image &image) {
     return names;
 }
 
+/// Compilers within OpenCL implementations take signals for themselves.
+TEST_F(EndToEnd, ASignalThatWasIgnoredAtTheStartStaysIgnored) {
+    ChildProcess process(
+        render("out.exr", {"--method", "pt", "--spp", "1000000", "--time", "3", "--write-partial", "0.2"}), folder, 0,
+        0, SIGHUP);
+    ASSERT_TRUE(wait_for_file("out.exr"));
+    process.send(SIGHUP);
+    const Outcome outcome = process.wait();
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(read_image(at("out.exr")).metadata.at("partial"), "false");
+}
+
 /// Of methods that reconstruct their images.
 class EndToEndLayers : public EndToEnd, public ::testing::WithParamInterface<const char *> {
   protected:
