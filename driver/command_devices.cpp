@@ -16,7 +16,8 @@ constexpr const char *advice =
     "No OpenCL device was found. For the processor install PoCL, on Debian with\n"
     "  apt install pocl-opencl-icd\n"
     "and for a graphics card the OpenCL driver of its maker. The folder /etc/OpenCL/vendors, or the one that\n"
-    "OCL_ICD_VENDORS names, must hold an .icd file for each.\n";
+    "OCL_ICD_VENDORS names, must hold an .icd file for each. PoCL needs a folder that it may write to: where neither\n"
+    "the home folder nor /tmp is one, POCL_CACHE_DIR names another.\n";
 
 std::string tuning_text(const DeviceDescription &device) {
     std::string problem;

@@ -84,7 +84,7 @@ void add_method_options(CLI::App &command, const Services &services, MethodReque
                   "halves of the samples, which have random numbers of their own for it. weighted and guided have such "
                   "halves, and the layer with --aov")
         ->group(group);
-    const char *reconstruction = "Reconstruction (gpt, gpm, auto)";
+    const char *reconstruction = "Reconstruction (gpt, gpm, auto; guided of pt, too)";
     add_reconstruction_option(command, reconstruction, request.options.reconstruction,
                               [&request](Reconstruction name) { request.options.reconstruction = name; });
     add_guide_option(command, reconstruction, [&request](Guide guide) { request.options.guide = guide; });

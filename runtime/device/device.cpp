@@ -53,8 +53,9 @@ std::string list_of(const std::vector<FoundDevice> &found) {
 
 std::size_t choose(const std::vector<FoundDevice> &found, const std::string &selector) {
     if (found.empty())
-        throw Error(ExitCode::device, "no OpenCL device was found; install one, for example PoCL for the CPU: "
-                                      "apt install pocl-opencl-icd");
+        throw Error(ExitCode::device,
+                    "no OpenCL device was found; install one, for example PoCL for the CPU: "
+                    "apt install pocl-opencl-icd, and POCL_CACHE_DIR, where it can write nowhere else");
     if (selector.empty()) {
         for (std::size_t i = 0; i < found.size(); ++i)
             if (is_pocl_cpu(found[i].description))
