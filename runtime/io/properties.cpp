@@ -70,7 +70,7 @@ const Element *Properties::find(const std::string &name) {
         // Any object may carry a name; only a texture stands for a parameter.
         if (!is_property_tag(child.tag) && child.tag != "texture" && child.tag != "ref")
             continue;
-        if (child.tag == "ref" && resolve_(child).tag != "texture")
+        if (child.tag == "ref" && resolve_(child).tag != "texture" && resolve_(child).tag != "spectrum")
             continue;
         if (found)
             diagnostics_.warn(child.location, "\"" + name + "\" is given twice; this one counts");
@@ -90,8 +90,9 @@ Location Properties::location_of(const std::string &name) {
 
 const std::string &Properties::value_of(const Element &property) {
     const std::string name = property.attribute_or("name", "");
-    if (!is_property_tag(property.tag) || property.tag == "transform")
-        throw SceneError(property.location, "\"" + name + "\" cannot be a <" + property.tag + ">");
+    const bool is_plugin = property.tag == "spectrum" && property.attribute("type");
+    if (!is_property_tag(property.tag) || property.tag == "transform" || is_plugin)
+        throw SceneError(property.location, "\"" + name + "\" cannot be a " + described(property));
     const std::string *value = property.attribute("value");
     if (!value)
         throw SceneError(property.location, "<" + property.tag + " name=\"" + name + "\"> has no value");

@@ -50,7 +50,8 @@ void SceneBuilder::check_children(const Element &element) {
 }
 
 void SceneBuilder::index(const Element &element, int depth) {
-    if (const std::string *id = element.attribute("id"); id && is_object_tag(element.tag)) {
+    const bool is_plugin = is_object_tag(element.tag) || (element.tag == "spectrum" && element.attribute("type"));
+    if (const std::string *id = element.attribute("id"); id && is_plugin) {
         const auto [other, is_new] = by_id_.emplace(*id, &element);
         if (!is_new)
             diagnostics_.error(element.location,
@@ -168,7 +169,7 @@ Scene SceneBuilder::build() {
     index(root, 0);
     Declaration of_scene; // some are shared, and built where they are referenced
     for (const char *tag : {"integrator", "sensor", "emitter", "shape", "bsdf", "medium", "subsurface", "volume",
-                            "phase", "film", "sampler", "rfilter", "texture", "alias"})
+                            "phase", "film", "sampler", "rfilter", "texture", "spectrum", "alias"})
         of_scene.parameters.push_back({tag, Takes::objects});
     Properties scene(root, of_scene, resolve_, diagnostics_);
     const auto each = [&](const char *tag, auto &&function) {

@@ -67,11 +67,11 @@ const std::vector<Case> cases{
      "scene.xml:3",
      {"torus", "known: cube, cylinder, disk, instance, merge, obj, ply"}},
     {"unknown_emitter", scene_around("<emitter type=\"ambient\"/>"), "scene.xml:3", {"ambient", "directional"}},
-    {"two_sided_masks_in_blend",
-     in_bsdf("<bsdf type=\"blendbsdf\"><bsdf type=\"twosided\"><bsdf type=\"mask\"><texture name=\"opacity\" "
-             "type=\"checkerboard\"/><bsdf type=\"diffuse\"/></bsdf></bsdf><bsdf type=\"diffuse\"/></bsdf>"),
+    {"masks_of_other_textures_in_blend",
+     in_bsdf("<bsdf type=\"blendbsdf\"><bsdf type=\"mask\"><texture name=\"opacity\" type=\"checkerboard\"/><bsdf "
+             "type=\"diffuse\"/></bsdf><bsdf type=\"diffuse\"/></bsdf>"),
      "scene.xml:4",
-     {"two-sided masks with different textures"}},
+     {"a blend of masks of different opacities", "numbers, not textures"}},
     {"textured_mask_in_textured_mask",
      in_bsdf("<bsdf type=\"mask\"><texture name=\"opacity\" type=\"checkerboard\"/><bsdf type=\"mask\"><texture "
              "name=\"opacity\" type=\"checkerboard\"/><bsdf type=\"diffuse\"/></bsdf></bsdf>"),

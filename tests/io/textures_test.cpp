@@ -214,6 +214,12 @@ TEST(TextureOfOneColor, IsANumber) {
     EXPECT_THAT(error_of_text(scene_around("<emitter type='point'>" + named("texture", "intensity", "'checkerboard'>") +
                                            "</emitter>")),
                 HasSubstr("cannot be a texture"));
+    expect_rgb(load_text(scene_around("<spectrum type='srgb' id='c'><rgb name='color' value='0.1 0.2 0.3'/></spectrum>"
+                                      "<emitter type='constant'/><shape type='cube'><bsdf type='diffuse'><ref "
+                                      "name='reflectance' id='c'/></bsdf></shape>"))
+                   .scene.materials.at(0)
+                   .front.reflectance,
+               0.1, 0.2, 0.3);
     // A map has a slope to look for.
     EXPECT_THAT(
         load_text(

@@ -17,38 +17,32 @@ Bsdf back_of(const Material &material) {
 }
 
 /// The opacity of a blend of masks, which leaves them as parts without holes. Rays meet either part with its share: the
-/// blend has holes, and where it has none the weight is another one. Where textures make that another one at each
-/// place, the holes are a part of the blend instead.
-Number common_opacity(Material (&parts)[2], Number &weight, SceneBuilder &builder, const Location &location) {
+/// blend has holes, and where it has none the weight is another one. Textures would make that another one at each
+/// place.
+Number common_opacity(Material (&parts)[2], Number &weight, const Location &location) {
     const Number first = parts[0].opacity, second = parts[1].opacity;
     parts[0].opacity = parts[1].opacity = 1;
     if (first == second)
         return first;
-    if (first.texture == no_texture && second.texture == no_texture && weight.texture == no_texture) {
-        const float opacity = (1 - weight) * first + weight * second;
-        weight = opacity > 0 ? Number(std::min(weight * second / opacity, 1.0f)) : weight;
-        return opacity;
-    }
-    Bsdf hole;
-    hole.kind = BsdfKind::null;
-    const Number opacities[] = {first, second};
-    for (std::size_t i = 0; i < 2; ++i) {
-        if (opacities[i] == 1.0f)
-            continue;
-        if (parts[i].two_sided)
-            throw SceneError(location, "a blend of two-sided masks with different textures is not supported");
-        parts[i].front = builder.blend(hole, parts[i].front, opacities[i], location);
-    }
-    return 1;
+    if (first.texture != no_texture || second.texture != no_texture || weight.texture != no_texture)
+        throw SceneError(location,
+                         "a blend of masks of different opacities is supported where these and its weight are "
+                         "numbers, not textures; masks of the same opacity, one texture by its id, may be "
+                         "blended by any weight");
+    const float opacity = (1 - weight) * first + weight * second;
+    weight = opacity > 0 ? Number(std::min(weight * second / opacity, 1.0f)) : weight;
+    return opacity;
 }
 
 } // namespace
 
 Declaration declare_bsdf_blendbsdf() {
-    return {"a mixture of two BSDFs, each of which may be a mixture again. With `gpm` of parts where photons are "
-            "gathered, or of parts where none are",
-            {Parameter{"weight", Takes::textured_number, "0.5", "share of the second"}.at_least(0).at_most(1),
-             {"bsdf", Takes::objects, nullptr, "the first and the second"}}};
+    return {
+        "a mixture of two BSDFs, each of which may be a mixture again. With `gpm` of parts where photons are "
+        "gathered, or of parts where none are. A part `null` is no hole of a `mask`: it counts as an edge, and light "
+        "samples do not pass it",
+        {Parameter{"weight", Takes::textured_number, "0.5", "share of the second"}.at_least(0).at_most(1),
+         {"bsdf", Takes::objects, nullptr, "the first and the second"}}};
 }
 
 Material bsdf_blendbsdf(Properties &properties, SceneBuilder &builder) {
@@ -61,7 +55,7 @@ Material bsdf_blendbsdf(Properties &properties, SceneBuilder &builder) {
         parts[i] = builder.build_object<Material>(*nested[i].element);
     Number weight = properties.textured_number("weight");
     Material material;
-    material.opacity = common_opacity(parts, weight, builder, properties.location());
+    material.opacity = common_opacity(parts, weight, properties.location());
     material.two_sided = parts[0].two_sided || parts[1].two_sided;
     if (material.two_sided)
         for (const Material &part : parts)

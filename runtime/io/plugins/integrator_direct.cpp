@@ -6,7 +6,9 @@ namespace gradus {
 Declaration declare_integrator_direct() {
     return {"emitters and their first reflection, which are paths of two edges at most",
             joined({{{"hide_emitters", Takes::boolean, "false",
-                      "the camera sees no emitters: its rays pass surfaces that emit"}},
+                      "the camera sees no emitters: its rays pass surfaces that emit, behind holes of masks too (where "
+                      "Mitsuba 3.9 "
+                      "shows them), but not behind glass, however thin"}},
                     meaningless({"strict_normals", "shading_samples", "emitter_samples", "bsdf_samples"})})};
 }
 

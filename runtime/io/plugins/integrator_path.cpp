@@ -13,7 +13,9 @@ Declaration declare_integrator_path() {
                          .at_least(1)
                          .at_most(1000000),
                      {"hide_emitters", Takes::boolean, "false",
-                      "the camera sees no emitters: its rays pass surfaces that emit"}},
+                      "the camera sees no emitters: its rays pass surfaces that emit, behind holes of masks too (where "
+                      "Mitsuba 3.9 "
+                      "shows them), but not behind glass, however thin"}},
                     meaningless({"strict_normals"})})};
 }
 
