@@ -11,19 +11,15 @@ constexpr int watched[] = {SIGINT, SIGTERM, SIGHUP};
 constexpr std::size_t watched_count = sizeof watched / sizeof watched[0];
 
 /// As the process was started with it. Libraries that compile put handlers of their own in the place of SIG_IGN.
-bool was_ignored(std::size_t i) {
-    static const std::array<bool, watched_count> ignored = [] {
-        std::array<bool, watched_count> at_start{};
-        for (std::size_t signal = 0; signal < watched_count; ++signal) {
-            struct sigaction action = {};
-            sigaction(watched[signal], nullptr, &action);
-            at_start[signal] = action.sa_handler == SIG_IGN;
-        }
-        return at_start;
-    }();
-    return ignored[i];
-}
-[[maybe_unused]] const bool asked_before_main = was_ignored(0);
+const std::array<bool, watched_count> was_ignored = [] {
+    std::array<bool, watched_count> at_start{};
+    for (std::size_t signal = 0; signal < watched_count; ++signal) {
+        struct sigaction action = {};
+        sigaction(watched[signal], nullptr, &action);
+        at_start[signal] = action.sa_handler == SIG_IGN;
+    }
+    return at_start;
+}();
 
 volatile std::sig_atomic_t interrupted = 0;
 struct sigaction before[watched_count];
@@ -34,7 +30,7 @@ void on_signal(int) {
     struct sigaction standard = {};
     standard.sa_handler = SIG_DFL;
     for (std::size_t i = 0; i < watched_count; ++i)
-        if (!was_ignored(i))
+        if (!was_ignored[i])
             sigaction(watched[i], &standard, nullptr);
 }
 
@@ -44,7 +40,7 @@ void ignore_what_was_ignored() {
     struct sigaction ignore = {};
     ignore.sa_handler = SIG_IGN;
     for (std::size_t i = 0; i < watched_count; ++i)
-        if (was_ignored(i))
+        if (was_ignored[i])
             sigaction(watched[i], &ignore, nullptr);
 }
 
@@ -58,7 +54,7 @@ InterruptWatch::InterruptWatch() {
     for (std::size_t i = 0; i < watched_count; ++i)
         sigaction(watched[i], nullptr, &before[i]);
     for (std::size_t i = 0; i < watched_count; ++i)
-        if (!was_ignored(i))
+        if (!was_ignored[i])
             sigaction(watched[i], &action, nullptr);
 }
 

@@ -8,6 +8,16 @@
 #include "runtime/scene/traits.h"
 #include "solver/weighted_reconstruction.h"
 
+namespace {
+
+std::shared_ptr<gradus::Device> open_device(const std::string &selector, int threads) {
+    auto device = std::make_shared<gradus::Device>(selector, threads);
+    gradus::ignore_what_was_ignored(); // which loading an OpenCL implementation may have changed
+    return device;
+}
+
+} // namespace
+
 int main(int argc, char **argv) {
     gradus::Services services;
     services.load_scene = gradus::load_scene;
@@ -16,10 +26,8 @@ int main(int argc, char **argv) {
     services.traits = gradus::trait_list;
     services.prepare = [](const std::string &method, const std::string &selector, const gradus::Scene &scene,
                           const gradus::RenderOptions &options) {
-        const auto device = gradus::in_phase(options.phases, gradus::phase_names::device, [&] {
-            return std::make_shared<gradus::Device>(selector, options.threads);
-        });
-        gradus::ignore_what_was_ignored();
+        const auto device = gradus::in_phase(options.phases, gradus::phase_names::device,
+                                             [&] { return open_device(selector, options.threads); });
         gradus::RenderOptions tuned = options;
         std::string problem;
         gradus::apply_tuning(gradus::stored_tuning(device->description(), &problem), tuned);
@@ -30,14 +38,12 @@ int main(int argc, char **argv) {
     };
     services.tune = [](const std::string &selector, int threads, const gradus::Scene &scene,
                        const gradus::TuningOptions &options) {
-        gradus::Device device(selector, threads);
-        gradus::ignore_what_was_ignored();
-        return gradus::TunedDevice{device.description(), gradus::tune(device, "pt", scene, options)};
+        const auto device = open_device(selector, threads);
+        return gradus::TunedDevice{device->description(), gradus::tune(*device, "pt", scene, options)};
     };
     services.prepare_solver = [](const std::string &selector, int threads, std::uint32_t width, std::uint32_t height,
                                  std::uint32_t channels) {
-        const auto device = std::make_shared<gradus::Device>(selector, threads);
-        gradus::ignore_what_was_ignored();
+        const auto device = open_device(selector, threads);
         gradus::check_images_fit(device->description(), width, height, channels);
         const auto solver = std::make_shared<gradus::PoissonSolver>(*device, width, height, channels);
         gradus::PreparedSolver prepared;

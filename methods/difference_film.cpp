@@ -32,7 +32,7 @@ std::vector<std::string> film_names(std::uint32_t parts) {
 
 DifferenceFilm::DifferenceFilm(Session &session, Stages &stages, const RenderOptions &options, const char *counts)
     : session_(session), options_(options), counts_(counts),
-      film_names_(film_names(1u << session.traits.at("TRAIT_PART_BITS"))), weights_(session),
+      film_names_(film_names(1u << session.traits.at("TRAIT_PART_BITS"))),
       combine_(stages.add({.name = "gradient_combine", .strict = true})), film_(session, stages),
       accumulate_(
           stages.add({.name = "gradient_accumulate",
@@ -148,7 +148,7 @@ Image DifferenceFilm::image(std::uint64_t samples, bool layers, bool last, std::
     if (last)
         solver_.reset();
     // The sum of weights is not independent of what it divides.
-    if (weights_.are_there() && used_.accuracy == accuracy_name(Accuracy::unbiased))
+    if (film_.weights().are_there() && used_.accuracy == accuracy_name(Accuracy::unbiased))
         used_.accuracy = accuracy_name(Accuracy::consistent);
     return image;
 }
@@ -159,8 +159,8 @@ GradientFilms DifferenceFilm::films(std::uint64_t samples) const {
     const std::uint64_t frames = samples / session_.pixels();
     for (std::uint32_t part = 0; part < parts; ++part) {
         // A frame more for the upper pixels is one of a single part.
-        const GradientFilm::Weights weights{weights_.of_part(frames, part, parts),
-                                            weights_.of_part(frames + 1, part, parts)};
+        const GradientFilm::Weights weights{film_.weights().of_part(frames, part, parts),
+                                            film_.weights().of_part(frames + 1, part, parts)};
         films.add((*tables_)[film_names_[part]], session_.film.crop_width, session_.film.crop_height,
                   options_.precision, samples_of_part(samples, session_.pixels(), part, parts), weights);
     }

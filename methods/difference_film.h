@@ -6,7 +6,6 @@
 #include "methods/method.h"
 #include "runtime/direct_light/direct_light.h"
 #include "runtime/wavefront/film.h"
-#include "runtime/wavefront/shared_weights.h"
 #include "solver/poisson_solver.h"
 
 #include <future>
@@ -61,7 +60,6 @@ class DifferenceFilm {
     const RenderOptions &options_;
     const std::string counts_;
     const std::vector<std::string> film_names_; ///< the tables of the sums: one, or one for each part of the samples
-    const SharedWeights weights_;
     Stage &combine_;
     Film film_;
     Stage &accumulate_, &carry_;

@@ -65,8 +65,8 @@ std::vector<Channel> layers_of(const Image &direct, const GradientFilms &films, 
     return layers;
 }
 
-/// The result takes the place of the direct image, which is added to it.
-/// The weight of the primal, as it was used.
+/// The result takes the place of the direct image, which is added to it. Returns the weight of the primal that was
+/// used.
 double reconstruct_from_film(PoissonSolver &solver, Image &whole, GradientFilms &films, const PoissonOptions &poisson,
                              const std::function<void()> &films_are_read) {
     ImageSources images = films.images();

@@ -463,7 +463,8 @@ GRADUS_COLUMN_ENUM(splat, GRADUS_SPLAT_COLUMNS) /* its rows are its writer's */
 /* A photon_origin_ordinal that is none: the row is left out. */
 #define photon_none 0xFFFFFFFFu
 
-/* material_gathers, by material record: which surfaces keep photons, and where camera paths look for them. */
+/* By material record: material_gathers, where camera paths look for photons; material_keeps, where light paths leave
+ * them, which of a blend's parts is said alike. */
 #define gathers_nowhere 0u  /* too smooth */
 #define gathers_in_front 1u /* what arrives from behind is absorbed */
 #define gathers_around 2u   /* on both sides */

@@ -58,15 +58,15 @@ std::vector<std::uint32_t> keeps_by_material(const Scene &scene, double roughnes
     std::vector<std::uint32_t> keeps = gathers_by_material(scene, roughness);
     const std::size_t first_part = keeps.size() - scene.blended.size();
     const auto settle = [&](const Bsdf &bsdf) {
+        if (bsdf.blend == no_blend)
+            return;
         std::uint32_t most = gathers_nowhere;
         for_each_part(scene, bsdf, [&](const Bsdf &part) {
             const std::uint32_t at = gathers_at(part, roughness);
             most = most == gathers_around || at == gathers_nowhere ? most : at;
         });
-        for_each_part(scene, bsdf, [&](const Bsdf &part) {
-            if (bsdf.blend != no_blend)
-                keeps[first_part + std::size_t(&part - scene.blended.data())] = most;
-        });
+        for_each_part(scene, bsdf,
+                      [&](const Bsdf &part) { keeps[first_part + std::size_t(&part - scene.blended.data())] = most; });
     };
     for (const Material &material : scene.materials) {
         settle(material.front);

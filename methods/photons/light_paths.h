@@ -28,9 +28,9 @@ class LightPaths {
     /// Photons of depth 1, which lights send directly, are left out where the caller samples lights himself.
     enum class Direct { photons, left_out };
 
-    /// Adds to the session the buffer `material_gathers` (kernels/shared/tables.h), by options.gather_roughness, which
-    /// those may ask for who gather. `consumers`: the stages that read photons; their kernels take `photon` and
-    /// `photon_rows`, which is its stride and changes as it grows.
+    /// Adds to the session the buffers `material_gathers` and `material_keeps` (kernels/shared/tables.h), by
+    /// options.gather_roughness; the former is for who gathers. `consumers`: the stages that read photons; their
+    /// kernels take `photon` and `photon_rows`, which is its stride and changes as it grows.
     LightPaths(Session &session, Stages &consumers, const Scene &scene, const RenderOptions &options, Direct direct);
 
     /// For the consumers' tables: `photon`, `photon_origin` and `photon_order`, which grow. With TRAIT_LIGHT_VERTICES,

@@ -97,6 +97,9 @@ struct Sphere {
     /// Unit vectors along which its own x, y and z lie: (u, v) and anisotropy turn with them. A mirrored sphere's are
     /// left-handed.
     std::array<Vector3, 3> axes{Vector3{1, 0, 0}, Vector3{0, 1, 0}, Vector3{0, 0, 1}};
+
+    /// As kernels have it: below 0 where rays leave it.
+    float signed_radius() const { return side == Side::left ? -radius : radius; }
 };
 
 constexpr std::int32_t no_group = -1;

@@ -253,7 +253,7 @@ void add_sphere(const Scene &scene, const Shape &shape, const SurfaceOfShape &su
     tables.spheres.resize(tables.spheres.size() + sphere_stride);
     float *record = &tables.spheres[tables.spheres.size() - sphere_stride];
     put(record, sphere_center_x, sphere.center);
-    record[sphere_radius] = sphere.side == Sphere::Side::left ? -sphere.radius : sphere.radius;
+    record[sphere_radius] = sphere.signed_radius();
     record[sphere_facing] = facing;
     record[sphere_offset] = offset;
     put(record, sphere_pole_x, sphere.axes[2]);

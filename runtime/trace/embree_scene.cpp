@@ -99,10 +99,8 @@ float EmbreeScene::opacity_of(unsigned instance, unsigned geometry, unsigned num
         return geometry < passable_triangles ? 1
                                              : passable_[geometry - passable_triangles].at(number, origin, direction);
     const std::size_t placed = instance - first_instance;
-    for (const std::unique_ptr<PassableShape> &shape : groups_[group_of_[placed]].passable)
-        if (shape->geometry == geometry)
-            return shape->opacity.at(number, origin, direction, matrix_of(instances_[placed]));
-    return 1;
+    const PassableShape *shape = groups_[group_of_[placed]].passable[geometry].get();
+    return shape ? shape->opacity.at(number, origin, direction, matrix_of(instances_[placed])) : 1;
 }
 
 void EmbreeScene::check(const char *doing) {
@@ -282,9 +280,9 @@ void EmbreeScene::add_groups(const Scene &s, const SceneTables *tables) {
             Group &group = groups_[std::size_t(shape.group)];
             RTCGeometry geometry = new_triangles(mesh, first, tables);
             rtcSetGeometryMask(geometry, 0xFFFFFFFFu);
+            group.passable.emplace_back();
             if (is_passable(s, shape)) {
-                group.passable.push_back(
-                    std::make_unique<PassableShape>(PassableShape{this, {}, unsigned(group.first.size())}));
+                group.passable.back() = std::make_unique<PassableShape>(PassableShape{this, {}});
                 for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
                     group.passable.back()->opacity.add(s, shape, i, first + std::uint32_t(i));
                 rtcSetGeometryUserData(geometry, group.passable.back().get());

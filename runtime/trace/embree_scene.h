@@ -90,13 +90,12 @@ class EmbreeScene {
     struct PassableShape {
         const EmbreeScene *scene;
         Opacity opacity;
-        unsigned geometry; ///< in its group
     };
     /// Shapes are geometries, with their numbers: the first primitive of each is known.
     struct Group {
         std::unique_ptr<RTCSceneTy, Release> scene;
         std::vector<std::uint32_t> first;
-        std::vector<std::unique_ptr<PassableShape>> passable;
+        std::vector<std::unique_ptr<PassableShape>> passable; ///< by shape; nullptr where all rays meet it
     };
 
     std::atomic<long long> bytes_{0}; ///< which Embree counts until it is released

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <tuple>
 
 namespace gradus {
 
@@ -54,11 +53,9 @@ void Opacity::add(const Scene &scene, const Shape &shape, std::size_t triangle, 
     const std::uint32_t texture = own_texture(scene, opacity.texture);
     if (is_sphere) {
         const Sphere &sphere = scene.spheres[shape.geometry];
-        TexturedSphere textured{
-            texture, sphere.center, sphere.side == Sphere::Side::left ? -sphere.radius : sphere.radius, {}};
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            std::tie(textured.axes[3 * axis], textured.axes[3 * axis + 1], textured.axes[3 * axis + 2]) =
-                std::tie(sphere.axes[axis].x, sphere.axes[axis].y, sphere.axes[axis].z);
+        const auto &[x, y, z] = sphere.axes;
+        const TexturedSphere textured{
+            texture, sphere.center, sphere.signed_radius(), {x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y, z.z}};
         primitives_.back().textured = std::int64_t(spheres_.size());
         spheres_.push_back(textured);
         return;

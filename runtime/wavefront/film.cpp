@@ -4,7 +4,6 @@
 #include "runtime/film/replicates.h"
 #include "runtime/wavefront/host_table.h"
 #include "runtime/wavefront/sample_parts.h"
-#include "runtime/wavefront/shared_weights.h"
 
 #include <fmt/format.h>
 
@@ -86,7 +85,7 @@ double mean_of(const Replicate &all) { return all.count > 0 ? all.sum / all.coun
 } // namespace
 
 Film::Film(Session &session, Stages &stages, bool halves)
-    : session_(session),
+    : session_(session), weights_(session),
       accumulate_(stages.add({.name = "accumulate", .strict = true, .numbers = {"first_slot", "first_pixel"}})),
       parts_(1u << part_bits(session.options, halves)) {}
 
@@ -138,7 +137,7 @@ void Film::add(std::uint32_t count, std::uint32_t first_pixel, std::uint64_t fir
 
 Image Film::image(std::uint64_t samples, std::uint64_t &non_finite, std::uint64_t light_paths) const {
     const std::size_t count = session_.pixels();
-    const FilmSums films(*tables_, parts_, count, samples, SharedWeights(session_));
+    const FilmSums films(*tables_, parts_, count, samples, weights_);
     std::optional<HostTable> splats;
     if (light_paths > 0 && tables_->has("splat_film"))
         splats.emplace((*tables_)["splat_film"], count, tables_->precision());
@@ -191,7 +190,7 @@ Image Film::image(std::uint64_t samples, std::uint64_t &non_finite, std::uint64_
 
 void Film::half_mean(int half, std::uint64_t samples, int color, float *plane) const {
     const std::size_t count = session_.pixels();
-    const FilmSums films(*tables_, parts_, count, samples, SharedWeights(session_));
+    const FilmSums films(*tables_, parts_, count, samples, weights_);
     for (std::size_t pixel = 0; pixel < count; ++pixel)
         plane[pixel] = static_cast<float>(mean_of(films.sum(color, pixel, static_cast<std::uint32_t>(half), 2)));
 }

@@ -3,6 +3,7 @@
 
 #include "runtime/film/image.h"
 #include "runtime/wavefront/session.h"
+#include "runtime/wavefront/shared_weights.h"
 #include "runtime/wavefront/stage.h"
 #include "runtime/wavefront/table.h"
 
@@ -34,6 +35,9 @@ class Film {
     /// Writes the mean of a half of `samples` samples, 0: the even ones, for one of R, G and B.
     void half_mean(int half, std::uint64_t samples, int color, float *plane) const;
 
+    /// What its samples weigh.
+    const SharedWeights &weights() const { return weights_; }
+
     /// All zero again, splats too.
     void clear();
 
@@ -44,6 +48,7 @@ class Film {
     bool has_replicates() const { return parts_ > 2; }
 
     Session &session_;
+    SharedWeights weights_;
     Stage &accumulate_;
     std::uint32_t parts_; ///< of the samples, each with a table of its own
     Tables *tables_ = nullptr;
