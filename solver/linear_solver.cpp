@@ -11,8 +11,9 @@ namespace gradus::solver {
 
 namespace {
 
-/// A residual that is read back waits for the device. That is cheap where the host is the device; elsewhere only every
-/// so many iterations are looked at, and the solve may do that many more than it needs.
+/// A residual that is read back waits for the device. That is cheap where the host is the device, and against a cycle
+/// of the hierarchy; elsewhere only every so many iterations are looked at, and the solve may do that many more than it
+/// needs.
 constexpr int iterations_between_looks = 8;
 
 constexpr std::uint32_t history_slots = SOLVER_SCALAR_SLOTS - SOLVER_HISTORY;
@@ -39,7 +40,7 @@ struct LinearSolver::Progress {
     Planes channels;
     double reference_norm;
     double least_tolerance; ///< less is rounding errors alone
-    bool host_is_device;
+    bool looks_at_each;     ///< iteration
     /// Keeps a channel, counted within the group, as it is in the buffer.
     std::function<void(std::uint32_t, const Buffer &)> keep;
     int iterations = 0;
@@ -58,7 +59,7 @@ struct LinearSolver::Progress {
         const bool last = done >= request.iterations;
         if (!request.watch)
             return last;
-        if (!last && done % (host_is_device ? 1 : iterations_between_looks) != 0)
+        if (!last && done % (looks_at_each ? 1 : iterations_between_looks) != 0)
             return false;
         for (std::uint32_t c = 0; c < channels.count; ++c)
             if (!of[c].finished)
@@ -117,7 +118,8 @@ void LinearSolver::run(Kernels &kernels, const Buffer &b, const Buffer &u, Progr
 
 LinearReport LinearSolver::solve(Kernels &kernels, const Request &request, const std::vector<Planes> &groups,
                                  const RightSide &b, const Buffer &u, double reference_norm) {
-    const bool host_is_device = make_.device().description().type == "cpu";
+    const bool looks_at_each = make_.device().description().type == "cpu" ||
+                               (request.method != LinearMethod::jacobi && request.method != LinearMethod::cg);
     const double epsilon = make_.precision() == Precision::double_ ? std::numeric_limits<double>::epsilon()
                                                                    : std::numeric_limits<float>::epsilon();
     const Grid &grid = multigrid_.system().grid;
@@ -130,7 +132,7 @@ LinearReport LinearSolver::solve(Kernels &kernels, const Request &request, const
     report.converged = request.watch;
     std::vector<std::vector<double>> norms;
     for (const Planes group : groups) {
-        Progress progress{sums_, request, group, reference_norm, epsilon / 64, host_is_device, keep};
+        Progress progress{sums_, request, group, reference_norm, epsilon / 64, looks_at_each, keep};
         run(kernels, b(group), make_.some(u, grid, group), progress);
         report.iterations = std::max(report.iterations, progress.iterations);
         for (Progress::Channel &channel : progress.of) {

@@ -18,7 +18,7 @@ GRADUS_FN bsdf_value specular_evaluate(material m, vec3 wi, vec3 wo, int mode) {
     return bsdf_value_none();
 }
 
-#define GRADUS_TAKE_SAMPLE(name, lobes, ...)                                                                           \
+#define GRADUS_TAKE_SAMPLE(name, lobes, transmits, parameters)                                                         \
     if (GRADUS_IS_SPECULAR(name, lobes)) {                                                                             \
         const bsdf_sample other = name##_sample(m, wi, u_lobe, u1, u2, mode);                                          \
         const int is_other = m.bsdf == R(bsdf_kind_##name);                                                            \
@@ -41,7 +41,7 @@ GRADUS_FN bsdf_sample specular_sample(material m, vec3 wi, real u_lobe, real u1,
 }
 #undef GRADUS_TAKE_SAMPLE
 
-#define GRADUS_TAKE_ALBEDO(name, lobes, ...)                                                                           \
+#define GRADUS_TAKE_ALBEDO(name, lobes, transmits, parameters)                                                         \
     if (GRADUS_IS_SPECULAR(name, lobes))                                                                               \
         albedo = rgb_select(m.bsdf == R(bsdf_kind_##name), name##_albedo(m), albedo);
 GRADUS_FN rgb specular_albedo(material m) {

@@ -12,7 +12,7 @@ GRADUS_LIB_BEGIN
 enum material_field { GRADUS_MATERIAL_FIELDS(GRADUS_FIELD_INDEX) material_stride };
 #undef GRADUS_FIELD_INDEX
 
-#define GRADUS_KIND_INDEX(name, ...) bsdf_kind_##name,
+#define GRADUS_KIND_INDEX(name, lobes, transmits, parameters) bsdf_kind_##name,
 enum bsdf_kind { GRADUS_BSDF_KINDS(GRADUS_KIND_INDEX) bsdf_kind_count };
 #undef GRADUS_KIND_INDEX
 

@@ -1,5 +1,6 @@
 #include "runtime/device/program_code.h"
 
+#include "runtime/device/build_log.h"
 #include "runtime/error.h"
 
 #include <fmt/format.h>
@@ -58,9 +59,10 @@ BuiltProgram build_source(const cl::Context &context, const cl::Device &device, 
         } catch (const cl::Error &error) {
             if (error.err() != CL_BUILD_PROGRAM_FAILURE)
                 throw;
-            throw Error(ExitCode::device, fmt::format("kernel {} does not compile for {}:\n{}", source.name,
-                                                      without_end(device.getInfo<CL_DEVICE_NAME>()),
-                                                      program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device)));
+            throw Error(ExitCode::device,
+                        fmt::format("kernel {} does not compile for {}:\n{}", source.name,
+                                    without_end(device.getInfo<CL_DEVICE_NAME>()),
+                                    with_file_names(program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device), source.text)));
         }
         KernelArguments kernels = arguments_of(program);
         return BuiltProgram{std::move(program), std::move(kernels)};

@@ -147,6 +147,15 @@ TEST(KernelSource, NumbersItsLinesAsTheirFilesDo) {
     }
 }
 
+// OpenCL C 1.2 has none (section 6.9 e), and NVIDIA's compiler refuses them; PoCL's does not say so.
+TEST(KernelSource, HasNoVariadicMacros) {
+    static const std::regex variadic(R"(^\s*#\s*define\s+\w+\([^)]*\.\.\.)");
+    ASSERT_TRUE(std::regex_search("#define F(a, ...) a", variadic)) << "the scan finds nothing";
+    for (const EmbeddedKernel &file : embedded_kernels())
+        for (const std::string &line : lines_of(file.text))
+            EXPECT_FALSE(std::regex_search(line, variadic)) << file.path << ": " << line;
+}
+
 TEST(KernelSource, OfAFileThatIsNotThereIsAnError) {
     try {
         kernel_source("kernels/stages/nowhere.cl");

@@ -1,7 +1,8 @@
-// The same kernels on a second OpenCL implementation for the CPU: images agree. Run by with_second_device.py, which
-// makes both implementations visible.
+// The same kernels on a second OpenCL implementation, for the CPU or a GPU: images agree. Run by with_second_device.py,
+// which makes both implementations visible.
 #include "methods/method.h"
 #include "planning/make_method.h"
+#include "runtime/error.h"
 #include "runtime/film/block_test.h"
 #include "runtime/io/load_scene.h"
 #include "tests/support/render.h"
@@ -24,8 +25,15 @@ class SecondDevice : public ::testing::TestWithParam<const char *> {
         return device;
     }
     static Device &second() {
-        static Device device(GRADUS_SECOND_SELECTOR);
+        static Device device(name_of_second());
         return device;
+    }
+    /// Of the first device that another implementation than the first's offers.
+    static std::string name_of_second() {
+        for (const DeviceDescription &found : list_devices())
+            if (found.platform != first().description().platform)
+                return found.platform;
+        throw Error(ExitCode::device, "there is no second OpenCL implementation");
     }
     static Scene scene(std::uint64_t samples_per_pixel) {
         Scene scene = load_scene(fmt::format("{}/{}.xml", GRADUS_SCENES, GetParam())).scene;
