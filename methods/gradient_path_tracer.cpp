@@ -283,7 +283,7 @@ void GradientPathTracer::step_offset_paths() {
                 offset_ray_direction_x,    offset_ray_primitive, stride};
     if (session_.has("TRAIT_INSTANCES"))
         rays.instance = offset_ray_instance;
-    const TraceCounts counts = trace_segments(session_.tracer, options_.precision, rays, links, session_.trace_seconds);
+    const TraceCounts counts = session_.segments.trace(rays, links);
     session_.rays["offset"] += counts.extension + counts.shadow;
     if (tables_->has("offset_surface"))
         paths_.read_materials((*tables_)["offset_ray"], stride, 4, std::uint32_t(4 * capacity),
@@ -429,7 +429,7 @@ void GradientPathTracer::restart(std::uint64_t first_sample, std::uint64_t sampl
     (*tables_)["outcome"].clear();
     statistics_ = Statistics();
     session_.rays.clear();
-    session_.trace_seconds = 0;
+    session_.segments.seconds = 0;
     stages_.reset_times();
 }
 

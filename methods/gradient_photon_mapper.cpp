@@ -128,10 +128,10 @@ GradientPhotonMapper::GradientPhotonMapper(Device &device, const Scene &scene, c
       walked_kinds_(walked_kinds(scene, options)), paths_(session_, stages_, scene, options, true),
       photons_(session_, stages_, scene, options, 0.5, needs_halves(options.reconstruction)), pairs_(stages_, true),
       bin_(stages_.add({.name = "gather_bin"})),
-      order_(stages_, "gather", first_kind_bin + std::uint32_t(session_.scene.kinds.size()), RowsOf::slot),
+      order_(session_, stages_, "gather", first_kind_bin + std::uint32_t(session_.scene.kinds.size()), RowsOf::slot),
       evaluate_(stages_.add({.name = "photon_evaluate", .by_kind = true, .dirac = DiracKinds::left_out})),
       shift_(stages_.add({.name = "photon_shift", .by_kind = true, .dirac = DiracKinds::left_out})),
-      moved_(stages_, "moved", light_bin() + 1, RowsOf::path, 4 * PhotonPairs::pair_rows(1)),
+      moved_(session_, stages_, "moved", light_bin() + 1, RowsOf::path, 4 * PhotonPairs::pair_rows(1)),
       reconnect_(stages_.add(leaving_stage("photon_reconnect", false, true, {"first", "pairs"}))),
       reconnect_light_(stages_.add(leaving_stage("photon_reconnect", true, true, {"first", "pairs"}))),
       project_(stages_.add({.name = "photon_project", .is_wanted = has_chains(), .numbers = {"first", "pairs"}})),
@@ -290,10 +290,9 @@ void GradientPhotonMapper::shift_photons(std::size_t kind, const PairWindow &win
     }
     const Range lit = moved_.bin(light_bin());
     reconnect_light_.run(lit.count, {{"first", lit.first}, {"pairs", window.pairs}});
-    const TraceCounts counts = trace_segments(session_.tracer, options_.precision,
-                                              {&(*tables_)["moved"], tables_->rows_of("moved"), moved_.count(),
-                                               moved_origin_x, moved_direction_x, moved_primitive},
-                                              {}, session_.trace_seconds);
+    const TraceCounts counts = session_.segments.trace({&(*tables_)["moved"], tables_->rows_of("moved"), moved_.count(),
+                                                        moved_origin_x, moved_direction_x, moved_primitive},
+                                                       {});
     session_.rays["offset"] += counts.extension;
     arrive_.run_kind(kind, moved_.count(), {{"pairs", window.pairs}});
     const Range chains = moved_.bin(chain_bin);
@@ -314,12 +313,10 @@ void GradientPhotonMapper::move_chains(Range chains, std::uint32_t pairs) {
     for (std::uint32_t done = 0; done < chains.count; done += room) {
         const std::uint32_t count = std::min(room, chains.count - done), first = chains.first + done;
         project_.run(count, {{"first", first}, {"pairs", pairs}});
-        const TraceCounts traced = trace_segments(
-            session_.tracer, options_.precision,
+        const TraceCounts traced = session_.segments.trace(
             {&(*tables_)["moved"], tables_->rows_of("moved"), first + count, moved_origin_x, moved_direction_x,
              moved_primitive},
-            {&(*tables_)["moved_link"], room, count, moved_link_origin_x, moved_link_direction_x, moved_link_open},
-            session_.trace_seconds);
+            {&(*tables_)["moved_link"], room, count, moved_link_origin_x, moved_link_direction_x, moved_link_open});
         session_.rays["offset"] += traced.extension + traced.shadow;
         walk_.run(count, {{"first", first}, {"pairs", pairs}, {"chain_rows", rows}, {"chain_vertices", vertices}});
         manifold_walk_->run(count);

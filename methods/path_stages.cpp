@@ -83,7 +83,7 @@ Statistics collected(Statistics s, const Session &session, const Stages &stages,
     for (const auto &[kind, count] : s.rays)
         traced += count;
     s.stages = stages.times();
-    s.stages.insert(s.stages.begin() + (s.stages.empty() ? 0 : 1), {"trace", session.trace_seconds, traced, 0});
+    s.stages.insert(s.stages.begin() + (s.stages.empty() ? 0 : 1), {"trace", session.segments.seconds, traced, 0});
     s.stages.insert(s.stages.end(), more.begin(), more.end());
     double known = 0;
     for (const StageTime &row : s.stages)

@@ -118,7 +118,7 @@ void LinearSolver::run(Kernels &kernels, const Buffer &b, const Buffer &u, Progr
 
 LinearReport LinearSolver::solve(Kernels &kernels, const Request &request, const std::vector<Planes> &groups,
                                  const RightSide &b, const Buffer &u, double reference_norm) {
-    const bool looks_at_each = make_.device().description().type == "cpu" ||
+    const bool looks_at_each = make_.device().description().is_host ||
                                (request.method != LinearMethod::jacobi && request.method != LinearMethod::cg);
     const double epsilon = make_.precision() == Precision::double_ ? std::numeric_limits<double>::epsilon()
                                                                    : std::numeric_limits<float>::epsilon();

@@ -72,7 +72,7 @@ void System::bind(Kernel &kernel) const {
 }
 
 Multigrid::Multigrid(const PlaneMaker &make, std::uint32_t width, std::uint32_t height, std::uint32_t together)
-    : make_(make), together_(together), in_bands_(make.device().description().type == "cpu") {
+    : make_(make), together_(together), in_bands_(make.device().description().is_host) {
     double pitch = 1;
     for (std::uint32_t w = width, h = height;; w = (w + 1) / 2, h = (h + 1) / 2, pitch *= 2) {
         Level level;

@@ -19,7 +19,7 @@ constexpr std::uint64_t cached_bytes = 8u << 20;
 
 std::uint32_t channels_together(const DeviceDescription &device, const Grid &grid, std::uint32_t channels,
                                 Precision precision) {
-    if (device.type == "cpu")
+    if (device.is_host)
         return planes_by_channel_of_group * channels * grid.plane * real_bytes(precision) <= cached_bytes ? channels
                                                                                                           : 1;
     const std::uint64_t planes = (planes_by_channel + planes_by_channel_of_group) * channels + planes_once;

@@ -37,6 +37,44 @@ STAGE partition_scan(uint count, uint bins, uint chunks, __global uint *chunk_of
     range[bins] = sum;
 }
 
+/* The same by many work-items, for devices on which one alone is slow: each has a share of chunk_offset, sums it, and
+ * begins where those before it end. */
+GRADUS_FN uint share_begin(uint lane, uint lanes, uint places) { return (uint)((ulong)places * lane / lanes); }
+
+STAGE partition_share(uint count, uint bins, uint chunks, __global const uint *chunk_offset,
+                      __global uint *share_count) {
+    const uint lane = (uint)work_item(), places = bins * chunks;
+    if (lane >= count)
+        return;
+    uint sum = 0;
+    for (uint place = share_begin(lane, count, places); place < share_begin(lane + 1u, count, places); ++place)
+        sum += chunk_offset[place];
+    share_count[lane] = sum;
+}
+
+STAGE partition_scan_shares(uint count, uint bins, uint chunks, __global const uint *share_count,
+                            __global uint *chunk_offset, __global uint *range) {
+    const uint lane = (uint)work_item(), places = bins * chunks;
+    if (lane >= count)
+        return;
+    uint sum = 0;
+    for (uint before = 0; before < lane; ++before)
+        sum += share_count[before];
+    const uint end = share_begin(lane + 1u, count, places);
+    uint place = share_begin(lane, count, places);
+    for (uint b = place / chunks; place < end; ++b) {
+        if (place == b * chunks)
+            range[b] = sum;
+        for (const uint end_here = min((b + 1u) * chunks, end); place < end_here; ++place) {
+            const uint found = chunk_offset[place];
+            chunk_offset[place] = sum;
+            sum += found;
+        }
+    }
+    if (end == places)
+        range[bins] = sum;
+}
+
 STAGE partition_scatter(uint count, uint rows, uint bins, __global const uint *bin, __global uint *chunk_offset,
                         __global uint *index) {
     const uint chunk = (uint)work_item();

@@ -54,8 +54,9 @@ Buffer::Buffer(Device &device, const std::string &name, std::size_t bytes)
                                 "--batch-size, --size or scene",
                                 name, bytes_ >> 20, d.description.allocation_bytes >> 20, d.description.name));
     opencl_call(fmt::format("allocating {} MB for {}", bytes_ >> 20, name), [&] {
-        handle_ = std::make_shared<Handle>(d, cl::Buffer(d.context, CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR, bytes_),
-                                           bytes_);
+        // Elsewhere the host's memory would be a second copy.
+        const cl_mem_flags place = d.description.shares_memory ? CL_MEM_ALLOC_HOST_PTR : 0;
+        handle_ = std::make_shared<Handle>(d, cl::Buffer(d.context, CL_MEM_READ_WRITE | place, bytes_), bytes_);
     });
 }
 
@@ -107,7 +108,12 @@ Buffer Buffer::part(std::size_t first, std::size_t bytes) const {
 const void *Buffer::argument() const { return &handle_->memory(); }
 
 void Buffer::clear() {
-    // Not by clEnqueueFillBuffer: a checker of uninitialised memory (oclgrind) does not see what that writes.
+    const Device::Implementation &d = handle_->device;
+    if (!d.description.shares_memory) {
+        opencl_call("clearing " + name_, [&] { d.queue.enqueueFillBuffer(handle_->memory, cl_uchar(0), 0, bytes_); });
+        return;
+    }
+    // Not so here: a checker of uninitialised memory (oclgrind) does not see what that writes.
     std::memset(map(Access::write).as<char>(), 0, bytes_);
 }
 
@@ -119,6 +125,25 @@ Buffer::Reading::Reading(const Buffer &buffer, void *data, std::size_t bytes)
     opencl_call("reading " + buffer.name_, [&] {
         handle.device.queue.enqueueReadBuffer(handle.memory, CL_FALSE, 0, bytes, data, nullptr, &done_->event);
         handle.device.queue.flush();
+    });
+}
+
+Buffer::Reading::Reading(const Buffer &buffer, void *data, const Stripes &stripes)
+    : done_(std::make_shared<Event>(buffer.handle_->device)) {
+    const Handle &handle = *buffer.handle_;
+    opencl_call("reading " + buffer.name_, [&] {
+        handle.device.queue.enqueueReadBufferRect(handle.memory, CL_FALSE, {0, stripes.first, 0}, {0, 0, 0},
+                                                  {stripes.bytes, stripes.count, 1}, stripes.pitch, 0, stripes.bytes, 0,
+                                                  data, nullptr, &done_->event);
+        handle.device.queue.flush();
+    });
+}
+
+void Buffer::start_write(const void *data, const Stripes &stripes) const {
+    opencl_call("writing " + name_, [&] {
+        handle_->device.queue.enqueueWriteBufferRect(handle_->memory, CL_FALSE, {0, stripes.first, 0}, {0, 0, 0},
+                                                     {stripes.bytes, stripes.count, 1}, stripes.pitch, 0, stripes.bytes,
+                                                     0, data);
     });
 }
 

@@ -14,7 +14,13 @@ namespace gradus {
 enum class Access { read, write, read_write };
 enum class Wait { now, later };
 
-/// An array in device memory. On a CPU device it is host memory, and mapping it copies nothing.
+/// Parts of a buffer that lie `pitch` bytes apart: `count` of `bytes` each, from part `first` on. Columns of a table.
+struct Stripes {
+    std::size_t pitch, first, count, bytes;
+};
+
+/// An array in device memory. Where the device shares the host's memory (DeviceDescription::shares_memory), mapping it
+/// copies nothing; else all of it.
 class Buffer {
     struct Event;
 
@@ -56,6 +62,7 @@ class Buffer {
     class Reading {
       public:
         Reading(const Buffer &buffer, void *data, std::size_t bytes);
+        Reading(const Buffer &buffer, void *data, const Stripes &stripes);
         /// `data` must live until then.
         void wait();
 
@@ -64,6 +71,11 @@ class Buffer {
     };
     /// Work may be queued before Reading::wait(), so that the device need not wait for the host.
     Reading start_read(void *data, std::size_t bytes) const { return Reading(*this, data, bytes); }
+    /// The same of some stripes, which lie side by side in `data`.
+    Reading start_read(void *data, const Stripes &stripes) const { return Reading(*this, data, stripes); }
+    /// Puts them there, before all work that is queued later. `data` must live, and stay as it is, until the host has
+    /// waited for such work.
+    void start_write(const void *data, const Stripes &stripes) const;
 
     /// The host's view of the buffer, until it is destroyed. Waits for all work on the queue, or (`later`) leaves that
     /// to a later mapping or read.

@@ -40,6 +40,9 @@ DeviceDescription describe(const cl::Platform &platform, const cl::Device &devic
     d.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
     d.memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
     d.allocation_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
+    // Deprecated since OpenCL 2.0, without another that tells it.
+    d.is_host = (type & CL_DEVICE_TYPE_CPU) != 0;
+    d.shares_memory = d.is_host || device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() == CL_TRUE;
     d.has_double = device.getInfo<CL_DEVICE_EXTENSIONS>().find("cl_khr_fp64") != std::string::npos;
     return d;
 }

@@ -20,6 +20,8 @@ struct DeviceDescription {
     std::uint64_t memory_bytes = 0;     ///< as the implementation reports it, which is not always true
     std::uint64_t allocation_bytes = 0; ///< largest single allocation
     bool has_double = false;
+    bool is_host = true;       ///< the host's own processor, whose cores trace rays, too
+    bool shares_memory = true; ///< with the host: mapping a buffer copies nothing
 };
 
 /// Every OpenCL device of every platform, in a stable order; empty where there is none.

@@ -1,6 +1,7 @@
 // Rows brought together by what they are, for tables that are no paths in flight.
 #pragma once
 
+#include "runtime/wavefront/partition.h"
 #include "runtime/wavefront/stage.h"
 #include "runtime/wavefront/table.h"
 
@@ -10,18 +11,18 @@
 
 namespace gradus {
 
-/// The counting sort of Wavefront::partition (kernels/stages/partition.cl) for any rows: stable, and rows of bin_none
-/// are left out.
+/// A partition with the tables that it needs and what it found last.
 class Grouping {
   public:
     /// Declares the stages `<name> count`, `<name> scan` and `<name> scatter`. There is room for `multiple` rows for
     /// each of `rows_of`; at least as many as bins.
-    Grouping(Stages &stages, const std::string &name, std::uint32_t bins, RowsOf rows_of, std::uint32_t multiple = 1);
+    Grouping(const Session &session, Stages &stages, const std::string &name, std::uint32_t bins, RowsOf rows_of,
+             std::uint32_t multiple = 1);
 
     /// `<name>_bin`, to be written by whoever asks; `<name>_index`, the rows bin by bin; and what sorting takes.
     TableList tables() const;
     /// To be called once they are allocated.
-    void attach(Tables &tables) { tables_ = &tables; }
+    void attach(const Tables &tables) { partition_.attach(tables); }
 
     /// Sorts rows [0, rows). Waits for the device.
     void run(std::uint32_t rows);
@@ -34,8 +35,7 @@ class Grouping {
     std::uint32_t bins_;
     RowsOf rows_of_;
     std::uint32_t multiple_;
-    Stage &count_, &scan_, &scatter_;
-    Tables *tables_ = nullptr;
+    Partition partition_;
     std::vector<std::uint32_t> ranges_;
 };
 

@@ -43,16 +43,6 @@ StageDeclaration follow_stage(bool lands) {
     return stage;
 }
 
-StageDeclaration partition_stage(const char *step, std::vector<std::string> numbers) {
-    StageDeclaration stage = walk_stage(
-        step, "partition", "", std::move(numbers),
-        {{"bin", "walk_bin"}, {"chunk_offset", "walk_chunk"}, {"index", "walk_index"}, {"range", "walk_range"}});
-    stage.entry = std::string("partition_") + step;
-    stage.name = std::string("walk partition ") + step;
-    stage.definitions = {{"PARTITION_CHUNK", std::to_string(partition_chunk)}};
-    return stage;
-}
-
 StageDeclaration back_stage(const char *name, const char *entry, const WalkSettings &settings) {
     StageDeclaration stage = walk_stage(name, "walk_back", entry, {});
     stage.is_wanted = settings.comes_back;
@@ -72,9 +62,7 @@ ManifoldWalk::ManifoldWalk(Session &session, Stages &stages, const WalkSettings 
       queue_(stages.add(walk_stage("queue", "walk_queue", "walk_queue", {"most_vertices"}))),
       aim_(stages.add(walk_stage("aim", "walk_aim", "walk_aim", {}, {{"walk_old", "walk_next"}}))),
       follow_(stages.add(follow_stage(false))), land_(stages.add(follow_stage(true))),
-      count_bins_(stages.add(partition_stage("count", {"bins", "rows"}))),
-      scan_(stages.add(partition_stage("scan", {"bins", "chunks"}))),
-      scatter_(stages.add(partition_stage("scatter", {"bins", "rows"}))),
+      partition_(session, stages, "walk partition", "walk_"),
       link_(stages.add(walk_stage("link", "walk_link", "walk_link", {}))),
       seen_(stages.add(walk_stage("seen", "walk_link", "walk_seen", {}))),
       turn_(stages.add(back_stage("turn", "walk_turn", settings))),
@@ -120,14 +108,17 @@ TableList ManifoldWalk::tables() const {
     for (const char *name : {"walk_bin", "walk_index"})
         list.push_back(of_uints(name));
     // Enough, and cleared for oclgrind, which takes some of it for never written.
-    list.push_back({.name = "walk_chunk", .rows = RowsOf::chain, .columns = most, .is_uint = true, .is_cleared = true});
-    list.push_back({.name = "walk_range", .rows = RowsOf::one, .columns = most + 1, .is_uint = true});
+    list.push_back(
+        {.name = "walk_chunk_offset", .rows = RowsOf::chain, .columns = most, .is_uint = true, .is_cleared = true});
+    const TableList of_partition = partition_.tables(most);
+    list.insert(list.end(), of_partition.begin(), of_partition.end());
     list.push_back({.name = "walk_found", .rows = RowsOf::one, .columns = walk_outcomes + 1, .is_uint = true});
     return list;
 }
 
 void ManifoldWalk::attach(Tables &tables) {
     tables_ = &tables;
+    partition_.attach(tables);
     chain_rows_ = tables.rows().chains;
 }
 
@@ -139,10 +130,8 @@ void ManifoldWalk::run(std::uint32_t count) {
     const LaunchNumbers rows = {{"chain_rows", chain_rows_}, {"chain_vertices", chain_vertices()}};
     walk({"chain", "chain_vertex", "walked", "walked_vertex"}, count);
     link_.run(count, rows);
-    const TraceCounts traced = trace_segments(
-        session_.tracer, tables_->precision(), {},
-        {&(*tables_)["walk_link"], chain_rows_, count, walk_link_origin_x, walk_link_direction_x, walk_link_open},
-        session_.trace_seconds);
+    const TraceCounts traced = session_.segments.trace(
+        {}, {&(*tables_)["walk_link"], chain_rows_, count, walk_link_origin_x, walk_link_direction_x, walk_link_open});
     session_.rays["walk"] += traced.shadow;
     seen_.run(count, rows);
     if (settings_.comes_back) {
@@ -214,22 +203,14 @@ void ManifoldWalk::walk(const Side &side, std::uint32_t count) {
 
 /// Sorts the walks that go on: `longer[k]` of them have chains of more than k vertices, and those come first.
 std::vector<std::uint32_t> ManifoldWalk::sort(std::uint32_t rows) {
-    const std::uint32_t bins = settings_.most_vertices, chunks = chunks_of(rows);
-    count_bins_.run(chunks, {{"bins", bins}, {"rows", rows}});
-    scan_.run(1, {{"bins", bins}, {"chunks", chunks}});
-    std::vector<std::uint32_t> ranges(bins + 1);
-    Buffer::Reading reading = (*tables_)["walk_range"].start_read(ranges.data(), ranges.size() * sizeof(std::uint32_t));
-    scatter_.run(chunks, {{"bins", bins}, {"rows", rows}});
-    reading.wait();
+    const std::vector<std::uint32_t> ranges = partition_.run(rows, settings_.most_vertices);
     return {ranges.rbegin(), ranges.rend()};
 }
 
 void ManifoldWalk::trace(std::uint32_t rows) {
     session_.ask_to_go_on();
-    const TraceCounts traced = trace_segments(
-        session_.tracer, tables_->precision(),
-        {&(*tables_)["walk_ray"], chain_rows_, rows, walk_ray_origin_x, walk_ray_direction_x, walk_ray_primitive}, {},
-        session_.trace_seconds);
+    const TraceCounts traced = session_.segments.trace(
+        {&(*tables_)["walk_ray"], chain_rows_, rows, walk_ray_origin_x, walk_ray_direction_x, walk_ray_primitive}, {});
     session_.rays["walk"] += traced.extension;
 }
 

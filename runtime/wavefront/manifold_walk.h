@@ -1,6 +1,7 @@
 // Manifold walks: chains of specular and glossy vertices whose end moves (Jakob and Marschner 2012).
 #pragma once
 
+#include "runtime/wavefront/partition.h"
 #include "runtime/wavefront/session.h"
 #include "runtime/wavefront/stage.h"
 #include "runtime/wavefront/table.h"
@@ -66,8 +67,9 @@ class ManifoldWalk {
 
     Session &session_;
     WalkSettings settings_;
-    Stage &events_, &queue_, &aim_, &follow_, &land_, &count_bins_, &scan_, &scatter_, &link_, &seen_, &turn_,
-        &turn_vertices_, &return_, &count_;
+    Stage &events_, &queue_, &aim_, &follow_, &land_;
+    Partition partition_; ///< of the walks that go on, by the vertices that they have yet to meet
+    Stage &link_, &seen_, &turn_, &turn_vertices_, &return_, &count_;
     Tables *tables_ = nullptr;
     std::uint32_t chain_rows_ = 0;
     std::map<std::string, std::uint64_t> counts_;

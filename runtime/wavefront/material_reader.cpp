@@ -33,7 +33,7 @@ MaterialReader::MaterialReader(const Session &session, Stages &stages, bool of_l
     group_ = &stages.add(group_stage());
     // Offset paths that are apart are four for each path.
     const auto apart = session.traits.find("TRAIT_APART");
-    grouping_.emplace(stages, "material", std::uint32_t(session.material_classes.classes.size()), RowsOf::path,
+    grouping_.emplace(session, stages, "material", std::uint32_t(session.material_classes.classes.size()), RowsOf::path,
                       apart != session.traits.end() && apart->second != 0 ? 4 : 1);
     material_ = &stages.add(material_stage(session, of_light_paths));
 }

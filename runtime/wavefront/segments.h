@@ -2,11 +2,13 @@
 #pragma once
 
 #include "runtime/device/buffer.h"
+#include "runtime/device/host_memory.h"
 #include "runtime/device/precision.h"
 #include "runtime/trace/tracer.h"
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 
 namespace gradus {
 
@@ -24,11 +26,28 @@ struct SegmentTable {
     int opacity = -1;  ///< that of the third, where it is asked for: RayColumns::opacity
 };
 
-/// Finds what `rays` meet first (their answers: ray_pending before, a primitive or ray_escaped after), and whether
-/// nothing lies within `segments` (1 before, 1 or 0 after). Waits for the device first; the device does nothing while
-/// the host traces, so that the two never compete for cores. Rays of a double table are rounded to float, in which
-/// Embree traces; kernels compute hits from the double ones. `seconds` grows by the tracer's time alone.
-TraceCounts trace_segments(Tracer &tracer, Precision precision, const SegmentTable &rays, const SegmentTable &segments,
-                           double &seconds);
+/// What Session hands tables to its tracer by.
+class SegmentTracer {
+  public:
+    /// The device and the tracer must outlive this.
+    SegmentTracer(Device &device, Tracer &tracer, Precision precision);
+    SegmentTracer(const SegmentTracer &) = delete;
+    SegmentTracer &operator=(const SegmentTracer &) = delete;
+
+    /// Finds what `rays` meet first (their answers: ray_pending before, a primitive or ray_escaped after), and whether
+    /// nothing lies within `segments` (1 before, 1 or 0 after). Waits for the device first; a device that is the host
+    /// does nothing while the tracer works, so that the two never compete for cores. Rays of a double table are rounded
+    /// to float, in which Embree traces; kernels compute hits from the double ones.
+    TraceCounts trace(const SegmentTable &rays, const SegmentTable &segments);
+
+    double seconds = 0; ///< that the tracer alone took so far
+
+  private:
+    Device &device_;
+    Tracer &tracer_;
+    Precision precision_;
+    /// Of devices that have memory of their own: what the tables' columns are copied through.
+    std::unique_ptr<HostMemory> ray_copy_, segment_copy_;
+};
 
 } // namespace gradus

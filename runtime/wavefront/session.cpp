@@ -206,7 +206,8 @@ Session::Session(Device &session_device, const Scene &s, const SessionOptions &s
                      })),
       scene_buffers(in_phase(options.phases, phase_names::tables,
                              [&] { return make_scene_buffers(session_device, scene, session_options.precision); })),
-      tracer(in_phase(options.phases, phase_names::tree, [&] { return Tracer(s, session_options.threads, &scene); })) {
+      tracer(in_phase(options.phases, phase_names::tree, [&] { return Tracer(s, session_options.threads, &scene); })),
+      segments(device, tracer, options.precision) {
     traits["SAMPLES_LIGHTS"] = scene.light_count > 0 && options.strategy != SessionOptions::Strategy::bsdf;
     traits["TRAIT_LIGHT_TREE"] = traits["SAMPLES_LIGHTS"] ? static_cast<int>(scene.light_tree.levels) : 0;
     const bool has_few = scene.light_count <= most_few_lights && !options.all_traits && !traits["TRAIT_LIGHT_TREE"];

@@ -8,6 +8,7 @@
 #include "runtime/scene/scene_tables.h"
 #include "runtime/scene/traits.h"
 #include "runtime/trace/tracer.h"
+#include "runtime/wavefront/segments.h"
 #include "runtime/wavefront/session_options.h"
 #include "runtime/wavefront/statistics.h"
 
@@ -32,6 +33,7 @@ struct Session {
     SceneTables scene;
     std::vector<Buffer> scene_buffers; ///< by the names of kernels' arguments
     Tracer tracer;
+    SegmentTracer segments; ///< of that tracer
 
     /// What kernels may ask for by name, the same for all launches.
     std::map<std::string, std::uint32_t> numbers;
@@ -39,7 +41,6 @@ struct Session {
 
     std::map<std::string, double> compile_seconds; ///< by kernel
     std::map<std::string, std::uint64_t> rays;     ///< traced, by kind
-    double trace_seconds = 0;
 
     /// To be called before each longer piece of work. Throws Stopped where the caller wants no more.
     void ask_to_go_on() const {

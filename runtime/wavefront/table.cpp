@@ -112,7 +112,7 @@ std::uint32_t odd_lines(std::uint32_t rows) {
 }
 
 std::uint32_t default_batch_size(const Device &device) {
-    return device.description().type == "cpu" ? default_batch_cpu : default_batch_other;
+    return device.description().is_host ? default_batch_cpu : default_batch_other;
 }
 
 std::uint32_t choose_batch_size(Device &device, std::uint32_t requested, std::uint64_t samples, const TableList &list,
@@ -132,7 +132,7 @@ std::uint32_t choose_batch_size(Device &device, std::uint32_t requested, std::ui
     if (fits < least_batch)
         throw Error(ExitCode::device, fmt::format("{} has not enough memory for {} paths", d.name, least_batch));
     std::uint64_t size = requested ? requested : default_batch_size(device);
-    if (!requested && d.type == "cpu" && 2 * size * of_path <= twice_below_bytes)
+    if (!requested && d.is_host && 2 * size * of_path <= twice_below_bytes)
         size *= 2;
     size = std::min<std::uint64_t>({size, largest_batch, std::max<std::uint64_t>(samples, 1)});
     const std::uint64_t rounded_up = (size + least_batch - 1) / least_batch * least_batch;

@@ -11,16 +11,6 @@ using namespace lib_float;
 
 namespace {
 
-StageDeclaration partition_stage(const char *entry, const char *name, std::vector<std::string> numbers) {
-    StageDeclaration stage;
-    stage.name = name;
-    stage.file = "partition";
-    stage.entry = entry;
-    stage.definitions = {{"PARTITION_CHUNK", std::to_string(partition_chunk)}};
-    stage.numbers = std::move(numbers);
-    return stage;
-}
-
 StageDeclaration classify_stage(const std::map<std::string, std::string> &definitions,
                                 const std::vector<std::string> &numbers) {
     StageDeclaration stage;
@@ -37,9 +27,7 @@ Wavefront::Wavefront(Session &session, Stages &stages, const BinLayout &layout,
                      bool of_light_paths)
     : session_(session), layout_(layout), fresh_are_alike_(!of_light_paths && !session.has("TRAIT_THIN_LENS")),
       materials_(session, stages, of_light_paths), classify_(stages.add(classify_stage(definitions, numbers))),
-      count_(stages.add(partition_stage("partition_count", "partition count", {"bins", "rows"}))),
-      scan_(stages.add(partition_stage("partition_scan", "partition scan", {"bins", "chunks"}))),
-      scatter_(stages.add(partition_stage("partition_scatter", "partition scatter", {"bins", "rows"}))) {}
+      partition_(session, stages, "partition", "") {}
 
 TableList Wavefront::tables() const {
     const std::uint32_t path_columns_used = session_.has("TRAIT_LIGHT_TREE")   ? path_columns
@@ -60,16 +48,16 @@ TableList Wavefront::ray_tables() const {
                       {.name = "surface", .columns = session_.surface_columns(), .is_cleared = true},
                       {.name = "bin", .is_uint = true},
                       {.name = "index", .is_uint = true},
-                      {.name = "chunk_offset", .rows = RowsOf::chunk, .columns = bins, .is_uint = true},
-                      {.name = "range", .rows = RowsOf::one, .columns = bins + 1, .is_uint = true}};
-    const TableList of_materials = materials_.tables();
-    list.insert(list.end(), of_materials.begin(), of_materials.end());
+                      {.name = "chunk_offset", .rows = RowsOf::chunk, .columns = bins, .is_uint = true}};
+    for (const TableList &more : {partition_.tables(bins), materials_.tables()})
+        list.insert(list.end(), more.begin(), more.end());
     return list;
 }
 
 void Wavefront::attach(Tables &tables) {
     tables_ = &tables;
     materials_.attach(tables);
+    partition_.attach(tables);
 }
 
 void Wavefront::begin_pass(std::uint32_t paths) {
@@ -97,8 +85,7 @@ void Wavefront::trace() {
         ray.instance = ray_instance;
     if (session_.has("TRAIT_OPACITY"))
         ray.opacity = ray_opacity;
-    const TraceCounts counts =
-        trace_segments(session_.tracer, tables_->precision(), ray, connections, session_.trace_seconds);
+    const TraceCounts counts = session_.segments.trace(ray, connections);
     session_.rays["extension"] += counts.extension;
     session_.rays["shadow"] += counts.shadow;
     if (materials_.is_wanted())
@@ -111,16 +98,8 @@ void Wavefront::read_materials(const Buffer &rays, std::uint32_t rows, std::uint
 }
 
 const Hits &Wavefront::partition(LaunchNumbers numbers) {
-    const std::uint32_t bins = layout_.bins(), chunks = chunks_of(rays());
     classify_.run(rays(), numbers);
-    count_.run(chunks, {{"bins", bins}, {"rows", rays()}});
-    scan_.run(1, {{"bins", bins}, {"chunks", chunks}});
-    // The host plans with the ranges while the rows are scattered.
-    std::vector<std::uint32_t> ranges(bins + 1);
-    Buffer::Reading reading = (*tables_)["range"].start_read(ranges.data(), ranges.size() * sizeof(std::uint32_t));
-    scatter_.run(chunks, {{"bins", bins}, {"rows", rays()}});
-    reading.wait();
-    hits_ = Hits(layout_, std::move(ranges));
+    hits_ = Hits(layout_, partition_.run(rays(), layout_.bins()));
     return hits_;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "runtime/wavefront/material_reader.h"
+#include "runtime/wavefront/partition.h"
 #include "runtime/wavefront/session.h"
 #include "runtime/wavefront/stage.h"
 #include "runtime/wavefront/table.h"
@@ -106,7 +107,8 @@ class Wavefront {
     BinLayout layout_;
     bool fresh_are_alike_; ///< paths that begin: neighbours' rays lie side by side
     MaterialReader materials_;
-    Stage &classify_, &count_, &scan_, &scatter_;
+    Stage &classify_;
+    Partition partition_;
     Tables *tables_ = nullptr;
     Hits hits_;
     std::uint32_t paths_ = 0, begun_ = 0, vertices_ = 0, fresh_ = 0;

@@ -334,12 +334,11 @@ void ShiftInverter::take_back(const Kept &weigh, const std::vector<Base> &bases)
     for (const auto &[name, stage] : stages_)
         if (stage.request.entry == "evaluate")
             run(name, 4);
-    double seconds = 0;
     SegmentTable rays;
     if (may_be_apart)
         rays = {&offset_ray, 4 * rows, 4 * rows, offset_ray_origin_x, offset_ray_direction_x, offset_ray_primitive};
-    trace_segments(tracer_, Precision::single, rays,
-                   {&link, 8 * rows, 8 * rows, link_origin_x, link_direction_x, link_open}, seconds);
+    SegmentTracer(device_, tracer_, Precision::single)
+        .trace(rays, {&link, 8 * rows, 8 * rows, link_origin_x, link_direction_x, link_open});
     run(may_be_apart ? "weigh apart" : "weigh", 1);
     finish(device_);
 

@@ -63,7 +63,7 @@ TEST_P(Denormals, InTheTailOfASolutionCostNothing) {
 
 /// Not all processors are slow at denormal numbers, so that they are flushed is tested by itself.
 TEST(DenormalNumbers, AreFlushed) {
-    if (test_device().description().type != "cpu")
+    if (!test_device().description().is_host)
         GTEST_SKIP() << "other devices may compute with denormal numbers at full speed";
     PoissonProblem problem = make_exact_problem(75, 43, 3);
     problem.primal.assign(problem.primal.size(), 1e-39f);

@@ -135,12 +135,12 @@ TEST_F(BatchSize, IsNoMoreThanThereIsToDo) {
 
 TEST_F(BatchSize, IsLargerOnACpuWherePathsAreSmall) {
     description().memory_bytes = description().allocation_bytes = plenty;
-    description().type = "cpu";
+    description().is_host = true;
     EXPECT_EQ(choose(0, plenty, false), 2 * default_batch_size(device));
     TableList wide = list(false);
     wide.push_back({.name = "wide", .columns = 100});
     EXPECT_EQ(choose_batch_size(device, 0, plenty, wide, Precision::single), default_batch_size(device));
-    description().type = "gpu";
+    description().is_host = false;
     EXPECT_EQ(choose(0, plenty, false), default_batch_size(device));
 }
 
