@@ -132,18 +132,18 @@ Buffer::Reading::Reading(const Buffer &buffer, void *data, const Stripes &stripe
     : done_(std::make_shared<Event>(buffer.handle_->device)) {
     const Handle &handle = *buffer.handle_;
     opencl_call("reading " + buffer.name_, [&] {
-        handle.device.queue.enqueueReadBufferRect(handle.memory, CL_FALSE, {0, stripes.first, 0}, {0, 0, 0},
-                                                  {stripes.bytes, stripes.count, 1}, stripes.pitch, 0, stripes.bytes, 0,
-                                                  data, nullptr, &done_->event);
+        handle.device.queue.enqueueReadBufferRect(handle.memory, CL_FALSE, {stripes.start, stripes.first, 0}, {0, 0, 0},
+                                                  {stripes.bytes, stripes.count, 1}, stripes.pitch, 0,
+                                                  stripes.host_pitch, 0, data, nullptr, &done_->event);
         handle.device.queue.flush();
     });
 }
 
 void Buffer::start_write(const void *data, const Stripes &stripes) const {
     opencl_call("writing " + name_, [&] {
-        handle_->device.queue.enqueueWriteBufferRect(handle_->memory, CL_FALSE, {0, stripes.first, 0}, {0, 0, 0},
-                                                     {stripes.bytes, stripes.count, 1}, stripes.pitch, 0, stripes.bytes,
-                                                     0, data);
+        handle_->device.queue.enqueueWriteBufferRect(handle_->memory, CL_FALSE, {stripes.start, stripes.first, 0},
+                                                     {0, 0, 0}, {stripes.bytes, stripes.count, 1}, stripes.pitch, 0,
+                                                     stripes.host_pitch, 0, data);
     });
 }
 

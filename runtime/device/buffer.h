@@ -14,9 +14,10 @@ namespace gradus {
 enum class Access { read, write, read_write };
 enum class Wait { now, later };
 
-/// Parts of a buffer that lie `pitch` bytes apart: `count` of `bytes` each, from part `first` on. Columns of a table.
+/// Some rows of some columns of a table. Its columns lie `pitch` bytes apart, those on the host `host_pitch`: of
+/// `count` columns from number `first` on, `bytes` from byte `start` on.
 struct Stripes {
-    std::size_t pitch, first, count, bytes;
+    std::size_t pitch, host_pitch, first, count, start, bytes;
 };
 
 /// An array in device memory. Where the device shares the host's memory (DeviceDescription::shares_memory), mapping it
@@ -71,7 +72,7 @@ class Buffer {
     };
     /// Work may be queued before Reading::wait(), so that the device need not wait for the host.
     Reading start_read(void *data, std::size_t bytes) const { return Reading(*this, data, bytes); }
-    /// The same of some stripes, which lie side by side in `data`.
+    /// The same of some stripes; `data` is where the first begins.
     Reading start_read(void *data, const Stripes &stripes) const { return Reading(*this, data, stripes); }
     /// Puts them there, before all work that is queued later. `data` must live, and stay as it is, until the host has
     /// waited for such work.

@@ -1,6 +1,6 @@
 #include "runtime/wavefront/segments.h"
 
-#include "runtime/error.h"
+#include "runtime/wavefront/table.h"
 
 #include <algorithm>
 #include <chrono>
@@ -11,16 +11,32 @@ namespace gradus {
 
 namespace {
 
+/// The host's own memory takes all rows at once; elsewhere the rows of one part are traced while others are copied.
+constexpr std::uint32_t most_parts = 4, least_part = 1u << 15;
+
+std::vector<Range> parts_of(const SegmentTable &places, bool at_once) {
+    if (places.count == 0)
+        return {};
+    // Lines that lie side by side stay together: four (SegmentColumns::line).
+    const std::uint32_t unit = places.line > 0 ? 4 * places.line : 1;
+    std::uint32_t part = std::max((places.count + most_parts - 1) / most_parts, least_part);
+    part = at_once ? places.count : (part + unit - 1) / unit * unit;
+    std::vector<Range> parts;
+    for (std::uint32_t first = 0; first < places.count; first += part)
+        parts.push_back({first, std::min(part, places.count - first)});
+    return parts;
+}
+
 /// The columns of a table that the tracer reads or writes, on the host: where they lie, or, where mapping would copy
-/// the whole table to and fro, copies of the rows that are asked for. The answers of copies go back when this ends.
+/// the whole table to and fro, copies of the rows that are asked for.
 class HostColumns {
   public:
-    /// `copy`: where the copies are to be; made large enough. They may be read after arrive(). With Wait::later,
+    /// `copy`: where the copies are to be; made large enough. A part may be read after arrive(). With Wait::later,
     /// mappings made after this one are what is waited for.
     HostColumns(Device &device, const SegmentTable &places, Precision precision, Wait wait,
-                std::unique_ptr<HostMemory> &copy)
-        : table_(*places.table), bytes_(places.count * real_bytes(precision)),
-          pitch_(places.rows * real_bytes(precision)) {
+                const std::vector<Range> &parts, std::unique_ptr<HostMemory> &copy)
+        : table_(*places.table), element_(real_bytes(precision)), pitch_(places.rows * element_),
+          host_pitch_(places.count * element_) {
         if (device.description().shares_memory) {
             mapping_.emplace(table_, Access::read_write, wait);
             return;
@@ -35,47 +51,56 @@ class HostColumns {
                 copied_.push_back(answer);
             }
         std::ranges::sort(copied_);
-        if (!copy || copy->bytes() < copied_.size() * bytes_) {
-            const std::size_t room = std::max(copied_.size() * bytes_, copy ? 2 * copy->bytes() : 0);
+        const std::size_t bytes = copied_.size() * host_pitch_;
+        if (!copy || copy->bytes() < bytes) {
+            const std::size_t room = std::max(bytes, copy ? 2 * copy->bytes() : 0);
             copy.reset();
             copy = std::make_unique<HostMemory>(device, room);
         }
         copy_ = copy->data();
-        // Columns that are neighbours go together.
-        for (std::size_t begin = 0, end; begin < copied_.size(); begin = end) {
-            for (end = begin + 1; end < copied_.size() && copied_[end] == copied_[end - 1] + 1;)
-                ++end;
-            readings_.push_back(table_.start_read(copy_ + begin * bytes_, stripes(copied_[begin], end - begin)));
-        }
-    }
-    void arrive() {
-        for (Buffer::Reading &reading : readings_)
-            reading.wait();
-    }
-    ~HostColumns() {
-        try {
-            for (const int answer : answers_)
-                table_.start_write((*this)[answer], stripes(answer, 1));
-        } catch (const Error &) {
-            // Nothing can be done here; the next call on the queue reports the error.
-        }
+        for (const Range &part : parts)
+            read(part);
     }
     HostColumns(const HostColumns &) = delete;
     HostColumns &operator=(const HostColumns &) = delete;
 
-    char *operator[](int column) const {
-        return mapping_ ? mapping_->as<char>() + std::size_t(column) * pitch_
-                        : copy_ + std::size_t(std::ranges::find(copied_, column) - copied_.begin()) * bytes_;
+    void arrive(std::size_t part) {
+        if (part < readings_.size())
+            for (Buffer::Reading &reading : readings_[part])
+                reading.wait();
+    }
+    /// Sends the answers of copies back.
+    void send(const Range &part) const {
+        for (const int answer : answers_)
+            table_.start_write(at(answer, part.first), stripes(answer, 1, part));
+    }
+    char *at(int column, std::size_t row) const {
+        char *const first =
+            mapping_ ? mapping_->as<char>() + std::size_t(column) * pitch_
+                     : copy_ + std::size_t(std::ranges::find(copied_, column) - copied_.begin()) * host_pitch_;
+        return first + row * element_;
     }
 
   private:
-    Stripes stripes(int first, std::size_t count) const { return {pitch_, std::size_t(first), count, bytes_}; }
+    Stripes stripes(int first, std::size_t count, const Range &rows) const {
+        return {pitch_, host_pitch_, std::size_t(first), count, rows.first * element_, rows.count * element_};
+    }
+    /// Columns that are neighbours go together.
+    void read(const Range &part) {
+        std::vector<Buffer::Reading> &readings = readings_.emplace_back();
+        for (std::size_t begin = 0, end; begin < copied_.size(); begin = end) {
+            for (end = begin + 1; end < copied_.size() && copied_[end] == copied_[end - 1] + 1;)
+                ++end;
+            readings.push_back(
+                table_.start_read(at(copied_[begin], part.first), stripes(copied_[begin], end - begin, part)));
+        }
+    }
 
     const Buffer &table_;
-    std::size_t bytes_, pitch_; ///< of the rows that are asked for, in a column; of a column of the table
+    std::size_t element_, pitch_, host_pitch_; ///< bytes; from column to column
     std::optional<Buffer::Mapping> mapping_;
     std::vector<int> copied_, answers_;
-    std::vector<Buffer::Reading> readings_;
+    std::vector<std::vector<Buffer::Reading>> readings_; ///< by part
     char *copy_ = nullptr;
 };
 
@@ -83,19 +108,19 @@ class HostColumns {
 /// and the answers go back when this ends.
 class Segments {
   public:
-    Segments(const HostColumns &host, const SegmentTable &places, Precision precision)
-        : is_double_(precision == Precision::double_), rows_(places.count) {
+    Segments(const HostColumns &host, const SegmentTable &places, const Range &part, Precision precision)
+        : is_double_(precision == Precision::double_), rows_(part.count) {
         columns.line = places.line;
-        columns.alike_from = places.alike_from;
+        columns.alike_from = places.alike_from - std::min<std::size_t>(places.alike_from, part.first);
         for (int axis = 0; axis < 3; ++axis) {
-            columns.origin[axis] = reals(origin_[axis], host[places.origin + axis]);
-            columns.direction[axis] = reals(direction_[axis], host[places.direction + axis]);
+            columns.origin[axis] = reals(origin_[axis], host.at(places.origin + axis, part.first));
+            columns.direction[axis] = reals(direction_[axis], host.at(places.direction + axis, part.first));
         }
-        answer = numbers(answer_, host[places.answer]);
+        answer = numbers(answer_, host.at(places.answer, part.first));
         if (places.instance >= 0)
-            instance = numbers(instance_, host[places.instance]);
+            instance = numbers(instance_, host.at(places.instance, part.first));
         if (places.opacity >= 0)
-            opacity = numbers(opacity_, host[places.opacity]);
+            opacity = numbers(opacity_, host.at(places.opacity, part.first));
     }
     Segments(const Segments &) = delete;
     Segments &operator=(const Segments &) = delete;
@@ -143,30 +168,47 @@ SegmentTracer::SegmentTracer(Device &device, Tracer &tracer, Precision precision
     : device_(device), tracer_(tracer), precision_(precision) {}
 
 TraceCounts SegmentTracer::trace(const SegmentTable &rays, const SegmentTable &segments) {
-    if (rays.count == 0 && segments.count == 0)
-        return {};
+    const bool at_once = device_.description().shares_memory;
+    const std::vector<Range> ray_parts = parts_of(rays, at_once), segment_parts = parts_of(segments, at_once);
     std::optional<HostColumns> rays_on_host, segments_on_host;
     if (rays.count > 0)
-        rays_on_host.emplace(device_, rays, precision_, segments.count > 0 ? Wait::later : Wait::now, ray_copy_);
+        rays_on_host.emplace(device_, rays, precision_, segments.count > 0 ? Wait::later : Wait::now, ray_parts,
+                             ray_copy_);
     if (segments.count > 0)
-        segments_on_host.emplace(device_, segments, precision_, Wait::now, segment_copy_);
-    for (std::optional<HostColumns> *columns : {&rays_on_host, &segments_on_host})
-        if (*columns)
-            (*columns)->arrive();
-    std::optional<Segments> ray_view, segment_view;
-    RayColumns ray{};
-    ShadowColumns segment{};
-    if (rays_on_host) {
-        ray_view.emplace(*rays_on_host, rays, precision_);
-        ray = {ray_view->columns, ray_view->answer, ray_view->instance, ray_view->opacity};
+        segments_on_host.emplace(device_, segments, precision_, Wait::now, segment_parts, segment_copy_);
+    TraceCounts counts;
+    // Both together where all rows are there, else one after the other.
+    const std::size_t first_segments = at_once ? 0 : ray_parts.size();
+    const std::size_t rounds = std::max(ray_parts.size(), first_segments + segment_parts.size());
+    for (std::size_t round = 0; round < rounds; ++round) {
+        const Range ray_part = round < ray_parts.size() ? ray_parts[round] : Range();
+        const bool has_segments = round >= first_segments && round - first_segments < segment_parts.size();
+        const Range segment_part = has_segments ? segment_parts[round - first_segments] : Range();
+        {
+            std::optional<Segments> ray_view, segment_view;
+            RayColumns ray{};
+            ShadowColumns segment{};
+            if (ray_part.count > 0) {
+                rays_on_host->arrive(round);
+                ray_view.emplace(*rays_on_host, rays, ray_part, precision_);
+                ray = {ray_view->columns, ray_view->answer, ray_view->instance, ray_view->opacity};
+            }
+            if (has_segments) {
+                segments_on_host->arrive(round - first_segments);
+                segment_view.emplace(*segments_on_host, segments, segment_part, precision_);
+                segment = {segment_view->columns, segment_view->answer};
+            }
+            const auto start = std::chrono::steady_clock::now();
+            const TraceCounts found = tracer_.trace(ray, ray_part.count, segment, segment_part.count);
+            seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+            counts.extension += found.extension;
+            counts.shadow += found.shadow;
+        }
+        if (ray_part.count > 0)
+            rays_on_host->send(ray_part);
+        if (has_segments)
+            segments_on_host->send(segment_part);
     }
-    if (segments_on_host) {
-        segment_view.emplace(*segments_on_host, segments, precision_);
-        segment = {segment_view->columns, segment_view->answer};
-    }
-    const auto start = std::chrono::steady_clock::now();
-    const TraceCounts counts = tracer_.trace(ray, rays.count, segment, segments.count);
-    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return counts;
 }
 

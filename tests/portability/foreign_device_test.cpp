@@ -34,12 +34,12 @@ class ForeignDevice : public ::testing::TestWithParam<ForeignCase> {
         DeviceDescription &d = shared_device().implementation().description;
         d.is_host = d.shares_memory = false;
     }
+    /// Of so many samples that tables are copied in several parts.
     static Rendered image() {
-        Scene scene = own_scene(std::string(GetParam().scene) + ".xml", 40, 30);
+        Scene scene = own_scene(std::string(GetParam().scene) + ".xml", 160, 90);
         scene.settings.samples_per_pixel = 4;
         RenderOptions options;
         options.precision = GetParam().precision;
-        options.batch_size = 704; // so that tables are fuller and emptier
         return render(scene, options, GetParam().method);
     }
 
