@@ -42,6 +42,10 @@ class EmbreeScene {
         const std::vector<std::uint32_t> &named = numbers_[geometry];
         return !named.empty() ? named[number] : geometry == opaque_triangles ? number : triangles_ + number;
     }
+    /// Of what a ray has hit. Groups have triangles alone.
+    static bool is_triangle(unsigned instance, unsigned geometry) {
+        return instance != RTC_INVALID_GEOMETRY_ID || geometry == opaque_triangles || geometry == passable_triangles;
+    }
     /// Of what a ray has hit, as primitive_of(): the share of such rays that meet it there.
     float opacity_of(unsigned instance, unsigned geometry, unsigned number, const Vector3 &origin,
                      const Vector3 &direction) const;

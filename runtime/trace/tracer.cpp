@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <chrono>
 #include <limits>
 #include <thread>
@@ -28,7 +29,23 @@ constexpr std::size_t chunk = 4096; // rows a task: small enough to balance, lar
 // instances_test.cpp, by gpt).
 constexpr std::size_t beam_limit = 256;
 
+/// Of a triangle's barycentrics. On an edge, both triangles are as near, and which one is found depends on the order in
+/// which a packet visits them, and so on its other rays. Rays so near to an edge are traced again, each by itself.
+constexpr float edge = 1e-4f;
+
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+/// A bit for each of the first `lanes`.
+std::uint32_t lanes_near_edges(const RTCRayHit16 &packet, int lanes) {
+    std::uint32_t near = 0;
+    for (int lane = 0; lane < packet_width; ++lane) {
+        const float u = packet.hit.u[lane], v = packet.hit.v[lane];
+        const bool is_near = std::min(std::min(u, v), 1 - u - v) < edge;
+        near |= std::uint32_t(is_near && EmbreeScene::is_triangle(packet.hit.instID[0][lane], packet.hit.geomID[lane]))
+                << lane;
+    }
+    return near & ((1u << lanes) - 1);
+}
 
 /// Cuts `count` rows into chunks, from row `first` on.
 class Chunks {
@@ -76,6 +93,8 @@ struct Tracer::Implementation {
     /// Those of the rows that ask for it so.
     std::uint64_t trace_asked(const RayColumns &ray, std::uint32_t asked, const RowLines &chunk_rows, bool of_camera,
                               RecordedRays *record);
+    /// Finds again what these lanes of the packet have met, as if each were alone.
+    void trace_alone(RTCRayHit16 &packet, std::uint32_t lanes, const TraceContext &of_packet) const;
     std::uint64_t trace_shadow(const ShadowColumns &shadow, const RowLines &chunk_rows, RecordedRays *record);
     /// Runs task(0) to task(count - 1) on the threads that trace.
     template <class Task>
@@ -112,6 +131,27 @@ void Tracer::set_order(RayOrder extension, RayOrder shadow) {
 
 std::size_t Tracer::memory_bytes() const { return implementation_->scene.memory_bytes(); }
 
+void Tracer::Implementation::trace_alone(RTCRayHit16 &packet, std::uint32_t lanes,
+                                         const TraceContext &of_packet) const {
+    TraceContext context = of_packet;
+    context.embree = new_context(false);
+    for (; lanes != 0; lanes &= lanes - 1) {
+        const int lane = std::countr_zero(lanes);
+        context.rows = of_packet.rows + lane;
+        RTCRayHit alone{};
+        alone.ray.org_x = packet.ray.org_x[lane], alone.ray.dir_x = packet.ray.dir_x[lane];
+        alone.ray.org_y = packet.ray.org_y[lane], alone.ray.dir_y = packet.ray.dir_y[lane];
+        alone.ray.org_z = packet.ray.org_z[lane], alone.ray.dir_z = packet.ray.dir_z[lane];
+        alone.ray.tfar = std::numeric_limits<float>::infinity();
+        alone.ray.mask = packet.ray.mask[lane];
+        alone.hit.geomID = alone.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        rtcIntersect1(scene.handle(), &context.embree, &alone);
+        packet.hit.geomID[lane] = alone.hit.geomID;
+        packet.hit.primID[lane] = alone.hit.primID;
+        packet.hit.instID[0][lane] = alone.hit.instID[0];
+    }
+}
+
 std::uint64_t Tracer::Implementation::trace_asked(const RayColumns &ray, std::uint32_t asked,
                                                   const RowLines &chunk_rows, bool of_camera, RecordedRays *record) {
     RayOrdering &ordering = orderings.local();
@@ -135,6 +175,8 @@ std::uint64_t Tracer::Implementation::trace_asked(const RayColumns &ray, std::ui
         }
         const ValidLanes valid = first_lanes(lanes);
         rtcIntersect16(valid.lane, scene.handle(), &context.embree, &packet);
+        if (const std::uint32_t near_edges = lanes_near_edges(packet, lanes))
+            trace_alone(packet, near_edges, context);
         for (int lane = 0; lane < lanes; ++lane) {
             const unsigned geometry = packet.hit.geomID[lane], instance = packet.hit.instID[0][lane];
             ray.primitive[row[lane]] = geometry == RTC_INVALID_GEOMETRY_ID
