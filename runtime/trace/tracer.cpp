@@ -94,7 +94,7 @@ struct Tracer::Implementation {
     std::uint64_t trace_asked(const RayColumns &ray, std::uint32_t asked, const RowLines &chunk_rows, bool of_camera,
                               RecordedRays *record);
     /// Finds again what these lanes of the packet have met, as if each were alone.
-    void trace_alone(RTCRayHit16 &packet, std::uint32_t lanes, const TraceContext &of_packet) const;
+    void trace_alone(RTCRayHit16 &packet, std::uint32_t lanes, TraceContext &context) const;
     std::uint64_t trace_shadow(const ShadowColumns &shadow, const RowLines &chunk_rows, RecordedRays *record);
     /// Runs task(0) to task(count - 1) on the threads that trace.
     template <class Task>
@@ -131,24 +131,14 @@ void Tracer::set_order(RayOrder extension, RayOrder shadow) {
 
 std::size_t Tracer::memory_bytes() const { return implementation_->scene.memory_bytes(); }
 
-void Tracer::Implementation::trace_alone(RTCRayHit16 &packet, std::uint32_t lanes,
-                                         const TraceContext &of_packet) const {
-    TraceContext context = of_packet;
-    context.embree = new_context(false);
+void Tracer::Implementation::trace_alone(RTCRayHit16 &packet, std::uint32_t lanes, TraceContext &context) const {
     for (; lanes != 0; lanes &= lanes - 1) {
         const int lane = std::countr_zero(lanes);
-        context.rows = of_packet.rows + lane;
-        RTCRayHit alone{};
-        alone.ray.org_x = packet.ray.org_x[lane], alone.ray.dir_x = packet.ray.dir_x[lane];
-        alone.ray.org_y = packet.ray.org_y[lane], alone.ray.dir_y = packet.ray.dir_y[lane];
-        alone.ray.org_z = packet.ray.org_z[lane], alone.ray.dir_z = packet.ray.dir_z[lane];
-        alone.ray.tfar = std::numeric_limits<float>::infinity();
-        alone.ray.mask = packet.ray.mask[lane];
-        alone.hit.geomID = alone.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-        rtcIntersect1(scene.handle(), &context.embree, &alone);
-        packet.hit.geomID[lane] = alone.hit.geomID;
-        packet.hit.primID[lane] = alone.hit.primID;
-        packet.hit.instID[0][lane] = alone.hit.instID[0];
+        ValidLanes alone{};
+        alone.lane[lane] = -1;
+        packet.ray.tfar[lane] = std::numeric_limits<float>::infinity();
+        packet.hit.geomID[lane] = packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+        rtcIntersect16(alone.lane, scene.handle(), &context.embree, &packet);
     }
 }
 
