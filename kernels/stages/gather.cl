@@ -13,6 +13,7 @@
 //! traits: TRAIT_OPACITY
 #include "kernels/lib/bsdf.h"
 #include "kernels/lib/bsdf_frame.h"
+#include "kernels/lib/camera_way.h"
 #include "kernels/lib/seen_features.h"
 #include "kernels/lib/surface_point.h"
 #include "kernels/lib/textured_material.h"
@@ -25,7 +26,8 @@ STAGE gather(uint count, uint unit, uint first, uint to, uint capacity, uint gat
              __global const real *triangle_normals, __global const real *triangle_tangents,
              __global const real *spheres, uint triangle_count, __global const uint *primitive_material,
              __global const uint *material_back, __global const uint *material_kind, real radius_slope,
-             real radius_start, real radius_most, real radius_least, real radius_scale SURFACE_ARGUMENT
+             real radius_start, real radius_most, real radius_least,
+             real radius_scale SURFACE_ARGUMENT CAMERA_WAY_ARGUMENT
 #if FEATURES
              ,
              __global const real *materials, __global real *feature, uint slots
@@ -50,7 +52,7 @@ STAGE gather(uint count, uint unit, uint first, uint to, uint capacity, uint gat
     const size_t row = to + i;
 #endif
     const vec3 step = v3_sub(point.position, origin);
-    const real distance = r_sqrt(v3_dot(step, step));
+    const real distance = r_sqrt(v3_dot(step, step)) + WAY_BEFORE(depth, direction);
     const real before = travelled[slot];
     const real length = distance + (depth > 0u ? before : R(0));
     AT_UINT(gather, slot, row) = slot;

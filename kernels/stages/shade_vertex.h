@@ -6,6 +6,7 @@
 //! traits: TRAIT_REFRACTION TRAIT_LIGHT_TREE SAMPLES_LIGHTS
 #include "kernels/lib/bsdf.h"
 #include "kernels/lib/bsdf_frame.h"
+#include "kernels/lib/camera_way.h"
 #include "kernels/lib/light_sampling.h"
 #include "kernels/lib/mis.h"
 #include "kernels/lib/path_draw.h"
@@ -15,21 +16,21 @@
 #include "kernels/lib/vertex_frame.h"
 #include "kernels/shared/stage.h"
 
-STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_depth, uint roulette_depth,
-            __global const uint *index, __global const real *path_old, __global real *path,
-            __global const real *ray_old, __global real *ray, __global real *shadow, __global const real *triangles,
-            __global const real *triangle_normals, __global const real *triangle_tangents, __global const real *spheres,
-            uint triangle_count, __global const uint *primitive_material, __global const uint *material_back,
-            __global const real *materials, __global const real *lights, __global const uint *light_kinds,
-            __global const uint *light_alias, uint light_count,
-            real scene_diameter ENVIRONMENT_PARAMETERS LIGHT_TEXTURE_PARAMETERS LIGHT_CHOICE_PARAMETERS MATERIAL_PARAMETERS
+STAGE shade(
+    uint count, uint unit, uint first, uint to, uint capacity, uint max_depth, uint roulette_depth,
+    __global const uint *index, __global const real *path_old, __global real *path, __global const real *ray_old,
+    __global real *ray, __global real *shadow, __global const real *triangles, __global const real *triangle_normals,
+    __global const real *triangle_tangents, __global const real *spheres, uint triangle_count,
+    __global const uint *primitive_material, __global const uint *material_back, __global const real *materials,
+    __global const real *lights, __global const uint *light_kinds, __global const uint *light_alias, uint light_count,
+    real scene_diameter ENVIRONMENT_PARAMETERS LIGHT_TEXTURE_PARAMETERS LIGHT_CHOICE_PARAMETERS MATERIAL_PARAMETERS
 #if TRAIT_AOV
-            ,
-            __global real *feature, uint slots
+    ,
+    __global real *feature, uint slots CAMERA_WAY_ARGUMENT
 #endif
 #if WITH_OFFSETS
-            ,
-            __global real *vertex, __global real *event, __global const uint *material_kind
+    ,
+    __global real *vertex, __global real *event, __global const uint *material_kind
 #endif
 ) {
     const size_t i = work_item();
@@ -64,8 +65,8 @@ STAGE shade(uint count, uint unit, uint first, uint to, uint capacity, uint max_
 
 #if TRAIT_AOV
     const rgb albedo = PASTE(BSDF, _albedo)(m);
-    SET_SEEN_FEATURES(slot, depth, BSDF_IS_DIRAC, r_sqrt(v3_length_squared(v3_sub(point.position, from))), throughput,
-                      albedo, axes.n)
+    const real way = r_sqrt(v3_length_squared(v3_sub(point.position, from))) + WAY_BEFORE(depth, direction);
+    SET_SEEN_FEATURES(slot, depth, BSDF_IS_DIRAC, way, throughput, albedo, axes.n)
 #endif
 #if WITH_OFFSETS
     SET_SURFACE_VERTEX(vertex, row, material_kind[point.material], point, direction)

@@ -23,7 +23,7 @@ double seen_distance(Session &session) {
         if (rays.primitive(i) == ray_escaped)
             continue;
         const vec3 step = v3_sub(rays.hit(tables, i).position, rays.origin(i));
-        distances.push_back(std::sqrt(v3_dot(step, step)));
+        distances.push_back(std::sqrt(v3_dot(step, step)) + rays.way_before(tables, i));
     }
     if (distances.empty())
         return tables.scene_diameter;

@@ -64,6 +64,12 @@ class CameraRays {
     lib_float::vec3 direction(std::size_t ray) const {
         return lib_float::v3(columns_[3][ray], columns_[4][ray], columns_[5][ray]);
     }
+    /// How far from the camera a ray begins.
+    float way_before(const SceneTables &tables, std::size_t ray) const {
+        using namespace lib_float;
+        const float *camera = tables.camera.data();
+        return FIELD_OF(camera, camera, 0, near_clip) / v3_dot(direction(ray), FIELD_V3(camera, camera, 0, forward));
+    }
     /// Where a ray met that primitive; not of one that escaped.
     lib_float::primitive_hit hit(const SceneTables &tables, std::size_t ray) const {
         using namespace lib_float;
