@@ -65,8 +65,8 @@ STAGE shade(
 
 #if TRAIT_AOV
     const rgb albedo = PASTE(BSDF, _albedo)(m);
-    const real way = r_sqrt(v3_length_squared(v3_sub(point.position, from))) + WAY_BEFORE(depth, direction);
-    SET_SEEN_FEATURES(slot, depth, BSDF_IS_DIRAC, way, throughput, albedo, axes.n)
+    const real from_last = r_sqrt(v3_length_squared(v3_sub(point.position, from))) + WAY_BEFORE(depth, direction);
+    SET_SEEN_FEATURES(slot, depth, BSDF_IS_DIRAC, from_last, throughput, albedo, axes.n)
 #endif
 #if WITH_OFFSETS
     SET_SURFACE_VERTEX(vertex, row, material_kind[point.material], point, direction)

@@ -12,18 +12,24 @@ class SeenFeatures : public ::testing::TestWithParam<const char *> {
     static constexpr std::uint32_t size = 16;
 
     /// A camera at z = 4 looks down at a surface at z = 0; six above that, where x < 0, hangs a wall of albedo 0.8.
-    static Image image_with(const Bsdf &surface) {
+    static Image image_with(const Bsdf &surface) { return render_of(surface, false).image; }
+    /// `clipped`: with something before the camera, which its near plane hides.
+    static Rendered render_of(const Bsdf &surface, bool clipped) {
         SceneMaker maker(size, 2);
         maker.look({0, 0, 4}, {0, 0, 0}, 4);
         maker.parallelogram({-9, -9, 6}, {0, 18, 0}, {9, 0, 0}, maker.material(diffuse(0.8)));
         maker.parallelogram({-9, -9, -2}, {18, 0, 0}, {0, 18, 0}, maker.material(diffuse(0.3)));
         maker.parallelogram({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.material(surface));
         maker.environment(1);
+        if (clipped) {
+            maker.parallelogram({-1, -1, 3.5}, {0, 2, 0}, {2, 0, 0}, maker.material(diffuse(0.1)));
+            maker.scene.camera.near_clip = 1;
+        }
         RenderOptions options;
         options.aov = true;
         options.photons = 100;
         options.direct_photons = true; // `gather` in the place of `shade`
-        return render(maker.scene, options, GetParam()).image;
+        return render(maker.scene, options, GetParam());
     }
 
     /// At the middles of the left and of the right half; rays are within two degrees of the axis.
@@ -53,6 +59,16 @@ TEST_P(SeenFeatures, AreThoseOfRoughSurfacesThemselves) {
     Bsdf tinted = rough_metal(0.3);
     tinted.specular_reflectance = {0.5f, 0.5f, 0.5f};
     expect(image_with(tinted), false, 0.5, 1, 4);
+}
+
+TEST_P(SeenFeatures, CountTheWayFromTheCameraAndNotFromItsNearPlane) {
+    expect(render_of(mirror(), true).image, true, 0.1, -1, 4 + 3.5); // what is hidden is seen in the mirror
+    const Rendered clipped = render_of(rough_metal(0.3), true), plain = render_of(rough_metal(0.3), false);
+    EXPECT_NEAR(pixel(clipped.image, size / 4, size / 2, "depth.Z"), 4, 8e-3);
+    // So do the radii of photons.
+    EXPECT_EQ(clipped.statistics.first_radii.points, plain.statistics.first_radii.points);
+    EXPECT_NEAR(clipped.statistics.first_radii.sum, plain.statistics.first_radii.sum,
+                1e-4 * plain.statistics.first_radii.sum);
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, SeenFeatures, ::testing::Values("pt", "sppm"),
