@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <string_view>
 
 #include <csignal>
 #include <cstdio>
@@ -38,6 +39,12 @@ Exit codes: 0 success, 1 failure (also: a comparison with --check that does not 
 3 scene file, 4 device or memory, 5 output that cannot be written, 6 input image, 130 interrupted (a valid
 image of the samples so far was written).)";
 
+int no_more_threads(const std::exception &error) {
+    print_message(
+        fmt::format("gradus: error: {}: not enough memory, or too many threads: try --nthreads 1\n", error.what()));
+    return static_cast<int>(ExitCode::device);
+}
+
 int run_chosen(const std::function<int()> &chosen) {
     try {
         return chosen();
@@ -49,13 +56,13 @@ int run_chosen(const std::function<int()> &chosen) {
         return static_cast<int>(ExitCode::device);
     } catch (const std::system_error &error) {
         // A thread or a process that could not be started.
-        if (error.code() == std::errc::resource_unavailable_try_again || error.code() == std::errc::not_enough_memory) {
-            print_message(fmt::format("gradus: error: {}: not enough memory, or too many threads: try --nthreads 1\n",
-                                      error.what()));
-            return static_cast<int>(ExitCode::device);
-        }
+        if (error.code() == std::errc::resource_unavailable_try_again || error.code() == std::errc::not_enough_memory)
+            return no_more_threads(error);
         print_message(fmt::format("gradus: error: {}\n", error.what()));
     } catch (const std::exception &error) {
+        // So says TBB that it could not start a thread.
+        if (std::string_view(error.what()).find("pthread_create") != std::string_view::npos)
+            return no_more_threads(error);
         print_message(fmt::format("gradus: error: {}\n", error.what()));
     } catch (...) {
         print_message("gradus: error: an exception of unknown type\n");

@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 namespace gradus {
@@ -380,7 +379,7 @@ void GradientPathTracer::follow(const Hits &next, std::uint32_t stride) {
 bool GradientPathTracer::render_batch() {
     if (done_ >= total_)
         return false;
-    const auto start = std::chrono::steady_clock::now();
+    const AddedSeconds render_seconds(statistics_.render_seconds);
     film_.begin();
     const Strip strip = next_strip();
     const std::uint32_t paths = strip.frames * strip.rows * session_.film.crop_width;
@@ -416,7 +415,6 @@ bool GradientPathTracer::render_batch() {
     finish(session_.device);
     done_ += paths;
     statistics_.samples += paths;
-    statistics_.render_seconds += seconds_since(start);
     return done_ < total_;
 }
 

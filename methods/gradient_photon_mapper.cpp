@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <numeric>
 
 namespace gradus {
@@ -233,7 +232,7 @@ void GradientPhotonMapper::begin_strip(const Strip &strip) {
 bool GradientPhotonMapper::render_batch() {
     if (done_ >= total_)
         return false;
-    const auto start = std::chrono::steady_clock::now();
+    const AddedSeconds render_seconds(statistics_.render_seconds);
     film_.begin();
     const Strip strip = next_strip();
     const std::uint64_t pass = done_ / session_.pixels();
@@ -253,7 +252,6 @@ bool GradientPhotonMapper::render_batch() {
                 {statistics_.gather_points - points_before, pairs_.radius_sum() - radii_before});
     done_ += strip.pixels;
     statistics_.samples += strip.pixels;
-    statistics_.render_seconds += seconds_since(start);
     return done_ < total_;
 }
 

@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <iterator>
 #include <vector>
 
@@ -44,7 +43,7 @@ PathTracer::PathTracer(Device &device, const Scene &scene, const RenderOptions &
 bool PathTracer::render_batch() {
     if (done_ >= total_)
         return false;
-    const auto start = std::chrono::steady_clock::now();
+    const AddedSeconds render_seconds(statistics_.render_seconds);
     const std::uint32_t paths = static_cast<std::uint32_t>(std::min<std::uint64_t>(pass_, samples_ahead()));
     const std::uint32_t first_pixel = static_cast<std::uint32_t>(done_ % session_.pixels());
     const std::uint64_t first_sample = done_ / session_.pixels();
@@ -74,7 +73,6 @@ bool PathTracer::render_batch() {
     finish(session_.device);
     done_ += paths;
     statistics_.samples += paths;
-    statistics_.render_seconds += seconds_since(start);
     return done_ < total_;
 }
 

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <optional>
 #include <string>
 
@@ -56,7 +55,7 @@ void PhotonMapper::allocate() {
 bool PhotonMapper::render_batch() {
     if (done_ >= total_)
         return false;
-    const auto start = std::chrono::steady_clock::now();
+    const AddedSeconds render_seconds(statistics_.render_seconds);
     const std::uint64_t pass = done_ / session_.pixels();
     const auto first_pixel = static_cast<std::uint32_t>(done_ % session_.pixels());
     const std::uint32_t paths = std::min(camera_paths_, session_.pixels() - first_pixel);
@@ -76,7 +75,6 @@ bool PhotonMapper::render_batch() {
                 {statistics_.gather_points - points_before, pairs_.radius_sum() - radii_before});
     done_ += paths;
     statistics_.samples += paths;
-    statistics_.render_seconds += seconds_since(start);
     return done_ < total_;
 }
 

@@ -17,6 +17,8 @@ constexpr double least_extent = 1e-3, most_extent = 1e6; ///< of scenes that sta
 constexpr double least_share = 1e-9;
 /// Past it differences of coordinates overflow.
 constexpr double largest_float_extent = 1e37;
+/// Of the camera's place over the scene: from farther, all of it is one direction.
+constexpr double most_away = 1e15;
 
 void multiply(Vector3 &v, float factor) { v = {v.x * factor, v.y * factor, v.z * factor}; }
 
@@ -59,6 +61,12 @@ double bring_to_own_scale(Scene &scene) {
             fmt::format("{} is {:.3g} large in a scene of {:.3g}, too small a share for single precision to see "
                         "it: leave it out, or make what is large smaller (the largest shape is {}, {:.3g} large)",
                         smallest->name, least, extent, largest->name, most));
+    const Double3 eye = transform_point(scene.camera.to_world, {0, 0, 0});
+    if (const double away = std::hypot(eye.x, eye.y, eye.z); !(away <= most_away * extent))
+        throw Error(ExitCode::scene,
+                    fmt::format("the camera is at {:.3g}, {:.3g}, {:.3g}, too far from a scene of {:.3g} "
+                                "for single precision: see its to_world",
+                                eye.x, eye.y, eye.z, extent));
     if (extent >= least_extent && extent <= most_extent)
         return 1;
     const double factor = std::exp2(-std::floor(std::log2(extent)));

@@ -6,6 +6,7 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -60,6 +61,23 @@ inline RTCIntersectContext new_context(bool beams) {
     rtcInitIntersectContext(&context);
     context.flags = beams ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     return context;
+}
+
+/// Of the first `lanes`, those whose rays are of numbers that Embree takes: not NaN, infinite or absurdly large, as an
+/// absurd camera makes them.
+template <class Ray>
+ValidLanes sane_lanes(const Ray &ray, int lanes) {
+    constexpr float most = 1e18f; // Embree's own limit is 1.8e18
+    ValidLanes valid = first_lanes(lanes);
+    for (int lane = 0; lane < packet_width; ++lane) {
+        const float largest = std::max(
+            std::max(std::abs(ray.org_x[lane]), std::max(std::abs(ray.org_y[lane]), std::abs(ray.org_z[lane]))),
+            std::max(std::abs(ray.dir_x[lane]), std::max(std::abs(ray.dir_y[lane]), std::abs(ray.dir_z[lane]))));
+        const float sum = ray.org_x[lane] + ray.org_y[lane] + ray.org_z[lane] + ray.dir_x[lane] + ray.dir_y[lane] +
+                          ray.dir_z[lane]; // NaN where any is
+        valid.lane[lane] &= -int(largest < most) & -int(sum == sum);
+    }
+    return valid;
 }
 
 /// What is known to filters of hits. Within an instance Embree hands them the ray in the frame of its group; that of

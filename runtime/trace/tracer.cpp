@@ -163,7 +163,7 @@ std::uint64_t Tracer::Implementation::trace_asked(const RayColumns &ray, std::ui
             record->extension.push_back(packet);
             record->extension_lanes.push_back(lanes);
         }
-        const ValidLanes valid = first_lanes(lanes);
+        const ValidLanes valid = sane_lanes(packet.ray, lanes);
         rtcIntersect16(valid.lane, scene.handle(), &context.embree, &packet);
         if (const std::uint32_t near_edges = lanes_near_edges(packet, lanes))
             trace_alone(packet, near_edges, context);
@@ -197,11 +197,11 @@ std::uint64_t Tracer::Implementation::trace_shadow(const ShadowColumns &shadow, 
             record->shadow.push_back(packet);
             record->shadow_lanes.push_back(lanes);
         }
-        const ValidLanes valid = first_lanes(lanes);
+        const ValidLanes valid = sane_lanes(packet, lanes);
         context.rows = row;
         rtcOccluded16(valid.lane, scene.handle(), &context.embree, &packet);
-        for (int lane = 0; lane < lanes; ++lane)
-            shadow.open[row[lane]] = packet.tfar[lane] >= 0 ? 1u : 0u; // Embree writes -infinity
+        for (int lane = 0; lane < lanes; ++lane) // Embree writes -infinity
+            shadow.open[row[lane]] = packet.tfar[lane] >= 0 && valid.lane[lane] != 0 ? 1u : 0u;
     });
     return rows.size();
 }

@@ -62,6 +62,9 @@ TEST(OwnScale, WhatNoFloatHoldsIsRefusedWithItsName) {
     SceneMaker beyond = room(1);
     beyond.sphere({3e38f, 0, 0}, 1, 0);
     EXPECT_THAT(refusal(beyond.scene), ::testing::HasSubstr("more than single precision holds"));
+    SceneMaker lost = room(1);
+    lost.scene.camera.to_world = look_at({1e20, 0, 0}, {0, 0, 0}, {0, 1, 0});
+    EXPECT_THAT(refusal(lost.scene), ::testing::HasSubstr("the camera is at 1e+20, 0, 0"));
     EXPECT_EQ(refusal(room(1).scene), "");
 }
 
