@@ -62,11 +62,11 @@ double bring_to_own_scale(Scene &scene) {
                         "it: leave it out, or make what is large smaller (the largest shape is {}, {:.3g} large)",
                         smallest->name, least, extent, largest->name, most));
     const Double3 eye = transform_point(scene.camera.to_world, {0, 0, 0});
-    if (const double away = std::hypot(eye.x, eye.y, eye.z); !(away <= most_away * extent))
+    if (const double away = std::hypot(eye[0], eye[1], eye[2]); !(away <= most_away * extent))
         throw Error(ExitCode::scene,
                     fmt::format("the camera is at {:.3g}, {:.3g}, {:.3g}, too far from a scene of {:.3g} "
                                 "for single precision: see its to_world",
-                                eye.x, eye.y, eye.z, extent));
+                                eye[0], eye[1], eye[2], extent));
     if (extent >= least_extent && extent <= most_extent)
         return 1;
     const double factor = std::exp2(-std::floor(std::log2(extent)));
