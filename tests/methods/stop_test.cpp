@@ -30,6 +30,13 @@ TEST(Stop, IsHeardBetweenBounces) {
             Stopped);
         EXPECT_EQ(asked, 21);
         EXPECT_EQ(count_non_finite(method->last_image()), 0u);
+        // The time of what was given up counts, too.
+        const Statistics statistics = method->statistics();
+        double seconds = 0;
+        for (const StageTime &stage : statistics.stages)
+            seconds += stage.seconds;
+        EXPECT_GT(seconds, 0);
+        EXPECT_NEAR(seconds, statistics.render_seconds, 1e-2 * statistics.render_seconds);
     }
 }
 
