@@ -33,22 +33,24 @@ def measure(arguments, environment, device, folder):
 def main():
     parser = argparse.ArgumentParser(description="each kernel on two OpenCL implementations")
     parser.add_argument("--bench", type=pathlib.Path, default=renders.ROOT / "build" / "gradus-bench-kernels")
+    parser.add_argument("--gradus", type=pathlib.Path, default=renders.ROOT / "build" / "gradus")
     parser.add_argument("--repeats", type=int, default=5, help="runs of each build in a turn")
     parser.add_argument("--quick", action="store_true", help="two kinds, no large queue, one turn")
     parser.add_argument("--json", type=pathlib.Path, help="also write all figures to this file")
     arguments = parser.parse_args()
-    with two_devices.two_devices() as (folder, environment):
-        turns = two_devices.take_turns(1 if arguments.quick else TURNS,
+    with two_devices.two_devices(arguments.gradus) as (folder, environment, devices):
+        turns = two_devices.take_turns(devices, 1 if arguments.quick else TURNS,
                                        lambda device: measure(arguments, environment, device, folder))
+    first, second = devices
     results = []
-    print(f"{'kernel':<34} {'queue':>8} {'PoCL M items/s':>15} {'Intel':>10} {'Intel / PoCL':>13}")
-    for key in turns[0]["PoCL"]:
-        if key not in turns[0]["Intel"]:
+    print(f"{'kernel':<34} {'queue':>8} {first + ' M items/s':>15} {second[:12]:>12} {'over ' + first:>13}")
+    for key in turns[0][first]:
+        if key not in turns[0][second]:
             continue
         rates = two_devices.by_device(turns, lambda rows: rows[key]["items_per_second"]["float"])
         ratio = curves.spread(two_devices.ratios(rates))
-        print(f"{key[0]:<34} {key[1]:>8} {statistics.median(rates['PoCL']) / 1e6:>15.2f} "
-              f"{statistics.median(rates['Intel']) / 1e6:>10.2f} {ratio['median']:>13.2f}", flush=True)
+        print(f"{key[0]:<34} {key[1]:>8} {statistics.median(rates[first]) / 1e6:>15.2f} "
+              f"{statistics.median(rates[second]) / 1e6:>12.2f} {ratio['median']:>13.2f}", flush=True)
         results.append({"kernel": key[0], "queue": key[1], "items_per_second": rates, "ratio": ratio})
     if arguments.json:
         arguments.json.write_text(json.dumps(results, indent=2) + "\n")

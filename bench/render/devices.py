@@ -42,11 +42,12 @@ def main():
     parser.add_argument("--json", type=pathlib.Path, help="also write all figures to this file")
     arguments = parser.parse_args()
     results = []
-    with two_devices.two_devices() as (folder, environment):
+    with two_devices.two_devices(arguments.gradus) as (folder, environment, devices):
         for scene in arguments.scenes:
             # The first turn fills the kernel caches.
-            two_devices.take_turns(1, lambda device: render(arguments, environment, scene, device, 1, folder))
-            turns = two_devices.take_turns(arguments.repeats, lambda device: render(
+            two_devices.take_turns(devices, 1,
+                                   lambda device: render(arguments, environment, scene, device, 1, folder))
+            turns = two_devices.take_turns(devices, arguments.repeats, lambda device: render(
                 arguments, environment, scene, device, arguments.spp, folder))
             rates = two_devices.by_device(turns, lambda record: record["samples_per_second"])
             kernels = two_devices.by_device(turns, kernel_share)
@@ -54,7 +55,7 @@ def main():
             print(f"{scene}\n  " + ", ".join(
                 f"{name} {statistics.median(rates[name]) / 1e6:.2f} M samples/s (kernels "
                 f"{100 * statistics.median(kernels[name]):.0f} % of the render)" for name in rates)
-                + f"; Intel / PoCL {ratio:.2f}", flush=True)
+                + f"; the second over the first {ratio:.2f}", flush=True)
             results.append({"scene": scene, "samples_per_second": rates, "kernel_share": kernels,
                             "median_ratio": ratio})
     if arguments.json:

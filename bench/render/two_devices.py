@@ -9,32 +9,35 @@ import tempfile
 
 import second_device
 
-DEVICES = {"PoCL": "portable computing", "Intel": second_device.SELECTOR}  # by name: what --device takes
+FIRST = "PoCL"
 
 
 @contextlib.contextmanager
-def two_devices():
-    """A folder for files, and the environment in which programs see both. Where there is no second implementation, says
-    how to get one and that the bench is skipped, and ends the program with 0."""
+def two_devices(gradus):
+    """A folder for files, the environment in which programs see both, and {name: what --device takes}, PoCL first.
+    Where there is no second implementation, says how to get one and that the bench is skipped, and ends the program
+    with 0."""
     with tempfile.TemporaryDirectory() as folder:
         environment = second_device.environment(folder)
-        if environment is None:
+        second = environment and second_device.selector(gradus, environment)
+        if not second:
             print(second_device.HOW_TO_GET, file=sys.stderr)
             print("skipped: no second OpenCL implementation")
             sys.exit(0)
-        yield folder, environment
+        yield folder, environment, {FIRST: "portable computing", second: second}
 
 
-def take_turns(count, measure):
+def take_turns(devices, count, measure):
     """So many turns, each {name: measure(what --device takes)}."""
-    return [{name: measure(selector) for name, selector in DEVICES.items()} for _ in range(count)]
+    return [{name: measure(selector) for name, selector in devices.items()} for _ in range(count)]
 
 
 def by_device(turns, figure):
     """{name: that figure of what was measured, a list over the turns}."""
-    return {name: [figure(turn[name]) for turn in turns] for name in DEVICES}
+    return {name: [figure(turn[name]) for turn in turns] for name in turns[0]}
 
 
 def ratios(figures):
-    """Intel's over PoCL's, turn by turn."""
-    return [intel / pocl for pocl, intel in zip(figures["PoCL"], figures["Intel"])]
+    """The second's over PoCL's, turn by turn."""
+    pocl, second = figures.values()
+    return [of_second / of_pocl for of_pocl, of_second in zip(pocl, second)]
