@@ -195,11 +195,13 @@ class RenderJob {
 
     /// The next batch; false after the last, or where it was given up.
     bool render_batch() {
-        // Until a time: one sample a pixel, then as many as are done. A batch of the device's own size may take longer
-        // than there is time, and would be lost.
-        if (request_.time_limit > 0) {
+        // One sample a pixel, then more with what is done: a pass of the device's own size may take longer than there
+        // is time, or patience, and would be lost. Until a time as many as are done; else thrice, which costs a long
+        // render next to nothing.
+        constexpr std::uint64_t long_render = 1u << 20;
+        if (request_.time_limit > 0 || prepared_.method->total_samples() > long_render) {
             const std::uint64_t done = prepared_.method->done_samples();
-            const std::uint64_t next = done + std::max(done, pixels());
+            const std::uint64_t next = done + std::max(request_.time_limit > 0 ? done : 3 * done, pixels());
             prepared_.method->pause_at(error_watch_ ? std::min(next, error_watch_->next_look()) : next);
         }
         try {
