@@ -8,11 +8,11 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <string_view>
 
 #include <csignal>
 #include <cstdio>
 #include <new>
+#include <string_view>
 #include <system_error>
 
 namespace gradus {

@@ -2,6 +2,7 @@
 #ifndef GRADUS_LIB_CAMERA_RAY_H
 #define GRADUS_LIB_CAMERA_RAY_H
 //! traits: TRAIT_ORTHOGRAPHIC TRAIT_THIN_LENS TRAIT_NEAR_CLIP
+#include "kernels/lib/camera_way.h"
 #include "kernels/lib/vector.h"
 #include "kernels/lib/warp.h"
 #include "kernels/shared/scene_records.h"
@@ -37,8 +38,7 @@ GRADUS_FN camera_sight camera_sight_through(GRADUS_GLOBAL const real *camera, ui
 #endif
     sight.direction = v3_normalize(towards);
 #if TRAIT_NEAR_CLIP
-    const real cosine = v3_dot(sight.direction, FIELD_V3(camera, camera, 0, forward));
-    sight.origin = v3_mad(sight.origin, FIELD_OF(camera, camera, 0, near_clip) / cosine, sight.direction);
+    sight.origin = v3_mad(sight.origin, camera_way(camera, unit, sight.direction), sight.direction);
 #endif
     return sight;
 }

@@ -66,9 +66,7 @@ class CameraRays {
     }
     /// How far from the camera a ray begins.
     float way_before(const SceneTables &tables, std::size_t ray) const {
-        using namespace lib_float;
-        const float *camera = tables.camera.data();
-        return FIELD_OF(camera, camera, 0, near_clip) / v3_dot(direction(ray), FIELD_V3(camera, camera, 0, forward));
+        return lib_float::camera_way(tables.camera.data(), unit, direction(ray));
     }
     /// Where a ray met that primitive; not of one that escaped.
     lib_float::primitive_hit hit(const SceneTables &tables, std::size_t ray) const {

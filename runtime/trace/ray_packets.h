@@ -69,14 +69,9 @@ template <class Ray>
 ValidLanes sane_lanes(const Ray &ray, int lanes) {
     constexpr float most = 1e18f; // Embree's own limit is 1.8e18
     ValidLanes valid = first_lanes(lanes);
-    for (int lane = 0; lane < packet_width; ++lane) {
-        const float largest = std::max(
-            std::max(std::abs(ray.org_x[lane]), std::max(std::abs(ray.org_y[lane]), std::abs(ray.org_z[lane]))),
-            std::max(std::abs(ray.dir_x[lane]), std::max(std::abs(ray.dir_y[lane]), std::abs(ray.dir_z[lane]))));
-        const float sum = ray.org_x[lane] + ray.org_y[lane] + ray.org_z[lane] + ray.dir_x[lane] + ray.dir_y[lane] +
-                          ray.dir_z[lane]; // NaN where any is
-        valid.lane[lane] &= -int(largest < most) & -int(sum == sum);
-    }
+    for (const float *values : {ray.org_x, ray.org_y, ray.org_z, ray.dir_x, ray.dir_y, ray.dir_z})
+        for (int lane = 0; lane < packet_width; ++lane)
+            valid.lane[lane] &= -int(std::abs(values[lane]) < most); // NaN is not
     return valid;
 }
 

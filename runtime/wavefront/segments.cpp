@@ -1,9 +1,10 @@
 #include "runtime/wavefront/segments.h"
 
+#include "runtime/seconds_since.h"
 #include "runtime/wavefront/table.h"
 
 #include <algorithm>
-#include <chrono>
+#include <deque>
 #include <optional>
 #include <vector>
 
@@ -14,27 +15,41 @@ namespace {
 /// The host's own memory takes all rows at once; elsewhere the rows of one part are traced while others are copied.
 constexpr std::uint32_t most_parts = 4, least_part = 1u << 15;
 
-std::vector<Range> parts_of(const SegmentTable &places, bool at_once) {
-    if (places.count == 0)
-        return {};
+std::vector<Range> parts_of(const SegmentTable &places) {
     // Lines that lie side by side stay together: four (SegmentColumns::line).
     const std::uint32_t unit = places.line > 0 ? 4 * places.line : 1;
-    std::uint32_t part = std::max((places.count + most_parts - 1) / most_parts, least_part);
-    part = at_once ? places.count : (part + unit - 1) / unit * unit;
+    const std::uint32_t least = std::max((places.count + most_parts - 1) / most_parts, least_part);
+    const std::uint32_t part = (least + unit - 1) / unit * unit;
     std::vector<Range> parts;
     for (std::uint32_t first = 0; first < places.count; first += part)
         parts.push_back({first, std::min(part, places.count - first)});
     return parts;
 }
 
+/// What is traced together.
+struct Round {
+    Range rays, segments;
+};
+
+std::vector<Round> rounds_of(const SegmentTable &rays, const SegmentTable &segments, bool at_once) {
+    if (at_once)
+        return {{{0, rays.count}, {0, segments.count}}};
+    std::vector<Round> rounds;
+    for (const Range &part : parts_of(rays))
+        rounds.push_back({part, {}});
+    for (const Range &part : parts_of(segments))
+        rounds.push_back({{}, part});
+    return rounds;
+}
+
 /// The columns of a table that the tracer reads or writes, on the host: where they lie, or, where mapping would copy
 /// the whole table to and fro, copies of the rows that are asked for.
 class HostColumns {
   public:
-    /// `copy`: where the copies are to be; made large enough. A part may be read after arrive(). With Wait::later,
-    /// mappings made after this one are what is waited for.
+    /// `copy`: where the copies are to be; made large enough. With Wait::later, mappings made after this one are what
+    /// is waited for.
     HostColumns(Device &device, const SegmentTable &places, Precision precision, Wait wait,
-                const std::vector<Range> &parts, std::unique_ptr<HostMemory> &copy)
+                std::unique_ptr<HostMemory> &copy)
         : table_(*places.table), element_(real_bytes(precision)), pitch_(places.rows * element_),
           host_pitch_(places.count * element_) {
         if (device.description().shares_memory) {
@@ -58,16 +73,29 @@ class HostColumns {
             copy = std::make_unique<HostMemory>(device, room);
         }
         copy_ = copy->data();
-        for (const Range &part : parts)
-            read(part);
     }
     HostColumns(const HostColumns &) = delete;
     HostColumns &operator=(const HostColumns &) = delete;
 
-    void arrive(std::size_t part) {
-        if (part < readings_.size())
-            for (Buffer::Reading &reading : readings_[part])
-                reading.wait();
+    /// Starts to copy a part; columns that are neighbours go together.
+    void fetch(const Range &part) {
+        if (copied_.empty())
+            return;
+        std::vector<Buffer::Reading> &readings = readings_.emplace_back();
+        for (std::size_t begin = 0, end; begin < copied_.size(); begin = end) {
+            for (end = begin + 1; end < copied_.size() && copied_[end] == copied_[end - 1] + 1;)
+                ++end;
+            readings.push_back(
+                table_.start_read(at(copied_[begin], part.first), stripes(copied_[begin], end - begin, part)));
+        }
+    }
+    /// Waits for the next of the parts that were fetched.
+    void arrive() {
+        if (copied_.empty())
+            return;
+        for (Buffer::Reading &reading : readings_.front())
+            reading.wait();
+        readings_.pop_front();
     }
     /// Sends the answers of copies back.
     void send(const Range &part) const {
@@ -85,22 +113,11 @@ class HostColumns {
     Stripes stripes(int first, std::size_t count, const Range &rows) const {
         return {pitch_, host_pitch_, std::size_t(first), count, rows.first * element_, rows.count * element_};
     }
-    /// Columns that are neighbours go together.
-    void read(const Range &part) {
-        std::vector<Buffer::Reading> &readings = readings_.emplace_back();
-        for (std::size_t begin = 0, end; begin < copied_.size(); begin = end) {
-            for (end = begin + 1; end < copied_.size() && copied_[end] == copied_[end - 1] + 1;)
-                ++end;
-            readings.push_back(
-                table_.start_read(at(copied_[begin], part.first), stripes(copied_[begin], end - begin, part)));
-        }
-    }
-
     const Buffer &table_;
     std::size_t element_, pitch_, host_pitch_; ///< bytes; from column to column
     std::optional<Buffer::Mapping> mapping_;
     std::vector<int> copied_, answers_;
-    std::vector<std::vector<Buffer::Reading>> readings_; ///< by part
+    std::deque<std::vector<Buffer::Reading>> readings_; ///< by part
     char *copy_ = nullptr;
 };
 
@@ -168,46 +185,43 @@ SegmentTracer::SegmentTracer(Device &device, Tracer &tracer, Precision precision
     : device_(device), tracer_(tracer), precision_(precision) {}
 
 TraceCounts SegmentTracer::trace(const SegmentTable &rays, const SegmentTable &segments) {
-    const bool at_once = device_.description().shares_memory;
-    const std::vector<Range> ray_parts = parts_of(rays, at_once), segment_parts = parts_of(segments, at_once);
     std::optional<HostColumns> rays_on_host, segments_on_host;
     if (rays.count > 0)
-        rays_on_host.emplace(device_, rays, precision_, segments.count > 0 ? Wait::later : Wait::now, ray_parts,
-                             ray_copy_);
+        rays_on_host.emplace(device_, rays, precision_, segments.count > 0 ? Wait::later : Wait::now, ray_copy_);
     if (segments.count > 0)
-        segments_on_host.emplace(device_, segments, precision_, Wait::now, segment_parts, segment_copy_);
+        segments_on_host.emplace(device_, segments, precision_, Wait::now, segment_copy_);
+    const std::vector<Round> rounds = rounds_of(rays, segments, device_.description().shares_memory);
+    for (const Round &round : rounds) {
+        if (round.rays.count > 0)
+            rays_on_host->fetch(round.rays);
+        if (round.segments.count > 0)
+            segments_on_host->fetch(round.segments);
+    }
     TraceCounts counts;
-    // Both together where all rows are there, else one after the other.
-    const std::size_t first_segments = at_once ? 0 : ray_parts.size();
-    const std::size_t rounds = std::max(ray_parts.size(), first_segments + segment_parts.size());
-    for (std::size_t round = 0; round < rounds; ++round) {
-        const Range ray_part = round < ray_parts.size() ? ray_parts[round] : Range();
-        const bool has_segments = round >= first_segments && round - first_segments < segment_parts.size();
-        const Range segment_part = has_segments ? segment_parts[round - first_segments] : Range();
+    for (const Round &round : rounds) {
         {
             std::optional<Segments> ray_view, segment_view;
             RayColumns ray{};
             ShadowColumns segment{};
-            if (ray_part.count > 0) {
-                rays_on_host->arrive(round);
-                ray_view.emplace(*rays_on_host, rays, ray_part, precision_);
+            if (round.rays.count > 0) {
+                rays_on_host->arrive();
+                ray_view.emplace(*rays_on_host, rays, round.rays, precision_);
                 ray = {ray_view->columns, ray_view->answer, ray_view->instance, ray_view->opacity};
             }
-            if (has_segments) {
-                segments_on_host->arrive(round - first_segments);
-                segment_view.emplace(*segments_on_host, segments, segment_part, precision_);
+            if (round.segments.count > 0) {
+                segments_on_host->arrive();
+                segment_view.emplace(*segments_on_host, segments, round.segments, precision_);
                 segment = {segment_view->columns, segment_view->answer};
             }
-            const auto start = std::chrono::steady_clock::now();
-            const TraceCounts found = tracer_.trace(ray, ray_part.count, segment, segment_part.count);
-            seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+            const AddedSeconds tracing(seconds);
+            const TraceCounts found = tracer_.trace(ray, round.rays.count, segment, round.segments.count);
             counts.extension += found.extension;
             counts.shadow += found.shadow;
         }
-        if (ray_part.count > 0)
-            rays_on_host->send(ray_part);
-        if (has_segments)
-            segments_on_host->send(segment_part);
+        if (round.rays.count > 0)
+            rays_on_host->send(round.rays);
+        if (round.segments.count > 0)
+            segments_on_host->send(round.segments);
     }
     return counts;
 }

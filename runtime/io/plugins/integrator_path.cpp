@@ -1,4 +1,5 @@
 // <integrator type="path">
+#include "runtime/io/plugins/parameters_of_integrators.h"
 #include "runtime/io/plugins/plugin.h"
 
 namespace gradus {
@@ -12,10 +13,7 @@ Declaration declare_integrator_path() {
                          .in("edges")
                          .at_least(1)
                          .at_most(1000000),
-                     {"hide_emitters", Takes::boolean, "false",
-                      "the camera sees no emitters: its rays pass surfaces that emit, behind holes of masks too (where "
-                      "Mitsuba 3.9 "
-                      "shows them), but not behind glass, however thin"}},
+                     hide_emitters_parameter()},
                     meaningless({"strict_normals"})})};
 }
 
