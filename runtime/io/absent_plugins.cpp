@@ -17,8 +17,8 @@ namespace {
 /// Of BSDFs that other renderers of such files have and this one has not: what looks most like them. Empty for others.
 std::string substitute_for(const std::string &type) {
     static const std::map<std::string, std::string> substitutes = {
-        {"coating", "plastic, of a diffuse base,"},
-        {"roughcoating", "roughplastic, of a diffuse base,"},
+        {"coating", "plastic, of a diffuse base, or principled with clearcoat 1, of a metal,"},
+        {"roughcoating", "roughplastic, of a diffuse base, or principled with clearcoat 1, of a metal,"},
         {"pplastic", "plastic"},
         {"polarizer", "null"},
         {"retarder", "null"},
@@ -43,7 +43,9 @@ bool is_of_mitsuba(const std::string &tag, const std::string &type) {
         {"shape", "ellipsoids"},     {"shape", "ellipsoidsmesh"},     {"sensor", "irradiancemeter"},
         {"sensor", "radiancemeter"}, {"sensor", "fluencemeter"},      {"sensor", "spherical"},
         {"sensor", "distant"},       {"sensor", "distantflux"},       {"sensor", "mradiancemeter"},
-        {"sensor", "batch"},         {"sensor", "perspective_rdist"}, {"sensor", "telecentric"}};
+        {"sensor", "batch"},         {"sensor", "perspective_rdist"}, {"sensor", "telecentric"},
+        {"texture", "volume"},       {"texture", "wireframe"},        {"texture", "gridtexture"},
+        {"texture", "curvature"}};
     return plugins.contains({tag, type});
 }
 
@@ -52,16 +54,17 @@ bool is_of_mitsuba(const std::string &tag, const std::string &type) {
 std::string unknown_plugin(const std::string &category, const std::string &type) {
     if (category == "spectrum")
         return "the spectrum \"" + type + "\" is not known here: write value=\"wavelength:value, ...\", or one of " +
-               "type d65, srgb or uniform";
+               "type blackbody, d65, srgb or uniform";
     const std::vector<std::string> known = plugin_names(category);
     std::string message =
         type.empty() ? "<" + category + "> needs a type" : "unknown " + category + " plugin \"" + type + "\"";
     const std::string substitute = category == "bsdf" ? substitute_for(type) : "";
-    if (is_of_mitsuba(category, type))
+    const bool is_absent = !substitute.empty() || is_of_mitsuba(category, type);
+    if (is_absent)
         message = "the " + category + " \"" + type + "\" is not supported";
     if (!substitute.empty())
         message += "; " + substitute + " is the nearest there is";
-    else if (const auto nearest = is_of_mitsuba(category, type) ? std::nullopt : nearest_name(type, known))
+    else if (const auto nearest = is_absent ? std::nullopt : nearest_name(type, known))
         message += "; did you mean \"" + *nearest + "\"?";
     return message + " (known: " + join(known) + ")";
 }

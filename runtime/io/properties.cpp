@@ -241,6 +241,10 @@ Matrix4 Properties::transform(const std::string &name) {
     const Element *property = find(declared(name, {Takes::transform}));
     if (!property)
         return {};
+    if (property->tag == "animation")
+        throw SceneError(property->location, "\"" + name +
+                                                 "\": motion is not supported; give one <transform>, such as " +
+                                                 "that of a keyframe of the <animation>");
     if (property->tag != "transform")
         throw SceneError(property->location, "\"" + name + "\" needs a <transform>, not a <" + property->tag + ">");
     return read_transform(*property, diagnostics_);

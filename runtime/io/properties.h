@@ -92,6 +92,7 @@ class Properties {
     double number_of(const Parameter &parameter, const Element *property);
     Double3 read_rgb(const std::string &text, const Parameter &parameter, const Location &location);
     Rgb read_spectrum(const Element &property, const std::string &name, ColorUse use);
+    Rgb read_black_body(const Element &property, const std::string &name, ColorUse use);
     /// The texture that stands for a parameter, or nullptr. A spectrum that is a plugin, <spectrum type="d65">, is one.
     const Element *texture_of(const Element &property);
     Color color_of_texture(const Element &texture, double highest);

@@ -1,4 +1,4 @@
-// Colours among the properties: <rgb>, <srgb>, <spectrum> and plain numbers.
+// Colours among the properties: <rgb>, <srgb>, <spectrum>, <blackbody> and plain numbers.
 #include "runtime/io/file_search.h"
 #include "runtime/io/properties.h"
 #include "runtime/io/text.h"
@@ -90,6 +90,22 @@ Rgb Properties::read_spectrum(const Element &property, const std::string &name, 
     return {float(tint.r * (*values)[0]), float(tint.g * (*values)[0]), float(tint.b * (*values)[0])};
 }
 
+/// <blackbody temperature="5000K" scale="1"/>, of 0.x.
+Rgb Properties::read_black_body(const Element &property, const std::string &name, ColorUse use) {
+    std::string text(trimmed(property.attribute_or("temperature", "")));
+    if (!text.empty() && (text.back() == 'K' || text.back() == 'k'))
+        text.pop_back();
+    const std::optional<double> temperature = parse_number(text),
+                                factor = parse_number(property.attribute_or("scale", "1"));
+    if (!temperature || *temperature <= 0 || !factor || *factor < 0)
+        throw SceneError(property.location, "\"" + name +
+                                                "\": a <blackbody> has a temperature in kelvins, as in "
+                                                "temperature=\"5000K\", and may have a scale");
+    const Rgb rgb = spectrum_to_rgb(black_body_spectrum(*temperature), use);
+    const auto by = float(*factor);
+    return {rgb.r * by, rgb.g * by, rgb.b * by};
+}
+
 Double3 Properties::read_rgb(const std::string &text, const Parameter &parameter, const Location &location) {
     if (const std::optional<Double3> hex = parse_hex_color(text))
         return *hex;
@@ -113,10 +129,13 @@ Rgb Properties::read_color(const Element &property, const Parameter &parameter, 
     }
     if (property.tag == "spectrum")
         return read_spectrum(property, name, use);
+    if (property.tag == "blackbody")
+        return read_black_body(property, name, use);
     const bool gamma_coded = property.tag == "srgb";
     if (property.tag != "rgb" && !gamma_coded && property.tag != "float" && property.tag != "integer")
-        throw SceneError(property.location, "\"" + name + "\" needs a colour (<rgb>, <srgb>, <spectrum> or <float>)," +
-                                                " not a <" + property.tag + ">");
+        throw SceneError(property.location,
+                         "\"" + name + "\" needs a colour (<rgb>, <srgb>, <spectrum>, <blackbody> or <float>)," +
+                             " not a <" + property.tag + ">");
     Double3 color = read_rgb(value_of(property), parameter, property.location);
     if (gamma_coded)
         for (double &value : color)

@@ -43,7 +43,10 @@ void SceneBuilder::check_children(const Element &element) {
                                        "string",  "float",   "integer",  "boolean",   "point",     "vector",
                                        "rgb",     "srgb",    "spectrum", "transform", "integrator"};
         std::string message = "unknown element <" + tag + ">";
-        if (const auto nearest = nearest_name(tag, known))
+        if (tag == "camera" || tag == "luminaire") // of 0.3 and before
+            message +=
+                std::string(", of versions before 0.4; it is a <") + (tag == "camera" ? "sensor" : "emitter") + "> now";
+        else if (const auto nearest = nearest_name(tag, known))
             message += "; did you mean <" + *nearest + ">?";
         diagnostics_.error(child.location, message);
     }

@@ -107,6 +107,7 @@ class SceneBuilder {
     const Element &resolve(const Element &reference);
     void build_sensor(const Element &element);
     void build_integrator(const Element &element);
+    const Element &innermost_integrator(const Element &element) const;
     struct ShapeInLine;
     /// A shape of a shapegroup.
     struct Prototype {

@@ -3,6 +3,8 @@
 #include "runtime/io/scene_builder.h"
 #include "runtime/io/text.h"
 
+#include <algorithm>
+
 namespace gradus {
 
 /// What an object of any type says that a plugin knows, the rest in silence.
@@ -13,6 +15,21 @@ Result SceneBuilder::read_as(const Element &element, const std::string &type) {
     return plugin.build(properties, *this);
 }
 
+/// What is wrapped by integrators that we do not have, which add layers or moments to another one's image; or the
+/// element itself.
+const Element &SceneBuilder::innermost_integrator(const Element &element) const {
+    const Element *innermost = &element;
+    std::vector<const Element *> seen; // one that contains itself through a <ref> ends there
+    while (!find_plugin<RenderSettings>(type_of(*innermost)) && std::ranges::count(seen, innermost) == 0) {
+        const std::vector<NestedObject> nested = nested_objects(*innermost, "integrator", resolve_);
+        if (nested.empty())
+            break;
+        seen.push_back(innermost);
+        innermost = nested.front().element;
+    }
+    return *innermost;
+}
+
 void SceneBuilder::build_integrator(const Element &element) {
     if (integrator_) {
         diagnostics_.warn(element.location,
@@ -21,14 +38,18 @@ void SceneBuilder::build_integrator(const Element &element) {
     }
     integrator_ = &element;
     const std::uint64_t samples = scene_.settings.samples_per_pixel;
-    if (find_plugin<RenderSettings>(type_of(element))) {
-        scene_.settings = build_object<RenderSettings>(element);
+    const Element &paths = innermost_integrator(element);
+    const std::string type = type_of(paths);
+    if (&paths != &element)
+        diagnostics_.warn(element.location, "the integrator \"" + type_of(element) + "\" is passed over: the \"" +
+                                                type + "\" that it wraps says what paths are made");
+    if (find_plugin<RenderSettings>(type)) {
+        scene_.settings = build_object<RenderSettings>(paths);
     } else {
-        // Of an integrator that we do not have, the depths still count: on itself or on the one that it wraps.
-        std::string message = "the integrator \"" + type_of(element) + "\" is not known here; the method decides";
-        diagnostics_.warn(element.location, message + " (known: " + join(plugin_names("integrator")) + ")");
-        const std::vector<NestedObject> nested = nested_objects(element, "integrator", resolve_);
-        scene_.settings = read_as<RenderSettings>(nested.empty() ? element : *nested.front().element, "path");
+        // Of an integrator that we do not have, the depths still count.
+        diagnostics_.warn(paths.location, "the integrator \"" + type + "\" is not known here; the method decides" +
+                                              " (known: " + join(plugin_names("integrator")) + ")");
+        scene_.settings = read_as<RenderSettings>(paths, "path");
     }
     scene_.settings.integrator = type_of(element);
     scene_.settings.samples_per_pixel = samples;
@@ -45,8 +66,9 @@ void SceneBuilder::build_sensor(const Element &element) {
         const Element &film = *films.front().element;
         const std::string type = type_of(film);
         if (!type.empty() && !find_plugin<FilmSettings>(type)) {
-            // Of a film that we do not have, size, crop and filter still count.
-            diagnostics_.warn(film.location, "the film \"" + type + "\" is not known here; it is read as hdrfilm");
+            // Of a film that we do not have, size, crop and filter still count. One for display loses nothing.
+            if (type != "ldrfilm")
+                diagnostics_.warn(film.location, "the film \"" + type + "\" is not known here; it is read as hdrfilm");
             scene_.film = read_as<FilmSettings>(film, "hdrfilm");
         } else {
             scene_.film = build_object<FilmSettings>(film);

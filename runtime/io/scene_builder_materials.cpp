@@ -19,7 +19,11 @@ void SceneBuilder::check_unused_bsdf(const Element &element) {
 std::uint32_t SceneBuilder::material_of(const Element &shape) {
     const std::vector<NestedObject> bsdfs = nested_objects(shape, "bsdf", resolve_);
     if (bsdfs.size() > 1)
-        throw SceneError(bsdfs[1].location, "a shape has one BSDF; this is its second");
+        throw SceneError(bsdfs[1].location,
+                         std::string("a shape has one BSDF; this is its second") +
+                             (type_of(shape) == "obj" ? ": BSDFs for the materials that an OBJ file names are not "
+                                                        "supported, a file for each would be"
+                                                      : ""));
     if (bsdfs.empty()) {
         // Mitsuba 3's defaults: half of the light is reflected, but nothing by a shape that emits.
         const bool emits = !nested_objects(shape, "emitter", resolve_).empty();

@@ -137,6 +137,8 @@ void SceneBuilder::build_line(std::deque<ShapeInLine> &line, std::vector<Prototy
             SerializedMesh mesh = pending.read();
             shape.unfolded_bytes = mesh.unfolded_bytes;
             pending.options.face_normals |= mesh.face_normals;
+            if (!mesh.warning.empty())
+                shape.messages.push_back({Diagnostics::Held::Kind::warning, shape.element->location, mesh.warning});
             shape.geometry = build_mesh(std::move(mesh.mesh), pending.to_world, pending.options);
         } catch (const SceneError &error) {
             shape.error = error;
@@ -151,10 +153,10 @@ void SceneBuilder::build_line(std::deque<ShapeInLine> &line, std::vector<Prototy
         }
     });
     for (ShapeInLine &shape : line) {
+        if (!shape.error && std::holds_alternative<PendingMesh>(shape.geometry))
+            read(shape);
         diagnostics_.replay(shape.messages);
         try {
-            if (!shape.error && std::holds_alternative<PendingMesh>(shape.geometry))
-                read(shape);
             if (shape.error)
                 throw *shape.error;
             count_mesh_bytes(shape.unfolded_bytes, shape.element->location);

@@ -98,6 +98,20 @@ Rgb spectrum_to_rgb(const SampledSpectrum &spectrum, ColorUse use) {
     return {float(std::max(rgb[0], 0.0)), float(std::max(rgb[1], 0.0)), float(std::max(rgb[2], 0.0))};
 }
 
+SampledSpectrum black_body_spectrum(double temperature) {
+    // Planck's law; the constants are exact by the definition of the units of 2019.
+    constexpr double light_speed = 299792458, planck = 6.62607015e-34, boltzmann = 1.380649e-23;
+    constexpr double per_nanometre = 1e-9, step = 1; // nm
+    SampledSpectrum spectrum;
+    for (double nanometres = first_wavelength; nanometres <= last_wavelength; nanometres += step) {
+        const double wavelength = nanometres * 1e-9;
+        const double photon = planck * light_speed / wavelength; // J
+        spectrum.emplace_back(nanometres, 2 * photon * light_speed / std::pow(wavelength, 4) /
+                                              std::expm1(photon / (boltzmann * temperature)) * per_nanometre);
+    }
+    return spectrum;
+}
+
 double srgb_to_linear(double value) {
     return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
 }

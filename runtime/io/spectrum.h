@@ -20,6 +20,10 @@ using SampledSpectrum = std::vector<std::pair<double, double>>;
 /// out of gamut are clamped to non-negative components.
 Rgb spectrum_to_rgb(const SampledSpectrum &spectrum, ColorUse use);
 
+/// What a black body radiates, by Planck's law, where the observer sees anything. temperature: in kelvins, above 0.
+/// Values in W / (m² sr nm).
+SampledSpectrum black_body_spectrum(double temperature);
+
 /// One component of gamma-coded sRGB (IEC 61966-2-1) to linear; both in [0, 1].
 double srgb_to_linear(double value);
 

@@ -14,7 +14,7 @@ Declaration declare_film_hdrfilm() {
                  Parameter{"crop_width", Takes::integer, nullptr, ""}.in("pixels").or_else("the rest"),
                  Parameter{"crop_height", Takes::integer, nullptr, ""}.in("pixels").or_else("the rest"),
                  {"rfilter", Takes::objects, nullptr, "one, or a Gaussian"}},
-                meaningless({"file_format", "pixel_format", "component_format", "banner", "attach_log",
+                meaningless({"filename", "file_format", "pixel_format", "component_format", "banner", "attach_log",
                              "high_quality_edges", "sample_border", "compensate", "exposure", "gamma",
                              "tonemap_method"})})};
 }

@@ -19,7 +19,9 @@ ParameterList parameters_of_roughness() {
             .at_most(most_alpha)
             .raised_to(least_alpha);
     };
-    return joined({{Parameter{"distribution", Takes::choice, "beckmann", "of the microfacets"}.of({"beckmann", "ggx"}),
+    return joined({{Parameter{"distribution", Takes::choice, "beckmann",
+                              "of the microfacets; phong and as, of 0.x, are read as beckmann of the same alpha"}
+                        .of({"beckmann", "ggx", "phong", "as"}),
                     roughness("alpha", "0.1", "roughness; below 1e-4 it is 1e-4"),
                     roughness("alpha_u", nullptr, "roughness along dp/du").as("alpha"),
                     roughness("alpha_v", nullptr, "roughness across it").as("alpha")},
@@ -31,7 +33,11 @@ ParameterList roughness_left_over() { return meaningless({"alpha", "distribution
 Microfacet read_roughness(Properties &properties, Bsdf &bsdf) {
     bsdf.alpha_u = properties.textured_number("alpha_u");
     bsdf.alpha_v = properties.textured_number("alpha_v");
-    return properties.choice("distribution") == "ggx" ? Microfacet::ggx : Microfacet::beckmann;
+    const std::string distribution = properties.choice("distribution");
+    if (distribution == "phong" || distribution == "as")
+        properties.diagnostics().warn(properties.location_of("distribution"),
+                                      "the distribution \"" + distribution + "\" is read as beckmann");
+    return distribution == "ggx" ? Microfacet::ggx : Microfacet::beckmann;
 }
 
 ParameterList parameters_of_dielectric() {

@@ -29,6 +29,10 @@ ParameterList parameters_of_meshes() {
     ParameterList list = parameters_of_any_shape();
     std::erase_if(list, [](const Parameter &parameter) { return parameter.name == "face_normals"; });
     list.push_back({"face_normals", Takes::boolean, "false", "flat triangles, whatever normals there are"});
+    list.push_back(Parameter{"max_smooth_angle", Takes::number, nullptr, "left out, with a warning"}
+                       .in("degrees")
+                       .or_else("normals stay")
+                       .of_before_2());
     return list;
 }
 
@@ -38,6 +42,9 @@ BuiltMesh build_shape_mesh(Properties &properties, Mesh mesh, MeshOptions option
 }
 
 PendingMesh pending_shape_mesh(Properties &properties, std::function<SerializedMesh()> read) {
+    if (properties.has("max_smooth_angle"))
+        properties.diagnostics().warn(properties.location_of("max_smooth_angle"),
+                                      "\"max_smooth_angle\" is not supported: normals stay as they are");
     PendingMesh mesh{std::move(read), {}, {}};
     mesh.to_world = read_placement(properties, mesh.options);
     return mesh;

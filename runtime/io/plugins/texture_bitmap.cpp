@@ -20,8 +20,8 @@ Declaration declare_texture_bitmap() {
                            "PNG, JPEG, TGA, EXR, HDR and what else OpenImageIO reads"}
                      .required(),
                  Parameter{"filter_type", Takes::choice, "bilinear",
-                           "between texels; trilinear and ewa are read as bilinear"}
-                     .of({"bilinear", "nearest", "trilinear", "ewa"}),
+                           "between texels; trilinear, ewa and anisotropic are read as bilinear"}
+                     .of({"bilinear", "nearest", "trilinear", "ewa", "anisotropic"}),
                  Parameter{"wrap_mode", Takes::choice, "repeat", "beyond [0, 1]²"}.of({"repeat", "mirror", "clamp"}),
                  Parameter{"wrap_mode_u", Takes::choice, nullptr, "along u"}
                      .as("wrap_mode")
