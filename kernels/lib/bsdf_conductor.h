@@ -29,6 +29,7 @@ GRADUS_FN bsdf_sample conductor_sample(material m, vec3 wi, real u_lobe, real u1
     sample.pdf = is_valid;
     sample.pdf_reverse = is_valid;
     sample.eta = R(1);
+    sample.lobe_weight = R(1);
     sample.is_specular = 1;
     return sample;
 }

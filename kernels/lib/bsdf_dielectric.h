@@ -28,8 +28,9 @@ GRADUS_FN bsdf_sample dielectric_sample(material m, vec3 wi, real u_lobe, real u
     const rgb transmitted = rgb_scale(material_specular_transmittance(m), transport_scale(inverse_eta, mode));
     const real share = is_reflected ? fresnel.reflectance : R(1) - fresnel.reflectance;
     sample.pdf = is_reflected ? chance : R(1) - chance;
-    sample.weight = rgb_scale(rgb_select(is_reflected, material_specular_reflectance(m), transmitted),
-                              share == sample.pdf ? R(1) : share / r_max(sample.pdf, R(1e-6)));
+    sample.lobe_weight = lobe_weight(share, sample.pdf);
+    sample.weight =
+        rgb_scale(rgb_select(is_reflected, material_specular_reflectance(m), transmitted), sample.lobe_weight);
     /* Fresnel's reflectance is the same from both sides of a refracted ray. */
     sample.pdf_reverse = sample.pdf;
     sample.eta = is_reflected ? R(1) : eta;

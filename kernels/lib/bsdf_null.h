@@ -18,6 +18,7 @@ GRADUS_FN bsdf_sample null_sample(material m, vec3 wi, real u_lobe, real u1, rea
     sample.pdf = R(1);
     sample.pdf_reverse = R(1);
     sample.eta = R(1);
+    sample.lobe_weight = R(1);
     sample.is_specular = 1;
     return sample;
 }

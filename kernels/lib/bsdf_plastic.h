@@ -53,6 +53,7 @@ GRADUS_FN bsdf_sample plastic_sample(material m, vec3 wi, real u_lobe, real u1, 
     /* The way back meets the coat at the same cosine. */
     sample.pdf_reverse = is_mirrored ? mirrored_pdf : terms.rough.pdf_reverse;
     sample.eta = R(1);
+    sample.lobe_weight = R(1);
     sample.is_specular = is_mirrored;
     return sample;
 }

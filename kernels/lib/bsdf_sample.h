@@ -32,6 +32,8 @@ typedef struct {
     real pdf;         /* by solid angle; of a Dirac lobe its probability; 0: no sample, weight is 0 too */
     real pdf_reverse; /* of wi, given wo; likewise */
     real eta;         /* index on wo's side over the index on wi's side; 1 for reflection */
+    real lobe_weight; /* share of the light that the lobe takes over its probability; 1 unless the choice is stratified
+                       * (kernels/lib/lobe_chance.h); a factor of weight */
     int is_specular;  /* whether wo came from a Dirac lobe */
     GRADUS_NOT_IN_REGISTERS
 } bsdf_sample;
@@ -59,6 +61,7 @@ GRADUS_FN bsdf_sample bsdf_sample_if(int is_valid, vec3 wo, bsdf_terms terms, re
     sample.pdf = is_valid ? terms.pdf : R(0);
     sample.pdf_reverse = is_valid ? terms.pdf_reverse : R(0);
     sample.eta = eta;
+    sample.lobe_weight = R(1);
     sample.is_specular = 0;
     return sample;
 }
@@ -71,6 +74,7 @@ GRADUS_FN bsdf_sample bsdf_sample_of(vec3 wo, bsdf_terms terms) {
     sample.pdf = terms.pdf;
     sample.pdf_reverse = terms.pdf_reverse;
     sample.eta = R(1);
+    sample.lobe_weight = R(1);
     sample.is_specular = 0;
     return sample;
 }

@@ -27,6 +27,7 @@ GRADUS_FN bsdf_value specular_evaluate(material m, vec3 wi, vec3 wo, int mode) {
         sample.pdf = is_other ? other.pdf : sample.pdf;                                                                \
         sample.pdf_reverse = is_other ? other.pdf_reverse : sample.pdf_reverse;                                        \
         sample.eta = is_other ? other.eta : sample.eta;                                                                \
+        sample.lobe_weight = is_other ? other.lobe_weight : sample.lobe_weight;                                        \
     }
 GRADUS_FN bsdf_sample specular_sample(material m, vec3 wi, real u_lobe, real u1, real u2, int mode) {
     bsdf_sample sample;
@@ -35,6 +36,7 @@ GRADUS_FN bsdf_sample specular_sample(material m, vec3 wi, real u_lobe, real u1,
     sample.pdf = R(0);
     sample.pdf_reverse = R(0);
     sample.eta = R(1);
+    sample.lobe_weight = R(1);
     sample.is_specular = 1;
     GRADUS_BSDF_KINDS(GRADUS_TAKE_SAMPLE)
     return sample;

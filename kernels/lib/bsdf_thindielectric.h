@@ -28,9 +28,10 @@ GRADUS_FN bsdf_sample thindielectric_sample(material m, vec3 wi, real u_lobe, re
     const real share = is_reflected ? reflectance : R(1) - reflectance;
     sample.wo = v3(-wi.x, -wi.y, is_reflected ? wi.z : -wi.z);
     sample.pdf = is_reflected ? chance : R(1) - chance;
+    sample.lobe_weight = lobe_weight(share, sample.pdf);
     sample.weight =
         rgb_scale(rgb_select(is_reflected, material_specular_reflectance(m), material_specular_transmittance(m)),
-                  share == sample.pdf ? R(1) : share / r_max(sample.pdf, R(1e-6)));
+                  sample.lobe_weight);
     sample.pdf_reverse = sample.pdf;
     sample.eta = R(1);
     sample.is_specular = 1;

@@ -30,5 +30,8 @@ GRADUS_FN real reflection_chance(real reflectance, int is_from_camera) {
 #endif
 }
 
+/* Of a lobe that takes this share of the light. */
+GRADUS_FN real lobe_weight(real share, real chance) { return share == chance ? R(1) : share / r_max(chance, R(1e-6)); }
+
 GRADUS_LIB_END
 #endif

@@ -2,12 +2,26 @@
  * perfect mirror, glass or hole: through these one sees what lies behind, and its edges and textures are the image's.
  * Albedo is times what mirrors and glass let pass, depth is the length of the way.
  *
+ * A path is to count by the share of the light that it stands for. Where smooth interfaces choose by other chances
+ * (kernels/lib/lobe_chance.h) `weight` makes up for that: who sums features multiplies by it.
+ *
  * TRAIT_AOV: 1 where the scene has no such surface, else 2. Then, as long as a path has met nothing else, its depth is
  * minus the way so far, and the rest is of the first surface: a chain that ends so, in the sky say, shows that. */
 #ifndef GRADUS_LIB_SEEN_FEATURES_H
 #define GRADUS_LIB_SEEN_FEATURES_H
-//! traits: TRAIT_AOV
+//! traits: TRAIT_AOV TRAIT_LOBE_LEVELS
 #include "kernels/lib/vector.h"
+
+#if TRAIT_LOBE_LEVELS && TRAIT_AOV == 2
+#define SEEN_WEIGHT(slot) AT(feature, weight, slot)
+/* Of a vertex where the path is in a chain of mirrors and glass, after SET_SEEN_FEATURES. */
+#define SET_SEEN_WEIGHT(slot, lobe_weight)                                                                             \
+    if (AT(feature, depth, slot) < R(0))                                                                               \
+        AT(feature, weight, slot) *= lobe_weight;
+#else
+#define SEEN_WEIGHT(slot) R(1)
+#define SET_SEEN_WEIGHT(slot, lobe_weight)
+#endif
 
 /* Of a path's vertex; `vertices` are those before it, `from_last` the way from the last one or the camera, and
  * `passed` the throughput so far. */
@@ -19,7 +33,7 @@
             const real way = (from_last)-way_before;                                                                   \
             AT(feature, depth, slot) = (is_dirac) ? -way : way;                                                        \
             if (!(is_dirac) || (vertices) == 0u) {                                                                     \
-                const rgb through = rgb_mul(albedo_here, passed);                                                      \
+                const rgb through = rgb_scale(rgb_mul(albedo_here, passed), R(1) / r_max(SEEN_WEIGHT(slot), R(1e-6))); \
                 const rgb seen = rgb3(r_min(through.r, R(1)), r_min(through.g, R(1)), r_min(through.b, R(1)));         \
                 SET_RGB(feature, albedo, slot, seen);                                                                  \
                 SET_V3(feature, normal, slot, normal_here);                                                            \

@@ -89,7 +89,8 @@
     REAL(feature, normal_x, "shading normal towards the camera, world frame")                                          \
     REAL(feature, normal_y, "")                                                                                        \
     REAL(feature, normal_z, "")                                                                                        \
-    REAL(feature, depth, "length of the way from the camera; negative where mirrors and glass alone were met")
+    REAL(feature, depth, "length of the way from the camera; negative where mirrors and glass alone were met")         \
+    REAL(feature, weight, "how many paths it counts as")
 
 /* Sums over the samples of each pixel of the crop. The sums are compensated (sum + correction is the value), so that
  * many samples lose nothing; they are added in the order of the samples, whatever the batches are. */

@@ -1,10 +1,11 @@
 /* accumulate: adds one sample to each of `count` pixels from `first_pixel` on: slots `first_slot` on. A sample with a
  * NaN or an infinity is left out and counted. Samples of filters with negative lobes have a weight. Squares are summed
  * where the spread of the samples is to tell the variance: not where replicates do, the films of which are many. */
-//! traits: TRAIT_AOV TRAIT_FILTER_SIGNED TRAIT_PART_BITS
+//! traits: TRAIT_AOV TRAIT_LOBE_LEVELS TRAIT_FILTER_SIGNED TRAIT_PART_BITS
 #include "kernels/lib/compensated.h"
 #include "kernels/lib/filter_weight.h"
 #include "kernels/lib/finite.h"
+#include "kernels/lib/seen_features.h"
 #include "kernels/shared/stage.h"
 
 #define ADD(table, column, correction_column, x)                                                                       \
@@ -36,10 +37,11 @@ STAGE accumulate(uint count, uint slots, uint pixels, uint first_slot, uint firs
     rgb value = AT_RGB(radiance, value, slot);
     value = rgb3(WEIGHTED(value.r), WEIGHTED(value.g), WEIGHTED(value.b));
 #if TRAIT_AOV
-    const rgb albedo = AT_RGB(feature, albedo, slot);
-    const vec3 normal = AT_V3(feature, normal, slot);
+    const real counts = SEEN_WEIGHT(slot);
+    const rgb albedo = rgb_scale(AT_RGB(feature, albedo, slot), counts);
+    const vec3 normal = v3_scale(AT_V3(feature, normal, slot), counts);
     /* Negative where a path has met mirrors and glass alone. */
-    const real depth = r_abs(AT(feature, depth, slot));
+    const real depth = r_abs(AT(feature, depth, slot)) * counts;
 #endif
     const int finite = is_finite(value.r) && is_finite(value.g) && is_finite(value.b);
     value = rgb3(finite ? value.r : R(0), finite ? value.g : R(0), finite ? value.b : R(0));

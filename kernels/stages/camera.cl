@@ -130,5 +130,6 @@ STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ra
     SET_RGB(feature, albedo, slot, rgb_gray(R(0)));
     SET_V3(feature, normal, slot, v3(R(0), R(0), R(0)));
     AT(feature, depth, slot) = R(0);
+    AT(feature, weight, slot) = R(1);
 #endif
 }

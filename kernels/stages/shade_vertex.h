@@ -135,6 +135,9 @@ STAGE shade(
     const bsdf_sample sampled = PASTE(BSDF, _sample)(m, wi, u.a, u.b, u.c, transport_radiance);
     const bsdf_sample s = MAPPED_SAMPLE(place, sampled);
     const rgb scattered = rgb_mul(throughput, s.weight);
+#if TRAIT_AOV && BSDF_IS_DIRAC
+    SET_SEEN_WEIGHT(slot, s.lobe_weight)
+#endif
     real eta = R(1);
 #if TRAIT_REFRACTION
     eta = eta_before * s.eta;

@@ -32,6 +32,7 @@ std::string file(const std::string &name) { return named("string", "filename", n
 const std::map<std::string, std::string> needed = {
     {"bsdf blendbsdf", diffuse + metal},
     {"bsdf bumpmap", picture + diffuse},
+    {"bsdf mixturebsdf", named("string", "weights", "0.25 0.75") + diffuse + metal},
     {"bsdf normalmap", picture + diffuse},
     {"bsdf mask", diffuse},
     {"bsdf twosided", diffuse},
@@ -45,6 +46,7 @@ const std::map<std::string, std::string> needed = {
     {"shape ply", file("a.ply")},
     {"shape serialized", file("a.serialized")},
     {"texture bitmap", file("a.png")},
+    {"texture blackbody", named("float", "temperature", "1500")},
     {"texture mesh_attribute", named("string", "name", "vertex_color")},
     {"texture scale", board},
 };
@@ -68,6 +70,7 @@ const std::map<std::string, std::string> beside = {
 const std::map<std::string, std::string> instead = {
     {"bsdf blendbsdf bsdf", metal + metal},
     {"bsdf bumpmap texture", board + diffuse},
+    {"bsdf mixturebsdf bsdf", named("string", "weights", "0.25 0.75") + metal + metal},
     {"bsdf bumpmap bsdf", picture + metal},
     {"bsdf normalmap texture", board + diffuse},
     {"bsdf normalmap bsdf", picture + metal},
@@ -87,6 +90,7 @@ const std::map<std::string, std::string> values = {
     {"bsdf roughconductor k", named("spectrum", "k", "2") + named("float", "eta", "0")},
     {"bsdf conductor material", named("string", "material", "Al")},
     {"bsdf roughconductor material", named("string", "material", "Al")},
+    {"bsdf mixturebsdf weights", named("string", "weights", "0.5 0.25") + diffuse + metal},
     {"bsdf roughplastic alpha_u", named("float", "alpha_u", "0.3") + named("float", "alpha_v", "0.3")},
     {"bsdf roughplastic alpha_v", named("float", "alpha_v", "0.3") + named("float", "alpha_u", "0.3")},
     {"emitter projector focal_length", named("string", "focal_length", "80mm")},

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <map>
 
 namespace gradus {
 namespace {
@@ -134,6 +136,17 @@ TEST(BsdfPlugin, TwoSidesOfOtherKinds) {
     EXPECT_THROW(material_of("<bsdf type=\"twosided\"><bsdf type=\"principledthin\"/></bsdf>"), Error);
 }
 
+TEST(BsdfPlugin, DistributionsOf0xAreReadAsBeckmann) {
+    for (const std::string name : {"phong", "as"}) {
+        const LoadedScene loaded = load_text(
+            scene_around("<shape type=\"cube\"><bsdf type=\"roughdielectric\"><string name=\"distribution\" value=\"" +
+                             name + "\"/></bsdf></shape><emitter type=\"constant\"/>",
+                         "0.6.0", ""));
+        EXPECT_THAT(loaded.warnings, ElementsAre(HasSubstr("\"" + name + "\" is read as beckmann")));
+        EXPECT_EQ(loaded.scene.materials.at(0).front.kind, BsdfKind::roughdielectric_beckmann);
+    }
+}
+
 TEST(BsdfPlugin, NamesTheNearestOfKindsThatAreNotThere) {
     for (const auto &[kind, near] :
          {std::pair{"coating", "plastic"}, {"difftrans", "principledthin"}, {"hk", "principledthin"}}) {
@@ -145,6 +158,40 @@ TEST(BsdfPlugin, NamesTheNearestOfKindsThatAreNotThere) {
 Scene cube_scene(const std::string &bsdf) {
     return load_text(scene_around("<shape type=\"cube\">" + bsdf + "</shape><emitter type=\"constant\"/>", "3.0.0", ""))
         .scene;
+}
+
+TEST(BsdfPlugin, MixturesAreBlendsInBlends) {
+    const auto mixture = [](const std::string &weights) {
+        std::string text = "<bsdf type=\"mixturebsdf\"><string name=\"weights\" value=\"" + weights + "\"/>";
+        for (const char *albedo : {"0.1", "0.2", "0.3"})
+            text += std::string("<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"") + albedo + "\"/></bsdf>";
+        return cube_scene(text + "</bsdf>");
+    };
+    // Share of each albedo.
+    const auto shares = [](const Scene &scene) {
+        std::map<float, double> found;
+        const std::function<void(const Bsdf &, double)> add = [&](const Bsdf &bsdf, double share) {
+            if (bsdf.blend == no_blend) {
+                found[bsdf.reflectance.r] += share;
+                return;
+            }
+            const gradus::Blend &blend = scene.blends.at(std::size_t(bsdf.blend));
+            add(scene.blended.at(blend.first), share * (1 - blend.weight));
+            add(scene.blended.at(blend.second), share * blend.weight);
+        };
+        add(scene.materials.at(0).front, 1);
+        return found;
+    };
+    const std::map<float, double> whole = shares(mixture("0.5, 0.3; 0.2"));
+    EXPECT_NEAR(whole.at(0.1f), 0.5, 1e-6);
+    EXPECT_NEAR(whole.at(0.2f), 0.3, 1e-6);
+    EXPECT_NEAR(whole.at(0.3f), 0.2, 1e-6);
+    const std::map<float, double> lacking = shares(mixture("0.5 0 0.2"));
+    EXPECT_EQ(lacking.size(), 3u);
+    EXPECT_NEAR(lacking.at(0.1f), 0.5, 1e-6);
+    EXPECT_NEAR(lacking.at(0.3f), 0.2, 1e-6);
+    EXPECT_NEAR(lacking.at(0), 0.3, 1e-6);
+    EXPECT_NEAR(shares(mixture("1 2 1")).at(0.2f), 0.5, 1e-6);
 }
 
 TEST(BsdfPlugin, Blend) {
@@ -796,7 +843,7 @@ TEST(FilterPlugin, UnknownKindsWarnAndAreGaussian) {
 }
 
 TEST(FilmPlugin, OtherKindsWarnAndKeepSizeCropAndFilter) {
-    for (const char *type : {"ldrfilm", "specfilm", "mfilm", "tiledhdrfilm", "multichannel"}) {
+    for (const char *type : {"specfilm", "mfilm", "tiledhdrfilm", "multichannel"}) {
         const LoadedScene loaded =
             load_text(std::string("<scene version=\"0.6.0\"><sensor type=\"perspective\">\n<film type=\"") + type +
                       "\"><integer name=\"width\" value=\"40\"/><integer name=\"cropWidth\" value=\"20\"/><string "
@@ -807,6 +854,14 @@ TEST(FilmPlugin, OtherKindsWarnAndKeepSizeCropAndFilter) {
         EXPECT_EQ(loaded.scene.film.crop_width, 20u);
         EXPECT_EQ(loaded.scene.film.filter, FilmSettings::Filter::box);
     }
+}
+
+TEST(FilmPlugin, OneForDisplayIsReadInSilence) {
+    const LoadedScene loaded =
+        load_text("<scene version=\"0.6.0\"><sensor type=\"perspective\"><film type=\"ldrfilm\"><integer "
+                  "name=\"width\" value=\"40\"/></film></sensor><emitter type=\"constant\"/></scene>");
+    EXPECT_THAT(loaded.warnings, IsEmpty());
+    EXPECT_EQ(loaded.scene.film.width, 40u);
 }
 
 TEST(SamplerPlugin, OfAnyKindItsCountIsTaken) {
@@ -872,6 +927,23 @@ TEST(IntegratorPlugin, UnknownKindsWarnAndKeepTheirDepths) {
         "<integrator type=\"aov\"><integrator type=\"path\"><integer name=\"max_depth\" value=\"3\"/></integrator>"
         "</integrator><emitter type=\"constant\"/>"));
     EXPECT_EQ(wrapped.scene.settings.max_depth, 3);
+    EXPECT_THAT(wrapped.warnings, ElementsAre(HasSubstr("\"aov\" is passed over: the \"path\" that it wraps")));
+}
+
+TEST(IntegratorPlugin, WhatIsWrappedIsReadAsItsOwnKind) {
+    const auto settings = [](const std::string &integrator) {
+        return load_text(scene_around(integrator + "<emitter type=\"constant\"/>")).scene.settings;
+    };
+    const std::string direct = "<integrator type=\"direct\"/>";
+    EXPECT_EQ(settings("<integrator type=\"aov\">" + direct + "</integrator>").max_depth, 2);
+    EXPECT_EQ(settings("<integrator type=\"moment\"><integrator type=\"aov\">" + direct + "</integrator></integrator>")
+                  .max_depth,
+              2);
+    EXPECT_EQ(settings("<integrator type=\"aov\"><integrator type=\"theirs\"><integer name=\"max_depth\" "
+                       "value=\"4\"/></integrator></integrator>")
+                  .max_depth,
+              4);
+    EXPECT_EQ(settings("<integrator type=\"aov\" id=\"it\"><ref id=\"it\"/></integrator>").max_depth, -1);
 }
 
 } // namespace

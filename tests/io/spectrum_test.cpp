@@ -47,6 +47,32 @@ TEST(Spectrum, LuminanceOfALineIsTheObservers) {
     EXPECT_NEAR(rgb.g, green, 0.01 * green);
 }
 
+TEST(Spectrum, BlackBodies) {
+    // The candela was once defined by platinum that freezes, at 2042 K: 60 cd / cm². 683 lm / W is the luminous
+    // efficacy at the observer's peak.
+    const Rgb platinum = spectrum_to_rgb(black_body_spectrum(2042), ColorUse::emission);
+    const double luminance = 683.0 * 106.857 * (0.2126 * platinum.r + 0.7152 * platinum.g + 0.0722 * platinum.b);
+    EXPECT_NEAR(luminance, 60e4, 0.015 * 60e4);
+    // Of 5000 K: x = 0.3451, y = 0.3516 (Wyszecki and Stiles 1982, the Planckian locus), times the matrix of sRGB.
+    const Rgb warm = spectrum_to_rgb(black_body_spectrum(5000), ColorUse::emission);
+    EXPECT_NEAR(warm.r / warm.g, 1.263, 0.01);
+    EXPECT_NEAR(warm.b / warm.g, 0.794, 0.01);
+}
+
+TEST(Spectrum, BlackBodiesInBothDialects) {
+    const Emitter old = load_text(scene_around("<emitter type=\"constant\"><blackbody name=\"radiance\" "
+                                               "temperature=\"5000K\" scale=\"2\"/></emitter>",
+                                               "0.6.0"))
+                            .scene.emitters.at(0);
+    const Emitter now = load_text(scene_around("<emitter type=\"constant\"><spectrum type=\"blackbody\" "
+                                               "name=\"radiance\"><float name=\"temperature\" value=\"5000\"/>"
+                                               "</spectrum></emitter>"))
+                            .scene.emitters.at(0);
+    const Rgb expected = spectrum_to_rgb(black_body_spectrum(5000), ColorUse::emission);
+    expect_rgb(now.value, expected.r, expected.g, expected.b, 1e-6 * expected.r);
+    expect_rgb(old.value, 2 * expected.r, 2 * expected.g, 2 * expected.b, 1e-6 * expected.r);
+}
+
 TEST(Spectrum, GammaCurve) {
     EXPECT_DOUBLE_EQ(srgb_to_linear(0), 0);
     EXPECT_NEAR(srgb_to_linear(1), 1, 1e-12);

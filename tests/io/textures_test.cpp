@@ -209,8 +209,8 @@ TEST(TextureOfOneColor, IsANumber) {
         expect_rgb(metal.k, 0.1, 0.2, 0.3);
     }
     EXPECT_THAT(error_of_text(scene_around("<shape type='cube'><bsdf type='diffuse'>" +
-                                           named("spectrum", "reflectance", "'blackbody'>") + "</bsdf></shape>")),
-                HasSubstr("the spectrum \"blackbody\" is not known here"));
+                                           named("spectrum", "reflectance", "'irregular'>") + "</bsdf></shape>")),
+                HasSubstr("the spectrum \"irregular\" is not known here"));
     EXPECT_THAT(error_of_text(scene_around("<emitter type='point'>" + named("texture", "intensity", "'checkerboard'>") +
                                            "</emitter>")),
                 HasSubstr("cannot be a texture"));
@@ -280,7 +280,7 @@ TEST_F(TexturePlugin, Errors) {
     folder_.write("bad.png", "\x89PNG\r\n\x1a\nnothing");
     EXPECT_THAT(error(bitmap_text("bad.png")), HasSubstr("cannot read the texture"));
     EXPECT_THAT(error(bitmap_text("a.png", "<string name=\"filter_type\" value=\"cubic\"/>")),
-                HasSubstr("unknown filter_type \"cubic\" (known: bilinear, nearest, trilinear, ewa)"));
+                HasSubstr("unknown filter_type \"cubic\" (known: bilinear, nearest, trilinear, ewa, anisotropic)"));
     EXPECT_THAT(error(bitmap_text("a.png", "<string name=\"wrap_mode\" value=\"zero\"/>")),
                 HasSubstr("unknown wrap_mode \"zero\" (known: repeat, mirror, clamp)"));
     EXPECT_THAT(error("<texture type=\"bitmep\"/>"), HasSubstr("did you mean \"bitmap\"?"));

@@ -14,8 +14,8 @@ class SeenFeatures : public ::testing::TestWithParam<const char *> {
     /// A camera at z = 4 looks down at a surface at z = 0; six above that, where x < 0, hangs a wall of albedo 0.8.
     static Image image_with(const Bsdf &surface) { return render_of(surface, false).image; }
     /// `clipped`: with something before the camera, which its near plane hides.
-    static Rendered render_of(const Bsdf &surface, bool clipped) {
-        SceneMaker maker(size, 2);
+    static Rendered render_of(const Bsdf &surface, bool clipped, std::uint64_t samples = 2) {
+        SceneMaker maker(size, samples);
         maker.look({0, 0, 4}, {0, 0, 0}, 4);
         maker.parallelogram({-9, -9, 6}, {0, 18, 0}, {9, 0, 0}, maker.material(diffuse(0.8)));
         maker.parallelogram({-9, -9, -2}, {18, 0, 0}, {0, 18, 0}, maker.material(diffuse(0.3)));
@@ -59,6 +59,19 @@ TEST_P(SeenFeatures, AreThoseOfRoughSurfacesThemselves) {
     Bsdf tinted = rough_metal(0.3);
     tinted.specular_reflectance = {0.5f, 0.5f, 0.5f};
     expect(image_with(tinted), false, 0.5, 1, 4);
+}
+
+TEST_P(SeenFeatures, AreWeighedByTheLightThatALobeTakes) {
+    Bsdf pane;
+    pane.kind = BsdfKind::thindielectric;
+    pane.ior = 1.5f;
+    const double once = 0.04, reflected = 2 * once / (1 + once); // to and fro in the pane, at normal incidence
+    // Chains of photon methods reflect an eighth of their paths.
+    const Image image = render_of(pane, false, 256).image;
+    const std::uint32_t x = size / 4, y = size / 2;
+    EXPECT_NEAR(pixel(image, x, y, "albedo.G"), 0.3 + (0.8 - 0.3) * reflected, 5e-3);
+    EXPECT_NEAR(pixel(image, x, y, "normal.Z"), 1 - 2 * reflected, 0.02);
+    EXPECT_NEAR(pixel(image, x, y, "depth.Z"), 6 + 4 * reflected, 0.04);
 }
 
 TEST_P(SeenFeatures, CountTheWayFromTheCameraAndNotFromItsNearPlane) {

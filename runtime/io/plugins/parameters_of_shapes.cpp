@@ -29,11 +29,7 @@ ParameterList parameters_of_meshes() {
     ParameterList list = parameters_of_any_shape();
     std::erase_if(list, [](const Parameter &parameter) { return parameter.name == "face_normals"; });
     list.push_back({"face_normals", Takes::boolean, "false", "flat triangles, whatever normals there are"});
-    list.push_back(Parameter{"max_smooth_angle", Takes::number, nullptr, "left out, with a warning"}
-                       .in("degrees")
-                       .or_else("normals stay")
-                       .of_before_2());
-    return list;
+    return joined({list, meaningless({"max_smooth_angle"})});
 }
 
 BuiltMesh build_shape_mesh(Properties &properties, Mesh mesh, MeshOptions options) {
