@@ -21,6 +21,8 @@ struct Arguments : gradus::bench::ProgramOptions {
     bool no_roulette_only = false;
 };
 
+constexpr const char *all_parts[] = {"floor", "specialisation", "order", "light-paths", "chains", "loading"};
+
 struct SceneSize {
     std::string path;
     std::uint32_t width = 0, height = 0;
@@ -45,11 +47,15 @@ void run(const Arguments &arguments) {
                               {"platform", device.description().platform},
                               {"threads", arguments.threads},
                               {"repeats", arguments.repeats}};
-    for (const char *part : {"floor", "specialisation", "order", "light-paths", "chains"})
+    for (const char *part : all_parts)
         if (arguments.parts.contains(part))
             results[part] = nlohmann::json::array();
     for (const std::string &text : arguments.scenes) {
         const SceneSize s = parse_scene(text);
+        if (arguments.parts.contains("loading"))
+            results["loading"].push_back(measure_loading(settings, s.path));
+        if (arguments.parts == std::set<std::string>{"loading"})
+            continue;
         const Job compared = load_job(s.path, s.width, s.height, arguments.samples_per_pixel, false);
         render(settings, load_job(s.path, s.width, s.height, 1, false)); // wakes the machine, fills the kernel cache
         if (arguments.parts.contains("floor")) {
@@ -81,8 +87,8 @@ int main(int argc, char **argv) {
     CLI::App app("Render benchmarks in one process. Every figure is a ratio, the median of --repeats turns",
                  "gradus-bench-render");
     app.add_option("SCENES", arguments.scenes, "SCENE.xml:WxH")->required();
-    app.add_option("--parts", arguments.parts, "Any of floor, specialisation, order, light-paths, chains")
-        ->check(CLI::IsMember({"floor", "specialisation", "order", "light-paths", "chains"}))
+    app.add_option("--parts", arguments.parts, "Any of floor, specialisation, order, light-paths, chains, loading")
+        ->check(CLI::IsMember(std::set<std::string>(std::begin(all_parts), std::end(all_parts))))
         ->delimiter(',');
     app.add_option("--spp", arguments.samples_per_pixel, "Samples a pixel")->capture_default_str();
     app.add_option("--repeats", arguments.repeats, "Turns")->check(CLI::Range(1, 1000))->capture_default_str();

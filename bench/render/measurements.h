@@ -21,6 +21,10 @@ nlohmann::json measure_light_paths(const Settings &settings, const Job &job);
 /// photons that come from a specular or glossy surface. The samples a pixel are the longest render's passes.
 nlohmann::json measure_chains(const Settings &settings, const Job &job);
 
+/// What comes before a scene's first sample, without the device and its kernels: over a plain read of its files, its
+/// pictures' decoding and Embree's building of its tree.
+nlohmann::json measure_loading(const Settings &settings, const std::string &path);
+
 /// Orders in which rays are traced.
 nlohmann::json measure_ray_order(const Settings &settings, const Job &job);
 

@@ -45,14 +45,21 @@ struct Buffer::Event {
     bool is_done = false;
 };
 
-Buffer::Buffer(Device &device, const std::string &name, std::size_t bytes)
-    : name_(name), bytes_(std::max<std::size_t>(bytes, 16)) {
-    Device::Implementation &d = device.implementation();
-    if (bytes_ > d.description.allocation_bytes)
+namespace {
+void check_size(const Device::Implementation &device, const std::string &name, std::size_t bytes) {
+    const DeviceDescription &d = device.description;
+    if (bytes > d.allocation_bytes)
         throw Error(ExitCode::device,
                     fmt::format("{} needs {} MB, more than the {} MB that {} allocates at once; try a smaller "
                                 "--batch-size, --size or scene",
-                                name, bytes_ >> 20, d.description.allocation_bytes >> 20, d.description.name));
+                                name, bytes >> 20, d.allocation_bytes >> 20, d.name));
+}
+} // namespace
+
+Buffer::Buffer(Device &device, const std::string &name, std::size_t bytes)
+    : name_(name), bytes_(std::max<std::size_t>(bytes, 16)) {
+    Device::Implementation &d = device.implementation();
+    check_size(d, name, bytes_);
     opencl_call(fmt::format("allocating {} MB for {}", bytes_ >> 20, name), [&] {
         // Elsewhere the host's memory would be a second copy.
         const cl_mem_flags place = d.description.shares_memory ? CL_MEM_ALLOC_HOST_PTR : 0;
@@ -68,6 +75,21 @@ Buffer::Buffer(Device &device, const std::string &name, const void *data, std::s
         else
             clear();
     });
+}
+
+Buffer Buffer::over(Device &device, const std::string &name, const void *data, std::size_t bytes) {
+    Device::Implementation &d = device.implementation();
+    if (!d.description.shares_memory || bytes < 16)
+        return Buffer(device, name, data, bytes);
+    check_size(d, name, bytes);
+    Buffer buffer;
+    buffer.name_ = name;
+    buffer.bytes_ = bytes;
+    opencl_call("taking the host's memory of " + name, [&] {
+        buffer.handle_ = std::make_shared<Handle>(
+            d, cl::Buffer(d.context, CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR, bytes, const_cast<void *>(data)), bytes);
+    });
+    return buffer;
 }
 
 Buffer Buffer::wrap(Device &device, const std::string &name, _cl_mem *memory) {

@@ -33,6 +33,10 @@ class Buffer {
     /// The same with its content.
     Buffer(Device &device, const std::string &name, const void *data, std::size_t bytes);
 
+    /// The host's memory for kernels to read. It must live as long as the buffer and stay as it is: where the device
+    /// shares it nothing is copied.
+    static Buffer over(Device &device, const std::string &name, const void *data, std::size_t bytes);
+
     /// A caller's cl_mem, which is retained and not counted as ours. It must be a buffer of the device's context:
     /// throws Error(ExitCode::device) where it is not. Maps and reads need a buffer that the host may access.
     static Buffer wrap(Device &device, const std::string &name, _cl_mem *memory);

@@ -7,7 +7,7 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <cstring>
+#include <bit>
 #include <limits>
 
 namespace gradus {
@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::uint16_t format_mark = 0x041c;
 const std::string vertex_color = "vertex_color";
+constexpr std::size_t piece = 1 << 16; ///< of numbers or triangles that are inflated at a time
 enum Flags : std::uint32_t {
     has_normals = 0x0001,
     has_texcoords = 0x0002,
@@ -90,7 +91,10 @@ class SerializedReader {
             fail("mesh " + std::to_string(index_) + " is truncated or corrupt");
     }
     std::uint64_t read_count(Inflater &inflater, std::uint64_t most) const;
-    std::vector<float> read_floats(Inflater &inflater, std::uint64_t count, bool doubles) const;
+    /// So many numbers, one after the other.
+    void read_floats(Inflater &inflater, std::uint64_t count, bool doubles, float *to) const;
+    /// All of the mesh.
+    void read_triangles(Inflater &inflater, std::size_t vertices, Mesh &mesh) const;
 
     const std::string &data_;
     const std::string &file_name_;
@@ -129,30 +133,34 @@ std::uint64_t SerializedReader::read_count(Inflater &inflater, std::uint64_t mos
     return count;
 }
 
-std::vector<float> SerializedReader::read_floats(Inflater &inflater, std::uint64_t count, bool doubles) const {
-    constexpr std::uint64_t piece = 1 << 16;
+void SerializedReader::read_floats(Inflater &inflater, std::uint64_t count, bool doubles, float *to) const {
     const std::size_t width = doubles ? 8 : 4;
-    std::vector<float> values;
     std::vector<unsigned char> raw(piece * width);
-    // Grows as data arrives, so that a false count cannot ask for all memory.
-    while (values.size() < count) {
-        const std::uint64_t now = std::min<std::uint64_t>(piece, count - values.size());
+    while (count > 0) {
+        const std::uint64_t now = std::min<std::uint64_t>(piece, count);
         read_bytes(inflater, raw.data(), now * width);
-        for (std::uint64_t i = 0; i < now; ++i) {
-            if (doubles) {
-                const auto bits = little_endian<std::uint64_t>(&raw[i * 8]);
-                double value;
-                std::memcpy(&value, &bits, 8);
-                values.push_back(float(value));
-            } else {
-                const auto bits = little_endian<std::uint32_t>(&raw[i * 4]);
-                float value;
-                std::memcpy(&value, &bits, 4);
-                values.push_back(value);
-            }
-        }
+        for (std::uint64_t i = 0; i < now; ++i)
+            *to++ = doubles ? float(std::bit_cast<double>(little_endian<std::uint64_t>(&raw[i * 8])))
+                            : std::bit_cast<float>(little_endian<std::uint32_t>(&raw[i * 4]));
+        count -= now;
     }
-    return values;
+}
+
+void SerializedReader::read_triangles(Inflater &inflater, std::size_t vertices, Mesh &mesh) const {
+    std::vector<unsigned char> raw(piece * sizeof(mesh.triangles[0]));
+    for (std::size_t begin = 0; begin < mesh.triangles.size(); begin += piece) {
+        const std::size_t end = std::min(begin + piece, mesh.triangles.size());
+        read_bytes(inflater, raw.data(), (end - begin) * sizeof(mesh.triangles[0]));
+        const unsigned char *corner = raw.data();
+        for (std::size_t i = begin; i < end; ++i)
+            for (std::uint32_t &index : mesh.triangles[i]) {
+                index = little_endian<std::uint32_t>(corner);
+                corner += 4;
+                if (index >= vertices)
+                    fail("corrupt: a triangle of mesh " + std::to_string(index_) + " has vertex " +
+                         std::to_string(index) + " of " + std::to_string(vertices));
+            }
+    }
 }
 
 SerializedMesh SerializedReader::read() {
@@ -197,38 +205,29 @@ SerializedMesh SerializedReader::read() {
     SerializedMesh result;
     result.unfolded_bytes = unfolded;
     result.face_normals = flags & wants_face_normals;
-    const auto to_vectors = [&](const std::vector<float> &values) {
-        std::vector<Vector3> vectors(values.size() / 3);
-        for (std::size_t i = 0; i < vectors.size(); ++i)
-            vectors[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
-        return vectors;
-    };
+    // What the counts ask for is bounded by now, so it can be taken before the data arrives.
     Mesh &mesh = result.mesh;
-    mesh.positions = to_vectors(read_floats(inflater, vertices * 3, doubles));
+    const auto read_vectors = [&](std::vector<Vector3> &vectors) {
+        vectors.resize(vertices);
+        if (vertices > 0)
+            read_floats(inflater, vertices * 3, doubles, &vectors[0].x);
+    };
+    read_vectors(mesh.positions);
     if (flags & has_normals)
-        mesh.normals = to_vectors(read_floats(inflater, vertices * 3, doubles));
+        read_vectors(mesh.normals);
     if (flags & has_texcoords) {
-        const std::vector<float> values = read_floats(inflater, vertices * 2, doubles);
-        for (std::size_t i = 0; i < vertices; ++i)
-            mesh.texcoords.push_back({values[2 * i], values[2 * i + 1]});
+        mesh.texcoords.resize(vertices);
+        if (vertices > 0)
+            read_floats(inflater, vertices * 2, doubles, mesh.texcoords[0].data());
     }
     if (flags & has_colors) {
-        std::vector<float> colors = read_floats(inflater, vertices * 3, doubles);
+        std::vector<float> colors(vertices * 3);
+        read_floats(inflater, vertices * 3, doubles, colors.data());
         if (keeps_colors_)
             mesh.attributes.push_back({vertex_color, 3, std::move(colors)});
     }
-    for (std::uint64_t i = 0; i < triangles; ++i) {
-        unsigned char corners[12];
-        read_bytes(inflater, corners, sizeof corners);
-        std::array<std::uint32_t, 3> triangle;
-        for (int corner = 0; corner < 3; ++corner) {
-            triangle[corner] = little_endian<std::uint32_t>(corners + 4 * corner);
-            if (triangle[corner] >= vertices)
-                fail("corrupt: a triangle of mesh " + std::to_string(index_) + " has vertex " +
-                     std::to_string(triangle[corner]) + " of " + std::to_string(vertices));
-        }
-        mesh.triangles.push_back(triangle);
-    }
+    mesh.triangles.resize(triangles);
+    read_triangles(inflater, vertices, mesh);
     return result;
 }
 

@@ -106,7 +106,7 @@ std::vector<int> channels_of(const std::string &path, const OIIO::ImageSpec &spe
 template <class Value, class Use>
 void for_each_row(OIIO::ImageInput &input, const OpenFile &file, OIIO::TypeDesc type, Use use) {
     const OIIO::ImageSpec spec = input.spec();
-    const int step = spec.tile_width > 0 ? spec.height : std::min(spec.height, 64); // tiles are read as a whole
+    const int step = spec.tile_width > 0 ? spec.height : std::min(spec.height, rows_at_a_time); // tiles: as a whole
     const std::size_t line = std::size_t(spec.width) * std::size_t(spec.nchannels);
     std::vector<Value> rows(line * std::size_t(step));
     for (int begin = 0; begin < spec.height; begin += step) {
@@ -144,7 +144,22 @@ ReadBitmap decode_bitmap(const OpenFile &file, const BitmapRequest &request) {
     read.bitmap.resize(std::uint32_t(spec.width), std::uint32_t(spec.height), unfolds ? Bitmap::Format::real : stored,
                        channels.size() == 3);
     Bitmap &bitmap = read.bitmap;
+    const auto channel = [&](const auto *texel, std::size_t c) { return texel[channels[c]]; };
     const auto copy = [&]<class Value>(const Value *row, std::uint32_t y, auto convert) {
+        if (bitmap.is_color && bitmap.format != Bitmap::Format::byte) {
+            // Colours of large pictures: whole words, three or two each.
+            const bool is_wide = bitmap.format == Bitmap::Format::real;
+            std::uint32_t *to = bitmap.words.data() + std::size_t(y) * bitmap.width * (is_wide ? 3 : 2);
+            for (std::uint32_t x = 0; x < bitmap.width; ++x, row += spec.nchannels) {
+                const std::uint32_t r = convert(channel(row, 0)), g = convert(channel(row, 1)),
+                                    b = convert(channel(row, 2));
+                *to++ = is_wide ? r : r | g << 16;
+                if (is_wide)
+                    *to++ = g;
+                *to++ = b;
+            }
+            return;
+        }
         for (std::uint32_t x = 0; x < bitmap.width; ++x)
             for (std::size_t c = 0; c < channels.size(); ++c)
                 bitmap.set(x, y, int(c),
@@ -159,7 +174,7 @@ ReadBitmap decode_bitmap(const OpenFile &file, const BitmapRequest &request) {
             // What large pictures are: a word each.
             std::uint32_t *to = bitmap.words.data() + std::size_t(y) * bitmap.width;
             for (std::uint32_t x = 0; x < bitmap.width; ++x, row += spec.nchannels)
-                to[x] = row[channels[0]] | std::uint32_t(row[channels[1]]) << 8 | std::uint32_t(row[channels[2]]) << 16;
+                to[x] = channel(row, 0) | std::uint32_t(channel(row, 1)) << 8 | std::uint32_t(channel(row, 2)) << 16;
         });
         break;
     case Bitmap::Format::word:

@@ -17,9 +17,6 @@ namespace {
 
 constexpr const char *metadata_prefix = "gradus:";
 
-/// Rows that are interleaved, coded and decoded at a time: several of OpenEXR's blocks of 16 for each thread.
-constexpr int rows_at_a_time = 128;
-
 /// OpenEXR keeps buffers for every thread; past a few the disk is the limit.
 void set_up_library() {
     static const bool done = [] {

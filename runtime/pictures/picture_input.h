@@ -11,6 +11,9 @@
 
 namespace gradus {
 
+/// That are coded and decoded at a time: several of OpenEXR's blocks of 16 for each thread.
+constexpr int rows_at_a_time = 128;
+
 struct PictureInput {
     std::unique_ptr<OIIO::ImageInput> input; ///< nullptr: see error
     std::string error;

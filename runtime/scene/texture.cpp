@@ -1,5 +1,7 @@
 #include "runtime/scene/texture.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -144,52 +146,115 @@ std::array<double, 3> texture_value(const Texture &texture, double u, double v) 
     return texture_finished(texture, plus(times(1 - bottom_share, row(top)), times(bottom_share, row(top + 1))));
 }
 
-TextureRange texture_range(const Texture &texture) {
-    TextureRange range;
-    double count = 0;
-    range.least.fill(INFINITY);
-    range.most.fill(-INFINITY);
-    const auto add = [&](const Value &color, int channel, double times_found) {
-        range.mean[channel] += color[channel] * times_found;
-        range.least[channel] = std::min(range.least[channel], color[channel]);
-        range.most[channel] = std::max(range.most[channel], color[channel]);
-    };
-    const auto add_all = [&](const Value &color) {
-        for (int c = 0; c < 3; ++c)
-            add(color, c, 1);
-        ++count;
-    };
-    if (texture.kind == Texture::Kind::mesh_attribute) {
-        add_all(texture_finished(texture, {0, 0, 0}));
-        add_all(texture_finished(texture, {1, 1, 1}));
-    } else if (texture.kind == Texture::Kind::checkerboard) {
-        add_all(texture_finished(texture, checkerboard(texture, 0.25, 0.25)));
-        add_all(texture_finished(texture, checkerboard(texture, 0.25, 0.75)));
-    } else if (texture.bitmap->format == Bitmap::Format::byte) {
-        // Large pictures are of this format: each of its 256 values is decoded once.
-        const Bitmap &bitmap = *texture.bitmap;
-        std::array<std::array<std::uint64_t, 256>, 3> found{};
-        const std::uint64_t texels = std::uint64_t(bitmap.width) * bitmap.height;
-        for (std::uint64_t i = 0; i < texels; ++i)
-            for (int c = 0; c < 3; ++c) {
-                const std::uint32_t word = bitmap.words[std::size_t(bitmap.is_color ? i : i / 4)];
-                ++found[c][word >> 8 * (bitmap.is_color ? std::uint32_t(c) : std::uint32_t(i % 4)) & 255];
-            }
-        for (int value = 0; value < 256; ++value) {
-            const double stored = value / 255.0, linear = texture.is_srgb ? srgb_to_linear_value(stored) : stored;
-            const Value color = texture_finished(texture, {linear, linear, linear});
-            for (int c = 0; c < 3; ++c)
-                if (found[c][value] > 0)
-                    add(color, c, double(found[c][value]));
-        }
-        count = double(texels);
-    } else {
-        for (std::uint32_t y = 0; y < texture.bitmap->height; ++y)
-            for (std::uint32_t x = 0; x < texture.bitmap->width; ++x)
-                add_all(texture_finished(texture, texel(texture, x, y)));
+namespace {
+
+/// What is found, one value of a channel after the other; the sum in place of the mean.
+class RangeSum {
+  public:
+    void add(int channel, double value, double times_found = 1) {
+        range_.mean[channel] += value * times_found;
+        range_.least[channel] = std::min(range_.least[channel], value);
+        range_.most[channel] = std::max(range_.most[channel], value);
     }
-    range.mean = times(1 / count, range.mean);
-    return range;
+    void add(const Value &color) {
+        for (int c = 0; c < 3; ++c)
+            add(c, color[c]);
+    }
+    void add(const RangeSum &other) {
+        for (int c = 0; c < 3; ++c) {
+            range_.mean[c] += other.range_.mean[c];
+            range_.least[c] = std::min(range_.least[c], other.range_.least[c]);
+            range_.most[c] = std::max(range_.most[c], other.range_.most[c]);
+        }
+    }
+    /// Of so many.
+    TextureRange mean(double count) const {
+        TextureRange range = range_;
+        range.mean = times(1 / count, range.mean);
+        return range;
+    }
+
+  private:
+    TextureRange range_{.mean = {}, .least = {INFINITY, INFINITY, INFINITY}, .most = {-INFINITY, -INFINITY, -INFINITY}};
+};
+
+/// Of 8 bits: each of the 256 values is decoded once.
+RangeSum sum_of_bytes(const Texture &texture) {
+    const Bitmap &bitmap = *texture.bitmap;
+    std::array<std::array<std::uint64_t, 256>, 3> found{};
+    const std::uint64_t texels = std::uint64_t(bitmap.width) * bitmap.height;
+    for (std::uint64_t i = 0; i < texels; ++i)
+        for (int c = 0; c < 3; ++c) {
+            const std::uint32_t word = bitmap.words[std::size_t(bitmap.is_color ? i : i / 4)];
+            ++found[c][word >> 8 * (bitmap.is_color ? std::uint32_t(c) : std::uint32_t(i % 4)) & 255];
+        }
+    RangeSum sum;
+    for (int value = 0; value < 256; ++value) {
+        const double stored = value / 255.0, linear = texture.is_srgb ? srgb_to_linear_value(stored) : stored;
+        const Value color = texture_finished(texture, {linear, linear, linear});
+        for (int c = 0; c < 3; ++c)
+            if (found[c][value] > 0)
+                sum.add(c, color[c], double(found[c][value]));
+    }
+    return sum;
+}
+
+/// value_at(x, y) of all texels. Rows on all cores, and their sums in their order, so that they are always the same.
+template <class ValueAt>
+RangeSum sum_of_rows(const Bitmap &bitmap, const ValueAt &value_at) {
+    std::vector<RangeSum> rows(bitmap.height);
+    tbb::parallel_for(std::uint32_t(0), bitmap.height, [&](std::uint32_t y) {
+        RangeSum row; // of its own: others lie beside those of the list
+        for (std::uint32_t x = 0; x < bitmap.width; ++x)
+            row.add(value_at(x, y));
+        rows[y] = row;
+    });
+    RangeSum sum;
+    for (const RangeSum &row : rows)
+        sum.add(row);
+    return sum;
+}
+
+/// Colours of half precision, which large pictures have: each of the 65536 values is decoded once.
+RangeSum sum_of_half_colors(const Texture &texture) {
+    const Bitmap &bitmap = *texture.bitmap;
+    constexpr std::uint32_t codes = 1u << 16;
+    std::vector<Value> decoded(codes);
+    tbb::parallel_for(std::uint32_t(0), codes, [&](std::uint32_t bits) {
+        const double value = half_value(bits);
+        decoded[bits] = texture_finished(texture, {value, value, value});
+    });
+    return sum_of_rows(bitmap, [&](std::uint32_t x, std::uint32_t y) -> Value {
+        const std::uint32_t *const words = &bitmap.words[2 * (std::size_t(y) * bitmap.width + x)];
+        return {decoded[words[0] & 0xffffu][0], decoded[words[0] >> 16][1], decoded[words[1] & 0xffffu][2]};
+    });
+}
+
+} // namespace
+
+TextureRange texture_range(const Texture &texture) {
+    RangeSum both;
+    switch (texture.kind) {
+    case Texture::Kind::mesh_attribute:
+        both.add(texture_finished(texture, {0, 0, 0}));
+        both.add(texture_finished(texture, {1, 1, 1}));
+        return both.mean(2);
+    case Texture::Kind::checkerboard:
+        both.add(texture_finished(texture, checkerboard(texture, 0.25, 0.25)));
+        both.add(texture_finished(texture, checkerboard(texture, 0.25, 0.75)));
+        return both.mean(2);
+    case Texture::Kind::bitmap:
+        break;
+    }
+    const Bitmap &bitmap = *texture.bitmap;
+    const double texels = double(bitmap.width) * double(bitmap.height);
+    if (bitmap.format == Bitmap::Format::byte)
+        return sum_of_bytes(texture).mean(texels);
+    if (bitmap.format == Bitmap::Format::half && bitmap.is_color && texels > 1 << 16)
+        return sum_of_half_colors(texture).mean(texels);
+    return sum_of_rows(bitmap, [&](std::uint32_t x,
+                                   std::uint32_t y) { return texture_finished(texture, texel(texture, x, y)); })
+        .mean(texels);
 }
 
 } // namespace gradus

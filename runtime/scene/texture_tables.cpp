@@ -28,15 +28,20 @@ std::map<const Bitmap *, std::uint32_t> add_bitmaps(const Scene &scene, SceneTab
         return (texture_features(texture) & textures_of_srgb) != 0;
     });
     std::uint64_t words = has_srgb ? texture_srgb_words : 0;
+    std::vector<const Bitmap *> bitmaps;
     for (const Texture &texture : scene.textures)
-        if (texture.bitmap && offsets.emplace(texture.bitmap.get(), std::uint32_t(words)).second)
+        if (texture.bitmap && offsets.emplace(texture.bitmap.get(), std::uint32_t(words)).second) {
+            bitmaps.push_back(texture.bitmap.get());
             words += texture.bitmap->words.size();
+        }
     check_words(words);
-    tables.texels.resize(std::size_t(words) + 1); // one at least
+    std::vector<std::uint32_t> &texels = tables.texels;
+    texels.reserve(std::size_t(words) + 1);
     for (std::uint32_t code = 0; has_srgb && code < texture_srgb_words; ++code)
-        tables.texels[code] = std::bit_cast<std::uint32_t>(float(srgb_to_linear_value(code / 255.0)));
-    for (const auto &[bitmap, offset] : offsets)
-        std::copy(bitmap->words.begin(), bitmap->words.end(), tables.texels.begin() + offset);
+        texels.push_back(std::bit_cast<std::uint32_t>(float(srgb_to_linear_value(code / 255.0))));
+    for (const Bitmap *bitmap : bitmaps)
+        texels.insert(texels.end(), bitmap->words.begin(), bitmap->words.end());
+    texels.push_back(0); // one at least
     return offsets;
 }
 

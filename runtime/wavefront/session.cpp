@@ -88,18 +88,20 @@ void add_vertex_buffers(Device &device, const SceneTables &t, Precision precisio
         std::copy(t.triangles.begin() + std::ptrdiff_t(first), t.triangles.end(), wide.begin() + std::ptrdiff_t(first));
         buffers.emplace_back(device, "triangles", wide.data(), wide.size() * sizeof(double));
     } else {
-        buffers.emplace_back(device, "triangles", t.triangles.data(), t.triangles.size() * sizeof(float));
+        buffers.push_back(Buffer::over(device, "triangles", t.triangles.data(), t.triangles.size() * sizeof(float)));
     }
     const Buffer triangles = buffers.back();
     for (const char *name : {"triangle_normals", "triangle_tangents", "triangle_texcoords"})
         buffers.push_back(triangles.named(name));
     const std::vector<std::uint32_t> &surfaces = t.primitive_surface;
-    buffers.emplace_back(device, "primitive_material", surfaces.data(), surfaces.size() * sizeof(surfaces[0]));
+    buffers.push_back(
+        Buffer::over(device, "primitive_material", surfaces.data(), surfaces.size() * sizeof(surfaces[0])));
     const Buffer primitives = buffers.back();
     for (const char *name : {"primitive_light", "primitive_bin", "primitive_back_bin"})
         buffers.push_back(primitives.named(name));
 }
 
+/// The tables must outlive them.
 std::vector<Buffer> make_scene_buffers(Device &device, const SceneTables &t, Precision precision) {
     std::vector<Buffer> buffers;
     const auto check = [](const char *name, std::size_t elements) {
@@ -113,11 +115,11 @@ std::vector<Buffer> make_scene_buffers(Device &device, const SceneTables &t, Pre
             const std::vector<double> wide(values.begin(), values.end());
             buffers.emplace_back(device, name, wide.data(), wide.size() * sizeof(double));
         } else {
-            buffers.emplace_back(device, name, values.data(), values.size() * sizeof(float));
+            buffers.push_back(Buffer::over(device, name, values.data(), values.size() * sizeof(float)));
         }
     };
     const auto numbers = [&](const char *name, const std::vector<std::uint32_t> &values) {
-        buffers.emplace_back(device, name, values.data(), values.size() * sizeof(std::uint32_t));
+        buffers.push_back(Buffer::over(device, name, values.data(), values.size() * sizeof(std::uint32_t)));
     };
     if (t.is_indexed()) {
         add_vertex_buffers(device, t, precision, buffers);

@@ -108,6 +108,16 @@ TEST(Buffer, ThatIsTooLargeIsNamed) {
     }
 }
 
+TEST(Buffer, OverTheHostsMemoryIsThatMemory) {
+    Device device;
+    std::vector<float> values(1000, 1.5f);
+    const Buffer buffer = Buffer::over(device, "values", values.data(), values.size() * sizeof(float));
+    EXPECT_EQ(buffer.bytes(), values.size() * sizeof(float));
+    const auto mapping = buffer.map(Access::read);
+    EXPECT_EQ(mapping.as<float>() == values.data(), device.description().shares_memory);
+    EXPECT_EQ(mapping.as<float>()[999], 1.5f);
+}
+
 TEST(Buffer, CountsTowardsThePeak) {
     Device device;
     EXPECT_EQ(peak_device_bytes(device), 0u);

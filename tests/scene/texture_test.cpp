@@ -11,9 +11,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
+#include <random>
 
 namespace gradus::testing {
 namespace {
@@ -83,6 +86,39 @@ TEST(Texture, RangeIsOfItsTexels) {
     }
     texture.lowest = 0.25f;
     EXPECT_EQ(texture_range(texture).least[0], 0.25);
+}
+
+/// Of so large a picture each value is decoded once, and rows are summed on all cores.
+TEST(Texture, RangeOfLargePicturesIsOfTheirTexels) {
+    for (const bool is_color : {true, false}) {
+        auto bitmap = std::make_shared<Bitmap>();
+        bitmap->resize(300, 301, Bitmap::Format::half, is_color);
+        std::mt19937 random(1);
+        std::array<double, 3> mean{}, least{9, 9, 9}, most{-9, -9, -9};
+        for (std::uint32_t y = 0; y < bitmap->height; ++y)
+            for (std::uint32_t x = 0; x < bitmap->width; ++x)
+                for (int c = 0; c < 3; ++c) {
+                    // From -2 to 2, of each channel its own share of them.
+                    const std::uint32_t bits = (random() & 0x8000u) | random() % (0x3000u + 0x800u * unsigned(c));
+                    if (is_color || c == 0)
+                        bitmap->set(x, y, c, bits);
+                    const double value = 0.5 * (c + 1) * bitmap->channel(x, y, is_color ? c : 0);
+                    mean[c] += value / (300 * 301);
+                    least[c] = std::min(least[c], value);
+                    most[c] = std::max(most[c], value);
+                }
+        Texture texture;
+        texture.bitmap = bitmap;
+        texture.lowest = -9;
+        texture.highest = 9;
+        texture.scale = {0.5f, 1, 1.5f};
+        const TextureRange range = texture_range(texture);
+        for (int c = 0; c < 3; ++c) {
+            EXPECT_NEAR(range.mean[c], mean[c], 1e-12);
+            EXPECT_EQ(range.least[c], least[c]);
+            EXPECT_EQ(range.most[c], most[c]);
+        }
+    }
 }
 
 TEST(Texture, HalvesAreNumbers) {
