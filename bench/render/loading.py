@@ -5,7 +5,8 @@ files and Embree's own build, or over the decoder's.
     python3 bench/render/loading.py [CASE ...] [--bench build/gradus-bench-render] [--triangles 10000000] [--texels 8192]
 
 Cases: ply and serialized, a mesh of so many triangles with normals; small, 700 meshes of 2000 triangles; png, jpg and
-exr, a texture of so many texels each way. Pictures need the Mitsuba of bench/peers/install.py, which writes them; where
+exr, a texture of so many texels each way; textures, 24 of a quarter of that, whose decoding one after the other counts.
+Pictures need the Mitsuba of bench/peers/install.py, which writes them; where
 it is missing they are left out. The files lie in a temporary folder, which takes up to a gigabyte.
 """
 
@@ -13,6 +14,7 @@ import argparse
 import array
 import math
 import pathlib
+import shutil
 import struct
 import sys
 import tempfile
@@ -29,7 +31,7 @@ SCENE = """<scene version="3.0.0">
 %s
 </scene>
 """
-SMALL_MESHES = 700
+SMALL_MESHES, TEXTURES = 700, 24
 
 WRITE_PICTURE = """
 import sys, numpy, mitsuba
@@ -110,15 +112,19 @@ def make(case, folder, arguments):
         python = find_python(["mitsuba", "numpy"], "GRADUS_MITSUBA_PYTHON")
         if not python:
             return None
-        renders.run(python, "-c", WRITE_PICTURE, arguments.texels, folder / f"a.{case}")
-        inside = (f'<shape type="rectangle"><bsdf type="diffuse"><texture type="bitmap" name="reflectance">'
-                  f'<string name="filename" value="a.{case}"/></texture></bsdf></shape>')
+        are_many = case == "textures"
+        files = [f"{i}.jpg" for i in range(TEXTURES)] if are_many else [f"a.{case}"]
+        renders.run(python, "-c", WRITE_PICTURE, arguments.texels // (4 if are_many else 1), folder / files[0])
+        for file in files[1:]:
+            shutil.copy(folder / files[0], folder / file)
+        inside = "\n".join(f'<shape type="rectangle"><bsdf type="diffuse"><texture type="bitmap" name="reflectance">'
+                           f'<string name="filename" value="{file}"/></texture></bsdf></shape>' for file in files)
     scene = folder / f"{case}.xml"
     scene.write_text(SCENE % inside)
     return scene
 
 
-CASES = ["ply", "serialized", "small", "png", "jpg", "exr"]
+CASES = ["ply", "serialized", "small", "png", "jpg", "exr", "textures"]
 
 
 def main():

@@ -64,11 +64,18 @@ void SceneBuilder::index(const Element &element, int depth) {
         const std::string *id = element.attribute("id"), *as = element.attribute("as");
         if (!id || !as)
             diagnostics_.error(element.location, "<alias> needs id and as");
-        else
+        else {
             aliases_[*as] = *id;
+            referenced_.insert(*id);
+        }
     }
-    if (element.tag == "texture")
+    if (element.tag == "ref")
+        referenced_.insert(element.attribute_or("id", ""));
+    if (element.tag == "texture") {
         want_attribute(element);
+        if (type_of(element) == "bitmap")
+            pictures_.emplace_back(&element, depth == 1);
+    }
     if (is_object_tag(element.tag) || depth == 0) {
         check_children(element);
         for (const Element &child : element.children)
@@ -170,6 +177,7 @@ std::shared_ptr<const OpenFile> SceneBuilder::open_file(const std::filesystem::p
 Scene SceneBuilder::build() {
     const Element &root = document_.root;
     index(root, 0);
+    begin_pictures();
     Declaration of_scene; // some are shared, and built where they are referenced
     for (const char *tag : {"integrator", "sensor", "emitter", "shape", "bsdf", "medium", "subsurface", "volume",
                             "phase", "film", "sampler", "rfilter", "texture", "spectrum", "alias"})

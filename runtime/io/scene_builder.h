@@ -5,6 +5,7 @@
 #include "runtime/io/document.h"
 #include "runtime/io/file_search.h"
 #include "runtime/io/load_options.h"
+#include "runtime/io/pictures_ahead.h"
 #include "runtime/io/properties.h"
 #include "runtime/scene/mesh_builder.h"
 #include "runtime/scene/scene.h"
@@ -15,8 +16,10 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -69,8 +72,7 @@ class SceneBuilder {
     const std::vector<std::string> &wanted_attributes() const { return wanted_attributes_; }
     /// A picture that a texture names, decoded once. `is_srgb` becomes whether what is stored is sRGB. Throws
     /// SceneError.
-    std::shared_ptr<const Bitmap> bitmap(const std::filesystem::path &path, bool is_linear, const std::string &channel,
-                                         const Location &location, bool &is_srgb);
+    std::shared_ptr<const Bitmap> bitmap(const Picture &picture, const Location &location, bool &is_srgb);
     /// Whether a texture that is the same everywhere becomes one of the scene's, or its range tells all of it.
     enum class OneColor { is_texture, is_no_texture };
     /// The texture that an element describes, with its values clamped to the range: one of the scene's.
@@ -101,6 +103,7 @@ class SceneBuilder {
     Result read_as(const Element &element, const std::string &type);
     void index(const Element &element, int depth);
     void want_attribute(const Element &texture);
+    void begin_pictures();
     void settle_attributes(Mesh &mesh, const std::string &name, const Location &location);
     void check_attributes(const Shape &shape, const Mesh *mesh, const Location &location) const;
     void check_children(const Element &element);
@@ -171,7 +174,11 @@ class SceneBuilder {
         std::shared_ptr<const Bitmap> bitmap;
         bool is_srgb;
     };
-    std::map<std::tuple<std::filesystem::path, bool, std::string>, DecodedBitmap> bitmaps_;
+    std::map<Picture, DecodedBitmap> bitmaps_;
+    /// Textures that name one, in the file's order, and whether they are there for others to refer to.
+    std::vector<std::pair<const Element *, bool>> pictures_;
+    std::set<std::string> referenced_; ///< ids that anybody refers to
+    std::optional<PicturesAhead> pictures_ahead_;
     std::int64_t default_material_ = -1, default_emitter_material_ = -1, boundary_material_ = -1;
     const Element *sensor_ = nullptr, *integrator_ = nullptr, *environment_ = nullptr;
     std::vector<const Element *> open_; ///< objects that are being built, outermost first

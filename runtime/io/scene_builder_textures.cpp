@@ -2,6 +2,8 @@
 // range.
 #include "runtime/error.h"
 #include "runtime/io/bitmap_reader.h"
+#include "runtime/io/plugins/parameters_of_textures.h"
+#include "runtime/io/plugins/plugin.h"
 #include "runtime/io/scene_builder.h"
 #include "runtime/io/text.h"
 #include "runtime/phases.h"
@@ -12,32 +14,60 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <thread>
 
 namespace gradus {
 
-std::shared_ptr<const Bitmap> SceneBuilder::bitmap(const std::filesystem::path &path, bool is_linear,
-                                                   const std::string &channel, const Location &location,
-                                                   bool &is_srgb) {
-    const auto key = std::make_tuple(path, is_linear, channel);
-    auto known = bitmaps_.find(key);
+/// Has the pictures that textures name decoded, as the rest is built.
+void SceneBuilder::begin_pictures() {
+    std::vector<Picture> pictures;
+    const Plugin<Texture> plugin = find_plugin<Texture>("bitmap");
+    for (const auto &[element, is_shared] : pictures_) {
+        if (is_shared && !referenced_.contains(element->attribute_or("id", "")))
+            continue; // nobody will ask for it
+        // What is wrong with it, or strange, is said where it is built.
+        diagnostics_.hold();
+        try {
+            Properties properties(*element, *plugin.declaration, resolve_, diagnostics_, &read_texture_);
+            pictures.push_back(read_picture(properties, *this));
+        } catch (const SceneError &) {
+        }
+        diagnostics_.release();
+    }
+    constexpr unsigned most_threads = 8;
+    constexpr std::uint64_t most_bytes = 512u << 20;
+    const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
+    // The loader decodes too.
+    const unsigned threads = pictures.size() > 1 ? std::min(std::max(cores - 1, 1u), most_threads) : 0;
+    pictures_ahead_.emplace(pictures, threads, most_bytes, [this](const Picture &picture) {
+        const auto file = finder_.open(picture.path);
+        if (!file)
+            throw Error(ExitCode::image, "cannot read " + picture.path.string());
+        return read_bitmap(*file,
+                           {picture.is_linear, picture.channel, limits_.texture_bytes / LoadLimits().texture_bytes});
+    });
+}
+
+std::shared_ptr<const Bitmap> SceneBuilder::bitmap(const Picture &picture, const Location &location, bool &is_srgb) {
+    auto known = bitmaps_.find(picture);
     if (known == bitmaps_.end()) {
         const Phase phase(phases_, phase_names::pictures);
         ReadBitmap read;
         try {
-            read = read_bitmap(*open_file(path, location),
-                               {is_linear, channel, limits_.texture_bytes / LoadLimits().texture_bytes});
+            read = pictures_ahead_->take(picture);
         } catch (const Error &error) {
             throw SceneError(location, error.what());
         }
         if (read.not_numbers > 0)
-            diagnostics_.warn(location, fmt::format("{}: {} values that are no finite numbers become 0", path.string(),
-                                                    read.not_numbers));
+            diagnostics_.warn(location, fmt::format("{}: {} values that are no finite numbers become 0",
+                                                    picture.path.string(), read.not_numbers));
         texture_bytes_ += read.bitmap.words.size() * sizeof(read.bitmap.words[0]);
         if (texture_bytes_ > limits_.texture_bytes)
             throw SceneError(location, fmt::format("the textures up to this one have more than {} MiB of pixels{}",
                                                    limits_.texture_bytes >> 20, limits_hint));
         known =
-            bitmaps_.emplace(key, DecodedBitmap{std::make_shared<const Bitmap>(std::move(read.bitmap)), read.is_srgb})
+            bitmaps_
+                .emplace(picture, DecodedBitmap{std::make_shared<const Bitmap>(std::move(read.bitmap)), read.is_srgb})
                 .first;
     }
     is_srgb = known->second.is_srgb;

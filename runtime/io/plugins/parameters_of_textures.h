@@ -1,7 +1,9 @@
 // Parameters that several texture plugins share.
 #pragma once
 
+#include "runtime/io/pictures_ahead.h"
 #include "runtime/io/properties.h"
+#include "runtime/io/scene_builder.h"
 #include "runtime/scene/texture.h"
 
 namespace gradus {
@@ -9,6 +11,9 @@ namespace gradus {
 ParameterList parameters_of_coordinates();
 /// By these, the map of the surface's (u, v).
 void read_to_uv(Properties &properties, Texture &texture);
+
+/// What a bitmap takes of which file. Throws SceneError.
+Picture read_picture(Properties &properties, SceneBuilder &builder);
 
 /// The same everywhere.
 Texture one_color(const Rgb &color);

@@ -42,6 +42,22 @@ Declaration declare_texture_bitmap() {
                 meaningless({"format", "accel", "cache", "max_anisotropy", "mipmaps"})})};
 }
 
+Picture read_picture(Properties &properties, SceneBuilder &builder) {
+    Picture picture;
+    picture.is_linear = properties.boolean("raw");
+    if (properties.has("gamma")) {
+        const double gamma = properties.number("gamma");
+        picture.is_linear = gamma == 1;
+        if (gamma > 0 && gamma != 1)
+            properties.diagnostics().warn(properties.location_of("gamma"),
+                                          "a gamma other than 1 is read as the curve of sRGB");
+    }
+    const std::string channel = properties.choice("channel");
+    picture.channel = channel == "all" || channel == "rgb" ? "" : channel;
+    picture.path = builder.find_file(properties);
+    return picture;
+}
+
 Texture texture_bitmap(Properties &properties, SceneBuilder &builder) {
     Texture texture;
     texture.kind = Texture::Kind::bitmap;
@@ -51,18 +67,8 @@ Texture texture_bitmap(Properties &properties, SceneBuilder &builder) {
     if (along_v != texture.wrap)
         texture.wrap_v = along_v;
     read_to_uv(properties, texture);
-    bool is_raw = properties.boolean("raw");
-    if (properties.has("gamma")) {
-        const double gamma = properties.number("gamma");
-        is_raw = gamma == 1;
-        if (gamma > 0 && gamma != 1)
-            properties.diagnostics().warn(properties.location_of("gamma"),
-                                          "a gamma other than 1 is read as the curve of sRGB");
-    }
-    std::string channel = properties.choice("channel");
-    channel = channel == "all" || channel == "rgb" ? "" : channel;
-    const std::filesystem::path path = builder.find_file(properties);
-    texture.bitmap = builder.bitmap(path, is_raw, channel, properties.location_of("filename"), texture.is_srgb);
+    texture.bitmap =
+        builder.bitmap(read_picture(properties, builder), properties.location_of("filename"), texture.is_srgb);
     return texture;
 }
 
