@@ -97,10 +97,10 @@ Rgb Properties::read_black_body(const Element &property, const std::string &name
         text.pop_back();
     const std::optional<double> temperature = parse_number(text),
                                 factor = parse_number(property.attribute_or("scale", "1"));
-    if (!temperature || *temperature <= 0 || !factor || *factor < 0)
+    if (!temperature || *temperature < least_temperature || *temperature > most_temperature || !factor || *factor < 0)
         throw SceneError(property.location, "\"" + name +
-                                                "\": a <blackbody> has a temperature in kelvins, as in "
-                                                "temperature=\"5000K\", and may have a scale");
+                                                "\": a <blackbody> has a temperature from 1 to 1e9 kelvins, as in "
+                                                "temperature=\"5000K\", and may have a scale of at least 0");
     const Rgb rgb = spectrum_to_rgb(black_body_spectrum(*temperature), use);
     const auto by = float(*factor);
     return {rgb.r * by, rgb.g * by, rgb.b * by};

@@ -218,7 +218,7 @@ void SceneBuilder::check_whole() {
     if (scene_.shapes.empty() && !environment_)
         diagnostics_.error(location, "the scene has no shapes and no environment: there is nothing to render");
     else if (scene_.emitters.empty())
-        diagnostics_.warn(location, "the scene has no emitters: the image will be black");
+        diagnostics_.warn(location, "nothing in the scene emits light: the image will be black");
 }
 
 } // namespace gradus

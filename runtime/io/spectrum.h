@@ -20,7 +20,10 @@ using SampledSpectrum = std::vector<std::pair<double, double>>;
 /// out of gamut are clamped to non-negative components.
 Rgb spectrum_to_rgb(const SampledSpectrum &spectrum, ColorUse use);
 
-/// What a black body radiates, by Planck's law, where the observer sees anything. temperature: in kelvins, above 0.
+/// In kelvins. What is colder radiates nothing that could be seen, what is hotter more than single precision holds in
+/// images.
+constexpr double least_temperature = 1, most_temperature = 1e9;
+/// What a black body of such a temperature radiates, by Planck's law, where the observer sees anything.
 /// Values in W / (m² sr nm).
 SampledSpectrum black_body_spectrum(double temperature);
 

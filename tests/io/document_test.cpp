@@ -193,7 +193,7 @@ TEST(Warnings, UnusedBsdfsDoNoHarm) {
 }
 
 TEST(Warnings, SceneWithoutEmitters) {
-    EXPECT_THAT(load_text(scene_around("")).warnings, ElementsAre(HasSubstr("no emitters")));
+    EXPECT_THAT(load_text(scene_around("")).warnings, ElementsAre(HasSubstr("nothing in the scene emits")));
 }
 
 TEST(Warnings, SecondSensorIsIgnored) {

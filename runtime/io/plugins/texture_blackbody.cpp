@@ -9,8 +9,8 @@ Declaration declare_texture_blackbody() {
             "`<blackbody temperature=\"5000K\" scale=\"1\"/>`",
             joined({{Parameter{"temperature", Takes::number, nullptr, "its temperature"}
                          .in("kelvins")
-                         .at_least(1)
-                         .at_most(1e9)
+                         .at_least(least_temperature)
+                         .at_most(most_temperature)
                          .required(),
                      Parameter{"scale", Takes::number, "1", "a factor"}.at_least(0)},
                     meaningless({"lambda_min", "lambda_max", "wavelength_min", "wavelength_max"})})};
