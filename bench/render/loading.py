@@ -5,9 +5,9 @@ files and Embree's own build, or over the decoder's.
     python3 bench/render/loading.py [CASE ...] [--bench build/gradus-bench-render] [--triangles 10000000] [--texels 8192]
 
 Cases: ply and serialized, a mesh of so many triangles with normals; small, 700 meshes of 2000 triangles; png, jpg and
-exr, a texture of so many texels each way; textures, 24 of a quarter of that, whose decoding one after the other counts.
-Pictures need the Mitsuba of bench/peers/install.py, which writes them; where
-it is missing they are left out. The files lie in a temporary folder, which takes up to a gigabyte.
+exr, a texture of so many texels each way; textures, 24 of a quarter of that, over their decoding one after the other. Pictures
+need the Mitsuba of bench/peers/install.py, which writes them; where it is missing they are left out. The files lie in a
+temporary folder, which takes up to a gigabyte.
 """
 
 import argparse

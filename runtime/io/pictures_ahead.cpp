@@ -31,25 +31,29 @@ PicturesAhead::Entry *PicturesAhead::next() {
     return first_ < entries_.size() ? &entries_[first_] : nullptr;
 }
 
+bool PicturesAhead::decode_next(std::unique_lock<std::mutex> &lock) {
+    Entry *const entry = next();
+    if (!entry)
+        return false;
+    entry->state = State::is_under_way;
+    lock.unlock();
+    try {
+        entry->read = decode_(*entry->picture);
+    } catch (...) {
+        entry->error = std::current_exception();
+    }
+    lock.lock();
+    entry->state = State::is_done;
+    bytes_ += entry->bytes();
+    changed_.notify_all();
+    return true;
+}
+
 void PicturesAhead::work() {
     std::unique_lock lock(mutex_);
-    for (;;) {
+    do
         changed_.wait(lock, [this] { return stops_ || bytes_ <= most_bytes_; });
-        Entry *const entry = stops_ ? nullptr : next();
-        if (!entry)
-            return;
-        entry->state = State::is_under_way;
-        lock.unlock();
-        try {
-            entry->read = decode_(*entry->picture);
-        } catch (...) {
-            entry->error = std::current_exception();
-        }
-        lock.lock();
-        entry->state = State::is_done;
-        bytes_ += entry->bytes();
-        changed_.notify_all();
-    }
+    while (!stops_ && decode_next(lock));
 }
 
 ReadBitmap PicturesAhead::take(const Picture &picture) {
@@ -62,7 +66,10 @@ ReadBitmap PicturesAhead::take(const Picture &picture) {
         lock.unlock();
         return decode_(picture);
     }
-    changed_.wait(lock, [entry] { return entry->state == State::is_done; });
+    // Who waits for one decodes another.
+    while (entry->state == State::is_under_way)
+        if (bytes_ > most_bytes_ || !decode_next(lock))
+            changed_.wait(lock, [entry] { return entry->state == State::is_done; });
     entry->state = State::is_taken;
     bytes_ -= entry->bytes();
     changed_.notify_all();

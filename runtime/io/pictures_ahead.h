@@ -55,6 +55,8 @@ class PicturesAhead {
     void work();
     /// The first that waits, or nullptr.
     Entry *next();
+    /// False where none waits. The lock is open while it decodes.
+    bool decode_next(std::unique_lock<std::mutex> &lock);
 
     const Decode decode_;
     const std::uint64_t most_bytes_;

@@ -87,6 +87,24 @@ TEST(PicturesAhead, WaitWhileMuchIsNotTaken) {
     expect_taken(ahead, 253);
 }
 
+TEST(PicturesAhead, AreDecodedByWhoWaitsForOne) {
+    std::atomic<int> begun = 0;
+    std::atomic<bool> is_alone = false;
+    // Each of the first two waits for the other to begin: one thread would not do it.
+    PicturesAhead ahead({{.path = "1"}, {.path = "2"}}, 1, no_limit, [&](const Picture &picture) {
+        ++begun;
+        for (int wait = 0; wait < 500 && begun < 2; ++wait)
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        is_alone = is_alone || begun < 2;
+        return decoded(picture);
+    });
+    while (begun == 0)
+        std::this_thread::yield();
+    expect_taken(ahead, 1);
+    expect_taken(ahead, 2);
+    EXPECT_FALSE(is_alone);
+}
+
 TEST(PicturesAhead, MayBeLeft) {
     for (int i = 0; i < 20; ++i)
         PicturesAhead(numbered(20), 2, no_limit, decoded);
