@@ -5,8 +5,8 @@ files and Embree's own build, or over the decoder's.
     python3 bench/render/loading.py [CASE ...] [--bench build/gradus-bench-render] [--triangles 10000000] [--texels 8192]
 
 Cases: ply and serialized, a mesh of so many triangles with normals; small, 700 meshes of 2000 triangles; png, jpg and
-exr, a texture of so many texels each way; textures, 24 of a quarter of that, over their decoding one after the other. Pictures
-need the Mitsuba of bench/peers/install.py, which writes them; where it is missing they are left out. The files lie in a
+exr, a texture of so many texels each way; textures, 24 of a quarter of that, over their decoding one after the other.
+Pictures need the Mitsuba of bench/peers/install.py, which writes them; where it is missing they are left out. The files lie in a
 temporary folder, which takes up to a gigabyte.
 """
 

@@ -57,12 +57,14 @@ std::size_t drop_degenerate(Mesh &mesh) {
         for (std::uint32_t index : t)
             if (!is_finite(mesh.positions[index]))
                 return true;
-        double longest = 0;
-        for (int i = 0; i < 3; ++i)
-            longest = std::max(
-                longest, length(subtract(to_double(mesh.positions[t[(i + 1) % 3]]), to_double(mesh.positions[t[i]]))));
-        const double twice_area = length(area_vector(mesh, t));
-        return !(twice_area > 1e-10 * longest * longest) || !std::isnormal(float(twice_area));
+        double longest_square = 0;
+        for (int i = 0; i < 3; ++i) {
+            const Double3 edge = subtract(to_double(mesh.positions[t[(i + 1) % 3]]), to_double(mesh.positions[t[i]]));
+            longest_square = std::max(longest_square, dot(edge, edge));
+        }
+        const Double3 area = area_vector(mesh, t);
+        const double twice_area = std::sqrt(dot(area, area)); // of single precision: no square is out of range
+        return !(twice_area > 1e-10 * longest_square) || !std::isnormal(float(twice_area));
     };
     std::vector<char> drops(mesh.triangles.size());
     for_each_in_parallel(drops.size(), [&](std::size_t i) { drops[i] = is_degenerate(mesh.triangles[i]); });

@@ -4,13 +4,6 @@
 
 namespace gradus {
 
-Double3 add(const Double3 &a, const Double3 &b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-Double3 subtract(const Double3 &a, const Double3 &b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Double3 scale(const Double3 &a, double s) { return {a[0] * s, a[1] * s, a[2] * s}; }
-double dot(const Double3 &a, const Double3 &b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Double3 cross(const Double3 &a, const Double3 &b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 double length(const Double3 &a) { return std::hypot(a[0], a[1], a[2]); }
 Double3 normalize(const Double3 &a) { return scale(a, 1 / length(a)); }
 

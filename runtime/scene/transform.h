@@ -9,11 +9,14 @@ namespace gradus {
 
 using Double3 = std::array<double, 3>;
 
-Double3 add(const Double3 &a, const Double3 &b);
-Double3 subtract(const Double3 &a, const Double3 &b);
-Double3 scale(const Double3 &a, double s);
-double dot(const Double3 &a, const Double3 &b);
-Double3 cross(const Double3 &a, const Double3 &b);
+inline Double3 add(const Double3 &a, const Double3 &b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+inline Double3 subtract(const Double3 &a, const Double3 &b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+inline Double3 scale(const Double3 &a, double s) { return {a[0] * s, a[1] * s, a[2] * s}; }
+inline double dot(const Double3 &a, const Double3 &b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+inline Double3 cross(const Double3 &a, const Double3 &b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+/// Of any size: no square overflows.
 double length(const Double3 &a);
 /// a / |a|. The caller sees to it that a is not zero.
 Double3 normalize(const Double3 &a);
