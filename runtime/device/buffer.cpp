@@ -88,6 +88,9 @@ Buffer Buffer::over(Device &device, const std::string &name, const void *data, s
     opencl_call("taking the host's memory of " + name, [&] {
         buffer.handle_ = std::make_shared<Handle>(
             d, cl::Buffer(d.context, CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR, bytes, const_cast<void *>(data)), bytes);
+        // From where it lies to there: nothing is moved, but who looks after it, as Oclgrind does, knows that it is
+        // set.
+        d.queue.enqueueWriteBuffer(buffer.handle_->memory, CL_TRUE, 0, bytes, data);
     });
     return buffer;
 }
