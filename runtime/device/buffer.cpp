@@ -77,9 +77,12 @@ Buffer::Buffer(Device &device, const std::string &name, const void *data, std::s
     });
 }
 
+/// Less is copied to where the device aligns it: that costs nothing, and small tables are read all the time.
+constexpr std::size_t worth_sharing = std::size_t(1) << 20;
+
 Buffer Buffer::over(Device &device, const std::string &name, const void *data, std::size_t bytes) {
     Device::Implementation &d = device.implementation();
-    if (!d.description.shares_memory || bytes < 16)
+    if (!d.description.shares_memory || bytes < worth_sharing)
         return Buffer(device, name, data, bytes);
     check_size(d, name, bytes);
     Buffer buffer;

@@ -34,7 +34,7 @@ class Buffer {
     Buffer(Device &device, const std::string &name, const void *data, std::size_t bytes);
 
     /// The host's memory for kernels to read. It must live as long as the buffer and stay as it is: where the device
-    /// shares it nothing is copied.
+    /// shares it nothing is copied, but for what is small.
     static Buffer over(Device &device, const std::string &name, const void *data, std::size_t bytes);
 
     /// A caller's cl_mem, which is retained and not counted as ours. It must be a buffer of the device's context:
