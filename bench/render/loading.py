@@ -6,8 +6,8 @@ files and Embree's own build, or over the decoder's.
 
 Cases: ply and serialized, a mesh of so many triangles with normals; small, 700 meshes of 2000 triangles; png, jpg and
 exr, a texture of so many texels each way; textures, 24 of a quarter of that, over their decoding one after the other.
-Pictures need the Mitsuba of bench/peers/install.py, which writes them; where it is missing they are left out. The files lie in a
-temporary folder, which takes up to a gigabyte.
+Pictures need the Mitsuba of bench/peers/install.py, which writes them; where it is missing they are left out. The
+files lie in a temporary folder, which takes up to a gigabyte.
 """
 
 import argparse
@@ -22,6 +22,7 @@ import zlib
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "peers")]
+import mitsuba_setup  # noqa: E402
 import renders  # noqa: E402
 from pythons import find_python  # noqa: E402
 
@@ -109,7 +110,7 @@ def make(case, folder, arguments):
             write_ply(folder / f"{i}.ply", *mesh)
         inside = "\n".join(shape("ply", f"{i}.ply") for i in range(SMALL_MESHES))
     else:
-        python = find_python(["mitsuba", "numpy"], "GRADUS_MITSUBA_PYTHON")
+        python = find_python(["mitsuba", "numpy"], mitsuba_setup.PYTHON_VARIABLE)
         if not python:
             return None
         are_many = case == "textures"

@@ -6,9 +6,8 @@ namespace gradus {
 Declaration declare_bsdf_mask() {
     return {
         "a BSDF in a surface with holes, also in another mask or a blend. A hole is no edge of a path, and light "
-        "samples "
-        "pass it, as with Mitsuba's `volpath`; its `path` counts it in max_depth and loses light behind it. A shape "
-        "that emits is met by all rays",
+        "samples pass it, as with Mitsuba's `volpath`; its `path` counts it in max_depth and loses light behind it. A "
+        "shape that emits is met by all rays",
         {{"opacity", Takes::reflectance, "0.5",
           "share of the rays that meet the surface, of a colour its luminance; the others pass as with `null`"},
          {"bsdf", Takes::objects, nullptr, "one"}}};

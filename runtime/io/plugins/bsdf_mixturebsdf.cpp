@@ -11,7 +11,7 @@ namespace gradus {
 
 namespace {
 
-/// One for each of `count` parts, none negative, their sum above 0.
+/// One for each of `count` parts, none negative.
 std::vector<double> read_weights(Properties &properties, std::size_t count) {
     std::string text = properties.string("weights");
     std::ranges::replace(text, ';', ',');
@@ -19,14 +19,8 @@ std::vector<double> read_weights(Properties &properties, std::size_t count) {
     if (!weights || weights->size() != count)
         throw properties.error("weights", "mixturebsdf needs a weight for each of its " + std::to_string(count) +
                                               " nested BSDFs, not \"" + text + "\"");
-    double sum = 0;
-    for (const double weight : *weights) {
-        if (weight < 0)
-            throw properties.error("weights", "\"weights\" must not be negative");
-        sum += weight;
-    }
-    if (!(sum > 0))
-        throw properties.error("weights", "\"weights\" must sum to more than 0");
+    if (std::ranges::any_of(*weights, [](double weight) { return weight < 0; }))
+        throw properties.error("weights", "\"weights\" must not be negative");
     return *weights;
 }
 
@@ -47,13 +41,14 @@ Declaration declare_bsdf_mixturebsdf() {
 Material bsdf_mixturebsdf(Properties &properties, SceneBuilder &builder) {
     const std::vector<NestedObject> nested = properties.objects("bsdf");
     std::vector<double> weights = read_weights(properties, nested.size());
+    const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+    if (!(sum > 0))
+        throw properties.error("weights", "\"weights\" must sum to more than 0");
     std::vector<Material> parts;
     for (const NestedObject &part : nested)
         parts.push_back(builder.build_object<Material>(*part.element));
-    if (const double sum = std::accumulate(weights.begin(), weights.end(), 0.0); sum < 1) {
-        Material black;
-        black.front.reflectance = {0, 0, 0};
-        parts.push_back(black);
+    if (sum < 1) {
+        parts.emplace_back().front = black_bsdf();
         weights.push_back(1 - sum);
     } else if (sum > 1 + 1e-6) {
         properties.diagnostics().warn(properties.location_of("weights"),

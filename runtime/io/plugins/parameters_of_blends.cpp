@@ -10,13 +10,7 @@ namespace gradus {
 namespace {
 
 /// What the back of a material is, seen as a front. One-sided BSDFs absorb there.
-Bsdf back_of(const Material &material) {
-    if (material.two_sided)
-        return material.back;
-    Bsdf black;
-    black.reflectance = {0, 0, 0};
-    return black;
-}
+Bsdf back_of(const Material &material) { return material.two_sided ? material.back : black_bsdf(); }
 
 /// The opacity of a blend of masks, which leaves them as parts without holes. Rays meet either part with its share: the
 /// blend has holes, and where it has none the weight is another one. Textures would make that another one at each
@@ -37,6 +31,12 @@ Number common_opacity(Material (&parts)[2], Number &weight, const Location &loca
 }
 
 } // namespace
+
+Bsdf black_bsdf() {
+    Bsdf black;
+    black.reflectance = {0, 0, 0};
+    return black;
+}
 
 Material blended(Material first, Material second, Number weight, SceneBuilder &builder, const Location &location) {
     Material parts[2] = {std::move(first), std::move(second)};

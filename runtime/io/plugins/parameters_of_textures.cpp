@@ -18,10 +18,10 @@ void read_to_uv(Properties &properties, Texture &texture) {
                      float(v_scale * map.m[4]), float(v_scale * map.m[5]), float(v_scale * map.m[7] + v_offset)};
 }
 
-Texture one_color(const Rgb &color) {
+Texture one_color(const Rgb &color, float scale) {
     Texture texture;
     texture.kind = Texture::Kind::checkerboard;
-    texture.color_0 = texture.color_1 = {color.r, color.g, color.b};
+    texture.color_0 = texture.color_1 = {color.r * scale, color.g * scale, color.b * scale};
     return texture;
 }
 

@@ -15,7 +15,7 @@ void read_to_uv(Properties &properties, Texture &texture);
 /// What a bitmap takes of which file. Throws SceneError.
 Picture read_picture(Properties &properties, SceneBuilder &builder);
 
-/// The same everywhere.
-Texture one_color(const Rgb &color);
+/// The same everywhere, times a factor.
+Texture one_color(const Rgb &color, float scale = 1);
 
 } // namespace gradus

@@ -17,9 +17,8 @@ Declaration declare_texture_blackbody() {
 }
 
 Texture texture_blackbody(Properties &properties, SceneBuilder &) {
-    const Rgb color = spectrum_to_rgb(black_body_spectrum(properties.number("temperature")), ColorUse::emission);
-    const auto scale = float(properties.number("scale"));
-    return one_color({color.r * scale, color.g * scale, color.b * scale});
+    return one_color(spectrum_to_rgb(black_body_spectrum(properties.number("temperature")), ColorUse::emission),
+                     float(properties.number("scale")));
 }
 
 } // namespace gradus

@@ -10,9 +10,7 @@ Declaration declare_texture_d65() {
 }
 
 Texture texture_d65(Properties &properties, SceneBuilder &) {
-    const Rgb color = properties.color("color");
-    const auto scale = float(properties.number("scale"));
-    return one_color({color.r * scale, color.g * scale, color.b * scale});
+    return one_color(properties.color("color"), float(properties.number("scale")));
 }
 
 } // namespace gradus
