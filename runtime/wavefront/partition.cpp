@@ -1,5 +1,7 @@
 #include "runtime/wavefront/partition.h"
 
+#include <algorithm>
+
 namespace gradus {
 
 namespace {
@@ -40,7 +42,8 @@ TableList Partition::tables(std::uint32_t most_bins) const {
 }
 
 std::vector<std::uint32_t> Partition::run(std::uint32_t rows, std::uint32_t bins) {
-    const std::uint32_t chunks = chunks_of(rows);
+    // One at least, so that the scan leaves ranges of no rows where there are none.
+    const std::uint32_t chunks = std::max(chunks_of(rows), 1u);
     count_.run(chunks, {{"bins", bins}, {"rows", rows}});
     scan_.run(1, {{"bins", bins}, {"chunks", chunks}});
     share_.run(lanes_, {{"bins", bins}, {"chunks", chunks}});

@@ -1,6 +1,7 @@
 // The counting sort against std::stable_sort, by the bins of `classify`.
 #include "runtime/wavefront/wavefront.h"
 
+#include "runtime/device/opencl.h"
 #include "tests/support/small_scenes.h"
 
 #include <gtest/gtest.h>
@@ -44,8 +45,11 @@ Scene scene_of(std::uint32_t kinds) {
     return maker.scene;
 }
 
-class Partition : public ::testing::Test {
+/// Whether the device is taken for the host's processor or for another one, on which many lanes scan.
+class Partition : public ::testing::TestWithParam<bool> {
   protected:
+    void SetUp() override { device.implementation().description.is_host = GetParam(); }
+
     /// Sorts rows whose rays met `primitives` and checks all that is said of the result, and that nothing else was
     /// written.
     void expect_sorted(const std::vector<std::uint32_t> &primitives, std::uint32_t kinds, std::uint32_t capacity) {
@@ -156,7 +160,7 @@ class Partition : public ::testing::Test {
     std::mt19937 engine{3};
 };
 
-TEST_F(Partition, KeepsTheOrderWithinABin) {
+TEST_P(Partition, KeepsTheOrderWithinABin) {
     for (const std::uint32_t kinds : {1u, 2u, 3u, 5u, std::uint32_t(bsdf_kind_count)})
         for (const std::uint32_t count : {1u, 63u, 64u, 255u, 256u, 257u, 1000u, 65'536u, 70'001u})
             for (const double dropped : {0.0, 0.3}) {
@@ -165,16 +169,19 @@ TEST_F(Partition, KeepsTheOrderWithinABin) {
             }
 }
 
-TEST_F(Partition, TakesNoRows) { expect_sorted({}, 2, 256); }
+TEST_P(Partition, TakesNoRows) { expect_sorted({}, 2, 256); }
 
-TEST_F(Partition, DropsAllRows) { expect_sorted(std::vector<std::uint32_t>(1000, ray_none), 2, 1024); }
+TEST_P(Partition, DropsAllRows) { expect_sorted(std::vector<std::uint32_t>(1000, ray_none), 2, 1024); }
 
-TEST_F(Partition, PutsAllRowsInOneBin) {
+TEST_P(Partition, PutsAllRowsInOneBin) {
     for (const std::uint32_t primitive : {0u, 1u, 3u, ray_escaped})
         expect_sorted(std::vector<std::uint32_t>(1000, primitive), 2, 1024);
 }
 
-TEST_F(Partition, LeavesRowsBeyondTheCountAlone) { expect_sorted(random_hits(300, 3, 0.1), 3, 4096); }
+TEST_P(Partition, LeavesRowsBeyondTheCountAlone) { expect_sorted(random_hits(300, 3, 0.1), 3, 4096); }
+
+INSTANTIATE_TEST_SUITE_P(Devices, Partition, ::testing::Bool(),
+                         [](const auto &info) { return info.param ? "processor" : "elsewhere"; });
 
 // Phases are bins of kinds, one after the other, behind those of paths that escaped.
 TEST(HitsOf, PhasesLieBehindEachOther) {
