@@ -39,5 +39,25 @@ GRADUS_FN real mis_weight_bsdf(real pdf_bsdf, real pdf_light) {
 #endif
 }
 
+/* Weight of a difference that light sampling finds at a vertex to which base and offset path have come from two sides,
+ * so that BSDF sampling leaves it for the light with two densities: `base_bsdf`, and `offset_bsdf` times `ratio`, both
+ * over that of light sampling, which is the same for both; `ratio` is that of the paths' densities up to the vertex.
+ *
+ * Light that BSDF sampling finds from there is not weighed by all four samplers: paths have merged, and each weighs it
+ * by its own two, then by the ratio of both paths. With b, o and r the above, b' = o / r and the density of light
+ * sampling 1, that is b / (1 + b) * b / (b + o) of the base path and b' / (1 + b') * o / (b + o) of the offset path.
+ * What they leave of one is light sampling's, as 1 to r:
+ *
+ *     (b / (1 + b) + o / (1 + b')) / (b + o) / (1 + r),
+ *
+ * the balance heuristic's 1 / (1 + b + r + o) where b' = b. */
+GRADUS_FN real weight_of_light_at_shared_vertex(real base_bsdf, real offset_bsdf, real ratio) {
+    /* Bounded, so that sums are finite; what is larger leaves light sampling nothing. */
+    const real b = r_min(base_bsdf, R(1e30)), o = r_min(offset_bsdf, R(1e30)), r = r_max(ratio, R(0));
+    const real both = b + o;
+    const real of_offset = r > R(0) ? o / (R(1) + o / r) : R(0);
+    return (both > R(0) ? (b / (R(1) + b) + of_offset) / both : R(1)) / (R(1) + r);
+}
+
 GRADUS_LIB_END
 #endif

@@ -317,7 +317,8 @@
 #define GRADUS_SHIFT_COLUMNS(REAL, UINT)                                                                               \
     REAL(shift, light_jacobian, "of the connection to the light point, by solid angle at both vertices")               \
     REAL(shift, light_density,                                                                                         \
-         "of light sampling there, times the Jacobian, over the base path's; then offset_ratio before the step")       \
+         "of light sampling there, times the Jacobian, over the base path's; then offset_ratio, of those that "        \
+         "step by themselves before the step")                                                                         \
     REAL(shift, jacobian, "of the step to the next vertex; 0 where it cannot be made")                                 \
     UINT(shift, outcome, "one of GRADUS_SHIFT_OUTCOMES: which step it is, or why there is none")                       \
     UINT(shift, receiver, "only with TRAIT_LIGHT_TREE: normal of the vertex that it left, as light_normal_bits()")
@@ -474,9 +475,9 @@ GRADUS_COLUMN_ENUM(splat, GRADUS_SPLAT_COLUMNS) /* its rows are its writer's */
 #define ray_opacity_one 0x80000000u
 
 /* Values of ray_primitive that are no primitive. */
-#define ray_escaped 0xFFFFFFFFu /* traced, and nothing was hit */
-#define ray_pending 0xFFFFFFFEu /* to be traced */
-#define ray_none 0xFFFFFFFDu    /* the path has ended */
+#define ray_escaped 0xFFFFFFFFu    /* traced, and nothing was hit */
+#define ray_pending 0xFFFFFFFEu    /* to be traced */
+#define ray_none 0xFFFFFFFDu       /* the path has ended */
 #define ray_unhindered 0xFFFFFFFCu /* to be traced from the camera, past surfaces that emit: TRAIT_HIDE_EMITTERS */
 #define ray_first_special ray_unhindered
 

@@ -17,7 +17,8 @@ STAGE bias_sum(uint count, uint first, uint from, uint window_first, uint window
     PAIRS_IN_WINDOW(place)
     const vec3 at = AT_V3(gather, position, row);
     const real distance = AT(gather, radius, row), squared = R(0.5) * distance * distance;
-    rgb sum = rgb_scale(AT_RGB(gather_inner, value, row), begin >= window_first ? R(0) : R(1));
+    /* Selected, not scaled: what another pass left may be no number. */
+    rgb sum = rgb_select(begin >= window_first, rgb_gray(R(0)), AT_RGB(gather_inner, value, row));
     for (uint i = low; i < high; ++i) {
         const vec3 apart = v3_sub(AT_V3(photon_sorted, position, pair_photon[i - window_first]), at);
         const real counts = v3_dot(apart, apart) <= squared ? R(1) : R(0);

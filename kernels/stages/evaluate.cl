@@ -45,7 +45,8 @@ STAGE evaluate(uint count, uint unit, uint first, uint first_line, uint stride, 
     const vec3 wo_local = frame_to_local(axes, wo);
     const bsdf_value v =
         MAPPED_VALUE(place, bsdf_evaluate(m, frame_to_local(axes, towards), wo_local, asks_dirac), wo_local);
-    const int is_nothing = line < 4u ? !(rgb_max(v.value) > R(0)) : !(v.pdf > R(0));
+    /* A light that is not scattered may still be found by BSDF sampling. */
+    const int is_nothing = !(v.pdf > R(0)) & (line >= 4u || !(rgb_max(v.value) > R(0)));
     /* What is not asked here is stored as it was: a store behind a condition costs several of these. */
     const rgb value = rgb_select(is_asked, v.value, rgb3(wo.x, wo.y, wo.z));
     SET_RGB(evaluation, value, at, value);

@@ -1,5 +1,6 @@
 /* gradient_connect: adds the light sampled at the vertices where all offset paths are connected (rows `first` on) to
  * the base path and to its differences, if it is seen: `join` has left what each gains. */
+#include "kernels/lib/mis.h"
 #include "kernels/lib/weighted_difference.h"
 #include "kernels/shared/stage.h"
 
@@ -22,9 +23,10 @@ STAGE gradient_connect(uint count, uint first, uint capacity, uint slots, __glob
         const size_t at = (size_t)j * capacity + row;
         const int to = (int)(j * slots) + slot;
         const rgb offset = rgb_select(seen, AT_RGB(evaluation, value, at), rgb_gray(R(0)));
-        const real offset_light = seen ? AT(shift, light_density, at) : R(0);
+        const real ratio = seen ? AT(shift, light_density, at) : R(0);
         const real offset_bsdf = seen ? AT(evaluation, pdf, at) : R(0);
-        const rgb change = weighted_difference(base, offset, base_bsdf, offset_light + offset_bsdf, offset_light);
+        const real weight = weight_of_light_at_shared_vertex(base_bsdf, offset_bsdf, ratio);
+        const rgb change = difference_of(base, offset, weight, ratio);
         ADD_RGB(difference, value, to, change);
     }
 }

@@ -153,7 +153,8 @@ STAGE join(uint count, uint unit, uint first, uint capacity, uint slots, uint ro
     eta = AT(path, eta, row);
 #endif
     const real survival = depth >= roulette_depth ? r_min(brightest * eta * eta, R(0.95)) : R(1);
-    const int alive = AT_UINT(ray, primitive, row) == ray_pending && brightest > R(0) && u.d < survival;
+    /* Of what is darker the inverse is beyond all numbers. */
+    const int alive = AT_UINT(ray, primitive, row) == ray_pending && brightest >= R(1e-37) && u.d < survival;
     AT_UINT(ray, primitive, row) = alive ? ray_pending : ray_none;
     /* Divided by the chance of surviving, all of them: it is a factor of each path, and of no density that weighs
      * them. */

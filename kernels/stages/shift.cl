@@ -266,7 +266,8 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
 #ifdef BSDF
         const vec3 wo_light = frame_to_local(axes, to_light);
         const bsdf_value of_light = MAPPED_VALUE(place, bsdf_evaluate(m, wi, wo_light, 0), wo_light);
-        asks_light &= rgb_max(of_light.value) > R(0);
+        /* Who scatters none of it may still find it, by BSDF sampling. */
+        asks_light &= (rgb_max(of_light.value) > R(0)) | (of_light.pdf > R(0));
         const rgb request = of_light.value;
 #else
         const rgb request = rgb3(to_light.x, to_light.y, to_light.z);

@@ -71,7 +71,7 @@ walk_follow
     const real distance = v3_dot(v3_sub(point.position, from), direction);
     const real cosine = v3_dot(point.geometric, direction);
     const int has_glossy_index = ((asked & event_reflects) != 0u) | ((kind & kind_is_dirac) != 0u) |
-                                 (r_after(r_abs(ior - R(1)), cosine) > GRADUS_HALF_VECTOR_SAME_INDEX);
+                                 (r_after(r_abs(ior * ior - R(1)), cosine) > GRADUS_HALF_VECTOR_SAME_INDEX);
     const int follows = is_hit & alike & event.is_valid & has_glossy_index & ((asked & event_unknown) == 0u) &
                         (r_abs(cosine) > GRAZING) & (distance > R(0));
     const uint reason = is_alive ? (is_hit ? (alike ? walk_event : walk_kinds) : walk_nothing) : failed;

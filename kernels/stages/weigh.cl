@@ -17,6 +17,7 @@
  * AT_FIRST: whether the rows are those at first vertices. */
 //! traits: TRAIT_SHIFT_DISTANCE TRAIT_MIXED_LOBES
 #include "kernels/lib/gradient.h"
+#include "kernels/lib/mis.h"
 #include "kernels/lib/reconnectable.h"
 #include "kernels/lib/surface_side.h"
 #include "kernels/lib/textured_material.h"
@@ -149,8 +150,11 @@ STAGE weigh(uint count, uint unit, uint first, uint stride, uint capacity, uint 
 #endif
         const real marker = own.is_there ? offset_light : own.ratio;
         const rgb mine = rgb_select(is_split, alone, base);
-        const rgb change =
-            weighted_difference(mine, value, is_split ? R(0) : base_bsdf, offset_light + offset_bsdf, marker);
+        real weight = weight_of_difference(is_split ? R(0) : base_bsdf, offset_light + offset_bsdf, marker);
+#if TRAIT_APART
+        weight = shares ? weight_of_light_at_shared_vertex(base_bsdf, offset_bsdf, offset_light) : weight;
+#endif
+        const rgb change = difference_of(mine, value, weight, marker);
         GATHER(difference, to, change)
 
         /* The step. */

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <tuple>
 
 // The balance heuristic, and each strategy alone, beside one another.
 #define STRATEGY 0
@@ -13,18 +14,22 @@
 #undef STRATEGY
 #define STRATEGY 1
 #define mis_weight_light mis_weight_light_alone
+#define weight_of_light_at_shared_vertex weight_of_light_at_shared_vertex_alone
 #define mis_weight_bsdf mis_weight_bsdf_not_at_all
 #include "kernels/lib/mis.h"
 #undef GRADUS_LIB_MIS_H
 #undef LIGHT_CAN_BE_FOUND
 #undef STRATEGY
 #undef mis_weight_light
+#undef weight_of_light_at_shared_vertex
 #undef mis_weight_bsdf
 #define STRATEGY 2
 #define mis_weight_light mis_weight_light_beside
+#define weight_of_light_at_shared_vertex weight_of_light_at_shared_vertex_beside
 #define mis_weight_bsdf mis_weight_bsdf_alone
 #include "kernels/lib/mis.h"
 #undef mis_weight_light
+#undef weight_of_light_at_shared_vertex
 #undef mis_weight_bsdf
 
 using namespace gradus::testing;
@@ -86,6 +91,49 @@ TEST(Mis, OfDensitiesWithoutBoundIsZeroOrOne) {
     EXPECT_EQ(lib::mis_weight_light(largest, least), 1);
     EXPECT_EQ(lib::mis_weight_light(largest, largest), R(0.5));
     EXPECT_EQ(lib::mis_weight_bsdf(largest, largest), R(0.5));
+}
+
+// A light may be found from a vertex that two paths share in four ways. Those of BSDF sampling are weighed as
+// kernels/stages/emission.cl and gradient_combine.cl do it, one weight after the other.
+TEST(Mis, OfTwoPathsThatMergeSumsToOne) {
+    std::mt19937_64 bits(1);
+    std::uniform_real_distribution<double> exponent(-4, 4);
+    for (int i = 0; i < 100'000; ++i) {
+        // Of BSDF sampling over that of light sampling, and of the offset path over the base path up to there.
+        const double base = i % 5 == 0 ? 0 : std::pow(10, exponent(bits)),
+                     offset = i % 7 == 0    ? 0
+                              : i % 11 == 0 ? base
+                                            : std::pow(10, exponent(bits)),
+                     ratio = std::pow(10, exponent(bits));
+        double sum = lib::weight_of_light_at_shared_vertex(real(base), real(ratio * offset), real(ratio)) +
+                     lib::weight_of_light_at_shared_vertex(real(offset), real(base / ratio), real(1 / ratio));
+        for (const auto &[mine, other, prefix] : {std::tuple{base, offset, ratio}, {offset, base, 1 / ratio}})
+            if (mine > 0)
+                sum += lib::mis_weight_bsdf(real(mine), real(1)) / (1 + prefix * other / mine);
+        ASSERT_NEAR(sum, 1, 16 * epsilon_of_real) << base << ' ' << offset << ' ' << ratio;
+    }
+}
+
+TEST(Mis, AtSharedVerticesIsTheBalanceHeuristicOfEqualDensities) {
+    for (const real bsdf : {real(0), real(1e-30), real(0.5), real(1e20)})
+        for (const real ratio : {real(1e-10), real(1), real(1e10)}) {
+            const double expected = 1 / (1 + double(bsdf) + ratio + double(bsdf) * ratio);
+            EXPECT_NEAR(lib::weight_of_light_at_shared_vertex(bsdf, bsdf * ratio, ratio), expected,
+                        8 * epsilon_of_real * expected);
+        }
+}
+
+// An offset path that failed, or that is never sampled, leaves the base path its two samplers; and densities beyond all
+// numbers leave light sampling nothing.
+TEST(Mis, AtSharedVerticesHasLimits) {
+    const real infinite = std::numeric_limits<real>::infinity();
+    for (const real bsdf : {real(0), real(0.5), real(1e20), infinite})
+        for (const real ratio : {real(-1), real(0)})
+            EXPECT_FLOAT_EQ(lib::weight_of_light_at_shared_vertex(bsdf, 0, ratio), float(1 / (1 + r_min(bsdf, 1e30))));
+    for (const real ratio : {std::numeric_limits<real>::min(), real(1), real(1e30)}) {
+        EXPECT_LT(lib::weight_of_light_at_shared_vertex(infinite, infinite, ratio), 1e-20);
+        EXPECT_EQ(lib::weight_of_light_at_shared_vertex(0, 0, ratio), 1 / (1 + ratio)) << "no BSDF sampling";
+    }
 }
 
 // Of tests that compare strategies.

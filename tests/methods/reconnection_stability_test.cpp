@@ -84,6 +84,57 @@ TEST(ReconnectionStability, ToALightOnAnEdge) {
                     "a lamp that stands on the floor, seen along its plane", unbiased, 0.12});
 }
 
+/// A floor in stripes of two greys under a sheet of rough metal that leans over it, and a lamp below the floor's
+/// horizon: all of its light comes by the sheet, which both samplers leave for it. Neighbouring pixels see a vertex on
+/// the sheet from quite different sides.
+void add_leaning_sheet(SceneMaker &scene) {
+    const std::uint32_t greys[] = {scene.material(diffuse(0.9)), scene.material(diffuse(0.1))};
+    for (int i = 0; i < 10; ++i)
+        scene.floor(0.004f * float(i), 0.004f * float(i + 1), 0.1f, greys[i % 2]);
+    scene.parallelogram({0, 0, -0.2f}, {0.2f, 0.2f, 0}, {0, 0, 0.4f}, scene.material(two_sided(rough_metal(0.05))));
+    const std::int32_t light = scene.emitter(Emitter::Kind::area, {5, 5, 5});
+    scene.parallelogram({1, -0.25f, -0.125f}, {0, 0, 0.25f}, {0, 0.25f, 0}, scene.material(two_sided(diffuse(0))),
+                        light);
+    scene.look({1, 0.4, 0}, {0.02, 0, 0}, 2);
+}
+
+TEST(ReconnectionStability, ToGlossyMetal) {
+    SceneMaker scene = scene_for_bias(3);
+    add_leaning_sheet(scene);
+    expect_no_bias(gradient_bias(scene.scene, {8, 1024, 2048}),
+                   {area,
+                    "glossy reconnection vertices: base and offset path would find a light from there with "
+                    "different densities",
+                    "a sheet of metal of roughness 0.05 that leans over the floor and alone sees the lamp", unbiased,
+                    0.1});
+}
+
+// The same beside mirrors, with which paths do not merge but are kept apart.
+TEST(FullReconnectionStability, ToGlossyMetalBesideMirrors) {
+    SceneMaker scene = scene_for_bias(3);
+    add_leaning_sheet(scene);
+    scene.floor(0.01f, 0.02f, 0.01f, scene.material(mirror()), 0.0001f);
+    expect_no_bias(gradient_bias(scene.scene, {8, 1024, 2048}),
+                   {area, "glossy reconnection vertices where some offset paths are specular",
+                    "the same, with a mirror on the floor", unbiased, 0.1});
+}
+
+// Stripes of chalk and of what scatters nothing, but draws directions all the same: of its kind and of another.
+TEST(ReconnectionStability, FromChalkBesideBlack) {
+    SceneMaker scene = scene_for_bias(3);
+    Bsdf tarnished = rough_metal(0.5);
+    tarnished.specular_reflectance = {0, 0, 0};
+    const std::uint32_t chalk = scene.material(diffuse(0.8));
+    const std::uint32_t stripes[] = {chalk, scene.material(diffuse(0)), chalk, scene.material(tarnished)};
+    for (int i = -8; i < 8; ++i)
+        scene.floor(0.1f * float(i), 0.1f * float(i + 1), 1, stripes[(i + 8) % 4]);
+    scene.lamp({0, 0.5f, 0}, 2, 2, 3, scene.material(diffuse(0)));
+    scene.look({0, 0.45, -0.9}, {0, 0, 0}, 60);
+    expect_no_bias(gradient_bias(scene.scene, {8, 32, 128}),
+                   {area, "black beside white: the offset path is worth nothing, but its sampler finds the light",
+                    "stripes of chalk, soot and black metal under a wide lamp", unbiased, 0.1});
+}
+
 // Stripes of chalk and of mirrors.
 TEST(ReconnectionStability, FromChalkBesideMirrors) {
     SceneMaker scene = scene_for_bias();
