@@ -3,10 +3,12 @@
 #include "driver/standard_streams.h"
 #include "runtime/error.h"
 #include "runtime/io/atomic_file.h"
+#include "runtime/io/image_io.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <exception>
 #include <filesystem>
 
 namespace gradus {
@@ -74,6 +76,28 @@ void check_distinct(const std::vector<NamedFile> &outputs, const std::vector<std
 
 std::string png_path(const std::string &image) {
     return std::filesystem::path(image).replace_extension(".png").string();
+}
+
+void write_outputs(const OutputFiles &files, const Image &image, const Image &picture,
+                   const std::function<nlohmann::json()> &statistics) {
+    std::exception_ptr failure;
+    const auto attempt = [&](const auto &write) {
+        try {
+            write();
+        } catch (const std::exception &error) {
+            if (failure)
+                print_message(fmt::format("gradus: error: {}\n", error.what()));
+            else
+                failure = std::current_exception();
+        }
+    };
+    attempt([&] { write_image(image, files.image); });
+    if (files.png)
+        attempt([&] { write_png(picture, png_path(files.image)); });
+    if (!files.statistics.empty())
+        attempt([&] { write_json(statistics(), files.statistics); });
+    if (failure)
+        std::rethrow_exception(failure);
 }
 
 void write_json(const nlohmann::json &json, const std::string &path) {

@@ -1,8 +1,11 @@
 // The files that a command writes: checked before its work, written after it.
 #pragma once
 
+#include "runtime/film/image.h"
+
 #include <nlohmann/json_fwd.hpp>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -34,6 +37,12 @@ std::vector<NamedFile> output_list(const OutputFiles &files);
 
 /// The path of the picture beside an image: its extension replaced by .png.
 std::string png_path(const std::string &image);
+
+/// Writes the image, the picture where one is asked for, and the statistics, once the others are there. What cannot be
+/// written takes nothing else with it: the disk of the image may be full, that of the statistics not. The first error
+/// is thrown at the end; others are printed.
+void write_outputs(const OutputFiles &files, const Image &image, const Image &picture,
+                   const std::function<nlohmann::json()> &statistics);
 
 /// Writes JSON to a file in one step, or to stdout where `path` is "-".
 void write_json(const nlohmann::json &json, const std::string &path);

@@ -23,6 +23,7 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <functional>
 #include <new>
 #include <optional>
 
@@ -43,16 +44,7 @@ class RenderJob {
     int run() {
         prepare();
         watch_.emplace();
-        try {
-            render();
-        } catch (const std::bad_alloc &) {
-            save_what_there_is();
-            throw;
-        } catch (const Error &error) {
-            if (error.code == ExitCode::device)
-                save_what_there_is();
-            throw;
-        }
+        saving([&] { render(); }, [&] { return image_or_mean(); });
         record_.interrupted = watch_->requested();
         if (record_.interrupted) {
             record_.stopped_by = "interrupt";
@@ -67,7 +59,10 @@ class RenderJob {
             throw Error(ExitCode::failure, fmt::format("no sample was done after {:.0f} s, so there is no image: give "
                                                        "more --time, or a smaller --size or --max-depth",
                                                        seconds_since(render_start_)));
-        write_results();
+        Image image;
+        saving([&] { image = described(prepared_.method->last_image(), record_.interrupted); },
+               [&] { return prepared_.method->mean_image(); });
+        write_results(image);
         if (black_pixels_ > 0)
             return static_cast<int>(ExitCode::failure);
         return static_cast<int>(record_.interrupted ? ExitCode::interrupted : ExitCode::success);
@@ -248,21 +243,31 @@ class RenderJob {
     /// A partial image that cannot be written is no reason to lose the render: the disk may have room again at the end.
     void write_partial() {
         try {
-            write_image(current_image(true, false), request_.outputs.image);
-        } catch (const Error &error) {
-            progress_.message(fmt::format("gradus: warning: {}; the render goes on", error.what()));
+            write_image(described(prepared_.method->image(), true), request_.outputs.image);
         } catch (const std::bad_alloc &) {
             progress_.message("gradus: warning: out of memory for an image so far; the render goes on");
+        } catch (const std::exception &error) {
+            progress_.message(fmt::format("gradus: warning: {}; the render goes on", error.what()));
         }
     }
 
-    /// After an error of memory or of the device: hours of samples may be there. What cannot be written is told beside
-    /// the error itself.
-    void save_what_there_is() {
+    /// Does `work`. Where that throws, hours of samples may be there: they are saved, as the image that is `left`.
+    template <class Work, class Left>
+    void saving(const Work &work, const Left &left) {
+        try {
+            work();
+        } catch (...) {
+            save(left);
+            throw;
+        }
+    }
+
+    /// What cannot be written is told beside the error itself.
+    void save(const std::function<Image()> &left) {
         if (prepared_.method->done_samples() == 0)
             return;
         try {
-            write_image(current_image(true, true), request_.outputs.image);
+            write_image(described(left(), true), request_.outputs.image);
             progress_.message(fmt::format("gradus: warning: the render failed; wrote {} of what was rendered: {:.6g} "
                                           "samples a pixel",
                                           request_.outputs.image, record_.samples_per_pixel));
@@ -271,9 +276,16 @@ class RenderJob {
         }
     }
 
-    /// `last`: the method may let go of its film.
-    Image current_image(bool partial, bool last) {
-        Image image = last ? prepared_.method->last_image() : prepared_.method->image();
+    Image image_or_mean() {
+        try {
+            return prepared_.method->last_image();
+        } catch (const std::exception &) {
+            return prepared_.method->mean_image();
+        }
+    }
+
+    /// An image as it is to be written: in the scene's own units, without what is no number, and with what made it.
+    Image described(Image image, bool partial) {
         for (Channel &channel : image.channels)
             if (own_scale_ != 1 && channel.name == "depth.Z")
                 for (float &value : channel.values)
@@ -307,30 +319,12 @@ class RenderJob {
         return image;
     }
 
-    /// What cannot be written takes nothing else with it: the disk of the image may be full, that of the statistics
-    /// not.
-    void write_results() {
-        const Image image = current_image(record_.interrupted, true);
-        std::exception_ptr failure;
-        const auto write = [&](const auto &output) {
-            try {
-                output();
-            } catch (const Error &error) {
-                if (failure)
-                    print_message(fmt::format("gradus: error: {}\n", error.what()));
-                else
-                    failure = std::current_exception();
-            }
-        };
-        write([&] { write_image(image, request_.outputs.image); });
-        if (request_.outputs.png)
-            write([&] { write_png(image, png_path(request_.outputs.image)); });
+    void write_results(const Image &image) {
         const Statistics statistics = prepared_.method->statistics();
-        record_.wall_seconds = seconds_since(job_start_);
-        if (!request_.outputs.statistics.empty())
-            write([&] { write_json(statistics_to_json(record_, statistics), request_.outputs.statistics); });
-        if (failure)
-            std::rethrow_exception(failure);
+        write_outputs(request_.outputs, image, image, [&] {
+            record_.wall_seconds = seconds_since(job_start_);
+            return statistics_to_json(record_, statistics);
+        });
         if (statistics.non_finite > 0)
             progress_.message(fmt::format("gradus: warning: {} samples were NaN or infinite and were left out",
                                           statistics.non_finite));

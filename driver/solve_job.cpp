@@ -188,7 +188,16 @@ class SolveJob {
     bool write_results() {
         Image image = result_image();
         const std::uint64_t non_finite = settle_values(image).values;
-        write_image(image, request_.outputs.image);
+        Image grey; // a picture has three channels
+        if (request_.outputs.png && image.channels.size() == 1)
+            grey = {image.width,
+                    image.height,
+                    {{"R", image.channels[0].values}, {"G", image.channels[0].values}, {"B", image.channels[0].values}},
+                    {}};
+        write_outputs(request_.outputs, image, grey.channels.empty() ? image : grey, [&] {
+            record_.wall_seconds = seconds_since(start_);
+            return solve_report_json(record_, report_);
+        });
         if (non_finite > 0)
             print_message(fmt::format("gradus: error: {} values of the image are NaN or infinite; the file holds them "
                                       "as 0\n",
@@ -198,15 +207,6 @@ class SolveJob {
             warn("the tolerance was not reached");
         if (report_.missing_primal == std::uint64_t(images_.width) * images_.height)
             warn("no pixel of the primal has a finite value");
-        if (request_.outputs.png) {
-            if (image.channels.size() == 1) // a picture has three
-                image.channels = {
-                    {"R", image.channels[0].values}, {"G", image.channels[0].values}, {"B", image.channels[0].values}};
-            write_png(image, png_path(request_.outputs.image));
-        }
-        record_.wall_seconds = seconds_since(start_);
-        if (!request_.outputs.statistics.empty())
-            write_json(solve_report_json(record_, report_), request_.outputs.statistics);
         if (!request_.quiet && request_.outputs.statistics != "-")
             print_result(solve_report_text(report_));
         return non_finite == 0;

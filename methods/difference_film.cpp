@@ -21,6 +21,11 @@ using namespace lib_float;
 
 namespace {
 
+/// R, G and B of an image that may have more.
+Image mean_of(const Image &image) {
+    return {image.width, image.height, {image.channels.begin(), image.channels.begin() + 3}, {}};
+}
+
 std::vector<std::string> film_names(std::uint32_t parts) {
     std::vector<std::string> names = {"gradient_film"};
     for (std::uint32_t part = 1; part < parts; ++part)
@@ -130,8 +135,10 @@ Image DifferenceFilm::image(std::uint64_t samples, bool layers, bool last, std::
     if (last) // what a pass needs and the films do not
         keep_films_and(film_.table_names());
     Image whole = film_.image(samples, non_finite);
-    if (last)
+    if (last) {
+        mean_ = mean_of(whole);
         keep_films_and({});
+    }
     if (solver_compiled_.valid())
         solver_compiled_.get();
     if (!solver_)
@@ -145,8 +152,10 @@ Image DifferenceFilm::image(std::uint64_t samples, bool layers, bool last, std::
                 tables_->release_all_but({counts_});
         },
         used_, tells_error_ && has_error_layer(options_, keeps_halves(options_)) ? &relative_error_ : nullptr);
-    if (last)
+    if (last) {
         solver_.reset();
+        mean_.reset();
+    }
     // The sum of weights is not independent of what it divides.
     if (film_.weights().are_there() && used_.accuracy == accuracy_name(Accuracy::unbiased))
         used_.accuracy = accuracy_name(Accuracy::consistent);
@@ -169,11 +178,12 @@ GradientFilms DifferenceFilm::films(std::uint64_t samples) const {
 
 Image DifferenceFilm::mean(std::uint64_t samples) const {
     std::uint64_t non_finite = 0;
-    return film_.image(samples, non_finite);
+    return mean_ ? *mean_ : mean_of(film_.image(samples, non_finite));
 }
 
 void DifferenceFilm::add_to(Statistics &statistics) const {
-    statistics.reconstruction = used_;
+    statistics.reconstruction =
+        mean_ ? ReconstructionUsed{"none", accuracy_name(Accuracy::unbiased), "the reconstruction failed"} : used_;
     statistics.estimated_error = relative_error_;
     statistics.rays["edge"] = edge_rays_;
     statistics.render_seconds += edge_seconds_;

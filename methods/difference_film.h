@@ -42,7 +42,8 @@ class DifferenceFilm {
     /// as they have been read.
     Image image(std::uint64_t samples, bool layers, bool last, std::uint64_t &non_finite);
 
-    /// What an image of so many samples is made from, which is read where it lies; and the mean of the samples.
+    /// What an image of so many samples is made from, which is read where it lies; and the mean of the samples, which
+    /// is there after a last image that failed, too.
     GradientFilms films(std::uint64_t samples) const;
     Image mean(std::uint64_t samples) const;
 
@@ -69,6 +70,7 @@ class DifferenceFilm {
     std::uint64_t edge_rays_ = 0;
     double edge_seconds_ = 0;
     ReconstructionUsed used_;
+    std::optional<Image> mean_; ///< while the last image is made, whose films go
     bool tells_error_ = true;
     std::optional<double> relative_error_; ///< estimated, of the last image
     std::unique_ptr<PoissonSolver> solver_;

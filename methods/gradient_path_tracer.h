@@ -32,6 +32,7 @@ class GradientPathTracer final : public Method {
     /// the path tracer's layers.
     Image image() override { return make_image(options_.layers, false); }
     Image last_image() override { return make_image(options_.layers, true); }
+    Image mean_image() override { return film_.mean(done_); }
     Image image_with_layers() { return make_image(true, false); }
     Statistics statistics() const override;
 

@@ -42,6 +42,7 @@ class GradientPhotonMapper final : public Method {
     /// The channels of GradientPathTracer::image().
     Image image() override { return make_image(options_.layers, false); }
     Image last_image() override { return make_image(options_.layers, true); }
+    Image mean_image() override { return film_.mean(done_); }
     Statistics statistics() const override;
 
     Tracer *tracer() override { return &session_.tracer; }

@@ -82,8 +82,11 @@ class Method {
     /// sample is 0. Metadata is the driver's.
     virtual Image image() = 0;
     /// The same for the last time: the method may let go of the memory that it renders to. Only statistics() may be
-    /// called after it.
+    /// called after it, and mean_image() where it throws.
     virtual Image last_image() { return image(); }
+    /// The mean of the samples alone, R, G and B: where their reconstruction failed, also after last_image() has
+    /// thrown.
+    virtual Image mean_image() { return image(); }
     virtual Statistics statistics() const = 0;
     /// For measuring: records and replays the rays of a render. Null where there is none.
     virtual Tracer *tracer() { return nullptr; }

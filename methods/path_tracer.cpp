@@ -92,6 +92,13 @@ Image PathTracer::image() {
     return image;
 }
 
+Image PathTracer::mean_image() {
+    follows_no_guide_ = true;
+    Image image = film_.image(done_, statistics_.non_finite);
+    image.channels.resize(3);
+    return image;
+}
+
 std::vector<float> PathTracer::half_image(int half) const {
     const std::size_t pixels = session_.pixels();
     std::vector<float> image(3 * pixels);
@@ -133,7 +140,7 @@ void PathTracer::guide(Image &image, SquaredErrors *errors) {
 
 Statistics PathTracer::statistics() const {
     Statistics s = collected(statistics_, session_, stages_);
-    if (is_guided() && has_halves())
+    if (is_guided() && has_halves() && !follows_no_guide_)
         s.reconstruction = {reconstruction_name(Reconstruction::guided), accuracy_name(Accuracy::consistent), "",
                             guide_name(options_.guide)};
     else

@@ -20,6 +20,7 @@ class PathTracer final : public Method {
     std::uint64_t done_samples() const override { return done_; }
     bool render_batch() override;
     Image image() override;
+    Image mean_image() override;
     Statistics statistics() const override;
 
     Tracer *tracer() override { return &session_.tracer; }
@@ -43,7 +44,8 @@ class PathTracer final : public Method {
     Film film_;
     std::optional<Tables> tables_;
     std::uint64_t total_ = 0, done_ = 0;
-    std::uint32_t pass_ = 0; ///< paths of a pass, but for the last
+    std::uint32_t pass_ = 0;        ///< paths of a pass, but for the last
+    bool follows_no_guide_ = false; ///< where that failed
     Statistics statistics_;
 };
 

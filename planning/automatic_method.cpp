@@ -28,6 +28,7 @@ class ChosenMethod final : public Method {
     void pause_at(std::uint64_t samples) override { method_->pause_at(samples); }
     Image image() override { return method_->image(); }
     Image last_image() override { return method_->last_image(); }
+    Image mean_image() override { return method_->mean_image(); }
     Statistics statistics() const override {
         Statistics statistics = method_->statistics();
         statistics.choice = choice_;

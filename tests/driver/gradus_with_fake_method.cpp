@@ -3,7 +3,8 @@
 //   patient_ms=N the first batch takes so long, but for being told to stop
 //   endless=N    after N samples a pixel batches end only by being told to stop
 //   fail=memory  the render runs out of memory; fail=strange: throws what is no exception; memory-later, device-later:
-//                after three samples a pixel; memory-image: and in image(), too; memory-partial: in the first image()
+//                after three samples a pixel; memory-image: and in image(), too; memory-partial: in the first image();
+//                reconstruction: in all image() but not in mean_image(), whose B is 0.25
 //   reads=FILE   the loader says that it read this file, too
 //   spp=N        the samples that the scene asks for (4)
 //   nan=1        one value of the image is NaN
@@ -91,9 +92,19 @@ class FakeMethod : public Method {
         ++done_;
         return done_ < samples_per_pixel_;
     }
+    Image mean_image() override {
+        if (parameter("fail") == "memory-image")
+            throw std::bad_alloc();
+        return image_of(0.25f);
+    }
     Image image() override {
+        if (parameter("fail") == "reconstruction")
+            throw std::runtime_error("the fake guide is lost");
         if (parameter("fail") == "memory-image" || (parameter("fail") == "memory-partial" && done_ == 1))
             throw std::bad_alloc();
+        return image_of(0.5f);
+    }
+    Image image_of(float blue) {
         imaged_ = done_;
         Image image;
         image.width = width_;
@@ -103,7 +114,7 @@ class FakeMethod : public Method {
         };
         add("R", float(seed_));
         add("G", float(done_));
-        add("B", 0.5f);
+        add("B", blue);
         if (aov_)
             add("albedo.R", 0.25f);
         if (!parameter("nan").empty())

@@ -331,6 +331,13 @@ TEST_F(Render, WhatWasRenderedIsSavedWhereMemoryOrTheDeviceFails) {
     const Outcome outcome = render({"-o", "none.exr", "--spp", "10", "-D", "fail=memory-image"});
     EXPECT_EQ(outcome.exit_code, 4);
     EXPECT_FALSE(std::filesystem::exists(folder / "none.exr"));
+    // Samples are there where what was to become of them fails.
+    const Outcome mean =
+        render({"-o", "mean.exr", "--spp", "3", "-D", "fail=reconstruction", "--write-partial", "1e-9"});
+    EXPECT_EQ(mean.exit_code, 1);
+    EXPECT_THAT(mean.err, HasSubstr("the fake guide is lost; the render goes on"));
+    EXPECT_THAT(mean.err, HasSubstr("wrote mean.exr of what was rendered: 3 samples"));
+    EXPECT_EQ(value(read_image(at("mean.exr")), "B"), 0.25);
     // An image under way is no reason to stop.
     EXPECT_EQ(render({"-o", "out.exr", "-D", "fail=memory-partial", "--write-partial", "1e-9"}).exit_code, 0);
 }

@@ -1,4 +1,7 @@
-// A caller's wish to stop is heard between bounces, and what was done before stays.
+// What was done stays: where a caller wishes to stop, which is heard between bounces, and where the reconstruction
+// fails.
+#include "runtime/device/opencl.h"
+#include "runtime/error.h"
 #include "tests/methods/reference_scene.h"
 #include "tests/support/render.h"
 #include "tests/support/small_scenes.h"
@@ -53,6 +56,34 @@ TEST(Stop, AsksWithoutATrace) {
         const Image image = render(maker.scene, options, name).image;
         EXPECT_GT(asked, 1);
         EXPECT_EQ(image.find("R")->values, render(maker.scene, {}, name).image.find("R")->values);
+    }
+}
+
+// The device has no memory left when the image is to be made, for which a method has let go of its own.
+TEST(MeanImage, IsThereWhereTheReconstructionFails) {
+    Scene scene = own_scene("cornell-box.xml", 16, 16);
+    scene.settings.samples_per_pixel = 8;
+    DeviceDescription &device = shared_device().implementation().description;
+    const DeviceDescription before = device;
+    for (const auto &[name, reconstruction] : {std::pair{"gpt", Reconstruction::weighted},
+                                               {"gpt", Reconstruction::l1},
+                                               {"gpm", Reconstruction::guided},
+                                               {"pt", Reconstruction::guided}}) {
+        SCOPED_TRACE(std::string(name) + ' ' + reconstruction_name(reconstruction));
+        RenderOptions options;
+        options.photons = 100;
+        options.reconstruction = reconstruction;
+        const std::unique_ptr<Method> method = make_method(name, shared_device(), scene, options);
+        while (method->render_batch()) {
+        }
+        const Image mean = method->mean_image();
+        EXPECT_EQ(mean.channels.size(), 3u);
+        EXPECT_FALSE(equal_bits(mean, method->image()));
+        device.allocation_bytes = 1;
+        EXPECT_THROW(method->last_image(), Error);
+        device = before;
+        EXPECT_TRUE(equal_bits(mean, method->mean_image()));
+        EXPECT_EQ(method->statistics().reconstruction.name, "none");
     }
 }
 
