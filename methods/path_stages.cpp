@@ -70,9 +70,12 @@ void run_shade(Stage &shade, const Hits &hits, Range rows, std::size_t kind) {
 std::vector<std::uint32_t> material_kinds(const Scene &scene, double threshold) {
     std::vector<std::uint32_t> kinds;
     for (const Bsdf &bsdf : material_records(scene))
-        kinds.push_back(bsdf_kind_number(bsdf) | (is_rough(bsdf, threshold) ? kind_is_rough : 0) |
-                        (bsdf_kind_traits(bsdf.kind).is_dirac ? kind_is_dirac : 0) |
-                        (bsdf_kind_traits(bsdf.kind).is_mixed ? kind_is_mixed : 0));
+        // Only the parts of a blend have one.
+        kinds.push_back(bsdf.blend != no_blend
+                            ? kind_none
+                            : bsdf_kind_number(bsdf) | (is_rough(bsdf, threshold) ? kind_is_rough : 0) |
+                                  (bsdf_kind_traits(bsdf.kind).is_dirac ? kind_is_dirac : 0) |
+                                  (bsdf_kind_traits(bsdf.kind).is_mixed ? kind_is_mixed : 0));
     return kinds;
 }
 

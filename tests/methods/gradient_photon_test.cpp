@@ -328,6 +328,29 @@ TEST(GradientPhotonImage, SaysWhatItDoesNotKnow) {
     EXPECT_EQ(error_of(diffuse(0.5), {diffuse(0.5), rough_metal(0.3)}), "");
 }
 
+/// A walk would meet a blend, and not the part that a photon has met: no photon is shifted that came by one.
+TEST(GradientPhotonImage, WalksByNoBlends) {
+    for (const bool is_blend : {false, true}) {
+        SceneMaker maker(16, 2);
+        Bsdf wall = mirror();
+        if (is_blend) {
+            maker.scene.blended = {mirror(), mirror()};
+            maker.scene.blends = {{0, 1, 0.5f}};
+            wall = {};
+            wall.blend = 0;
+        }
+        maker.floor(-1, 1, 1, maker.material(diffuse(0.5)));
+        maker.parallelogram({-0.5f, 0, -0.5f}, {0, 1, 0}, {0, 0, 1}, maker.material(two_sided(wall)));
+        maker.lamp({0.5f, 1, 0}, 0.5f, 0.5f, 5, maker.material(diffuse(0)));
+        maker.look({0, 3, 0.1}, {0, 0, 0}, 30);
+        RenderOptions options;
+        options.photons = 4000;
+        const Statistics statistics = render(maker.scene, options, "gpm").statistics;
+        EXPECT_EQ(statistics.shifts.at("walked") == 0, is_blend) << statistics.shifts.at("walked");
+        EXPECT_GT(statistics.shifts.at("reconnected"), 0u);
+    }
+}
+
 /// All light on a floor comes through glass, from a point in a ball of it or from a sun over a pane: chains alone make
 /// the very same image. In a room of rough walls they make none.
 TEST(GradientPhotonImage, OfChainsAlone) {
