@@ -7,12 +7,14 @@
 #include "runtime/device/pocl_stub.h"
 #include "runtime/error.h"
 
-#include <sys/prctl.h>
+#include <poll.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <optional>
+#include <thread>
 
 namespace gradus {
 
@@ -101,7 +103,15 @@ CompileAnswer compile(const CompileJob &job, std::optional<OpenDevice> &opened) 
 } // namespace
 
 int run_compile_worker(int socket) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL); // nobody waits for what is compiled when the other process is gone
+    std::signal(SIGINT, SIG_IGN); // Ctrl-C is for the other process, which may still need kernels for its last image
+    // Nobody waits for what is compiled when the other process is gone. (PR_SET_PDEATHSIG would end this one with the
+    // thread that began it.)
+    std::thread([socket] {
+        pollfd other = {socket, 0, 0};
+        while (poll(&other, 1, -1) < 0) {
+        }
+        _exit(0);
+    }).detach();
     std::optional<OpenDevice> opened;
     std::string message;
     while (receive_message(socket, message)) {

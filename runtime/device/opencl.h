@@ -10,6 +10,7 @@
 #define CL_HPP_MINIMUM_OPENCL_VERSION 120
 #define CL_HPP_ENABLE_EXCEPTIONS
 #include <CL/opencl.hpp>
+#include <atomic>
 
 #include <future>
 #include <map>
@@ -40,7 +41,7 @@ struct Device::Implementation {
     BuiltPrograms built;
     std::weak_ptr<CompileWorkers> compile_workers; ///< while somebody keeps them; built.mutex is for them too
     ProgramStore store;                            ///< what other processes built
-    std::size_t compiled = 0;                      ///< programs that were not taken from there
+    std::atomic<std::size_t> compiled{0};          ///< programs that were not taken from there
     LaunchObserver observer;                       ///< empty: none
 
     ~Implementation() { finish_quietly(); } // threads of the implementation must not outlive the program's memory

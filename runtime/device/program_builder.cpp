@@ -15,6 +15,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -211,7 +212,6 @@ class Builder {
                     if (keep)
                         store(tasks[i], program);
                     finish(tasks[i], std::move(program), seconds_since(start));
-                    const std::lock_guard lock(finishing_);
                     ++device_.compiled;
                 } catch (...) {
                     const std::lock_guard lock(finishing_);
@@ -221,8 +221,12 @@ class Builder {
             }
         };
         std::vector<std::thread> threads;
-        for (std::size_t i = 1; i < std::min<std::size_t>(device_.compile_threads, tasks.size()); ++i)
-            threads.emplace_back(work);
+        try {
+            for (std::size_t i = 1; i < std::min<std::size_t>(device_.compile_threads, tasks.size()); ++i)
+                threads.emplace_back(work);
+        } catch (const std::system_error &) {
+            // Fewer do as well.
+        }
         work();
         for (std::thread &thread : threads)
             thread.join();

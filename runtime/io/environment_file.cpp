@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <thread>
 
 namespace gradus {
 namespace {
@@ -75,8 +74,8 @@ std::shared_ptr<const EnvironmentMap> read_environment(const OpenFile &file, std
     warn(mended.not_numbers, "values that are not numbers, which count as 0");
     warn(mended.infinite, fmt::format("infinite values, which count as its largest one, {:g}", largest));
     const auto plane = [&](std::size_t c) { return std::span(planes[std::min(c, planes.size() - 1)]->values); };
-    return std::make_shared<const EnvironmentMap>(make_environment_map(
-        image.width, image.height, plane(0), plane(1), plane(2), std::max(1u, std::thread::hardware_concurrency())));
+    return std::make_shared<const EnvironmentMap>(
+        make_environment_map(image.width, image.height, plane(0), plane(1), plane(2)));
 }
 
 } // namespace gradus

@@ -1,6 +1,7 @@
 #include "runtime/io/pictures_ahead.h"
 
 #include <algorithm>
+#include <system_error>
 #include <utility>
 
 namespace gradus {
@@ -11,8 +12,12 @@ PicturesAhead::PicturesAhead(const std::vector<Picture> &pictures, unsigned thre
     for (const Picture &picture : pictures)
         if (const auto [place, is_new] = places_.emplace(picture, entries_.size()); is_new)
             entries_.push_back({.picture = &place->first});
-    for (unsigned i = 0; i < std::min<std::size_t>(threads, entries_.size()); ++i)
-        threads_.emplace_back([this] { work(); });
+    try {
+        for (unsigned i = 0; i < std::min<std::size_t>(threads, entries_.size()); ++i)
+            threads_.emplace_back([this] { work(); });
+    } catch (const std::system_error &) {
+        // Fewer do as well: who asks for a picture decodes it where nobody else has begun.
+    }
 }
 
 PicturesAhead::~PicturesAhead() {

@@ -1,13 +1,15 @@
 #include "runtime/scene/environment_map.h"
 
-#include "kernels/lib/environment.h"
 #include "runtime/scene/light_table.h"
+#include "runtime/scene/parallel.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
-#include <thread>
+
+// After TBB, which has template parameters of the names of its macros.
+#include "kernels/lib/environment.h"
 
 namespace gradus {
 
@@ -36,18 +38,8 @@ double row_share(std::uint32_t row, std::uint32_t rows) {
     return 2 * pi * share;
 }
 
-/// Calls work(begin, end) for parts of [0, count), each in a thread.
-template <class Work>
-void in_threads(std::uint32_t count, unsigned threads, const Work &work) {
-    const std::uint32_t parts = std::clamp(threads, 1u, std::max(count / 16, 1u));
-    std::vector<std::jthread> running;
-    for (std::uint32_t part = 1; part < parts; ++part)
-        running.emplace_back([&, part] {
-            work(std::uint32_t(std::uint64_t(count) * part / parts),
-                 std::uint32_t(std::uint64_t(count) * (part + 1) / parts));
-        });
-    work(0, std::uint32_t(std::uint64_t(count) / parts));
-}
+/// Fewer are not worth another thread.
+constexpr std::size_t rows_at_once = 16;
 
 float importance_at(const EnvironmentMap &map, std::uint32_t row, std::uint32_t column) {
     const std::size_t texel = std::size_t(row) * (map.columns + 1) + column;
@@ -109,7 +101,7 @@ std::array<double, 3> make_row(EnvironmentMap &map, std::uint32_t row, const std
 } // namespace
 
 EnvironmentMap make_environment_map(std::uint32_t width, std::uint32_t height, std::span<const float> red,
-                                    std::span<const float> green, std::span<const float> blue, unsigned threads) {
+                                    std::span<const float> green, std::span<const float> blue) {
     EnvironmentMap map;
     map.columns = width;
     map.rows = std::max(height, 2u) - 1;
@@ -122,12 +114,13 @@ EnvironmentMap make_environment_map(std::uint32_t width, std::uint32_t height, s
     constexpr double importance_unit = 8;
 
     std::vector<std::array<double, 3>> sums(map.rows + 1);
-    in_threads(map.rows + 1, threads, [&](std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t row = begin; row < end; ++row) {
-            const std::size_t from = std::size_t(std::min(row, height - 1)) * width;
-            sums[row] = make_row(map, row, {&red[from], &green[from], &blue[from]}, importance_unit);
-        }
-    });
+    for_each_in_parallel(
+        map.rows + 1,
+        [&](std::size_t row) {
+            const std::size_t from = std::min<std::size_t>(row, height - 1) * width;
+            sums[row] = make_row(map, std::uint32_t(row), {&red[from], &green[from], &blue[from]}, importance_unit);
+        },
+        rows_at_once);
     std::array<double, 3> integral{};
     for (std::uint32_t row = 0; row <= map.rows; ++row)
         for (int c = 0; c < 3; ++c)
@@ -138,8 +131,10 @@ EnvironmentMap make_environment_map(std::uint32_t width, std::uint32_t height, s
     const std::size_t strips = std::size_t(strips_a_row) * map.rows;
     map.cells.resize(strips * strip_length);
     std::vector<double> weights(strips);
-    in_threads(map.rows, threads, [&](std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t row = begin; row < end; ++row)
+    for_each_in_parallel(
+        map.rows,
+        [&](std::size_t at) {
+            const auto row = std::uint32_t(at);
             for (std::uint32_t s = 0; s < strips_a_row; ++s) {
                 std::array<float, strip_length> cells{};
                 double total = 0;
@@ -153,7 +148,8 @@ EnvironmentMap make_environment_map(std::uint32_t width, std::uint32_t height, s
                 weights[strip] = total;
                 make_strip(cells, total, &map.cells[strip * strip_length]);
             }
-    });
+        },
+        rows_at_once);
     double total = 0;
     for (const double weight : weights)
         total += weight;

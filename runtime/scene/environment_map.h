@@ -26,9 +26,9 @@ inline constexpr std::uint64_t most_environment_texels = std::uint64_t(1) << 29;
 
 /// Of an image of width x height texels, row by row from +y (the top) down. The planes hold linear radiance, finite and
 /// not negative. Numbers are rounded to 11 bits, which loses nothing of half floats and RGBE. A row alone counts as
-/// two. Works in `threads` threads; what comes out does not depend on how many.
+/// two. Works on all cores; what comes out does not depend on how many.
 EnvironmentMap make_environment_map(std::uint32_t width, std::uint32_t height, std::span<const float> red,
-                                    std::span<const float> green, std::span<const float> blue, unsigned threads);
+                                    std::span<const float> green, std::span<const float> blue);
 
 /// Bytes that it takes on the device.
 std::size_t environment_bytes(const EnvironmentMap &map);

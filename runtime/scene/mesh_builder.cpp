@@ -1,25 +1,13 @@
 #include "runtime/scene/mesh_builder.h"
 
+#include "runtime/scene/parallel.h"
 #include "runtime/scene/transform.h"
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 
 namespace gradus {
 namespace {
-
-/// Runs `work(i)` for each of [0, count), on all cores where that is many.
-template <class Work>
-void for_each_in_parallel(std::size_t count, const Work &work) {
-    constexpr std::size_t grain = 1 << 14;
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const auto &range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i)
-            work(i);
-    });
-}
 
 bool is_finite(const Vector3 &v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 

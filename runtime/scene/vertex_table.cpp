@@ -2,10 +2,8 @@
 
 #include "runtime/error.h"
 #include "runtime/scene/instances.h"
+#include "runtime/scene/parallel.h"
 #include "runtime/scene/scene_tables.h"
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cstring>
@@ -25,14 +23,6 @@ namespace {
 bool has_uv(const TraitMap &traits) {
     return traits.at("TRAIT_MATERIAL") != 0 || traits.at("TRAIT_TEXTURED_LIGHTS") != 0 ||
            traits.at("TRAIT_ANISOTROPIC") != 0;
-}
-
-template <class Work>
-void for_each_of(std::size_t count, const Work &work) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1 << 14), [&](const auto &range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i)
-            work(i);
-    });
 }
 
 struct VertexPlaces {
@@ -134,14 +124,14 @@ void add_vertices(const Scene &scene, int numbers, SceneTables &tables) {
             continue;
         const Mesh &mesh = scene.meshes[shape.geometry];
         const bool own = has_own_vertices(scene, shape);
-        for_each_of(mesh.triangles.size(), [&](std::size_t i) {
+        for_each_in_parallel(mesh.triangles.size(), [&](std::size_t i) {
             std::array<std::uint32_t, 3> t;
             for (std::size_t corner = 0; corner < 3; ++corner)
                 t[corner] = std::uint32_t(vertex + (own ? 3 * i + corner : mesh.triangles[i][corner]));
             std::memcpy(corners + 3 * i, t.data(), sizeof t);
         });
         const std::size_t count = table_vertex_count(scene, shape);
-        for_each_of(count, [&](std::size_t i) {
+        for_each_in_parallel(count, [&](std::size_t i) {
             constexpr std::array<float, 2> unit[] = {{0, 0}, {1, 0}, {0, 1}};
             float *record = &tables.triangles[(vertex + i) * places.numbers];
             if (own)

@@ -90,7 +90,7 @@ struct SceneMaker {
             for (std::uint32_t column = 0; column < columns; ++column)
                 texels.push_back(float(radiance(column, row)));
         scene.emitters[std::size_t(emitter(Emitter::Kind::environment, {1, 1, 1}))].map =
-            std::make_shared<const EnvironmentMap>(make_environment_map(columns, rows, texels, texels, texels, 1));
+            std::make_shared<const EnvironmentMap>(make_environment_map(columns, rows, texels, texels, texels));
     }
     /// Angles in degrees.
     void spot(Rgb intensity, Vector3 position, Vector3 direction, double beam, double cutoff) {
