@@ -96,10 +96,10 @@ PassPhotons::PassPhotons(Session &session, Stages &stages, const Scene &scene, c
 
 void PassPhotons::set_radius(Session &session, RenderOptions::GatherRadius radius) {
     const double diameter = session.scene.scene_diameter;
-    const Box box = box_of(session.scene);
+    const Bounds &box = session.scene.bounds;
     double farthest = 0;
     for (std::size_t axis = 0; axis < 3; ++axis)
-        farthest = std::max({farthest, std::fabs(box.low[axis]), std::fabs(box.high[axis])});
+        farthest = std::max({farthest, std::fabs(box.lower[axis]), std::fabs(box.upper[axis])});
     const float *camera = session.scene.camera.data();
     const double pixel = std::sqrt(length_of(camera, camera_right_x) * length_of(camera, camera_down_x));
     // Of an orthographic camera pixels are as wide at any distance.

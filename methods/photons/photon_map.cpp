@@ -43,44 +43,16 @@ StageDeclaration cells_stage(const char *entry, std::vector<std::string> numbers
 
 } // namespace
 
-Box box_of(const SceneTables &tables) {
-    Box box;
-    box.low.fill(INFINITY);
-    box.high.fill(-INFINITY);
-    const auto add = [&](int axis, double from, double to) {
-        box.low[axis] = std::min(box.low[axis], from);
-        box.high[axis] = std::max(box.high[axis], to);
-    };
-    for (std::size_t i = 0; i < tables.triangle_count; ++i) {
-        const TableTriangle triangle = tables.triangle(std::uint32_t(i));
-        for (int axis = 0; axis < 3; ++axis) {
-            const double corner = triangle.p0[axis], first = triangle.e1[axis], second = triangle.e2[axis];
-            add(axis, corner + std::min({0.0, first, second}), corner + std::max({0.0, first, second}));
-        }
-    }
-    for (std::size_t i = tables.triangle_count; i < tables.primitive_count; ++i) {
-        const float *record = &tables.spheres[(i - tables.triangle_count) * sphere_stride];
-        const double radius = std::fabs(record[sphere_radius]);
-        for (int axis = 0; axis < 3; ++axis)
-            add(axis, record[sphere_center_x + axis] - radius, record[sphere_center_x + axis] + radius);
-    }
-    if (!(box.low[0] <= box.high[0]))
-        box = {};
-    return box;
-}
-
-PhotonGrid::PhotonGrid(const Box &box, double edge, std::uint32_t most) : low(box.low) {
-    double largest = 0, farthest = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        largest = std::max(largest, box.high[axis] - box.low[axis]);
-        farthest = std::max({farthest, std::fabs(box.low[axis]), std::fabs(box.high[axis])});
-    }
-    edge = std::max({edge, largest / (most_cells - 1), 1e-30});
+PhotonGrid::PhotonGrid(const Bounds &box, double edge, std::uint32_t most) : low(box.lower) {
+    double farthest = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        farthest = std::max({farthest, std::fabs(box.lower[axis]), std::fabs(box.upper[axis])});
+    edge = std::max({edge, box.extent() / (most_cells - 1), 1e-30});
     inverse_edge = 1 / edge;
     reach = farthest * rounding;
     std::uint64_t cells = 1;
     for (int axis = 0; axis < 3; ++axis) {
-        last[axis] = static_cast<std::uint32_t>((box.high[axis] - box.low[axis]) * inverse_edge);
+        last[axis] = static_cast<std::uint32_t>((box.upper[axis] - box.lower[axis]) * inverse_edge);
         cells *= last[axis] + 1;
     }
     if (cells <= most) {
@@ -98,7 +70,7 @@ PhotonGrid::PhotonGrid(const Box &box, double edge, std::uint32_t most) : low(bo
 }
 
 PhotonMap::PhotonMap(Session &session, Stages &stages, std::uint32_t rows)
-    : stages_(stages), box_(box_of(session.scene)), rows_(rows),
+    : stages_(stages), box_(session.scene.bounds), rows_(rows),
       columns_(session.has("TRAIT_LIGHT_VERTICES") ? photon_columns : photon_before),
       sort_(session, stages, "photon_sort", RowsOf::one, rows), cells_(stages.add(cells_stage("photon_cells", {}))),
       copy_(stages.add(cells_stage("photon_copy", {}))), lines_(stages.add(cells_stage("photon_lines", {}))),

@@ -11,14 +11,6 @@
 
 namespace gradus {
 
-/// A box in world units.
-struct Box {
-    std::array<double, 3> low{}, high{};
-};
-
-/// That of all triangles and spheres.
-Box box_of(const SceneTables &tables);
-
 /// The grid as kernels know it (kernels/lib/photon_grid.h).
 struct PhotonGrid {
     std::array<double, 3> low{};
@@ -30,7 +22,7 @@ struct PhotonGrid {
 
     /// Cells of edge `edge`, or a little more where a side would have too many. Each has a key of its own where that
     /// takes no more than `most_keys`; else lines of cells are hashed.
-    PhotonGrid(const Box &box, double edge, std::uint32_t most_keys);
+    PhotonGrid(const Bounds &box, double edge, std::uint32_t most_keys);
 };
 
 class PhotonMap {
@@ -52,7 +44,7 @@ class PhotonMap {
 
   private:
     Stages &stages_;
-    Box box_;
+    Bounds box_;
     std::uint32_t rows_, columns_;
     Sort sort_;
     Stage &cells_, &copy_, &lines_, &starts_;

@@ -25,7 +25,6 @@ constexpr double pi = 3.14159265358979323846;
 constexpr double tracer_error = GRADUS_TRACER_ERROR, least_slant = GRADUS_LEAST_SLANT, most_slant = GRADUS_MOST_SLANT;
 
 Vector3 operator-(Vector3 a, Vector3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-Vector3 operator+(Vector3 a, Vector3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 Vector3 operator*(float s, Vector3 a) { return {s * a.x, s * a.y, s * a.z}; }
 Vector3 cross(Vector3 a, Vector3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
 double length(Vector3 a) { return std::sqrt(double(a.x) * a.x + double(a.y) * a.y + double(a.z) * a.z); }
@@ -44,29 +43,16 @@ void put(float *record, int field, Vector3 v) {
     record[field + 2] = v.z;
 }
 
-struct SceneBox {
-    Vector3 low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
-    void add(Vector3 p, float r = 0) {
-        low = {std::min(low.x, p.x - r), std::min(low.y, p.y - r), std::min(low.z, p.z - r)};
-        high = {std::max(high.x, p.x + r), std::max(high.y, p.y + r), std::max(high.z, p.z + r)};
-    }
-    Vector3 center() const { return high.x >= low.x ? low + 0.5f * (high - low) : Vector3{}; }
-    double radius() const { return high.x >= low.x ? std::max(0.5 * length(high - low), 1e-6) : 1; }
-};
-
-SceneBox scene_bounds(const Scene &scene) {
-    SceneBox bounds;
+Bounds scene_bounds(const Scene &scene) {
+    Bounds bounds;
     const std::vector<Bounds> of_groups = group_bounds(scene);
-    for (const Instance &instance : scene.instances) {
-        const Bounds placed = placed_bounds(of_groups[instance.group], matrix_of(instance));
-        bounds.add(to_float(placed.lower));
-        bounds.add(to_float(placed.upper));
-    }
+    for (const Instance &instance : scene.instances)
+        bounds.add(placed_bounds(of_groups[instance.group], matrix_of(instance)));
     for (const Shape &shape : scene.shapes) {
         if (shape.group != no_group)
             continue;
         if (shape.kind == Shape::Kind::mesh)
-            for (Vector3 p : scene.meshes[shape.geometry].positions)
+            for (const Vector3 &p : scene.meshes[shape.geometry].positions)
                 bounds.add(p);
         else
             bounds.add(scene.spheres[shape.geometry].center, scene.spheres[shape.geometry].radius);
@@ -422,10 +408,14 @@ SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits, const 
         if (shape.kind == Shape::Kind::sphere)
             add_sphere(scene, shape, {scene, shape, tables, classes}, tables, primitives, lights);
     primitives.finish();
-    const SceneBox bounds = scene_bounds(scene);
-    const double radius = bounds.radius();
+    const Bounds bounds = scene_bounds(scene);
+    const bool is_empty = !(bounds.lower[0] <= bounds.upper[0]);
+    tables.bounds = is_empty ? Bounds{{0, 0, 0}, {0, 0, 0}} : bounds;
+    const Double3 across = subtract(tables.bounds.upper, tables.bounds.lower);
+    const double radius = is_empty ? 1 : std::max(0.5 * length(across), 1e-6);
     tables.scene_diameter = static_cast<float>(2.02 * radius);
-    tables.scene_center = {bounds.center().x, bounds.center().y, bounds.center().z};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        tables.scene_center[axis] = static_cast<float>(tables.bounds.lower[axis] + 0.5 * across[axis]);
     add_other_lights(scene, radius, tables, lights);
     lights.finish(tree_from);
     if (!tables.environment && traits.at("TRAIT_LIGHT_ENVIRONMENT"))

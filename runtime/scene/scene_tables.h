@@ -1,6 +1,7 @@
 // A scene laid out as the kernels read it: the records of kernels/shared/scene_records.h and material.h.
 #pragma once
 
+#include "runtime/scene/bounds.h"
 #include "runtime/scene/camera_clips.h"
 #include "runtime/scene/light_tree.h"
 #include "runtime/scene/material_class.h"
@@ -61,6 +62,7 @@ struct SceneTables {
     std::uint32_t vertex_numbers = 0, first_vertex = 0, end_vertex = 0;
     /// With TRAIT_INSTANCES the record of what is in no instance, in `triangles`; those of Scene::instances follow.
     std::uint32_t no_instance = 0;
+    Bounds bounds;                          ///< of all that can be hit, and maybe a little more; a point if nothing can
     float scene_diameter = 1;               ///< longer than any segment within the scene; of a sphere that holds it
     std::array<float, 3> scene_center = {}; ///< of that sphere
     CameraClips camera_clips;

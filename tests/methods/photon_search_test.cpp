@@ -134,7 +134,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 // Of the pairs of strangers that hashing brings together none may be taken: all photons in two lines of one key.
 TEST(PhotonHash, DoesNotCountPhotonsTwice) {
-    const Box box{{-1, -1, -1}, {1, 1, 1}};
+    const Bounds box{{-1, -1, -1}, {1, 1, 1}};
     const double edge = 0.012;
     const PhotonGrid grid(box, edge, 1u << 21);
     ASSERT_NE(grid.line_shift, 0u) << "not hashed";
