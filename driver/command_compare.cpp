@@ -44,10 +44,8 @@ void write_error_image(const Comparison &comparison, const std::string &path) {
     const std::string extension = std::filesystem::path(path).extension().string();
     if (extension == ".exr")
         write_image(error, path);
-    else if (extension == ".png")
-        write_png(error_picture(error), path);
     else
-        throw Error(ExitCode::usage, fmt::format("the error image '{}' must end in .png or .exr", path));
+        write_png(error_picture(error), path);
 }
 
 /// Before anything is read: a comparison of large images takes a while.
@@ -55,6 +53,10 @@ void check_files(const Arguments &arguments) {
     std::vector<std::string> inputs = arguments.request.images;
     inputs.push_back(arguments.request.reference);
     inputs.push_back(arguments.request.variance);
+    const std::string extension = std::filesystem::path(arguments.error_image).extension().string();
+    if (!arguments.error_image.empty() && extension != ".exr" && extension != ".png")
+        throw Error(ExitCode::usage,
+                    fmt::format("the error image '{}' must end in .png or .exr", arguments.error_image));
     const std::vector<NamedFile> outputs{{"--error-image", arguments.error_image}, {"--json", arguments.json}};
     for (const NamedFile &output : outputs)
         if (!output.path.empty() && output.path != "-")

@@ -31,10 +31,8 @@ int main(int argc, char **argv) {
         gradus::RenderOptions tuned = options;
         std::string problem;
         gradus::apply_tuning(gradus::stored_tuning(device->description(), &problem), tuned);
-        if (!problem.empty())
-            gradus::print_message("gradus: warning: " + problem + "\n");
-        return gradus::PreparedMethod{device, device->description(),
-                                      gradus::make_method(method, *device, scene, tuned)};
+        return gradus::PreparedMethod{device, device->description(), gradus::make_method(method, *device, scene, tuned),
+                                      problem};
     };
     services.tune = [](const std::string &selector, int threads, const gradus::Scene &scene,
                        const gradus::TuningOptions &options) {
@@ -54,10 +52,10 @@ int main(int argc, char **argv) {
         prepared.solve_weighted = [device, solver](const gradus::HostHalves &halves, float *result) {
             return gradus::solve_weighted(*device, *solver, halves, result);
         };
-        prepared.solve_guided = [device, solver](const gradus::HostHalves &halves,
-                                                 const gradus::HostGuideInputs &inputs, gradus::Guide guide,
-                                                 float *result) {
-            return gradus::solve_guided(*device, *solver, halves, inputs, guide, result);
+        prepared.solve_guided = [device, solver, threads](const gradus::HostHalves &halves,
+                                                          const gradus::HostGuideInputs &inputs, gradus::Guide guide,
+                                                          float *result) {
+            return gradus::solve_guided(*device, *solver, halves, inputs, guide, threads, result);
         };
         return prepared;
     };

@@ -41,10 +41,24 @@ std::uint64_t system_bytes() {
     return known ? sum : unlimited;
 }
 
+/// The number that follows a name in a file of such lines; 0 where there is none.
+std::uint64_t number_of(const char *path, const std::string &wanted) {
+    std::ifstream file(path);
+    std::uint64_t number = 0;
+    for (std::string name; file >> name >> number;)
+        if (name == wanted)
+            return number;
+    return 0;
+}
+
 std::uint64_t container_bytes() {
     const std::uint64_t most = number_in("/sys/fs/cgroup/memory.max"),
                         used = number_in("/sys/fs/cgroup/memory.current");
-    return most == unlimited || used == unlimited ? unlimited : most - std::min(most, used);
+    if (most == unlimited || used == unlimited)
+        return unlimited;
+    // Files that were read, those of the scene too, are kept as long as nobody needs the room.
+    const std::uint64_t files = number_of("/sys/fs/cgroup/memory.stat", "inactive_file");
+    return most - std::min(most, used - std::min(used, files));
 }
 
 /// Of the process; `unlimited` where there is none.
@@ -84,8 +98,8 @@ std::uint64_t least_render_bytes(const Scene &scene, const RenderOptions &option
     const auto [width, height] = image_size(scene.film);
     const SceneSummary summary = summarize(scene);
     // An image is planes, and once more the bytes of its file. Pictures lie in the scene and in the kernels' tables.
-    return summary.geometry_bytes + 2 * summary.texture_bytes + summary.tree_bytes + summary.film_bytes +
-           std::uint64_t(width) * height * channels * 2 * sizeof(float);
+    return summary.geometry_bytes + summary.instance_bytes + 2 * summary.texture_bytes + summary.tree_bytes +
+           summary.film_bytes + std::uint64_t(width) * height * channels * 2 * sizeof(float);
 }
 
 void check_memory(const Scene &scene, const RenderOptions &options) {

@@ -111,6 +111,8 @@ class RenderJob {
         prepared_ = services_.prepare(request_.method.method, request_.method.device, scene, options);
         record_.prepare_seconds = seconds_since(start);
         record_.device = prepared_.description;
+        if (!prepared_.warning.empty())
+            progress_.message("gradus: warning: " + prepared_.warning);
         for (const Phases::Time &time : phases_.times())
             record_.phase_seconds.emplace_back(time.name.key, time.seconds);
         if (const std::optional<MethodChoice> choice = prepared_.method->statistics().choice) {

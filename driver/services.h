@@ -22,6 +22,7 @@ struct PreparedMethod {
     std::shared_ptr<void> device; ///< outlives the method
     DeviceDescription description;
     std::unique_ptr<Method> method;
+    std::string warning{}; ///< empty: none
 };
 
 /// A Poisson solver for images of one size, and the device that it runs on.

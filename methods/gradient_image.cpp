@@ -113,7 +113,7 @@ void reconstruct_from_halves(Device &device, PoissonSolver &solver, Image &whole
         inputs.direct = uploaded(device, "direct", pixels, [&](std::uint32_t c, float *plane) {
             std::copy_n(whole.channels[c].values.data(), pixels, plane);
         });
-        GuidedReconstruction(device, solver, options.guide).solve(halves, inputs, result, errors);
+        GuidedReconstruction(device, solver, options.guide, options.threads).solve(halves, inputs, result, errors);
     } else
         WeightedReconstruction(device, solver).solve(halves, result, errors);
     const auto mapping = result.map(Access::read);

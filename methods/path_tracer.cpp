@@ -127,7 +127,7 @@ void PathTracer::guide(Image &image, SquaredErrors *errors) {
         inputs.features = uploaded_features(device, image);
         Buffer result(device, "result", halves[0].primal.bytes());
         PoissonSolver none(device, image.width, image.height); // samples alone ask for no solve
-        GuidedReconstruction(device, none, options_.guide).solve(halves, inputs, result, errors);
+        GuidedReconstruction(device, none, options_.guide, options_.threads).solve(halves, inputs, result, errors);
         const auto mapping = result.map(Access::read);
         for (int c = 0; c < 3; ++c)
             std::copy_n(mapping.as<float>() + c * pixels, pixels, image.channels[c].values.begin());

@@ -59,8 +59,8 @@ struct PoissonOptions {
     /// 0, or at least least_alpha_of_absolute_values with L1, above 0 with L2. With 0, I0 decides the mean of each
     /// channel and nothing else.
     double alpha = 0.2;
-    /// alpha^2 = (mean variance of dx and dy) / (mean variance of primal) instead (Kettunen et al. 2015, eq. 12). Needs
-    /// the variances; where all are 0, as of one sample, they tell nothing and `alpha` stands.
+    /// alpha^2 = (mean variance of dx and dy) / (mean variance of primal) instead (Kettunen et al. 2015, supplement,
+    /// eq. 12). Needs the variances; where all are 0, as of one sample, they tell nothing and `alpha` stands.
     bool alpha_from_variances = false;
     /// L2: each equation is weighted by its inverse variance, relative to the mean variance of its image, instead of
     /// equally (after Rousselle et al. 2016). Needs the variances. The mean of I0 is then not kept.

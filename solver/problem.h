@@ -21,7 +21,7 @@ class Problem {
     /// Reads the variances for their means, and where weights ask for them keeps them. A variance that is missing or
     /// below zero removes its equation from weighted problems.
     void import_variances(const Inputs &images, bool keep);
-    /// Kettunen et al. 2015, eq. 12; `otherwise` where all variances are 0.
+    /// Kettunen et al. 2015, supplement, eq. 12; `otherwise` where all variances are 0.
     double alpha_from_variances(double otherwise) const;
 
     bool anything_missing() const { return anything_missing_; }

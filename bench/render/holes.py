@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The experiment with holes (Kettunen et al. 2015, figure 3): the more occluders, the less gradients help.
+"""The experiment with holes (Kettunen et al. 2015, supplement, figure 3): the more occluders, the less gradients help.
 
     python3 bench/render/holes.py [--gradus build/gradus]
 

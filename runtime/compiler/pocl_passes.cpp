@@ -45,8 +45,8 @@ AddAttribute *add_attribute = nullptr;
 /// so the more side by side the better: with sixteen a row of `shade` takes 0.85 of the time (Zen 4). Kernels that
 /// scatter, or hold more than the registers do, are not among them: they take as long or longer.
 bool is_wide(std::string_view launcher) {
-    static constexpr std::array<std::string_view, 7> wide = {"camera",   "emit",  "escape",          "gradient_combine",
-                                                             "material", "shade", "photon_reconnect"};
+    static constexpr std::array<std::string_view, 6> wide = {"camera",           "emit",  "escape",
+                                                             "gradient_combine", "shade", "photon_reconnect"};
     return std::ranges::any_of(wide, [&](std::string_view kernel) {
         return launcher.starts_with(kernel) && launcher.substr(kernel.size()) == "_workgroup";
     });

@@ -23,6 +23,12 @@ constexpr const char *property_tags[] = {"boolean", "integer", "float",    "stri
                                          "rgb",     "srgb",    "spectrum", "blackbody", "transform", "animation"};
 } // namespace
 
+std::vector<std::string> all_tags() {
+    std::vector<std::string> all(std::begin(object_tags), std::end(object_tags));
+    all.insert(all.end(), std::begin(property_tags), std::end(property_tags));
+    return all;
+}
+
 bool is_object_tag(const std::string &tag) { return is_one_of(tag, object_tags); }
 bool is_property_tag(const std::string &tag) { return is_one_of(tag, property_tags); }
 

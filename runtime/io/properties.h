@@ -107,6 +107,8 @@ class Properties {
 
 /// Tags of plugins, which may have an id and be referenced.
 bool is_object_tag(const std::string &tag);
+/// Those of objects and of properties.
+std::vector<std::string> all_tags();
 /// Tags of parameters.
 bool is_property_tag(const std::string &tag);
 

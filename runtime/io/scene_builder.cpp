@@ -38,14 +38,12 @@ void SceneBuilder::check_children(const Element &element) {
         if (is_object_tag(tag) || is_property_tag(tag) ||
             std::find(std::begin(other_tags), std::end(other_tags), tag) != std::end(other_tags))
             continue;
-        std::vector<std::string> known{"ref",     "default", "include",  "path",      "bsdf",      "shape",
-                                       "emitter", "sensor",  "film",     "sampler",   "rfilter",   "alias",
-                                       "string",  "float",   "integer",  "boolean",   "point",     "vector",
-                                       "rgb",     "srgb",    "spectrum", "transform", "integrator"};
+        std::vector<std::string> known = all_tags();
+        known.insert(known.end(), {"ref", "alias", "default", "include", "path"});
         std::string message = "unknown element <" + tag + ">";
         if (tag == "camera" || tag == "luminaire") // of 0.3 and before
-            message +=
-                std::string(", of versions before 0.4; it is a <") + (tag == "camera" ? "sensor" : "emitter") + "> now";
+            message += std::string(", of versions before 0.4; it is ") +
+                       (tag == "camera" ? "a <sensor>" : "an <emitter>") + " now";
         else if (const auto nearest = nearest_name(tag, known))
             message += "; did you mean <" + *nearest + ">?";
         diagnostics_.error(child.location, message);

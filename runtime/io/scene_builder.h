@@ -92,7 +92,6 @@ class SceneBuilder {
     /// Builds a nested object by its plugin. Throws SceneError where its type is not known.
     template <typename Result>
     Result build_object(const Element &element);
-    const ResolveReference &resolver() const { return resolve_; }
     Diagnostics &diagnostics() { return diagnostics_; }
     /// May be nullptr.
     Phases *phases() const { return phases_; }

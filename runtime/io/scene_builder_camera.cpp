@@ -37,7 +37,6 @@ void SceneBuilder::build_integrator(const Element &element) {
         return;
     }
     integrator_ = &element;
-    const std::uint64_t samples = scene_.settings.samples_per_pixel;
     const Element &paths = innermost_integrator(element);
     const std::string type = type_of(paths);
     if (&paths != &element)
@@ -52,7 +51,6 @@ void SceneBuilder::build_integrator(const Element &element) {
         scene_.settings = read_as<RenderSettings>(paths, "path");
     }
     scene_.settings.integrator = type_of(element);
-    scene_.settings.samples_per_pixel = samples;
 }
 
 void SceneBuilder::build_sensor(const Element &element) {

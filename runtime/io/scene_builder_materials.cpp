@@ -7,7 +7,7 @@ namespace gradus {
 
 /// A BSDF that no shape uses cannot harm the image: what is wrong with it is worth a warning.
 void SceneBuilder::check_unused_bsdf(const Element &element) {
-    if (materials_.count(&element))
+    if (built_materials_.count(&element))
         return;
     try {
         build_object<Material>(element);

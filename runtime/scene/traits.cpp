@@ -278,12 +278,6 @@ void add_light_texture_traits(const Scene &scene, TraitMap &traits) {
 
 } // namespace
 
-bool needs_material_stage(const Scene &scene) {
-    TraitMap traits;
-    add_material_traits(scene, traits);
-    return traits.at("TRAIT_MATERIAL") != 0;
-}
-
 TraitMap scene_traits(const Scene &scene) {
     TraitMap traits;
     for (const TraitText &trait : descriptions)

@@ -36,9 +36,6 @@ std::vector<std::int32_t> distinct_textures(const Bsdf &bsdf);
 /// The most that a BSDF of the scene's shapes has.
 int most_lookups(const Scene &scene);
 
-/// Whether a shape has a material with textures or a blend, which the stage `material` reads.
-bool needs_material_stage(const Scene &scene);
-
 /// One line that says what a trait stands for; empty for an unknown one.
 std::string trait_description(const std::string &name);
 

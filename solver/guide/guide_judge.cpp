@@ -71,18 +71,6 @@ void GuideJudge::run(const std::array<const Buffer *, 2> &halves, double share,
     if (kept)
         *kept = make_.precision() == Precision::double_ ? quotients_inside<double>(moments)
                                                         : quotients_inside<float>(moments);
-    mean_share_ = make_.precision() == Precision::double_ ? mean_inside<double>(shares) : mean_inside<float>(shares);
-}
-
-template <class Real>
-double GuideJudge::mean_inside(const Buffer &plane) const {
-    const Buffer::Mapping mapping(plane, Access::read, Wait::now);
-    double sum = 0;
-    for (std::size_t y = 0; y < grid_.height; ++y) {
-        const Real *line = mapping.as<Real>() + (y + 1) * grid_.row + SOLVER_MARGIN;
-        sum += std::accumulate(line, line + grid_.width, 0.0);
-    }
-    return sum / (double(grid_.width) * grid_.height);
 }
 
 /// The smoothed shares as guide_blend follows them.

@@ -36,13 +36,9 @@ class GuideJudge {
     /// `kept`: gets the share of the guide by pixel, where both images are there.
     void run(const std::array<const Buffer *, 2> &halves, double share, const std::array<const Buffer *, 2> &guides,
              Buffer &result, const Buffer *followed = nullptr, std::vector<float> *kept = nullptr);
-    /// The mean over the pixels of the share of the guide in the last image.
-    double mean_share() const { return mean_share_; }
 
   private:
     double squared_brightness(const Buffer &image) const;
-    template <class Real>
-    double mean_inside(const Buffer &plane) const;
     template <class Real>
     std::vector<float> quotients_inside(const Buffer &planes) const;
 
@@ -50,7 +46,6 @@ class GuideJudge {
     const solver::Grid grid_;
     Kernel moments_, share_, blend_;
     solver::GuideSmoother wide_, narrow_;
-    double mean_share_ = 0;
 };
 
 } // namespace gradus

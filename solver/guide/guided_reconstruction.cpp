@@ -19,11 +19,11 @@ Denoiser::Features cleaned(Denoiser &denoiser, const Buffer &features, std::uint
 
 } // namespace
 
-GuidedReconstruction::GuidedReconstruction(Device &device, PoissonSolver &solver, Guide guide)
+GuidedReconstruction::GuidedReconstruction(Device &device, PoissonSolver &solver, Guide guide, int threads)
     : device_(device), solver_(solver), judge_(device, solver.width(), solver.height()),
       light_(device, solver.width(), solver.height()) {
     if (guide == Guide::denoiser)
-        denoiser_ = std::make_unique<Denoiser>();
+        denoiser_ = std::make_unique<Denoiser>("", threads);
     else
         filter_ = std::make_unique<FeatureFilter>(device, solver.width(), solver.height());
 }
@@ -99,7 +99,7 @@ PoissonReport GuidedReconstruction::solve(const HalvedImages &halves, const Guid
 }
 
 PoissonReport solve_guided(Device &device, PoissonSolver &solver, const HostHalves &halves,
-                           const HostGuideInputs &inputs, Guide guide, float *result) {
+                           const HostGuideInputs &inputs, Guide guide, int threads, float *result) {
     const auto start = std::chrono::steady_clock::now();
     const std::size_t plane = std::size_t(solver.width()) * solver.height();
     GuideInputs uploaded;
@@ -114,8 +114,8 @@ PoissonReport solve_guided(Device &device, PoissonSolver &solver, const HostHalv
     if (inputs.direct)
         uploaded.direct = Buffer(device, "direct", inputs.direct, bytes);
     Buffer solution(device, "solution", bytes);
-    PoissonReport report =
-        GuidedReconstruction(device, solver, guide).solve(uploaded_halves(device, halves, bytes), uploaded, solution);
+    PoissonReport report = GuidedReconstruction(device, solver, guide, threads)
+                               .solve(uploaded_halves(device, halves, bytes), uploaded, solution);
     solution.read(result, bytes);
     report.seconds = seconds_since(start);
     return report;

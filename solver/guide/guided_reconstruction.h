@@ -25,16 +25,14 @@ struct GuideInputs {
 class GuidedReconstruction {
   public:
     /// For images of three channels of the solver's size, which is the caller's and must live as long. Throws as
-    /// Denoiser does where the guide is one.
-    GuidedReconstruction(Device &device, PoissonSolver &solver, Guide guide);
+    /// Denoiser does where the guide is one, which then takes `threads`; 0: all.
+    GuidedReconstruction(Device &device, PoissonSolver &solver, Guide guide, int threads);
 
     /// Writes the image, without `direct`, to `result`, which has as many values as the halves' primal. Halves without
     /// differences are their primal, and no solver is asked. The report is that of the solves.
     /// `errors`: gets what the halves tell of the image's error.
     PoissonReport solve(const HalvedImages &halves, const GuideInputs &inputs, Buffer &result,
                         SquaredErrors *errors = nullptr);
-    /// The mean over the pixels of the share of the guide in the last image.
-    double mean_share() const { return judge_.mean_share(); }
 
     /// As PoissonSolver::compile().
     static void compile(Device &device);
@@ -61,6 +59,6 @@ struct HostGuideInputs {
 
 /// The same from images on the host: writes 3 * height * width floats to `result`, without `direct`.
 PoissonReport solve_guided(Device &device, PoissonSolver &solver, const HostHalves &halves,
-                           const HostGuideInputs &inputs, Guide guide, float *result);
+                           const HostGuideInputs &inputs, Guide guide, int threads, float *result);
 
 } // namespace gradus
