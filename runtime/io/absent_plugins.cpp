@@ -4,6 +4,8 @@
 #include "runtime/io/plugins/catalogue.h"
 #include "runtime/io/text.h"
 
+#include <algorithm>
+#include <initializer_list>
 #include <map>
 #include <optional>
 #include <set>
@@ -30,6 +32,12 @@ std::string substitute_for(const std::string &type) {
         {"measured", "principled"},
         {"measured_polarized", "principled"},
         {"hair", "principled"},
+        {"roughgrating", "roughconductor"},
+        {"lambertian", "diffuse"}, // of versions before 0.4, and of other renderers
+        {"glass", "dielectric"},
+        {"mirror", "conductor"},
+        {"disney", "principled"},
+        {"disneybsdf", "principled"},
     };
     const auto found = substitutes.find(type);
     return found == substitutes.end() ? "" : found->second;
@@ -47,6 +55,10 @@ bool is_of_mitsuba(const std::string &tag, const std::string &type) {
         {"texture", "volume"},       {"texture", "wireframe"},        {"texture", "gridtexture"},
         {"texture", "curvature"}};
     return plugins.contains({tag, type});
+}
+
+bool is_one_of(const std::string &type, std::initializer_list<const char *> types) {
+    return std::find(types.begin(), types.end(), type) != types.end();
 }
 
 } // namespace
@@ -67,6 +79,21 @@ std::string unknown_plugin(const std::string &category, const std::string &type)
     else if (const auto nearest = is_absent ? std::nullopt : nearest_name(type, known))
         message += "; did you mean \"" + *nearest + "\"?";
     return message + " (known: " + join(known) + ")";
+}
+
+std::string note_on_integrator(const std::string &type) {
+    const std::string quoted = "the integrator \"" + type + "\" ";
+    if (type == "gpt" || type == "sppm" || type == "gpm")
+        return quoted + "is a method here: --method " + type + " renders with it";
+    if (type == "photonmapper" || type == "ppm")
+        return quoted + "renders with photons, as --method sppm and --method gpm do here";
+    if (is_one_of(type, {"volpath", "volpath_simple", "volpathmis", "prb", "prb_basic", "prbvolpath"}))
+        return ""; // path tracers, whose image is the same without media
+    if (is_one_of(type, {"bdpt", "ptracer", "adaptive", "vpl", "irrcache", "pssmlt", "mlt", "erpt", "gbdpt", "gdmlt"}))
+        return quoted + "makes the same image in another way; here --method says how";
+    if (is_one_of(type, {"ao", "depth", "field", "normals", "uv"}))
+        return quoted + "makes an image of something else: --aov writes depth, normals and albedo beside that of light";
+    return quoted + "is not known here; --method says what renders (known: " + join(plugin_names("integrator")) + ")";
 }
 
 void refuse_emitter(const std::string &type, const Location &location) {

@@ -59,6 +59,7 @@ class Reader {
         diagnostics_.throw_if_errors();
         Document document;
         document.root = convert(*main, main->xml.document_element(), 0);
+        diagnostics_.throw_if_errors();
         parameters_.check_given();
         document.search_folders = folders_;
         return document;
@@ -141,6 +142,11 @@ std::unique_ptr<File> Reader::open(const std::shared_ptr<const OpenFile> &opened
         if (!number || *number < 0 || *number > 1000)
             fail(location, "version=\"" + shortened(value, 40) + "\" is no version number");
         file->version = int(*number);
+        if (file->version == 1 || file->version > 3) {
+            diagnostics_.warn(location, "version=\"" + shortened(value, 40) + "\" is of no Mitsuba that is known here" +
+                                            "; read as version 3 (of 0.6 and before it is 0.6.0)");
+            file->version = 3;
+        }
     } else if (version == 0)
         diagnostics_.warn(location, "<scene> has no version; read as version 3");
     return file;
@@ -244,7 +250,8 @@ Element Reader::convert(const File &file, const pugi::xml_node &node, int depth)
     element.version = file.version;
     element.attributes.reserve(std::size_t(std::distance(node.attributes_begin(), node.attributes_end())));
     for (const pugi::xml_attribute &attribute : node.attributes())
-        element.attributes.emplace_back(attribute.name(), parameters_.expand(attribute.value(), location));
+        element.attributes.emplace_back(attribute.name(),
+                                        parameters_.expand_or_tell(attribute.value(), location, diagnostics_));
     convert_children(file, node, element, depth);
     return element;
 }

@@ -113,15 +113,29 @@ bool Parameters::try_expand(const std::string &text, const Location &location, s
 
 std::string Parameters::expand(const std::string &text, const Location &location) {
     std::string result;
+    if (!try_expand(text, location, result))
+        fail(location, told_missing(text, location));
+    return result;
+}
+
+std::string Parameters::expand_or_tell(const std::string &text, const Location &location, Diagnostics &diagnostics) {
+    std::string result;
     if (try_expand(text, location, result))
         return result;
+    const std::string message = told_missing(text, location);
+    if (told_.insert(problem_).second)
+        diagnostics.error(location, message);
+    return "";
+}
+
+std::string Parameters::told_missing(const std::string &text, const Location &location) const {
     if (problem_.empty())
         fail(location, "\"" + shortened(text, 200) + "\": parameters name each other in a circle");
     const std::string name(trimmed(problem_));
     std::string message = "parameter $" + name + " has no value: give -D " + name + "=... or a <default> for it";
     if (const auto nearest = nearest_name(name, names_of(values_)))
         message += "; did you mean $" + *nearest + "?";
-    fail(location, message);
+    return message;
 }
 
 void Parameters::check_given() const {

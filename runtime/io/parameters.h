@@ -25,6 +25,8 @@ class Parameters {
     bool try_expand(const std::string &text, const Location &location, std::string &result);
     /// The same, but throws Error(ExitCode::scene) with what is missing.
     std::string expand(const std::string &text, const Location &location);
+    /// The same, but what is missing is an error among others, told once, and the text is empty.
+    std::string expand_or_tell(const std::string &text, const Location &location, Diagnostics &diagnostics);
 
     /// Throws Error(ExitCode::scene) for those given on the command line that the scene does not have.
     void check_given() const;
@@ -33,14 +35,16 @@ class Parameters {
     using Values = std::map<std::string, std::string, std::less<>>;
 
     bool append(std::string_view text, const Location &location, int depth, std::string &result);
+    /// What is to be said after a try that failed. Throws for a circle.
+    std::string told_missing(const std::string &text, const Location &location) const;
     const std::string *expanded(const std::string &name, const std::string &value, const Location &location, int depth);
 
     const std::map<std::string, std::string> &given_;
     const LoadLimits limits_;
     Values values_;
-    Values expanded_; ///< each expanded once, however often it is named
-    std::set<std::string> used_;
-    std::uint64_t spent_ = 0; ///< bytes that parameters stood for so far
+    Values expanded_;                   ///< each expanded once, however often it is named
+    std::set<std::string> used_, told_; ///< told_: those that are missing
+    std::uint64_t spent_ = 0;           ///< bytes that parameters stood for so far
     std::size_t longest_name_ = 0;
     std::string problem_; ///< of the last try that failed: a name, or "" for a circle
 };

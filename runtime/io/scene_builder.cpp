@@ -200,11 +200,31 @@ Scene SceneBuilder::build() {
         each("bsdf", [&](const Element &element) { check_unused_bsdf(element); });
         check_media(root);
         scene.report_unknown();
+        warn_of_parts_of_no_sensor(root);
     } catch (const SceneError &error) { // a <ref> in <scene> itself that leads nowhere
         diagnostics_.error(error);
     }
     check_whole();
     return std::move(scene_);
+}
+
+/// Of films, samplers and filters that stand in <scene> itself: a sensor may take them by <ref>.
+void SceneBuilder::warn_of_parts_of_no_sensor(const Element &root) {
+    std::set<const Element *> taken;
+    const auto take = [&](const Element &from, const char *tag) {
+        for (const NestedObject &object : nested_objects(from, tag, resolve_))
+            taken.insert(object.element);
+    };
+    if (sensor_)
+        for (const char *tag : {"film", "sampler"})
+            take(*sensor_, tag);
+    for (const Element *film : std::vector<const Element *>(taken.begin(), taken.end()))
+        take(*film, "rfilter");
+    for (const Element &child : root.children)
+        if ((child.tag == "film" || child.tag == "sampler" || child.tag == "rfilter") && !taken.contains(&child))
+            diagnostics_.warn(child.location, "<" + child.tag +
+                                                  "> is passed over, as it is no sensor's: it belongs into " +
+                                                  (child.tag == "rfilter" ? "the sensor's <film>" : "the <sensor>"));
 }
 
 void SceneBuilder::check_whole() {
@@ -216,7 +236,10 @@ void SceneBuilder::check_whole() {
     if (scene_.shapes.empty() && !environment_)
         diagnostics_.error(location, "the scene has no shapes and no environment: there is nothing to render");
     else if (scene_.emitters.empty())
-        diagnostics_.warn(location, "nothing in the scene emits light: the image will be black");
+        diagnostics_.warn(location,
+                          std::string("nothing in the scene emits light: the image will be black; add an "
+                                      "<emitter>, for example one of type \"constant\"") +
+                              (document_.root.is_legacy() ? ", where Mitsuba 0.x takes a sun and a sky" : ""));
 }
 
 } // namespace gradus

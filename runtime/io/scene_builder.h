@@ -148,6 +148,7 @@ class SceneBuilder {
     std::uint32_t material_of(const Element &shape);
     std::int32_t emitter_of(const Element &shape);
     void count_geometry(std::uint64_t bytes, const Location &location);
+    void warn_of_parts_of_no_sensor(const Element &root);
     void check_whole();
 
     const Document &document_;

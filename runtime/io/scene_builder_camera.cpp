@@ -1,4 +1,5 @@
 // The sensor of a scene file with what hangs on it, and its integrator.
+#include "runtime/io/absent_plugins.h"
 #include "runtime/io/plugins/plugin.h"
 #include "runtime/io/scene_builder.h"
 #include "runtime/io/text.h"
@@ -25,7 +26,9 @@ const Element &SceneBuilder::innermost_integrator(const Element &element) const 
         if (nested.empty())
             break;
         seen.push_back(innermost);
-        innermost = nested.front().element;
+        const auto known = std::ranges::find_if(
+            nested, [](const NestedObject &one) { return bool(find_plugin<RenderSettings>(type_of(*one.element))); });
+        innermost = (known == nested.end() ? nested.front() : *known).element;
     }
     return *innermost;
 }
@@ -46,8 +49,8 @@ void SceneBuilder::build_integrator(const Element &element) {
         scene_.settings = build_object<RenderSettings>(paths);
     } else {
         // Of an integrator that we do not have, the depths still count.
-        diagnostics_.warn(paths.location, "the integrator \"" + type + "\" is not known here; the method decides" +
-                                              " (known: " + join(plugin_names("integrator")) + ")");
+        if (const std::string note = note_on_integrator(type); !note.empty())
+            diagnostics_.warn(paths.location, note);
         scene_.settings = read_as<RenderSettings>(paths, "path");
     }
     scene_.settings.integrator = type_of(element);

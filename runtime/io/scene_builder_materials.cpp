@@ -21,8 +21,8 @@ std::uint32_t SceneBuilder::material_of(const Element &shape) {
     if (bsdfs.size() > 1)
         throw SceneError(bsdfs[1].location,
                          std::string("a shape has one BSDF; this is its second") +
-                             (type_of(shape) == "obj" ? ": BSDFs for the materials that an OBJ file names are not "
-                                                        "supported, a file for each would be"
+                             (type_of(shape) == "obj" ? "; of the materials that an OBJ file names nothing is "
+                                                        "read: split it into a file for each"
                                                       : ""));
     if (bsdfs.empty()) {
         // Mitsuba 3's defaults: half of the light is reflected, but nothing by a shape that emits.

@@ -124,8 +124,8 @@ std::optional<std::string> nearest_name(const std::string &name, const std::vect
     constexpr std::size_t longest = 100; // nobody misspells more
     if (name.size() > longest)
         return nearest;
-    // Half of the letters may differ: a guess further off than that misleads.
-    std::size_t best = name.size() / 2 + 1;
+    // A third of the letters may differ: a guess further off than that misleads.
+    std::size_t best = name.size() / 3 + 2;
     for (const std::string &candidate : candidates) {
         if (candidate.size() > 2 * name.size() + 2)
             continue;

@@ -18,6 +18,43 @@ TEST(Parameters, DefaultAndOverride) {
     EXPECT_EQ(load_text(text, {{{"spp", "99"}}, false}).scene.settings.samples_per_pixel, 99u);
 }
 
+TEST(Document, TellsAllParametersWithoutAValueAtOnce) {
+    const std::string error =
+        error_of_text(scene_around("<shape type=\"sphere\"><float name=\"radius\" value=\"$r\"/>"
+                                   "<point name=\"center\" x=\"$x\" y=\"$x\" z=\"$z\"/></shape>"));
+    for (const char *name : {"$r", "$x", "$z"})
+        EXPECT_THAT(error, HasSubstr(std::string("parameter ") + name + " has no value"));
+    EXPECT_EQ(error.find("$x has"), error.rfind("$x has")) << "once is enough";
+}
+
+TEST(Document, SaysWhereNoMitsubaHasThatVersion) {
+    for (const char *version : {"1.0.0", "4.0"}) {
+        // Copper by default in 0.x, a mirror in 3.
+        const LoadedScene loaded = load_text(scene_around("<emitter type=\"constant\"/><shape type=\"sphere\"><bsdf "
+                                                          "type=\"conductor\"/></shape>",
+                                                          version));
+        EXPECT_THAT(loaded.warnings, ::testing::ElementsAre(HasSubstr("read as version 3")));
+        EXPECT_EQ(loaded.scene.materials[0].front.specular_reflectance.r, 1);
+    }
+    for (const char *version : {"0.4.0", "0.6.0", "2.1.0", "3.9.0"})
+        EXPECT_THAT(load_text(scene_around("<emitter type=\"constant\"/><shape type=\"sphere\"/>", version)).warnings,
+                    ::testing::IsEmpty());
+}
+
+TEST(Document, SaysWhereAFilmOrASamplerIsNoSensors) {
+    const LoadedScene loaded =
+        load_text(scene_around("<emitter type=\"constant\"/><shape type=\"sphere\"/><film type=\"hdrfilm\"/><sampler "
+                               "type=\"independent\" id=\"s\"/><rfilter type=\"box\"/>"));
+    EXPECT_THAT(loaded.warnings,
+                ::testing::ElementsAre(HasSubstr("<film> is passed over"), HasSubstr("<sampler> is passed over"),
+                                       HasSubstr("belongs into the sensor's <film>")));
+    const std::string shared = "<scene version=\"3.0.0\"><rfilter type=\"box\" id=\"r\"/><film type=\"hdrfilm\" "
+                               "id=\"f\"><ref id=\"r\"/></film><sampler type=\"independent\" id=\"s\"/><sensor "
+                               "type=\"perspective\"><ref id=\"f\"/><ref id=\"s\"/></sensor><emitter "
+                               "type=\"constant\"/><shape type=\"sphere\"/></scene>";
+    EXPECT_THAT(load_text(shared).warnings, ::testing::IsEmpty());
+}
+
 TEST(Parameters, StandInTypesBooleansAndParts) {
     const std::string text = "<scene version=\"3.0.0\"><default name=\"kind\" value=\"sphere\"/>"
                              "<default name=\"flip\" value=\"True\"/><default name=\"r\" value=\"2\"/>"

@@ -920,7 +920,8 @@ TEST(IntegratorPlugin, UnknownKindsWarnAndKeepTheirDepths) {
     const LoadedScene loaded =
         load_text(scene_around("<integrator type=\"gpt\"><integer name=\"maxDepth\" value=\"4\"/><float "
                                "name=\"shiftThreshold\" value=\"0.1\"/></integrator><emitter type=\"constant\"/>"));
-    EXPECT_THAT(loaded.warnings, ElementsAre(HasSubstr("scene.xml:3: the integrator \"gpt\" is not known")));
+    EXPECT_THAT(loaded.warnings,
+                ElementsAre(HasSubstr("scene.xml:3: the integrator \"gpt\" is a method here: --method gpt renders")));
     EXPECT_EQ(loaded.scene.settings.max_depth, 4);
     EXPECT_EQ(loaded.scene.settings.integrator, "gpt");
     const LoadedScene wrapped = load_text(scene_around(
@@ -928,6 +929,18 @@ TEST(IntegratorPlugin, UnknownKindsWarnAndKeepTheirDepths) {
         "</integrator><emitter type=\"constant\"/>"));
     EXPECT_EQ(wrapped.scene.settings.max_depth, 3);
     EXPECT_THAT(wrapped.warnings, ElementsAre(HasSubstr("\"aov\" is passed over: the \"path\" that it wraps")));
+}
+
+/// Who asks for another image, or for a way to make it that there is, shall know; who asks for the same one need not.
+TEST(IntegratorPlugin, UnknownKindsAreTalkedOfByWhatTheyMake) {
+    const auto warnings = [](const std::string &type) {
+        return load_text(scene_around("<integrator type=\"" + type + "\"/><emitter type=\"constant\"/>")).warnings;
+    };
+    EXPECT_THAT(warnings("volpath"), testing::IsEmpty());
+    EXPECT_THAT(warnings("photonmapper"), ElementsAre(HasSubstr("--method sppm")));
+    EXPECT_THAT(warnings("bdpt"), ElementsAre(HasSubstr("the same image in another way")));
+    EXPECT_THAT(warnings("depth"), ElementsAre(HasSubstr("--aov")));
+    EXPECT_THAT(warnings("theirs"), ElementsAre(HasSubstr("not known here")));
 }
 
 TEST(IntegratorPlugin, WhatIsWrappedIsReadAsItsOwnKind) {
@@ -943,6 +956,10 @@ TEST(IntegratorPlugin, WhatIsWrappedIsReadAsItsOwnKind) {
                        "value=\"4\"/></integrator></integrator>")
                   .max_depth,
               4);
+    EXPECT_EQ(
+        settings("<integrator type=\"multichannel\"><integrator type=\"field\"/>" + direct + "</integrator>").max_depth,
+        2)
+        << "the one that makes paths, wherever it stands";
     EXPECT_EQ(settings("<integrator type=\"aov\" id=\"it\"><ref id=\"it\"/></integrator>").max_depth, -1);
 }
 

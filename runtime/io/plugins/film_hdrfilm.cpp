@@ -7,18 +7,18 @@ namespace gradus {
 Declaration declare_film_hdrfilm() {
     return {
         "the size of the image and its reconstruction filter",
-        joined(
-            {{Parameter{"width", Takes::integer, "768", "of the film"}.in("pixels").at_least(1).at_most(0x7fffffff),
-              Parameter{"height", Takes::integer, "576", "of the film"}.in("pixels").at_least(1).at_most(0x7fffffff),
-              Parameter{"crop_offset_x", Takes::integer, "0", "the part of the film that is the image"}.in("pixels"),
-              Parameter{"crop_offset_y", Takes::integer, "0", ""}.in("pixels"),
-              Parameter{"crop_width", Takes::integer, nullptr, ""}.in("pixels").or_else("the rest"),
-              Parameter{"crop_height", Takes::integer, nullptr, ""}.in("pixels").or_else("the rest"),
-              {"rfilter", Takes::objects, nullptr,
-               "one, or a Gaussian. Pixels at the border take what lies beyond it, and a crop is what it is in the "
-               "whole image, as Mitsuba has it with sample_border"}},
-             meaningless({"sample_border", "filename", "file_format", "pixel_format", "component_format", "banner",
-                          "attach_log", "high_quality_edges", "compensate", "exposure", "gamma", "tonemap_method"})})};
+        joined({{Parameter{"width", Takes::integer, "768", "of the film"}.in("pixels").at_least(1).at_most(0x7fffffff),
+                 Parameter{"height", Takes::integer, "576", "of the film"}.in("pixels").at_least(1).at_most(0x7fffffff),
+                 Parameter{"crop_offset_x", Takes::integer, "0", "the part of the film that is the image"}.in("pixels"),
+                 Parameter{"crop_offset_y", Takes::integer, "0", ""}.in("pixels"),
+                 Parameter{"crop_width", Takes::integer, nullptr, ""}.in("pixels").or_else("the rest"),
+                 Parameter{"crop_height", Takes::integer, nullptr, ""}.in("pixels").or_else("the rest"),
+                 {"rfilter", Takes::objects, nullptr,
+                  "one, or a Gaussian. Pixels at the border take what lies beyond it, and a crop is what it is in the "
+                  "whole image, as Mitsuba has it with sample_border"}},
+                meaningless({"sample_border", "filename", "file_format", "pixel_format", "component_format",
+                             "channel_names", "banner", "attach_log", "high_quality_edges", "compensate", "exposure",
+                             "gamma", "tonemap_method"})})};
 }
 
 FilmSettings film_hdrfilm(Properties &properties, SceneBuilder &builder) {
