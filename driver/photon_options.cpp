@@ -22,9 +22,10 @@ std::optional<RenderOptions::GatherRadius> gather_radius(const std::string &text
 void add_photon_options(CLI::App &command, RenderOptions &options) {
     const char *group = "Photons (sppm, gpm)";
     command
-        .add_option("--photons", options.photons,
-                    "Light paths a pass, one pass a sample a pixel; 0: as many as leave about five photons a pixel, a "
-                    "million at most")
+        .add_option(
+            "--photons", options.photons,
+            "Light paths a pass, one pass a sample a pixel; 0: as many as leave about five photons a pixel and a "
+            "million in all, but no more than four for each of these")
         ->transform(whole_number_between(0, std::numeric_limits<std::int32_t>::max()))
         ->capture_default_str()
         ->group(group);

@@ -37,7 +37,7 @@ constexpr const char *examples = R"(Examples:
 
 Exit codes: 0 success, 1 failure (also: a comparison with --check that does not hold), 2 command line,
 3 scene file, 4 device or memory, 5 output that cannot be written, 6 input image, 130 interrupted (a valid
-image of the samples so far was written).)";
+image of the samples so far was written, if there were any).)";
 
 int no_more_threads(const std::exception &error) {
     print_message(

@@ -49,8 +49,8 @@ class RenderJob {
         if (record_.interrupted) {
             record_.stopped_by = "interrupt";
             if (has_nothing_to_show()) {
-                progress_.message(
-                    fmt::format("interrupted before the first samples; {} is as it was", request_.outputs.image));
+                print_message(fmt::format("gradus: interrupted before the first samples; {} is as it was\n",
+                                          request_.outputs.image));
                 return static_cast<int>(ExitCode::interrupted);
             }
             progress_.message("interrupted; making the image of the samples so far: a second time ends at once");

@@ -66,6 +66,11 @@ TEST_F(Interrupt, ASignalBeforeTheFirstSamplesTouchesNoFile) {
     EXPECT_EQ(outcome.exit_code, 130) << outcome.err;
     EXPECT_THAT(outcome.err, ::testing::HasSubstr("interrupted before the first samples"));
     EXPECT_THAT(files(), ElementsAre("scene.xml"));
+    // Who asks for quiet shall know, too, why there is no image.
+    ChildProcess quiet({"render", "scene.xml", "-o", "out.exr", "-q", "-D", "endless=0"}, folder);
+    sleep_ms(500);
+    quiet.send(SIGINT);
+    EXPECT_THAT(quiet.wait().err, ::testing::HasSubstr("interrupted before the first samples"));
 }
 
 TEST_F(Interrupt, ASecondSignalEndsAtOnce) {
