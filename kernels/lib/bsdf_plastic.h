@@ -58,7 +58,7 @@ GRADUS_FN bsdf_sample plastic_sample(material m, vec3 wi, real u_lobe, real u1, 
     return sample;
 }
 
-/* Half of the light at about 45 degrees: the coat mirrors it, the rest comes from the base. */
+/* The coat mirrors its mean share; the rest comes from the base, through the coat twice. */
 GRADUS_FN rgb plastic_albedo(material m) {
     const real reflectance = fresnel_mean(fresnel_dielectric(R(1), m.ior).reflectance);
     const real passed = (R(1) - reflectance) * (R(1) - reflectance);

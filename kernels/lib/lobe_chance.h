@@ -10,7 +10,8 @@ GRADUS_LIB_BEGIN
  * a quarter, a half... reflect, exactly, so that the choice has no noise at all; and neighbouring pixels, whose paths
  * take the same numbers, make the same choice. Glass that reflects a twenty-fifth does so with every eighth sample:
  * what is seen in it is often far brighter than what is seen through it. Each lobe is weighted by its share over its
- * probability, at most one and a half. Where nearly all or nothing is reflected there is no choice. */
+ * probability, at most one and a half. Where nearly all or nothing is reflected the other lobe
+ * keeps the chance that it has, and is not stratified. */
 GRADUS_FN real level_near(real reflectance) {
     /* A sum: nested choices would become a switch (docs/design.md). */
     const real level = R(0.125) + (reflectance > R(0.1875) ? R(0.125) : R(0)) +

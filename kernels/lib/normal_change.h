@@ -23,13 +23,6 @@ GRADUS_FN normal_change normal_change_flat(vec3 n) {
     return c;
 }
 
-/* Of a sphere; `facing` is 1 where its normal points out, -1 to the center. */
-GRADUS_FN normal_change normal_change_sphere(vec3 n, real radius, real facing) {
-    normal_change c = normal_change_flat(n);
-    c.curvature = facing / radius;
-    return c;
-}
-
 /* Of normals interpolated over a triangle with edges e1 and e2: n is along sum = (1 - u - v) n0 + u n1 + v n2, on the
  * side that `turn`, 1 or -1, says. With a = e1 x e2 barycentric weights change by du = dp . (e2 x a) / |a|^2 and
  * dv = dp . (a x e1) / |a|^2. */

@@ -33,14 +33,6 @@ GRADUS_FN real least_way_squared(real separation_squared, real shift_distance) {
     return r_min(GRADUS_LEAST_WAY * GRADUS_LEAST_WAY * separation_squared, shift_distance * shift_distance);
 }
 
-/* How long the base path's way must be so that the offset path's is surely long enough as well, by the triangle
- * inequality. */
-GRADUS_FN real reach_of(vec3 base, vec3 offset, real shift_distance) {
-    const vec3 separation = v3_sub(offset, base);
-    const real squared = v3_dot(separation, separation);
-    return r_sqrt(least_way_squared(squared, shift_distance)) + r_sqrt(squared);
-}
-
 /* 1 where the ways from base and offset vertex to `next` are long enough. Ways to a light have no least length: light
  * sampling connects to it all the same. */
 GRADUS_FN int is_far(vec3 base, vec3 offset, vec3 next, uint next_light, real shift_distance) {

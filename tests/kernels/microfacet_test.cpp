@@ -1,6 +1,7 @@
 // The microfacet identities that masking and sampling stand on, by quadrature.
 #include "tests/kernels/bsdf_case.h"
 #include "tests/support/quadrature.h"
+#include "tests/support/worse.h"
 
 #include <gtest/gtest.h>
 
@@ -74,7 +75,7 @@ TEST(Microfacet, BeckmannSlopesInvertTheirCumulatedArea) {
                 return cosine * 0.5 * std::erfc(-x) + sine * std::exp(-x * x) / (2 * std::sqrt(M_PI));
             };
             const double whole = sine > 0 ? cumulated(cosine / sine) : cosine;
-            worst = std::max(worst, std::fabs(cumulated(slope) / whole - u1));
+            worst = worse(worst, std::fabs(cumulated(slope) / whole - u1));
         }
     std::printf("  largest error of the cumulated area: %.3g\n", worst);
     // Slopes end at 4 deviations of sqrt(1/2): 7.7e-9 of the area is given up on purpose.

@@ -2,6 +2,7 @@
 #include "tests/kernels/lib_vector.h"
 #include "tests/kernels/shift_case.h"
 #include "tests/support/stability.h"
+#include "tests/support/worse.h"
 
 #include "kernels/lib/shift_half_vector.h"
 
@@ -96,15 +97,15 @@ TEST(ShiftHalfVector, DirectionAndJacobianAreThoseOfTheCopy) {
         ASSERT_LT(error, allowed + 1e-8) << c.is_reflection << " " << c.microfacet_cosine() << " " << c.base_eta()
                                          << " " << c.offset_eta();
         ASSERT_LT(direction_error, allowed);
-        largest = std::max(largest, error);
-        largest_direction = std::max(largest_direction, direction_error);
-        largest_uncertainty = std::max(largest_uncertainty, double(truth.relative_error));
+        largest = worse(largest, error);
+        largest_direction = worse(largest_direction, direction_error);
+        largest_uncertainty = worse(largest_uncertainty, double(truth.relative_error));
         const LongVector m = c.normal();
         const bool is_near_total = !c.is_reflection && std::fabs(dot(c.wo_offset(), m)) < 0.03L && c.offset_eta() < 1;
         const bool is_grazing = std::fabs(dot(c.wi_offset, m)) < 0.03L;
         near_total += is_near_total;
         grazing += is_grazing;
-        worst_near_total = std::max(worst_near_total, is_near_total ? error / (allowed + 1e-8) : 0);
+        worst_near_total = worse(worst_near_total, is_near_total ? error / (allowed + 1e-8) : 0);
         if (is_grazing && c.is_reflection) {
             const double base_half_vector = double(length(c.wi_base + c.wo_base));
             worst_grazing =
@@ -139,7 +140,7 @@ TEST(ShiftHalfVector, IndexRatiosNearOne) {
             const lib::shifted_direction result = shifted(c);
             ASSERT_TRUE(result.is_valid) << contrast;
             ASSERT_LT(distance(as_long(result.wo), c.wo_offset()), 32 * epsilon);
-            worst = std::max(worst, jacobian_error_over_allowed(c, result));
+            worst = worse(worst, jacobian_error_over_allowed(c, result));
         }
     record_stability({area, "index ratios near 1: the half vector vanishes and its normal is rounding",
                       "index ratios that differ from 1 by 1e-4 to 1e-2, to both sides",
@@ -158,7 +159,7 @@ TEST(ShiftHalfVector, NormalsNearTheSurface) {
                 continue;
             ASSERT_TRUE(result.is_valid) << height;
             ASSERT_LT(distance(as_long(result.wo), c.wo_offset()), 8 * epsilon * condition(c));
-            worst = std::max(worst, jacobian_error_over_allowed(c, result));
+            worst = worse(worst, jacobian_error_over_allowed(c, result));
         }
     record_stability({area, "a transmitted half vector near the surface: rounding decides on which side it is",
                       "refractions with normals at 1e-5 to 1e-2 above the surface",
@@ -191,7 +192,7 @@ TEST(ShiftHalfVector, MicrofacetsStayAsLikelyAtAnyRoughness) {
             // d log D / d slope is at most 2 / alpha, the base's normal is rounded and the offset's again.
             const double allowed = 8 * epsilon * condition(*c) * (1 + 1 / alpha);
             ASSERT_TRUE(std::isfinite(base) && std::isfinite(offset));
-            worst = std::max(worst, std::fabs(std::log(offset / base)) / allowed);
+            worst = worse(worst, std::fabs(std::log(offset / base)) / allowed);
         }
     record_stability({area, "roughness near 0: a microfacet that is off by rounding is no longer likely",
                       "GGX of roughness 1e-4 to 1, microfacets as it samples them, cosines over 0.1",
@@ -217,8 +218,8 @@ TEST(ShiftHalfVector, IsUndoneByTheShiftBack) {
         const double direction_error = distance(as_long(back.wo), c.wo_base);
         ASSERT_LT(error, 16 * epsilon * condition(c)) << c.is_reflection << " " << c.microfacet_cosine();
         ASSERT_LT(direction_error, 16 * epsilon * condition(c));
-        largest = std::max(largest, error);
-        largest_direction = std::max(largest_direction, direction_error);
+        largest = worse(largest, error);
+        largest_direction = worse(largest_direction, direction_error);
         if (c.microfacet_cosine() > 0.1 && c.half_vector_length() > 0.2)
             largest_plain = std::max({largest_plain, error, direction_error});
     }

@@ -1,6 +1,7 @@
 // The shift of photons between two gather points: there and back, its Jacobian against differences, and which photons
 // arrive.
 #include "tests/kernels/lib_vector.h"
+#include "tests/support/worse.h"
 
 #include "kernels/lib/shift_photon.h"
 
@@ -99,7 +100,7 @@ TEST(PhotonShift, ComesBack) {
         // What rounding of positions of size 5 moves where they are seen at a grazing angle.
         const long double grazing =
             std::min(std::fabs(dot(way, c.base.normal)), std::fabs(dot(normalized(target - c.from), c.offset.normal)));
-        farthest = std::max(farthest, grazing * distance_from_ray(c.from, as_long(home.target), c.photon));
+        farthest = worse(farthest, grazing * distance_from_ray(c.from, as_long(home.target), c.photon));
         worst = std::max<long double>(worst, grazing * std::fabs(there.jacobian * home.jacobian - 1));
     }
     std::printf("back at the photon's ray to %.2Lg, Jacobians inverse to %.2Lg\n", farthest, worst);
@@ -164,7 +165,7 @@ TEST(PhotonShift, AlongNormalsComesBackAndKeepsItsArea) {
         const LongVector arrived = shifted(photon);
         const lib::shifted_photon home =
             lib::photon_shift_along_normal(as_real(arrived), as_real(m_offset), offset, base);
-        farthest = std::max(farthest, length(on_plane(as_long(home.target), c.base.normal, c.base, m) - photon));
+        farthest = worse(farthest, length(on_plane(as_long(home.target), c.base.normal, c.base, m) - photon));
         if (!is_double || i % 10 != 0)
             continue;
         const LongVector first = perpendicular(m), second = cross(m, first);
@@ -173,7 +174,7 @@ TEST(PhotonShift, AlongNormalsComesBackAndKeepsItsArea) {
         const LongVector a = derivative([&](long double t) { return shifted(photon + t * first); }, step, error);
         const LongVector b = derivative([&](long double t) { return shifted(photon + t * second); }, step, error);
         const long double jacobian = there.jacobian / std::fabs(dot(m_offset, c.offset.normal));
-        worst = std::max(worst, std::fabs(jacobian / length(cross(a, b)) - 1));
+        worst = worse(worst, std::fabs(jacobian / length(cross(a, b)) - 1));
     }
     std::printf("back to %.2Lg, area to %.2Lg\n", farthest, worst);
     EXPECT_LT(farthest, bound(1e-5, 2e-14)); // lines along normals meet planes at cosines from 0.2
@@ -196,7 +197,7 @@ TEST(PhotonShift, AlongParallelRaysComesBackAndItsJacobianIsThatOfTheMap) {
         const LongVector arrived = as_long(there.target) + (long double)(0.1 * (2 * cases.uniform() - 1)) * way;
         const lib::shifted_photon home = lib::photon_shift_parallel(as_real(way), as_real(arrived), offset, base);
         ASSERT_TRUE(home.is_valid);
-        farthest = std::max(farthest, length(cross(as_long(home.target) - c.photon, way)));
+        farthest = worse(farthest, length(cross(as_long(home.target) - c.photon, way)));
         if (!is_double || i % 10 != 0)
             continue;
         const auto shifted = [&](LongVector from) {

@@ -1,6 +1,7 @@
 // The Jacobian of reconnections against differences of the shift itself.
 #include "tests/kernels/lib_vector.h"
 #include "tests/support/stability.h"
+#include "tests/support/worse.h"
 
 #include "kernels/lib/shift_reconnection.h"
 
@@ -98,9 +99,9 @@ TEST(ReconnectionJacobian, IsThatOfTheShift) {
         const double error = std::fabs(c.jacobian() / double(numerical.value) - 1);
         ASSERT_LT(error, allowed(c) + 1e-8) << c.cosine(c.base) << " " << c.cosine(c.offset);
         ASSERT_LT(error, bound(2e-3, 1e-6));
-        largest = std::max(largest, error);
-        worst = std::max(worst, error / (allowed(c) + 1e-8));
-        largest_uncertainty = std::max(largest_uncertainty, double(numerical.relative_error));
+        largest = worse(largest, error);
+        worst = worse(worst, error / (allowed(c) + 1e-8));
+        largest_uncertainty = worse(largest_uncertainty, double(numerical.relative_error));
     }
     std::printf("  largest error %.1e, the differences know it to %.1e\n", largest, largest_uncertainty);
     record_stability(

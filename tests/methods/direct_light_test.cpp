@@ -3,6 +3,7 @@
 #include "runtime/direct_light/lit_rectangle.h"
 #include "tests/support/render.h"
 #include "tests/support/small_scenes.h"
+#include "tests/support/worse.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -39,7 +40,7 @@ TEST(DirectEdges, IsTheShareOfThePixelThatTheLampCovers) {
     for (std::uint32_t y = 0; y < size; ++y)
         for (std::uint32_t x = 0; x < size; ++x) {
             const double share = covered(left, right, x) * covered(top, bottom, y);
-            worst = std::max(worst, std::fabs(pixel(image, x, y, "direct.G") / 20 - share));
+            worst = worse(worst, std::fabs(pixel(image, x, y, "direct.G") / 20 - share));
             EXPECT_EQ(pixel(image, x, y, "primal.G"), 0);
         }
     std::printf("largest error of a pixel, of what it would be if covered: %.4f\n", worst);

@@ -4,6 +4,7 @@
 #include "tests/methods/reference_scene.h"
 #include "tests/support/placed_scene.h"
 #include "tests/support/stability.h"
+#include "tests/support/worse.h"
 
 #include <fmt/format.h>
 
@@ -95,7 +96,7 @@ TEST(PhotonStability, OnMasks) {
     for (const char *method : {"sppm", "gpm"}) {
         const double light = light_of_floor({}, material_of(diffuse(0.5)), method);
         for (const auto &[scene, material] : {std::pair{Scene(), mask}, std::pair{painted, textured}})
-            off = std::max(off, std::fabs(light_of_floor(scene, material, method) / light / 0.25 - 1));
+            off = worse(off, std::fabs(light_of_floor(scene, material, method) / light / 0.25 - 1));
     }
     record_stability({area, "what is met by chance: photons and camera paths each meet a mask with its opacity",
                       "a floor of opacity 0.25, as a number and as a texture, sppm and gpm",
@@ -280,7 +281,7 @@ TEST(PhotonStability, InScenesOfAnotherSize) {
         const BlockTest blocks = block_z_test({render(elsewhere, options, "sppm").image}, there, there, 1, 1, 8);
         double largest = 0;
         for (const double difference : blocks.difference)
-            largest = std::max(largest, std::fabs(difference) / mean);
+            largest = worse(largest, std::fabs(difference) / mean);
         record_stability({area, "scenes of another size: areas of discs and cells of the grid out of range",
                           fmt::format("scenes/cornell-box.xml times {}", factor),
                           "radius and grid go by the scene's size, positions by what they are exact to",

@@ -5,6 +5,7 @@
 #include "tests/support/placed_scene.h"
 #include "tests/support/render.h"
 #include "tests/support/stability.h"
+#include "tests/support/worse.h"
 
 #include <fmt/format.h>
 
@@ -97,7 +98,7 @@ BlockError block_error(const std::vector<Image> &images, const ReferenceScene &r
     for (std::size_t i = 0; i < blocks.z.size(); ++i) {
         const double mean = spread_of(reference.mean, reference.mean.channels[i / per_channel].name).mean;
         const double relative = std::fabs(blocks.difference[i]) / mean;
-        error.largest = std::max(error.largest, relative);
+        error.largest = worse(error.largest, relative);
         error.root_mean_square += relative * relative / double(blocks.z.size());
     }
     error.root_mean_square = std::sqrt(error.root_mean_square);

@@ -5,6 +5,7 @@
 #include "tests/support/render.h"
 #include "tests/support/small_scenes.h"
 #include "tests/support/textures.h"
+#include "tests/support/worse.h"
 
 #include <cmath>
 #include <numbers>
@@ -164,7 +165,7 @@ TEST(FullTexturedLights, SendPhotonsOfTheirColours) {
                     expected += pixel(paths, x, y, "R") / pixel(paths, x, y, "B");
                     found += pixel(photons, x, y, "R") / pixel(photons, x, y, "B");
                 }
-            worst = std::max(worst, std::fabs(found / expected - 1));
+            worst = worse(worst, std::fabs(found / expected - 1));
         }
     std::printf("colour of blocks: off by %.3f at most\n", worst);
     EXPECT_LT(worst, 0.1);

@@ -6,6 +6,7 @@
 #include "runtime/io/load_scene.h"
 #include "runtime/wavefront/table_layout.h"
 #include "tests/support/test_name.h"
+#include "tests/support/worse.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -19,6 +20,8 @@
 
 namespace gradus {
 namespace {
+
+using testing::worse;
 
 using bench::CapturedBuffer;
 using bench::CapturedLaunch;
@@ -202,19 +205,19 @@ class DoubleBuild : public ::testing::TestWithParam<DoubleCase> {
         for (std::size_t c = 0; c < a.size(); ++c) {
             const double x = a[c][row], y = b[c][row];
             if (columns[c].is_uint) {
-                error = std::max(error, x == y || is_negligible(columns, c, a, b, row, gain_of) ? 0.0 : 1.0);
+                error = worse(error, x == y || is_negligible(columns, c, a, b, row, gain_of) ? 0.0 : 1.0);
                 continue;
             }
             if (measures[c].is_correction)
                 continue;
             if (!std::isfinite(x) || !std::isfinite(y)) { // a column that nobody has written yet, or an error
-                error = std::max(error, std::isfinite(x) == std::isfinite(y) ? 0.0 : 1.0);
+                error = worse(error, std::isfinite(x) == std::isfinite(y) ? 0.0 : 1.0);
                 continue;
             }
             double scale = std::max(measures[c].floor, measures[c].is_value ? value_scale : 0);
             for (const std::size_t i : measures[c].members)
                 scale = std::max(scale, std::abs(b[i][row]));
-            error = std::max(error, std::min(1.0, std::abs(x - y) / scale));
+            error = worse(error, std::min(1.0, std::abs(x - y) / scale));
         }
         return error;
     }

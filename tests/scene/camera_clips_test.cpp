@@ -9,9 +9,12 @@
 #include <cmath>
 
 #include "kernels/lib/filter_table.h"
+#include "tests/support/worse.h"
 
 namespace gradus {
 namespace {
+
+using testing::worse;
 
 using namespace lib_float;
 
@@ -109,7 +112,7 @@ TEST(FilterTable, DrawsItsIntegral) {
             const float *const ends = &table[filter_cells + 1 + 2 * cell];
             drawn += (ends[0] + share * (ends[1] - ends[0])) / filter_cells / width * (2 * film.filter_radius / steps);
             exact += signed_filter(film, at(i)) / whole;
-            worst = std::max(worst, std::fabs(drawn - exact));
+            worst = worse(worst, std::fabs(drawn - exact));
         }
         EXPECT_NEAR(drawn, 1, 1e-5);
         EXPECT_LT(worst, 1e-5) << int(film.filter);

@@ -3,6 +3,7 @@
 
 #include "runtime/scene/transform.h"
 #include "tests/support/chi_square.h"
+#include "tests/support/worse.h"
 
 #include <gtest/gtest.h>
 
@@ -20,6 +21,8 @@
 
 namespace gradus {
 namespace {
+
+using testing::worse;
 
 using namespace lib_float;
 
@@ -158,7 +161,7 @@ TEST(CameraRecord, RaysThroughALensMeetInThePlaneOfFocus) {
         for (const double lens_2 : places) {
             const camera_sight sight = sight_of(camera, 0, 0, lens_1, lens_2);
             EXPECT_NEAR(sight.origin.z, 0, 1e-6); // near_clip is 0
-            farthest = std::max(farthest, std::hypot(double(sight.origin.x), double(sight.origin.y)));
+            farthest = worse(farthest, std::hypot(double(sight.origin.x), double(sight.origin.y)));
             const double steps = 2 / double(sight.direction.z);
             EXPECT_NEAR(sight.origin.x + steps * sight.direction.x, 2, 1e-5);
             EXPECT_NEAR(sight.origin.y + steps * sight.direction.y, 1, 1e-5);
@@ -244,8 +247,8 @@ TEST(CameraRecord, RaysAreThoseOfDoublePrecision) {
                             std::fabs(y) * reach(camera_step_down_x);
         const double moved = 8 * rounding * (film + camera.aperture_radius + away) + away * turned * terms;
         if (!has_lens) {
-            worst_direction = std::max(worst_direction, length(subtract(direction, exact.direction)) / turned);
-            worst_origin = std::max(worst_origin, length(subtract(origin, exact.origin)) / moved);
+            worst_direction = worse(worst_direction, length(subtract(direction, exact.direction)) / turned);
+            worst_origin = worse(worst_origin, length(subtract(origin, exact.origin)) / moved);
             continue;
         }
         // From the lens through the same point of the plane of focus, and begun at the near plane.
@@ -256,11 +259,11 @@ TEST(CameraRecord, RaysAreThoseOfDoublePrecision) {
         worst_focus =
             std::max(worst_focus, length(subtract(add(origin, scale(direction, ahead)), exact.at_focus)) / allowed);
         const double depth = dot(subtract(origin, place), forward);
-        worst_origin = std::max(worst_origin, std::fabs(depth - camera.near_clip) /
-                                                  (8 * rounding * (length(place) + camera.near_clip * terms)));
+        worst_origin = worse(worst_origin, std::fabs(depth - camera.near_clip) /
+                                               (8 * rounding * (length(place) + camera.near_clip * terms)));
         const Double3 on_lens = subtract(origin, scale(direction, depth / dot(direction, forward)));
-        worst_lens = std::max(worst_lens, length(subtract(on_lens, place)) - camera.aperture_radius -
-                                              8 * rounding * (length(place) * (1 + terms) + depth * terms * terms));
+        worst_lens = worse(worst_lens, length(subtract(on_lens, place)) - camera.aperture_radius -
+                                           8 * rounding * (length(place) * (1 + terms) + depth * terms * terms));
     }
     std::printf("over what is allowed: %.2f origins, %.2f directions, %.2f at the focus\n", worst_origin,
                 worst_direction, worst_focus);

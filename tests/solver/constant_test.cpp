@@ -1,6 +1,7 @@
 // Constant images: residuals and right sides of 0, where iterations divide by their norms.
 #include "tests/solver/solver_fixture.h"
 #include "tests/support/stability.h"
+#include "tests/support/worse.h"
 
 namespace gradus::testing {
 namespace {
@@ -19,7 +20,7 @@ TEST_P(ConstantImages, ComeBackAsTheyAre) {
         const Solution solution = solve(problem, options);
         EXPECT_TRUE(solution.report.converged) << value;
         for (const float found : solution.image)
-            worst = std::max(worst, std::abs(double(found) - value) / (value > 0 ? value : 1));
+            worst = worse(worst, std::abs(double(found) - value) / (value > 0 ? value : 1));
     }
     record_stability(
         {"Reconstruction", "constant images: norms of 0 in denominators",

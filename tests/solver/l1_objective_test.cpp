@@ -2,6 +2,7 @@
 // gradients.
 #include "tests/solver/solver_fixture.h"
 #include "tests/support/stability.h"
+#include "tests/support/worse.h"
 
 namespace gradus::testing {
 namespace {
@@ -75,7 +76,7 @@ TEST(L1Objective, OfEmptyRegions) {
     for (std::uint32_t c = 0; c < 3; ++c)
         for (std::uint32_t y = 0; y < 64; ++y)
             for (std::uint32_t x = 0; x < 46; ++x)
-                largest = std::max(largest, double(std::abs(image[problem.at(c, x, y)])));
+                largest = worse(largest, double(std::abs(image[problem.at(c, x, y)])));
     constexpr const char *failure = "L1 with empty regions: residuals of 0 have weights without bound";
     constexpr const char *provoked_by = "an image whose left half is black in all inputs";
     record_stability({"Reconstruction", failure, provoked_by, "weights are bounded, the system preconditioned",
@@ -139,7 +140,7 @@ TEST(L1Objective, LargeAlphaGivesThePrimal) {
     for (const double alpha : {1e2, 1e6, 1e15}) {
         // Above alpha = 4 no sum of four differences outweighs the primal: I0 is the solution, exactly.
         const Solution solution = solve(problem, plain_l1_options(alpha));
-        worst = std::max(worst, relative_error(solution.image, to_double(problem.primal)));
+        worst = worse(worst, relative_error(solution.image, to_double(problem.primal)));
     }
     record_stability({"Reconstruction", "alpha to infinity: squares overflow", "alpha from 100 to 1e15, L1",
                       "returns the primal", "relative distance from the primal", worst, 1e-3});
@@ -156,8 +157,8 @@ TEST(L1Objective, AlphaOfZeroKeepsTheMean) {
         for (std::size_t c = 0; c < 3; ++c)
             EXPECT_NEAR(kept[c] / expected[c], 1, 1e-5);
         const PoissonProblem &p = problem;
-        worst = std::max(worst, l1_objective(p, 0, to_double(solution.image), joint) /
-                                    l1_objective(p, 0, solve_l1(p, 1e-4, joint), joint));
+        worst = worse(worst, l1_objective(p, 0, to_double(solution.image), joint) /
+                                 l1_objective(p, 0, solve_l1(p, 1e-4, joint), joint));
     }
     record_stability({"Reconstruction", "alpha to 0: the system is singular", "alpha 0, L1",
                       "the mean is the primal's, the differences decide the rest", objective_excess, excess(worst),

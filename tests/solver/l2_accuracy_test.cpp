@@ -2,6 +2,7 @@
 // awkward size.
 #include "tests/solver/solver_fixture.h"
 #include "tests/support/stability.h"
+#include "tests/support/worse.h"
 
 namespace gradus::testing {
 namespace {
@@ -33,7 +34,7 @@ class L2Accuracy : public ::testing::TestWithParam<LinearMethod> {
                 EXPECT_LE(error, std::max(level, floor))
                     << width << " x " << height << ", alpha " << alpha << ", level " << level << ", "
                     << solution.report.iterations << " steps";
-                worst_ = std::max(worst_, error / std::max(level, floor));
+                worst_ = worse(worst_, error / std::max(level, floor));
             }
         }
     }

@@ -1,6 +1,7 @@
 // What the L2 solution must obey whatever the inputs: exactness, the mean, linearity, scale, limits of alpha.
 #include "tests/solver/solver_fixture.h"
 #include "tests/support/stability.h"
+#include "tests/support/worse.h"
 
 #include <random>
 
@@ -56,7 +57,7 @@ TEST_P(L2Properties, TheMeanOfThePrimalIsKept) {
             const Solution solution = solve(problem, l2_options(method(), 0.2, tolerance));
             const std::vector<double> expected = means(problem.primal, 3), kept = means(solution.image, 3);
             for (std::size_t c = 0; c < 3; ++c)
-                worst = std::max(worst, std::abs(kept[c] / expected[c] - 1));
+                worst = worse(worst, std::abs(kept[c] / expected[c] - 1));
         }
     record_stability({"Reconstruction", "energy: an unfinished iteration has another mean than the primal",
                       "tolerances of 1e-2 and 1e-5, L2, every method",
@@ -111,8 +112,8 @@ TEST_P(L2Properties, LargeAlphaGivesThePrimal) {
         const Solution solution = solve(problem, l2_options(method(), alpha));
         EXPECT_EQ(count_non_finite(solution.image), 0u) << alpha;
         // |u| <= |b| / alpha^2, and |b| <= 8 |noise|.
-        worst = std::max(worst, relative_error(solution.image, to_double(problem.primal)) /
-                                    (2 * 8 * (1 + noise) / (alpha * alpha) + rounding));
+        worst = worse(worst, relative_error(solution.image, to_double(problem.primal)) /
+                                 (2 * 8 * (1 + noise) / (alpha * alpha) + rounding));
         EXPECT_LE(relative_error(solution.image, solve_directly(problem, alpha)), 1e-5) << alpha;
     }
     record_stability({"Reconstruction", "alpha to infinity: squares overflow",
@@ -132,8 +133,8 @@ TEST_P(L2Properties, SmallAlphaTendsToTheSolutionOfAlphaZero) {
         const Solution solution = solve(solver, problem.images(), options);
         // The smoothest mode's eigenvalue is (pi / 24)^2; a solution strays from the limit by alpha^2 over it.
         const double smoothest = std::pow(std::numbers::pi / 24, 2);
-        worst = std::max(worst, relative_error(solution.image, limit) /
-                                    (2 * alpha * alpha / smoothest + 9 * 1e-6 / smoothest));
+        worst = worse(worst,
+                      relative_error(solution.image, limit) / (2 * alpha * alpha / smoothest + 9 * 1e-6 / smoothest));
         const std::vector<double> expected = means(problem.primal, 3), kept = means(solution.image, 3);
         for (std::size_t c = 0; c < 3; ++c)
             EXPECT_NEAR(kept[c] / expected[c], 1, 1e-6) << "alpha " << alpha;

@@ -1,4 +1,5 @@
 #include "tests/support/poisson_reference.h"
+#include "tests/support/worse.h"
 
 #include <fftw3.h>
 
@@ -332,7 +333,7 @@ Bracket bracket_least_l1(const PoissonProblem &problem, double alpha, bool joint
         double largest = 1;
         for (const std::vector<double> *part : {&y.primal, &y.dx, &y.dy})
             for (const double magnitude : magnitudes(problem, *part, joint))
-                largest = std::max(largest, magnitude);
+                largest = worse(largest, magnitude);
         const double bound = -dot(y.dx, inputs.dx) - dot(y.dy, inputs.dy) - alpha * dot(y.primal, inputs.primal);
         bracket.least = std::max(bracket.least, bound / largest);
     }

@@ -17,6 +17,7 @@
 #include "runtime/trace/sphere_geometry.h"
 
 #include "kernels/lib/primitive.h"
+#include "tests/support/worse.h"
 
 namespace gradus::testing {
 namespace {
@@ -183,7 +184,7 @@ TEST(TriangleHit, IsThatOfDoublePrecision) {
         const double inside_u = std::clamp(exact_u, 0.0, 1.0);
         const double off =
             std::max(std::fabs(hit.u - inside_u), std::fabs(hit.v - std::clamp(exact_v, 0.0, 1 - inside_u)));
-        worst_place = std::max(worst_place, off / allowed);
+        worst_place = worse(worst_place, off / allowed);
         ASSERT_GE(std::min(hit.u, hit.v), 0);
         ASSERT_LE(double(hit.u) + hit.v, 1 + rounding);
 
@@ -195,12 +196,12 @@ TEST(TriangleHit, IsThatOfDoublePrecision) {
             const double edges = std::fabs(exact(t.e1)[axis]) + std::fabs(exact(t.e2)[axis]);
             bound += std::fabs(normal[axis]) * (std::fabs(exact(hit.position)[axis]) + edges);
         }
-        worst_plane = std::max(worst_plane, std::fabs(dot(normal, subtract(exact(hit.position), exact(t.p0)))) /
-                                                (4 * rounding * bound));
+        worst_plane = worse(worst_plane, std::fabs(dot(normal, subtract(exact(hit.position), exact(t.p0)))) /
+                                             (4 * rounding * bound));
 
         // Of a cross product of edges: its error over its length.
         const double slant = length(exact(t.e1)) * length(exact(t.e2)) / length(across);
-        worst_normal = std::max(worst_normal, length(subtract(exact(hit.normal), normal)) / (8 * rounding * slant));
+        worst_normal = worse(worst_normal, length(subtract(exact(hit.normal), normal)) / (8 * rounding * slant));
     }
     std::printf("over what is allowed: %.2f (u, v), %.2f off the plane, %.2f the normal\n", worst_place, worst_plane,
                 worst_normal);
@@ -248,7 +249,7 @@ TEST(TriangleHit, IsWhereEmbreeMeetsIt) {
             const Double3 place = at(exact(origin), hit.ray.tfar, exact(direction));
             const double moved = allowed * (length(exact(t.e1)) + length(exact(t.e2))) +
                                  8 * rounding * (length(exact(origin)) + double(hit.ray.tfar));
-            worst_place = std::max(worst_place, length(subtract(place, exact(found.position))) / (2 * moved));
+            worst_place = worse(worst_place, length(subtract(place, exact(found.position))) / (2 * moved));
             const Double3 normal{hit.hit.Ng_x, hit.hit.Ng_y, hit.hit.Ng_z};
             // Embree's edges are those of corners as seen from the ray's origin, each rounded there.
             const double longest = std::max(length(exact(t.e1)), length(exact(t.e2)));
@@ -346,10 +347,10 @@ TEST(SphereHit, IsThatOfDoublePrecision) {
         const Double3 found = subtract(exact(hit.position), exact(s.center));
         const double stored = 4 * rounding * (length(exact(s.center)) + s.radius);
         // It is put back on the sphere, which moves it across by no more than it was off.
-        worst_place = std::max(worst_place, length(subtract(found, place)) / (2 * s.error() + stored));
-        worst_off = std::max(worst_off, std::fabs(length(found) - s.radius) / stored);
+        worst_place = worse(worst_place, length(subtract(found, place)) / (2 * s.error() + stored));
+        worst_off = worse(worst_off, std::fabs(length(found) - s.radius) / stored);
         const Double3 outward = scale(exact(hit.normal), i % 2 == 0 ? 1 : -1);
-        worst_normal = std::max(worst_normal, length(subtract(scale(outward, s.radius), found)) / stored);
+        worst_normal = worse(worst_normal, length(subtract(scale(outward, s.radius), found)) / stored);
     }
     std::printf("over what is allowed: %.2f the place, %.2f off the sphere, %.2f the normal\n", worst_place, worst_off,
                 worst_normal);
@@ -385,7 +386,7 @@ TEST(SphereHit, OfPacketsIsWhereEmbreeMeetsIt) {
             const SphereCase &one = rays[ray];
             const double step = length(exact(one.direction)), allowed = 2 * one.error();
             ASSERT_EQ(packet.hit.geomID[ray], 0u) << i << ": it is met in double precision, beyond rounding";
-            worst = std::max(worst, std::fabs(packet.ray.tfar[ray] * step - one.distance()) / allowed);
+            worst = worse(worst, std::fabs(packet.ray.tfar[ray] * step - one.distance()) / allowed);
             const RTCRayHit other = theirs.meet(one.origin, one.direction);
             if (other.hit.geomID != 0)
                 ++missed_by_embree;

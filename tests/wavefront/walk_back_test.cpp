@@ -1,5 +1,6 @@
 // Walks over chains of the project's scenes: what arrives comes back to the chain that it came from.
 #include "runtime/io/load_scene.h"
+#include "tests/support/worse.h"
 #include "tests/wavefront/walk_fixture.h"
 
 #include <gtest/gtest.h>
@@ -8,6 +9,8 @@
 
 namespace gradus {
 namespace {
+
+using testing::worse;
 
 using namespace lib_float;
 using testing::ChainEnd;
@@ -80,11 +83,11 @@ double share_that_comes_back(const char *name, std::size_t chains_of_a_scene) {
             }
             double off = 0;
             for (std::size_t k = 0; k < from[i].vertices.size(); ++k)
-                off = std::max(off, distance(returned[i].vertices[k].position, from[i].vertices[k].position));
+                off = worse(off, distance(returned[i].vertices[k].position, from[i].vertices[k].position));
             const double first = distance(from[i].vertices[0].position, from[i].start.position);
             const double off_first = distance(returned[i].vertices[0].position, from[i].vertices[0].position);
             elsewhere += off_first > 1.001 * there.walk.settings().back_tolerance * first;
-            farthest = std::max(farthest, off / first);
+            farthest = worse(farthest, off / first);
         }
         count += chains.size();
         arrived += turned.size();

@@ -1,4 +1,5 @@
 // Manifold walks against chains in closed form, against themselves turned around, and where there is no way.
+#include "tests/support/worse.h"
 #include "tests/wavefront/walk_fixture.h"
 
 #include <gtest/gtest.h>
@@ -12,6 +13,8 @@
 
 namespace gradus {
 namespace {
+
+using testing::worse;
 
 using namespace lib_float;
 using testing::ChainEnd;
@@ -155,7 +158,7 @@ Accuracy accuracy(const Scene &scene, Precision precision, std::size_t vertices,
         ++a.arrived;
         const std::vector<Point> expected = closed_form(chains[i], results[i]);
         for (std::size_t k = 0; k < vertices; ++k)
-            a.largest = std::max(a.largest, length(results[i].vertices[k].position - expected[k]));
+            a.largest = worse(a.largest, length(results[i].vertices[k].position - expected[k]));
     }
     std::printf("  %zu of %zu arrived, largest error %.1e;%s\n", a.arrived, a.count, a.largest,
                 text_of(tally(results)).c_str());
@@ -449,7 +452,7 @@ TEST(ManifoldWalkOf, JacobiansAreThoseOfDifferences) {
             const double error = std::fabs(measured / computed - 1);
             if (computed > 0.1 && computed < 10) {
                 ++compared;
-                largest = std::max(largest, error);
+                largest = worse(largest, error);
                 EXPECT_LT(error, 2e-4) << "chain " << i;
             }
         }
