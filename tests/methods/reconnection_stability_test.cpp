@@ -116,7 +116,7 @@ TEST(FullReconnectionStability, ToGlossyMetalBesideMirrors) {
     scene.floor(0.01f, 0.02f, 0.01f, scene.material(mirror()), 0.0001f);
     expect_no_bias(gradient_bias(scene.scene, {8, 1024, 2048}),
                    {area, "glossy reconnection vertices where some offset paths are specular",
-                    "the same, with a mirror on the floor", unbiased, 0.1});
+                    "such a sheet, with a mirror on the floor", unbiased, 0.1});
 }
 
 // Stripes of chalk and of what scatters nothing, but draws directions all the same: of its kind and of another.
