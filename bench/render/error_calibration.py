@@ -36,7 +36,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scenes", nargs="*", default=SCENES)
     parser.add_argument("--spp", nargs="+", type=int, default=[16, 64, 256])
-    parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--seeds", type=int, default=5)
     parser.add_argument("--variants", nargs="+", default=VARIANTS)
     parser.add_argument("--gradus", default=renders.ROOT / "build" / "gradus")
     arguments = parser.parse_args()

@@ -80,7 +80,7 @@ def main():
     parser.add_argument("--methods", nargs="+", default=["pt", "gpt"])
     parser.add_argument("--spp", type=int, default=16)
     parser.add_argument("--reference-spp", type=int, default=1024)
-    parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--seeds", type=int, default=5)
     parser.add_argument("--gradus", default=ROOT / "build" / "gradus")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:

@@ -26,7 +26,7 @@ def main():
     parser = argparse.ArgumentParser(description="the price and the accuracy of variances")
     parser.add_argument("scenes", nargs="*", metavar="SCENE", default=["cornell-box", "materials", "textures", "sundial"])
     parser.add_argument("--spp", type=int, nargs="+", default=[16, 64, 256])
-    parser.add_argument("--seeds", type=int, default=4)
+    parser.add_argument("--seeds", type=int, default=5)
     parser.add_argument("--method", default="pt")
     parser.add_argument("--gradus", type=pathlib.Path, default=renders.ROOT / "build" / "gradus")
     arguments = parser.parse_args()

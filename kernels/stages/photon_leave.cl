@@ -1,7 +1,8 @@
 /* photon_leave: chains that have come to their new ends: how their light leaves the vertex that stays, where that is of
  * one BSDF kind, or with LAST_IS_LIGHT on a light. Others are left alone. The Jacobian is by solid angle there:
- * |d omega' / d omega| = |d omega' / dy'| |dy' / dy| |dy / d omega| (Hua et al. 2017, eqs. 7 and 8;
- * kernels/lib/chain_spread.h). */
+ * |d omega' / d omega| = |d omega' / dy'| |dy' / dy| |dy / d omega| (Hua et al. 2017, eqs. 7 and 8,
+ * and of glossy chains 9 and 10; kernels/lib/chain_spread.h). */
+#include "kernels/lib/chain_spread.h"
 #include "kernels/lib/light_vertex_leave.h"
 #include "kernels/lib/moved_photon.h"
 #include "kernels/lib/photon_chain.h"
@@ -33,8 +34,9 @@ STAGE photon_leave(uint count, uint unit, uint first, uint pairs, uint photon_ro
     const vec3 is = v3_normalize(v3_sub(AT_V3(walked_vertex, position, i), start));
     const light_leaving leaving =
         light_vertex_leave(light_vertices, light_vertex_marks, materials, record, unit, was, is LIGHT_VERTEX_TEXTURES);
-    const real jacobian = AT(moved, ratio, to) * AT(walked, base_spread, i) / AT(walked, base_turn, i) *
-                          AT(walked, turn, i) / AT(walked, spread, i);
+    const real jacobian =
+        AT(moved, ratio, to) * chain_jacobian(AT(walked, base_spread, i), AT(walked, base_turn, i),
+                                              AT(walked, spread, i), AT(walked, turn, i));
     const rgb power = leaving.is_possible ? rgb_scale(leaving.power, jacobian) : rgb_gray(R(0));
     SET_RGB(moved, power, to, power);
     AT(moved, ratio, to) = leaving.pdf * jacobian;

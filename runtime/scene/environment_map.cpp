@@ -86,9 +86,9 @@ std::array<double, 3> make_row(EnvironmentMap &map, std::uint32_t row, const std
             value[c] = lib_float::environment_number(code[c]);
             sums[c] += value[c];
         }
-        const double luminance = 0.2126 * value[0] + 0.7152 * value[1] + 0.0722 * value[2];
-        std::uint32_t importance = code_of(float(luminance * share / importance_unit));
-        if (luminance > 0)
+        const double bright = luminance(value[0], value[1], value[2]);
+        std::uint32_t importance = code_of(float(bright * share / importance_unit));
+        if (bright > 0)
             importance = std::max(importance, 1u); // whatever shines is found
         to[2 * column] = code[0] | code[1] << 16;
         to[2 * column + 1] = code[2] | importance << 16;

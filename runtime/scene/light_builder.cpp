@@ -124,7 +124,7 @@ TreeLight LightBuilder::tree_light(std::uint32_t light) {
         result.half_angle = tables_.light_kinds[light] == light_kind_spot
                                 ? double(emitter.cutoff)
                                 : std::atan(std::hypot(emitter.picture[0], emitter.picture[1]) / 2);
-        result.intensity = 0.2126 * mean.r + 0.7152 * mean.g + 0.0722 * mean.b;
+        result.intensity = luminance(mean);
     }
     }
     return result;

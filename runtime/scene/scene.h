@@ -21,6 +21,10 @@ struct Rgb {
     bool operator==(const Rgb &) const = default;
 };
 
+/// As rgb_luminance in kernels/lib/vector.h.
+constexpr double luminance(double r, double g, double b) { return 0.212671 * r + 0.715160 * g + 0.072169 * b; }
+constexpr double luminance(const Rgb &color) { return luminance(color.r, color.g, color.b); }
+
 constexpr std::int32_t no_texture = -1;
 
 /// A colour of a material: `texture`, an index into Scene::textures, stands in its place where there is one. The colour

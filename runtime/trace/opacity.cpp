@@ -15,9 +15,7 @@ using namespace lib_float;
 namespace {
 Vector3 operator-(Vector3 a, Vector3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 vec3 to_vec3(Vector3 v) { return v3(v.x, v.y, v.z); }
-float luminance(const std::array<double, 3> &color) {
-    return float(0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2]);
-}
+float luminance_of(const std::array<double, 3> &color) { return float(luminance(color[0], color[1], color[2])); }
 } // namespace
 
 bool is_passable(const Scene &scene, const Shape &shape) {
@@ -98,7 +96,7 @@ float Opacity::opacity_of(const TexturedTriangle &triangle, const Vector3 &origi
     } else {
         value = texture_value(texture, at[0], at[1]);
     }
-    return luminance(value);
+    return luminance_of(value);
 }
 
 float Opacity::opacity_of(const TexturedSphere &sphere, const Vector3 &origin, const Vector3 &direction) const {
@@ -106,7 +104,7 @@ float Opacity::opacity_of(const TexturedSphere &sphere, const Vector3 &origin, c
     const vec3 unit_direction = v3_normalize(to_vec3(direction));
     const primitive_hit hit = sphere_hit(to_vec3(sphere.center), sphere.radius, 1, to_vec3(origin), unit_direction);
     const texture_point at = point_of_sphere(sphere_place(sphere.axes.data(), 1, 0, hit.normal));
-    return luminance(texture_value(textures_[sphere.texture], at.u, at.v));
+    return luminance_of(texture_value(textures_[sphere.texture], at.u, at.v));
 }
 
 float Opacity::at(std::size_t i, const Vector3 &origin, const Vector3 &direction) const {
