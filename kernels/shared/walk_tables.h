@@ -39,7 +39,8 @@
     REAL(chain_vertex, position_x, "")                                                                                 \
     REAL(chain_vertex, position_y, "")                                                                                 \
     REAL(chain_vertex, position_z, "")                                                                                 \
-    UINT(chain_vertex, primitive, "which it lies on")
+    UINT(chain_vertex, primitive, "which it lies on")                                                                  \
+    UINT(chain_vertex, record, "only with TRAIT_BLENDS: of the material, of a blend that of the part that was met")
 
 /* What is answered: a chain a row. */
 #define GRADUS_WALKED_COLUMNS(REAL, UINT)                                                                              \
@@ -58,7 +59,9 @@
 #define GRADUS_CHAIN_EVENT_COLUMNS(REAL, UINT)                                                                         \
     REAL(chain_event, half_x, "microfacet normal in the vertex's own frame, on the normal's side; 0 where specular")   \
     REAL(chain_event, half_y, "")                                                                                      \
-    UINT(chain_event, kind, "its BSDF kind with kind_is_rough, kind_is_dirac; and event_...")
+    UINT(chain_event, kind, "its BSDF kind with kind_is_rough, kind_is_dirac; and event_...")                          \
+    UINT(chain_event, record, "only with TRAIT_BLENDS: chain_vertex_record")                                           \
+    UINT(chain_event, whole, "only with TRAIT_BLENDS: record of the whole material, which may be a blend")
 
 /* A walk that goes on. Rows are dense, the longest chains first. Two of these tables alternate. */
 #define GRADUS_WALK_COLUMNS(REAL, UINT)                                                                                \

@@ -1,6 +1,7 @@
 /* photon_walk: what photon_project asked is answered: asks for the manifold walk that moves the end of the photon's
  * chain to where the offset photon is (Hua et al. 2017, section 4.2), unless that does not count there. Leaves in
  * `moved_ratio` how much larger the surface is there, |dy'/dy|. */
+//! traits: TRAIT_BLENDS
 #include "kernels/lib/moved_photon.h"
 #include "kernels/lib/photon_chain.h"
 #include "kernels/lib/surface_point.h"
@@ -54,6 +55,9 @@ STAGE photon_walk(uint count, uint unit, uint first, uint pairs, uint capacity, 
         const vec3 position = FIELD_V3(light_vertex, light_vertices, record, position);
         SET_V3(chain_vertex, position, vertex, position);
         AT_UINT(chain_vertex, primitive, vertex) = FIELD_OF(light_vertex_mark, light_vertex_marks, record, primitive);
+#if TRAIT_BLENDS
+        AT_UINT(chain_vertex, record, vertex) = FIELD_OF(light_vertex_mark, light_vertex_marks, record, material);
+#endif
         record = FIELD_OF(light_vertex_mark, light_vertex_marks, record, before);
     }
 }

@@ -1,5 +1,6 @@
 /* walk_turn: chains that have arrived ask for the walk back, in tables of the same columns. walk_turn_vertices: their
  * vertices; get_global_id(2) is the vertex. walk_return: chains whose walk back has not come back have not arrived. */
+//! traits: TRAIT_BLENDS
 #include "kernels/lib/chain_start.h"
 #include "kernels/shared/stage.h"
 
@@ -36,6 +37,9 @@ STAGE walk_turn_vertices(uint count, uint chain_rows, uint chain_vertices, __glo
     AT_IN(back_chain_vertex, chain_vertex, position_y, at) = AT(walked_vertex, position_y, at);
     AT_IN(back_chain_vertex, chain_vertex, position_z, at) = AT(walked_vertex, position_z, at);
     AT_UINT_IN(back_chain_vertex, chain_vertex, primitive, at) = AT_UINT(walked_vertex, primitive, at);
+#if TRAIT_BLENDS
+    AT_UINT_IN(back_chain_vertex, chain_vertex, record, at) = AT_UINT(walked_vertex, material, at);
+#endif
 }
 
 STAGE walk_return(uint count, uint chain_rows, uint chain_vertices, real walk_back_tolerance, real walk_floor,

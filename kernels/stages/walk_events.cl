@@ -1,5 +1,6 @@
 /* walk_events: what each vertex of a chain does, told by its neighbours: which BSDF kind it is, whether it mirrors, and
  * at which half vector where it is glossy. get_global_id(2) is the vertex. */
+//! traits: TRAIT_BLENDS
 #include "kernels/lib/chain_event.h"
 #include "kernels/lib/chain_hit.h"
 #include "kernels/lib/chain_start.h"
@@ -41,8 +42,16 @@ STAGE walk_events(uint count, uint unit, uint chain_rows, uint chain_vertices, _
     const surface_point point =
         surface_point_at(triangles, triangle_normals, triangle_tangents, spheres, unit, triangle_count,
                          primitive_material, material_back, primitive, hit, direction);
-    const material m = material_load(materials, point.material, unit);
-    const uint kind = material_kind[point.material];
+#if TRAIT_BLENDS
+    const uint stored_record = AT_UINT(chain_vertex, record, at);
+    const uint record = is_vertex ? stored_record : 0u;
+    AT_UINT(chain_event, record, at) = record;
+    AT_UINT(chain_event, whole, at) = point.material;
+#else
+    const uint record = point.material;
+#endif
+    const material m = material_load(materials, record, unit);
+    const uint kind = material_kind[record];
     const real in_cosine = v3_dot(wi, point.shading), out_cosine = r_after(v3_dot(wo, point.shading), in_cosine);
     const int reflects = in_cosine * out_cosine > R(0);
     const half_vector half_of = half_vector_of(wi, wo, point.shading, reflects, m.ior);

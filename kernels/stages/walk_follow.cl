@@ -4,6 +4,7 @@
  * LANDS: k is the last vertex, and what follows is the end, in the plane of the walk. The step is taken where the end
  * has come nearer to the target, else halved (Jakob and Marschner 2012, section 5.1). `replays`: it is not a step but
  * the chain as it was asked, on the primitives that it lies on: nothing was traced. */
+//! traits: TRAIT_BLENDS
 #include "kernels/lib/chain_event.h"
 #include "kernels/lib/chain_hit.h"
 #include "kernels/lib/chain_spread.h"
@@ -50,9 +51,13 @@ walk_follow
     const vec3 direction = AT_V3(walk_ray, direction, row), from = AT_V3(walk_beam, from, row);
     const primitive_hit hit =
         chain_hit_of(triangles, spheres, unit, triangle_count, present, AT_V3(walk_ray, origin, row), from, direction);
-    const surface_point point =
-        surface_point_at(triangles, triangle_normals, triangle_tangents, spheres, unit, triangle_count,
-                         primitive_material, material_back, present, hit, direction);
+    surface_point point = surface_point_at(triangles, triangle_normals, triangle_tangents, spheres, unit, triangle_count,
+                                           primitive_material, material_back, present, hit, direction);
+#if TRAIT_BLENDS
+    /* On the same blend the same part. Its chance is the same there: of textured weights no part has a kind. */
+    point.material =
+        point.material == AT_UINT(chain_event, whole, at) ? AT_UINT(chain_event, record, at) : point.material;
+#endif
     const vec3 n = point.shading;
     const normal_change change =
         normal_change_of(triangles, triangle_normals, spheres, unit, triangle_count, present, hit, n, point.geometric);

@@ -70,6 +70,16 @@ ChildProcess::~ChildProcess() {
     }
 }
 
+void ChildProcess::wait_until_it_hears(int signal) const {
+    for (int tries = 0; tries < 1000; ++tries) {
+        std::ifstream status("/proc/" + std::to_string(process_) + "/status");
+        for (std::string line; std::getline(status, line);)
+            if (line.starts_with("SigCgt:") && (std::stoull(line.substr(7), nullptr, 16) >> (signal - 1) & 1) != 0)
+                return;
+        usleep(10'000);
+    }
+}
+
 void ChildProcess::send(int signal) const { ::kill(process_, signal); }
 
 Outcome ChildProcess::wait() {

@@ -29,6 +29,8 @@ class ChildProcess {
     ChildProcess &operator=(const ChildProcess &) = delete;
 
     void send(int signal) const;
+    /// Waits until it has a handler for the signal; ten seconds at most.
+    void wait_until_it_hears(int signal) const;
     /// Waits for its end. A process that takes more than a minute is killed.
     Outcome wait();
 

@@ -60,7 +60,7 @@ TEST_F(Interrupt, ASignalDuringThePilotEndsAtOnceAndLeavesNothing) {
 
 TEST_F(Interrupt, ASignalBeforeTheFirstSamplesTouchesNoFile) {
     ChildProcess process({"render", "scene.xml", "-o", "out.exr", "--stats", "out.json", "-D", "endless=0"}, folder);
-    sleep_ms(500);
+    process.wait_until_it_hears(SIGINT);
     process.send(SIGINT);
     const Outcome outcome = process.wait();
     EXPECT_EQ(outcome.exit_code, 130) << outcome.err;
@@ -68,7 +68,7 @@ TEST_F(Interrupt, ASignalBeforeTheFirstSamplesTouchesNoFile) {
     EXPECT_THAT(files(), ElementsAre("scene.xml"));
     // Who asks for quiet shall know, too, why there is no image.
     ChildProcess quiet({"render", "scene.xml", "-o", "out.exr", "-q", "-D", "endless=0"}, folder);
-    sleep_ms(500);
+    quiet.wait_until_it_hears(SIGINT);
     quiet.send(SIGINT);
     EXPECT_THAT(quiet.wait().err, ::testing::HasSubstr("interrupted before the first samples"));
 }

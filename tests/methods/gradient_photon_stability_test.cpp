@@ -175,6 +175,23 @@ TEST(GradientPhotonStability, OnGlossyMetal) {
                       difference_bias(maker.scene, photon_options(1.5, 4000)).largest_share(), 0.15});
 }
 
+/// A wall throws a caustic onto the floor. Half of it is a mirror, the other half a dark one, so that a walk that took
+/// the one for the other would be off by far.
+TEST(GradientPhotonStability, ByABlendOfMirrors) {
+    SceneMaker maker = scene_of(32);
+    add_plain_floor(maker);
+    Bsdf blend, dark = mirror();
+    dark.specular_reflectance = {0.1f, 0.1f, 0.1f};
+    maker.scene.blended = {mirror(), dark};
+    maker.scene.blends = {{0, 1, 0.5f}};
+    blend.blend = 0;
+    maker.parallelogram({-0.6f, 0, -0.5f}, {0, 0.6f, 0}, {0, 0, 1}, maker.material(two_sided(blend)));
+    look_down(maker);
+    record_stability({area, "blends: a walk meets the whole, and not the part that the photon has met",
+                      "a floor beside a wall that is half a mirror, half a dark one", "takes the part that was met",
+                      share_at_most, difference_bias(maker.scene, photon_options(1.5, 8000)).largest_share(), 0.05});
+}
+
 TEST(GradientPhotonStability, InACorner) {
     SceneMaker maker = scene_of(16);
     maker.parallelogram({0, 0, 0}, {0, 0, 2}, {2, 0, 0}, maker.material(two_sided(diffuse(0.8))));
