@@ -11,6 +11,7 @@
 #include <fstream>
 #include <limits>
 #include <malloc.h>
+#include <optional>
 #include <string>
 #include <sys/resource.h>
 #include <thread>
@@ -28,27 +29,21 @@ std::uint64_t number_in(const char *path) {
     return std::ifstream(path) >> number ? number : unlimited;
 }
 
-/// What the system says may be had without swapping, and its swap.
-std::uint64_t system_bytes() {
-    std::ifstream file("/proc/meminfo");
-    std::uint64_t sum = 0, number = 0;
-    bool known = false;
-    for (std::string name, line; file >> name >> number; std::getline(file, line))
-        if (name == "MemAvailable:" || name == "SwapFree:") {
-            sum += number << 10;
-            known = true;
-        }
-    return known ? sum : unlimited;
-}
-
-/// The number that follows a name in a file of such lines; 0 where there is none.
-std::uint64_t number_of(const char *path, const std::string &wanted) {
+/// The number that follows a name at the beginning of a line; nothing where there is none.
+std::optional<std::uint64_t> number_of(const char *path, const std::string &wanted) {
     std::ifstream file(path);
     std::uint64_t number = 0;
-    for (std::string name; file >> name >> number;)
+    for (std::string name, line; file >> name >> number; std::getline(file, line))
         if (name == wanted)
             return number;
-    return 0;
+    return std::nullopt;
+}
+
+/// What the system says may be had without swapping, and its swap.
+std::uint64_t system_bytes() {
+    const std::optional<std::uint64_t> available = number_of("/proc/meminfo", "MemAvailable:"),
+                                       swap = number_of("/proc/meminfo", "SwapFree:");
+    return available || swap ? (available.value_or(0) + swap.value_or(0)) << 10 : unlimited;
 }
 
 std::uint64_t container_bytes() {
@@ -57,7 +52,7 @@ std::uint64_t container_bytes() {
     if (most == unlimited || used == unlimited)
         return unlimited;
     // Files that were read, those of the scene too, are kept as long as nobody needs the room.
-    const std::uint64_t files = number_of("/sys/fs/cgroup/memory.stat", "inactive_file");
+    const std::uint64_t files = number_of("/sys/fs/cgroup/memory.stat", "inactive_file").value_or(0);
     return most - std::min(most, used - std::min(used, files));
 }
 

@@ -254,8 +254,7 @@ class RenderJob {
     }
 
     /// Does `work`. Where that throws, hours of samples may be there: they are saved, as the image that is `left`.
-    template <class Work, class Left>
-    void saving(const Work &work, const Left &left) {
+    void saving(const std::function<void()> &work, const std::function<Image()> &left) {
         try {
             work();
         } catch (...) {

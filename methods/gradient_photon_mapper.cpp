@@ -54,7 +54,7 @@ std::vector<std::uint32_t> material_bins(const Scene &scene, const Session &sess
     std::vector<std::uint32_t> bins;
     for (const Bsdf &bsdf : records) {
         const auto kind = std::find(kinds.begin(), kinds.end(), bsdf_kind_name(bsdf));
-        // A walk does not know which part of a blend it meets; the last records are such parts.
+        // Of the parts of a blend, which are the last records, walks take the specular ones alone.
         const bool is_part = bins.size() + scene.blended.size() >= records.size();
         const bool is_in_chain = is_part ? bsdf_kind_traits(bsdf.kind).is_dirac : is_walked(bsdf, options);
         bins.push_back(is_in_chain || kind == kinds.end() ? chain_bin

@@ -79,6 +79,7 @@ bool PathTracer::render_batch() {
 Image PathTracer::image() {
     statistics_.non_finite = 0;
     statistics_.estimated_error.reset();
+    is_mean_ = false;
     Image image = film_.image(done_, statistics_.non_finite);
     const bool tells_error = has_error_layer(options_, keeps_halves()) && has_halves();
     SquaredErrors errors;
@@ -93,7 +94,8 @@ Image PathTracer::image() {
 }
 
 Image PathTracer::mean_image() {
-    follows_no_guide_ = true;
+    is_mean_ = true;
+    statistics_.non_finite = 0;
     Image image = film_.image(done_, statistics_.non_finite);
     image.channels.resize(3);
     return image;
@@ -140,12 +142,13 @@ void PathTracer::guide(Image &image, SquaredErrors *errors) {
 
 Statistics PathTracer::statistics() const {
     Statistics s = collected(statistics_, session_, stages_);
-    if (is_guided() && has_halves() && !follows_no_guide_)
+    if (is_guided() && has_halves() && !is_mean_)
         s.reconstruction = {reconstruction_name(Reconstruction::guided), accuracy_name(Accuracy::consistent), "",
                             guide_name(options_.guide)};
     else
-        s.reconstruction = {"none", accuracy_name(Accuracy::unbiased),
-                            is_guided() ? "guided needs two samples of each pixel; with less it is their mean" : ""};
+        s.reconstruction = {
+            "none", accuracy_name(Accuracy::unbiased),
+            is_guided() && !has_halves() ? "guided needs two samples of each pixel; with less it is their mean" : ""};
     return s;
 }
 

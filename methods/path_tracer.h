@@ -44,8 +44,8 @@ class PathTracer final : public Method {
     Film film_;
     std::optional<Tables> tables_;
     std::uint64_t total_ = 0, done_ = 0;
-    std::uint32_t pass_ = 0;        ///< paths of a pass, but for the last
-    bool follows_no_guide_ = false; ///< where that failed
+    std::uint32_t pass_ = 0; ///< paths of a pass, but for the last
+    bool is_mean_ = false;   ///< the last image, whatever was asked for
     Statistics statistics_;
 };
 

@@ -210,8 +210,8 @@ def add_holes(report):
         rows = [[entry["holes"], f"{entry['gain']:.2f}", f"{entry['alpha']:g}", entry["paper"]]
                 for entry in results["holes"]]
         report.add("Gradients behind more and more occluders", page.text(
-            f"The experiment of Kettunen et al. 2015, supplement, figure 3, on a scene of our own, at {results['spp']} samples a "
-            "pixel: L2 reconstruction with the alpha that is best.") + page.table(
+            "The experiment of Kettunen et al. 2015, supplement, figure 3, on a scene of our own, at "
+            f"{results['spp']} samples a pixel: L2 reconstruction with the alpha that is best.") + page.table(
                 ["holes along a side", "squared error of pt / of gpt", "alpha", "in the paper"], rows))
 
 

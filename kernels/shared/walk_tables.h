@@ -60,7 +60,6 @@
     REAL(chain_event, half_x, "microfacet normal in the vertex's own frame, on the normal's side; 0 where specular")   \
     REAL(chain_event, half_y, "")                                                                                      \
     UINT(chain_event, kind, "its BSDF kind with kind_is_rough, kind_is_dirac; and event_...")                          \
-    UINT(chain_event, record, "only with TRAIT_BLENDS: chain_vertex_record")                                           \
     UINT(chain_event, whole, "only with TRAIT_BLENDS: record of the whole material, which may be a blend")
 
 /* A walk that goes on. Rows are dense, the longest chains first. Two of these tables alternate. */

@@ -45,7 +45,6 @@ STAGE walk_events(uint count, uint unit, uint chain_rows, uint chain_vertices, _
 #if TRAIT_BLENDS
     const uint stored_record = AT_UINT(chain_vertex, record, at);
     const uint record = is_vertex ? stored_record : 0u;
-    AT_UINT(chain_event, record, at) = record;
     AT_UINT(chain_event, whole, at) = point.material;
 #else
     const uint record = point.material;

@@ -56,7 +56,7 @@ walk_follow
 #if TRAIT_BLENDS
     /* On the same blend the same part. Its chance is the same there: of textured weights no part has a kind. */
     point.material =
-        point.material == AT_UINT(chain_event, whole, at) ? AT_UINT(chain_event, record, at) : point.material;
+        point.material == AT_UINT(chain_event, whole, at) ? AT_UINT(chain_vertex, record, at) : point.material;
 #endif
     const vec3 n = point.shading;
     const normal_change change =

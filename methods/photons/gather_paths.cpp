@@ -7,8 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <functional>
-
 namespace gradus {
 
 using namespace lib_float;
@@ -41,19 +39,14 @@ StageDeclaration defined_as(StageDeclaration stage, const char *definition, bool
 std::vector<std::uint32_t> kinds_for_walks(const Scene &scene, double gather_roughness) {
     std::vector<std::uint32_t> kinds = material_kinds(scene, gather_roughness);
     const std::size_t first_part = kinds.size() - scene.blended.size();
-    const std::function<void(std::uint32_t)> leave_out = [&](std::uint32_t part) {
-        const Bsdf &bsdf = scene.blended[part];
-        if (bsdf.blend != no_blend)
-            for (const std::uint32_t below :
-                 {scene.blends[std::size_t(bsdf.blend)].first, scene.blends[std::size_t(bsdf.blend)].second})
-                leave_out(below);
-        else if (bsdf_kind_traits(bsdf.kind).is_dirac)
-            kinds[first_part + part] = kind_none;
+    const auto leave_out = [&](const Bsdf &part) {
+        if (bsdf_kind_traits(part.kind).is_dirac)
+            kinds[first_part + std::size_t(&part - scene.blended.data())] = kind_none;
     };
     for (const Blend &blend : scene.blends)
         if (blend.weight.texture != no_texture)
-            for (const std::uint32_t part : {blend.first, blend.second})
-                leave_out(part);
+            for (const std::uint32_t half : {blend.first, blend.second})
+                for_each_part(scene, scene.blended[half], leave_out);
     return kinds;
 }
 

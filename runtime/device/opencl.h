@@ -10,8 +10,8 @@
 #define CL_HPP_MINIMUM_OPENCL_VERSION 120
 #define CL_HPP_ENABLE_EXCEPTIONS
 #include <CL/opencl.hpp>
-#include <atomic>
 
+#include <atomic>
 #include <future>
 #include <map>
 #include <memory>

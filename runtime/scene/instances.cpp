@@ -1,7 +1,6 @@
 #include "runtime/scene/instances.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
+#include "runtime/scene/parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -145,13 +144,14 @@ Bounds world_bounds(const Scene &scene) {
 void put_instances(const Scene &scene, float *records) {
     put_record({}, {0, 0, 0}, records);
     const std::vector<Bounds> of_groups = group_bounds(scene);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, scene.instances.size(), 1 << 12), [&](const auto &range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+    for_each_in_parallel(
+        scene.instances.size(),
+        [&](std::size_t i) {
             const Instance &instance = scene.instances[i];
             const Matrix4 map = matrix_of(instance);
             put_record(map, rounding_of(map, of_groups[instance.group]), records + (i + 1) * instance_stride);
-        }
-    });
+        },
+        1 << 12);
 }
 
 } // namespace gradus

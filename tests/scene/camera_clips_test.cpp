@@ -2,6 +2,7 @@
 #include "runtime/scene/camera_clips.h"
 #include "runtime/scene/filter_table.h"
 #include "runtime/scene/transform.h"
+#include "tests/support/worse.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +10,6 @@
 #include <cmath>
 
 #include "kernels/lib/filter_table.h"
-#include "tests/support/worse.h"
 
 namespace gradus {
 namespace {

@@ -1,6 +1,7 @@
 // The light of an environment map and the sampling of its directions, by the kernels' own functions on the host.
 #include "runtime/film/distributions.h"
 #include "runtime/scene/environment_map.h"
+#include "tests/support/worse.h"
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
@@ -14,7 +15,6 @@
 // After TBB, which has template parameters of the names of its macros.
 #define TRAIT_LIGHT_ENVIRONMENT 1
 #include "kernels/lib/environment.h"
-#include "tests/support/worse.h"
 
 namespace gradus {
 namespace {

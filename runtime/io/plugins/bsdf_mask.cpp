@@ -19,7 +19,7 @@ Material bsdf_mask(Properties &properties, SceneBuilder &builder) {
         throw SceneError(properties.location(), "mask needs one nested BSDF, not " + std::to_string(nested.size()));
     Material material = builder.build_object<Material>(*nested.front().element);
     const Color color = properties.color("opacity");
-    Number opacity(float(luminance(color.r, color.g, color.b)));
+    Number opacity(float(luminance(color)));
     opacity.texture = color.texture;
     // Of a mask in a mask rays must meet both.
     const Number within = material.opacity;
