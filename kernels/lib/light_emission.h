@@ -18,6 +18,9 @@ typedef struct {
     rgb power;
     vec3 normal; /* of the surface, on the side that emits; at infinity the direction; 0 for points */
     uint starts; /* light_vertex_on_surface and so on */
+    /* The light and, over the probability of choosing it, its value; known when one was chosen. */
+    uint light;
+    rgb value;
     GRADUS_NOT_IN_REGISTERS
 } light_emission;
 
@@ -223,6 +226,8 @@ GRADUS_FN light_emission emission_sampling(GRADUS_GLOBAL const real *lights, GRA
     e.power = rgb_mul(
         e.power, light_texture_at(textures, texture_reals, texels, unit, LIGHT_TEXTURE_FIELD(light, texture), place));
 #endif
+    e.light = light;
+    e.value = value;
     return e;
 }
 

@@ -3,6 +3,7 @@
 #define GRADUS_LIB_LIGHT_VERTEX_LEAVE_H
 //! traits: TRAIT_SHADING_NORMALS TRAIT_ANISOTROPIC TRAIT_TEXTURED
 #include "kernels/lib/bsdf.h"
+#include "kernels/lib/light_beam.h"
 #include "kernels/lib/textured_material.h"
 #include "kernels/lib/vertex_frame.h"
 #include "kernels/shared/light_vertex.h"
@@ -10,6 +11,18 @@
 
 #define VERTEX_REAL(field) FIELD_OF(light_vertex, light_vertices, record, field)
 #define VERTEX_V3(field) FIELD_V3(light_vertex, light_vertices, record, field)
+
+/* What the kind of vertex needs beside its records. */
+#if LAST_IS_LIGHT && LIGHTS_HAVE_BEAMS
+#define LEAVE_PARAMETERS , __global const real *lights, __global const uint *light_kinds LIGHT_TEXTURE_PARAMETERS
+#define LEAVE_ARGUMENTS , lights, light_kinds LIGHT_TEXTURE_ARGUMENTS
+#elif LAST_IS_LIGHT
+#define LEAVE_PARAMETERS
+#define LEAVE_ARGUMENTS
+#else
+#define LEAVE_PARAMETERS LIGHT_VERTEX_TEXTURES_ARGUMENT
+#define LEAVE_ARGUMENTS LIGHT_VERTEX_TEXTURES
+#endif
 
 /* By solid angle at the vertex, over the density of the direction that the path took. */
 typedef struct {
@@ -39,18 +52,26 @@ GRADUS_FN frame light_vertex_frame(GRADUS_GLOBAL const real *light_vertices, uin
 GRADUS_FN light_leaving light_vertex_leave(GRADUS_GLOBAL const real *light_vertices,
                                            GRADUS_GLOBAL const uint *light_vertex_marks,
                                            GRADUS_GLOBAL const real *materials, uint record, uint unit, vec3 direction,
-                                           vec3 towards LIGHT_VERTEX_TEXTURES_ARGUMENT) {
+                                           vec3 towards LEAVE_PARAMETERS) {
     const vec3 geometric = VERTEX_V3(geometric);
     const real cosine = v3_dot(geometric, direction), cosine_offset = v3_dot(geometric, towards);
     const uint marked = FIELD_OF(light_vertex_mark, light_vertex_marks, record, material);
     real turned = R(1);
 #if LAST_IS_LIGHT
-    (void)materials LIGHT_VERTEX_TEXTURES;
+    (void)materials;
     const int is_surface = marked == light_vertex_on_surface, is_far = marked == light_vertex_at_infinity;
     const int same_side = !is_surface | ((cosine > R(0)) & (cosine_offset > R(0)));
     bsdf_value f;
     f.pdf = is_far ? R(1) : GRADUS_INV_PI * (is_surface ? cosine_offset : R(0.25));
     f.value = rgb_gray(f.pdf);
+#if LIGHTS_HAVE_BEAMS
+    const uint light = FIELD_OF(light_vertex_mark, light_vertex_marks, record, primitive);
+    const int is_beam = marked == light_vertex_of_beam;
+    const light_beam beam =
+        light_beam_towards(lights, light_kinds, is_beam ? light : 0u, unit, towards LIGHT_TEXTURE_ARGUMENTS);
+    f.pdf = is_beam ? beam.pdf : f.pdf;
+    f.value = rgb_select(is_beam, beam.intensity, f.value);
+#endif
 #else
     const int same_side = cosine * cosine_offset > R(0);
 #if TRAIT_TEXTURED

@@ -5,8 +5,7 @@
 
 typedef struct {
     uint start; /* record of the vertex that stays */
-    uint inner; /* how many there are; 0 where there are too many, or light comes from a beam or was mirrored by a
-                 * material that scatters as well */
+    uint inner; /* how many there are; 0 where there are too many, or a material that scatters as well mirrored */
     GRADUS_NOT_IN_REGISTERS
 } photon_chain;
 
@@ -23,8 +22,7 @@ GRADUS_FN photon_chain photon_chain_of(GRADUS_GLOBAL const uint *light_vertex_ma
         const int is_specular = !light_vertex_is_light(material) &&
                                 material_bin[light_vertex_is_light(material) ? 0u : material] == chain_bin;
         if (!is_specular) {
-            const int is_fixed = LIGHT_VERTEX_MIRRORS(chain.start) ? 0 : material != light_vertex_of_beam;
-            chain.inner = is_fixed ? found : 0u;
+            chain.inner = LIGHT_VERTEX_MIRRORS(chain.start) ? 0u : found;
             break;
         }
         ++found;

@@ -16,7 +16,7 @@
     FIELD(light_vertex, wi_x, "unit vector to the vertex before, world frame")                                         \
     FIELD(light_vertex, wi_y, "")                                                                                      \
     FIELD(light_vertex, wi_z, "")                                                                                      \
-    FIELD(light_vertex, power_r, "flux that arrives, as a photon's")                                                   \
+    FIELD(light_vertex, power_r, "flux that arrives, as a photon's; of a beam its light's value by chance")              \
     FIELD(light_vertex, power_g, "")                                                                                   \
     FIELD(light_vertex, power_b, "")                                                                                   \
     FIELD(light_vertex, offset, "how far a new ray starts off the surface; of a light chain_start_at_infinity or 0")   \
@@ -33,7 +33,7 @@
 /* The whole numbers of these records, in a table of their own. */
 #define GRADUS_LIGHT_VERTEX_MARKS(FIELD)                                                                               \
     FIELD(light_vertex_mark, material, "record of the material on this side, or light_vertex_on_surface...")           \
-    FIELD(light_vertex_mark, primitive, "")                                                                            \
+    FIELD(light_vertex_mark, primitive, "of a light its number")                                                                            \
     FIELD(light_vertex_mark, before, "the record of the vertex before; light_vertex_none for the light itself")        \
     FIELD(light_vertex_mark, mirrors, "only with TRAIT_MIXED_LOBES: whether the path goes on so")
 
@@ -51,9 +51,8 @@ enum light_vertex_mark_field { GRADUS_LIGHT_VERTEX_MARKS(GRADUS_RECORD_INDEX) li
 
 #define light_vertex_none 0xFFFFFFFFu
 
-/* Materials of vertices on lights, which have no record: light that leaves a surface, a point, or comes from infinity;
- * or by a beam whose power is another in each direction, so that nobody may turn it and take its power for what it was.
- */
+/* Materials of vertices on lights, which have no record: light that leaves a surface, a point, comes from infinity,
+ * or a point whose beam is of another power in each direction (kernels/lib/light_beam.h). */
 #define light_vertex_on_surface 0xFFFFFFFEu
 #define light_vertex_at_point 0xFFFFFFFDu
 #define light_vertex_at_infinity 0xFFFFFFFCu

@@ -3,6 +3,7 @@
  * Light paths take rows `first_row` on and slots `first_slot` on; the one of slot 0 has the 64-bit number
  * `first_path_high`, `first_path_low`, by which its random numbers go. */
 //! traits: TRAIT_LIGHT_VERTICES TRAIT_LIGHT_STARTS
+#include "kernels/lib/light_beam.h"
 #include "kernels/lib/light_emission.h"
 #include "kernels/shared/light_vertex.h"
 #include "kernels/shared/stage.h"
@@ -53,17 +54,27 @@ STAGE emit(uint count, uint unit, uint capacity, uint first_row, uint first_slot
     SET_FIELD_V3(light_vertex, light_vertices, record, position, emitted.origin);
     SET_FIELD_V3(light_vertex, light_vertices, record, geometric, emitted.normal);
     SET_FIELD_V3(light_vertex, light_vertices, record, wi, none);
-    FIELD_OF(light_vertex, light_vertices, record, power_r) = emitted.power.r;
-    FIELD_OF(light_vertex, light_vertices, record, power_g) = emitted.power.g;
-    FIELD_OF(light_vertex, light_vertices, record, power_b) = emitted.power.b;
     const int is_on_surface = emitted.starts == light_vertex_on_surface;
     const real by_angle = GRADUS_INV_PI * (is_on_surface ? v3_dot(emitted.normal, emitted.direction) : R(0.25));
     const int is_far = emitted.starts == light_vertex_at_infinity;
+    real pdf = is_far ? R(1) : by_angle;
+    rgb arriving = emitted.power;
+#if LIGHTS_HAVE_BEAMS
+    const int is_beam = emitted.starts == light_vertex_of_beam;
+    const light_beam beam =
+        light_beam_towards(lights, light_kinds, emitted.light, unit, emitted.direction LIGHT_TEXTURE_ARGUMENTS);
+    /* By rounding, a direction may lie beside the picture: nothing is moved from there, as nothing is moved there. */
+    pdf = is_beam ? (beam.pdf > R(0) ? beam.pdf : R(1e30)) : pdf;
+    arriving = rgb_select(is_beam, emitted.value, arriving);
+#endif
+    FIELD_OF(light_vertex, light_vertices, record, power_r) = arriving.r;
+    FIELD_OF(light_vertex, light_vertices, record, power_g) = arriving.g;
+    FIELD_OF(light_vertex, light_vertices, record, power_b) = arriving.b;
     FIELD_OF(light_vertex, light_vertices, record, offset) = is_far ? chain_start_at_infinity : R(0);
-    FIELD_OF(light_vertex, light_vertices, record, pdf) = is_far ? R(1) : by_angle;
+    FIELD_OF(light_vertex, light_vertices, record, pdf) = pdf;
     FIELD_OF(light_vertex, light_vertices, record, survival) = R(1);
     FIELD_OF(light_vertex_mark, light_vertex_marks, record, material) = emitted.starts;
-    FIELD_OF(light_vertex_mark, light_vertex_marks, record, primitive) = 0u;
+    FIELD_OF(light_vertex_mark, light_vertex_marks, record, primitive) = emitted.light;
     FIELD_OF(light_vertex_mark, light_vertex_marks, record, before) = light_vertex_none;
 #if TRAIT_MIXED_LOBES
     FIELD_OF(light_vertex_mark, light_vertex_marks, record, mirrors) = 0u;

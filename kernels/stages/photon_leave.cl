@@ -14,7 +14,7 @@ STAGE photon_leave(uint count, uint unit, uint first, uint pairs, uint photon_ro
                    __global const uint *light_vertex_marks, __global const uint *material_bin,
                    __global const real *materials, __global real *moved, __global const real *chain,
                    __global const real *chain_vertex, __global const real *walked,
-                   __global const real *walked_vertex LIGHT_VERTEX_TEXTURES_ARGUMENT) {
+                   __global const real *walked_vertex LEAVE_PARAMETERS) {
     const size_t i = work_item();
     if (i >= count)
         return;
@@ -33,10 +33,9 @@ STAGE photon_leave(uint count, uint unit, uint first, uint pairs, uint photon_ro
     const vec3 was = v3_normalize(v3_sub(AT_V3(chain_vertex, position, i), start));
     const vec3 is = v3_normalize(v3_sub(AT_V3(walked_vertex, position, i), start));
     const light_leaving leaving =
-        light_vertex_leave(light_vertices, light_vertex_marks, materials, record, unit, was, is LIGHT_VERTEX_TEXTURES);
-    const real jacobian =
-        AT(moved, ratio, to) * chain_jacobian(AT(walked, base_spread, i), AT(walked, base_turn, i),
-                                              AT(walked, spread, i), AT(walked, turn, i));
+        light_vertex_leave(light_vertices, light_vertex_marks, materials, record, unit, was, is LEAVE_ARGUMENTS);
+    const real jacobian = AT(moved, ratio, to) * chain_jacobian(AT(walked, base_spread, i), AT(walked, base_turn, i),
+                                                                AT(walked, spread, i), AT(walked, turn, i));
     const rgb power = leaving.is_possible ? rgb_scale(leaving.power, jacobian) : rgb_gray(R(0));
     SET_RGB(moved, power, to, power);
     AT(moved, ratio, to) = leaving.pdf * jacobian;

@@ -13,7 +13,7 @@ STAGE photon_reconnect(uint count, uint unit, uint first, uint pairs, uint gathe
                        __global const uint *pair_gather, __global const uint *pair_photon, __global const real *gather,
                        __global const real *photon_sorted, __global const real *light_vertices,
                        __global const uint *light_vertex_marks, __global const real *materials,
-                       __global real *moved LIGHT_VERTEX_TEXTURES_ARGUMENT) {
+                       __global real *moved LEAVE_PARAMETERS) {
     const size_t i = work_item();
     if (i >= count)
         return;
@@ -40,7 +40,7 @@ STAGE photon_reconnect(uint count, uint unit, uint first, uint pairs, uint gathe
     towards = v3_select(is_far, direction, towards);
 #endif
     const light_leaving leaving = light_vertex_leave(light_vertices, light_vertex_marks, materials, record, unit,
-                                                     direction, towards LIGHT_VERTEX_TEXTURES);
+                                                     direction, towards LEAVE_ARGUMENTS);
     const rgb power = rgb_scale(leaving.power, shifted.jacobian);
     SET_V3(moved, origin, to, origin);
     SET_V3(moved, direction, to, towards);

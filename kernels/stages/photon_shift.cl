@@ -54,7 +54,7 @@ STAGE photon_shift(uint count, uint unit, uint gather_rows, uint photon_rows, ui
     const uint last = FIELD_OF(light_vertex_mark, light_vertex_marks, record, material);
     const int is_light = light_vertex_is_light(last);
     const uint kind_bin = material_bin[is_light ? 0u : last];
-    const uint bin = is_light ? (last == light_vertex_of_beam ? bin_none : light_bin) : kind_bin;
+    const uint bin = is_light ? light_bin : kind_bin;
     const int is_moved = may_count & !is_shared & is_known & !LIGHT_VERTEX_MIRRORS(record);
     moved_bin[(size_t)j * count + i] = is_moved ? bin : bin_none;
 }

@@ -165,11 +165,29 @@ TEST(GradientPhotonImage, HasTheDifferencesOfMirrorsByGlossyMetalAndGlass) {
     EXPECT_NEAR(difference_of_stripes(rough_glass(0.005, 1.5), rough_metal(0.005)) / of_mirrors, 1, 0.03);
 }
 
-/// A ball of glass and a mirror over a floor, and light from infinity: from a sun, from a map with a bright spot, or
-/// from all directions alike. All of it by photons, so that some come straight from there, and some by chains.
-class GradientPhotonsFromInfinity : public ::testing::TestWithParam<const char *> {};
+/// What throws a picture whose colours are another in each direction, downwards.
+Emitter picture_thrower(SceneMaker &maker, Emitter::Kind kind, Vector3 position) {
+    maker.scene.textures.push_back(random_texture(7, 5, Bitmap::Format::word, true));
+    maker.scene.textures.back().wrap = Texture::Wrap::clamp;
+    Emitter emitter;
+    emitter.kind = kind;
+    emitter.value = {2, 2, 2};
+    emitter.texture = std::int32_t(maker.scene.textures.size()) - 1;
+    emitter.position = position;
+    emitter.axes = {{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}};
+    emitter.direction = emitter.axes[2];
+    emitter.picture = {0.7f, 0.6f};
+    emitter.cutoff = 0.5f;
+    emitter.beam = 0.1f;
+    return emitter;
+}
 
-TEST_P(GradientPhotonsFromInfinity, HaveDifferencesOfThePrimal) {
+/// A ball of glass and a mirror over a floor, and light from no surface: from infinity, by a sun, by a map with a
+/// bright spot, or from all directions alike; and from points that shine differently into each direction. All of it by
+/// photons, so that some come straight from there, and some by chains.
+class GradientPhotonsFrom : public ::testing::TestWithParam<const char *> {};
+
+TEST_P(GradientPhotonsFrom, HaveDifferencesOfThePrimal) {
     const std::string light = GetParam();
     SceneMaker maker(24, passes);
     maker.look({0, 2, 2.5}, {0, 0, 0}, 30);
@@ -177,12 +195,19 @@ TEST_P(GradientPhotonsFromInfinity, HaveDifferencesOfThePrimal) {
     maker.floor(-1, 1, 1, maker.material(diffuse(0.6)));
     maker.sphere({-0.2f, 0.5f, 0}, 0.3f, maker.material(glass(1.5)));
     maker.parallelogram({0.4f, 0, 0.4f}, {0, 0, -0.8f}, {0.3f, 0.9f, 0}, maker.material(two_sided(mirror())));
-    if (light == "sun")
+    if (light == "a_sun")
         maker.directional_light({4, 4, 4}, {0.3f, -1, 0.1f});
-    else if (light == "map")
+    else if (light == "a_map")
         maker.environment_map(8, 4, [](std::uint32_t x, std::uint32_t y) { return x == 2 && y == 1 ? 5.0 : 0.2; });
-    else
+    else if (light == "all_around")
         maker.environment(1);
+    else if (light == "a_spot")
+        maker.spot({9, 9, 9}, {0.3f, 2.5f, 0.2f}, {-0.1f, -1, -0.1f}, 5, 25);
+    else {
+        maker.scene.emitters = {picture_thrower(maker, Emitter::Kind::projector, {-0.3f, 2.5f, 0.2f}),
+                                picture_thrower(maker, Emitter::Kind::spot, {0.3f, 2.2f, 0.3f})};
+        maker.point_light({1, 1, 1}, {0, 2.4f, -0.3f});
+    }
     RenderOptions options = few_photons(true);
     const std::map<std::string, std::uint64_t> shifts = render(maker.scene, options, "gpm").statistics.shifts;
     const double all = double(shifts.at("walked") + shifts.at("reconnected") + shifts.at("failed"));
@@ -190,10 +215,10 @@ TEST_P(GradientPhotonsFromInfinity, HaveDifferencesOfThePrimal) {
                 double(shifts.at("reconnected")) / all);
     EXPECT_GT(double(shifts.at("walked")), 0.02 * all);
     EXPECT_GT(double(shifts.at("reconnected")), 0.5 * all);
-    expect_differences_of_the_primal("infinity-" + light, maker.scene, options);
+    expect_differences_of_the_primal(light, maker.scene, options);
 }
-INSTANTIATE_TEST_SUITE_P(Image, GradientPhotonsFromInfinity, ::testing::Values("sun"), name_of_scene);
-INSTANTIATE_TEST_SUITE_P(Full, GradientPhotonsFromInfinity, ::testing::Values("map", "constant"), name_of_scene);
+INSTANTIATE_TEST_SUITE_P(Image, GradientPhotonsFrom, ::testing::Values("a_sun", "pictures"), name_of_scene);
+INSTANTIATE_TEST_SUITE_P(Full, GradientPhotonsFrom, ::testing::Values("a_map", "all_around", "a_spot"), name_of_scene);
 
 /// Seen straight from above, a floor in the sun has no differences but for rounding: each photon is shared, or moved to
 /// where it is worth the same. A few, within rounding of a disc's border, have no shift.
