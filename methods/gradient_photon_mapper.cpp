@@ -3,6 +3,7 @@
 #include "kernels/shared/tables.h"
 #include "methods/error_layer.h"
 #include "methods/path_stages.h"
+#include "methods/photons/moved_by_surface.h"
 #include "runtime/error.h"
 #include "runtime/seconds_since.h"
 #include "runtime/wavefront/sample_parts.h"
@@ -23,45 +24,6 @@ constexpr std::uint32_t planes = 5; // the paths of pixels, and four offset path
 
 // Specular vertices that a photon may have come by one after the other, and still be shifted.
 constexpr std::uint32_t most_inner = 6;
-// Bins of photons that are moved: by the kind of their last vertex (first_kind_bin and on), those at the end of chains
-// before them, those straight from a light behind them.
-constexpr std::uint32_t chain_bin = 0, first_kind_bin = 1;
-
-/// Whether walks move a vertex there: a specular one, or a glossy one, whose half vector is kept (Hua et al. 2017,
-/// section 4.2): held where it is, it would scatter what it sends to its left another way. Not with textures, which
-/// nobody reads where a walk passes.
-bool is_walked(const Bsdf &bsdf, const RenderOptions &options) {
-    const BsdfKindTraits &kind = bsdf_kind_traits(bsdf.kind);
-    return kind.is_dirac ||
-           (!is_rough(bsdf, options.gather_roughness) && !kind.is_mixed && distinct_textures(bsdf).empty());
-}
-
-/// The kinds of such surfaces.
-std::vector<std::string> walked_kinds(const Scene &scene, const RenderOptions &options) {
-    std::vector<std::string> kinds;
-    for_each_bsdf(scene, [&](const Bsdf &bsdf) {
-        if (const std::string kind = bsdf_kind_name(bsdf);
-            is_walked(bsdf, options) && std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
-            kinds.push_back(kind);
-    });
-    return kinds;
-}
-
-/// By material record.
-std::vector<std::uint32_t> material_bins(const Scene &scene, const Session &session, const RenderOptions &options) {
-    const std::vector<std::string> &kinds = session.scene.kinds;
-    const std::vector<Bsdf> records = material_records(scene);
-    std::vector<std::uint32_t> bins;
-    for (const Bsdf &bsdf : records) {
-        const auto kind = std::find(kinds.begin(), kinds.end(), bsdf_kind_name(bsdf));
-        // Of the parts of a blend, which are the last records, walks take the specular ones alone.
-        const bool is_part = bins.size() + scene.blended.size() >= records.size();
-        const bool is_in_chain = is_part ? bsdf_kind_traits(bsdf.kind).is_dirac : is_walked(bsdf, options);
-        bins.push_back(is_in_chain || kind == kinds.end() ? chain_bin
-                                                          : first_kind_bin + std::uint32_t(kind - kinds.begin()));
-    }
-    return bins;
-}
 
 /// Where light may come straight from a light, or by specular vertices alone, shifts ask how it left.
 TraitMap light_vertex_traits(const Scene &scene, const RenderOptions &options) {
@@ -101,18 +63,6 @@ std::string reason_against_gpm(const Scene &scene, const RenderOptions &options)
     // Walks would have to know how normals of an instance change.
     if (!scene.instances.empty())
         return "gpm knows no instances; pt, gpt and sppm do, and --instances copies makes shapes of them";
-    bool has_maps = false, has_textured_mirrors = false;
-    for_each_bsdf(scene, [&](const Bsdf &bsdf) {
-        has_maps = has_maps || bsdf.map.kind != NormalTexture::Kind::none;
-        has_textured_mirrors =
-            has_textured_mirrors || (bsdf_kind_traits(bsdf.kind).is_dirac && !distinct_textures(bsdf).empty());
-    });
-    // Photons that are moved would leave, and walks pass, surfaces whose normal a texture turns.
-    if (has_maps)
-        return "gpm knows no normal maps; pt, gpt and sppm do";
-    // Nobody reads textures where walks pass.
-    if (has_textured_mirrors)
-        return "gpm knows no textures of mirrors and glass; pt, gpt and sppm do";
     // Of a blend nobody tells which part a photon meets that has been moved there.
     if (!blends_gather_alike(scene, options.gather_roughness))
         return fmt::format("gpm knows no blends of surfaces where photons are gathered (roughness {} or more), on one "
@@ -160,8 +110,13 @@ GradientPhotonMapper::GradientPhotonMapper(Device &device, const Scene &scene, c
     film_.tell_no_error();
     if (has_chains())
         manifold_walk_.emplace(session_, stages_, WalkSettings{.most_vertices = most_inner});
-    const std::vector<std::uint32_t> bins = material_bins(scene, session_, options);
-    session_.scene_buffers.emplace_back(device, "material_bin", bins.data(), bins.size() * sizeof(bins[0]));
+    const std::vector<std::string> &kinds = session_.scene.kinds;
+    const auto add_by_material = [&](const char *name, const std::vector<std::uint32_t> &values) {
+        session_.scene_buffers.emplace_back(device, name, values.data(), values.size() * sizeof(values[0]));
+    };
+    add_by_material("material_bin", bins_of_kinds(scene, kinds));
+    add_by_material("leaving_bin", bins_of_leaving(scene, kinds, options));
+    add_by_material("walked_kind", kinds_for_walks(scene, options.gather_roughness));
     statistics_.surfaces = gathering_surfaces(scene, options.gather_roughness);
     total_ = std::uint64_t(session_.pixels()) * session_.settings.samples_per_pixel;
     allocate();

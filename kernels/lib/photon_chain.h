@@ -9,9 +9,9 @@ typedef struct {
     GRADUS_NOT_IN_REGISTERS
 } photon_chain;
 
-/* last: the record of a photon's last vertex. `chain_bin`: what material_bin has for specular materials. */
+/* last: the record of a photon's last vertex. `chain_bin`: what leaving_bin has for specular materials. */
 GRADUS_FN photon_chain photon_chain_of(GRADUS_GLOBAL const uint *light_vertex_marks,
-                                       GRADUS_GLOBAL const uint *material_bin, uint chain_bin, uint most, uint unit,
+                                       GRADUS_GLOBAL const uint *leaving_bin, uint chain_bin, uint most, uint unit,
                                        uint last) {
     photon_chain chain;
     chain.start = last;
@@ -20,7 +20,7 @@ GRADUS_FN photon_chain photon_chain_of(GRADUS_GLOBAL const uint *light_vertex_ma
     for (uint k = 0; k <= most; ++k) {
         const uint material = FIELD_OF(light_vertex_mark, light_vertex_marks, chain.start, material);
         const int is_specular = !light_vertex_is_light(material) &&
-                                material_bin[light_vertex_is_light(material) ? 0u : material] == chain_bin;
+                                leaving_bin[light_vertex_is_light(material) ? 0u : material] == chain_bin;
         if (!is_specular) {
             chain.inner = LIGHT_VERTEX_MIRRORS(chain.start) ? 0u : found;
             break;

@@ -11,7 +11,7 @@ STAGE photon_leave(uint count, uint unit, uint first, uint pairs, uint photon_ro
                    uint light_bin, uint most_inner, uint chain_rows, uint chain_vertices, uint leave_bin,
                    __global const uint *moved_index, __global const uint *pair_photon,
                    __global const real *photon_sorted, __global const real *light_vertices,
-                   __global const uint *light_vertex_marks, __global const uint *material_bin,
+                   __global const uint *light_vertex_marks, __global const uint *leaving_bin,
                    __global const real *materials, __global real *moved, __global const real *chain,
                    __global const real *chain_vertex, __global const real *walked,
                    __global const real *walked_vertex LEAVE_PARAMETERS) {
@@ -21,12 +21,12 @@ STAGE photon_leave(uint count, uint unit, uint first, uint pairs, uint photon_ro
     const size_t to = first + i;
     const uint number = moved_index[to], j = moved_offset(number, pairs), pair = number - j * pairs;
     const uint from = pair_photon[pair];
-    const photon_chain found = photon_chain_of(light_vertex_marks, material_bin, chain_bin, most_inner, unit,
+    const photon_chain found = photon_chain_of(light_vertex_marks, leaving_bin, chain_bin, most_inner, unit,
                                                AT_UINT(photon_sorted, before, from));
     const uint record = found.start;
     const uint marked = FIELD_OF(light_vertex_mark, light_vertex_marks, record, material);
     const int is_light = light_vertex_is_light(marked);
-    const uint own_bin = is_light ? light_bin : material_bin[is_light ? 0u : marked];
+    const uint own_bin = is_light ? light_bin : leaving_bin[is_light ? 0u : marked];
     if (own_bin != leave_bin || AT_UINT(walked, outcome, i) != walk_arrived)
         return;
     const vec3 start = VERTEX_V3(position);

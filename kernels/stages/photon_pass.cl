@@ -11,11 +11,11 @@
 
 #if !LAST_KIND
 STAGE photon_pass(uint count, uint unit, uint first, uint pairs, uint photon_rows, uint pair_rows, uint chain_bin,
-                  uint chain_rows, uint chain_vertices, __global const uint *moved_index, __global const uint *pair_photon,
-                  __global const real *photon_sorted, __global const real *light_vertices,
-                  __global const uint *light_vertex_marks, __global const uint *material_bin,
-                  __global const real *materials, __global real *moved, __global const real *chain,
-                  __global const real *walked, __global const real *walked_vertex) {
+                  uint chain_rows, uint chain_vertices, __global const uint *moved_index,
+                  __global const uint *pair_photon, __global const real *photon_sorted,
+                  __global const real *light_vertices, __global const uint *light_vertex_marks,
+                  __global const uint *leaving_bin, __global const real *materials, __global real *moved,
+                  __global const real *chain, __global const real *walked, __global const real *walked_vertex) {
     const size_t i = work_item();
     if (i >= count || AT_UINT(walked, outcome, i) != walk_arrived)
         return;
@@ -51,7 +51,7 @@ STAGE photon_pass(uint count, uint unit, uint first, uint pairs, uint photon_row
             f.value = rgb_scale(s.weight, f.pdf);
 #else
             bsdf_value f = PASTE(BSDF, _evaluate)(m, wi, wo, transport_importance);
-            f.pdf = material_bin[there] == chain_bin ? f.pdf : R(0); /* or no walk would lead back */
+            f.pdf = leaving_bin[there] == chain_bin ? f.pdf : R(0); /* or no walk would lead back */
 #endif
             real turned = R(1);
 #if TRAIT_SHADING_NORMALS

@@ -9,7 +9,7 @@ STAGE photon_project(uint count, uint unit, uint first, uint pairs, uint capacit
                      uint pair_rows, uint strip_pixels, uint chain_bin, uint most_inner,
                      __global const uint *moved_index, __global const uint *pair_gather,
                      __global const uint *pair_photon, __global const real *gather, __global const real *photon_sorted,
-                     __global const uint *light_vertex_marks, __global const uint *material_bin, __global real *moved,
+                     __global const uint *light_vertex_marks, __global const uint *leaving_bin, __global real *moved,
                      __global real *moved_link) {
     const size_t i = work_item();
     if (i >= count)
@@ -17,7 +17,7 @@ STAGE photon_project(uint count, uint unit, uint first, uint pairs, uint capacit
     const size_t to = first + i;
     const uint number = moved_index[to], j = moved_offset(number, pairs), pair = number - j * pairs;
     const int row = (int)pair_gather[pair], from = (int)pair_photon[pair], at = row + (int)((j + 1u) * strip_pixels);
-    const photon_chain chain = photon_chain_of(light_vertex_marks, material_bin, chain_bin, most_inner, unit,
+    const photon_chain chain = photon_chain_of(light_vertex_marks, leaving_bin, chain_bin, most_inner, unit,
                                                AT_UINT(photon_sorted, before, from));
     const photon_disc base = PHOTON_DISC(row), offset = PHOTON_DISC(at);
     const vec3 photon = AT_V3(photon_sorted, position, from), normal = AT_V3(photon_sorted, normal, from);

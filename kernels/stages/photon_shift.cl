@@ -14,9 +14,9 @@
 
 STAGE photon_shift(uint count, uint unit, uint gather_rows, uint photon_rows, uint pair_rows, uint strip_pixels,
                    __global const uint *pair_gather, __global const uint *pair_photon, __global const real *gather,
-                   __global const real *photon_sorted, __global const real *materials,
-                   __global const uint *material_bin, uint light_bin, __global const uint *light_vertex_marks,
-                   __global const real *pair_value, __global real *pair_difference, __global uint *moved_bin) {
+                   __global const real *photon_sorted, __global const real *materials, __global const uint *leaving_bin,
+                   uint light_bin, __global const uint *light_vertex_marks, __global const real *pair_value,
+                   __global real *pair_difference, __global uint *moved_bin) {
     const size_t i = work_item();
     if (i >= count)
         return;
@@ -53,7 +53,7 @@ STAGE photon_shift(uint count, uint unit, uint gather_rows, uint photon_rows, ui
     const uint record = is_known ? before : 0u;
     const uint last = FIELD_OF(light_vertex_mark, light_vertex_marks, record, material);
     const int is_light = light_vertex_is_light(last);
-    const uint kind_bin = material_bin[is_light ? 0u : last];
+    const uint kind_bin = leaving_bin[is_light ? 0u : last];
     const uint bin = is_light ? light_bin : kind_bin;
     const int is_moved = may_count & !is_shared & is_known & !LIGHT_VERTEX_MIRRORS(record);
     moved_bin[(size_t)j * count + i] = is_moved ? bin : bin_none;

@@ -11,7 +11,7 @@ STAGE photon_walk(uint count, uint unit, uint first, uint pairs, uint capacity, 
                   uint chain_vertices, __global const uint *moved_index, __global const uint *pair_gather,
                   __global const uint *pair_photon, __global const real *gather, __global const real *photon_sorted,
                   __global const real *light_vertices, __global const uint *light_vertex_marks,
-                  __global const uint *material_bin, __global real *moved, __global const real *moved_link,
+                  __global const uint *leaving_bin, __global real *moved, __global const real *moved_link,
                   __global const real *triangles, __global const real *triangle_normals,
                   __global const real *triangle_tangents, __global const real *spheres, uint triangle_count,
                   __global const uint *primitive_material, __global const uint *material_back, __global real *chain,
@@ -35,7 +35,7 @@ STAGE photon_walk(uint count, uint unit, uint first, uint pairs, uint capacity, 
     AT(moved, ratio, to) = AT(moved, ratio, to) / facing;
 
     const uint last = AT_UINT(photon_sorted, before, from);
-    const photon_chain found = photon_chain_of(light_vertex_marks, material_bin, chain_bin, most_inner, unit, last);
+    const photon_chain found = photon_chain_of(light_vertex_marks, leaving_bin, chain_bin, most_inner, unit, last);
     const vec3 start = FIELD_V3(light_vertex, light_vertices, found.start, position);
     const vec3 start_normal = FIELD_V3(light_vertex, light_vertices, found.start, geometric);
     const vec3 end = AT_V3(photon_sorted, position, from), end_normal = AT_V3(photon_sorted, normal, from);

@@ -11,7 +11,7 @@ STAGE walk_events(uint count, uint unit, uint chain_rows, uint chain_vertices, _
                   __global const real *chain_vertex, __global real *chain_event, __global const real *triangles,
                   __global const real *triangle_normals, __global const real *triangle_tangents,
                   __global const real *spheres, uint triangle_count, __global const uint *primitive_material,
-                  __global const uint *material_back, __global const uint *material_kind,
+                  __global const uint *material_back, __global const uint *walked_kind,
                   __global const real *materials) {
     const size_t row = work_item();
     if (row >= count)
@@ -50,7 +50,7 @@ STAGE walk_events(uint count, uint unit, uint chain_rows, uint chain_vertices, _
     const uint record = point.material;
 #endif
     const material m = material_load(materials, record, unit);
-    const uint kind = material_kind[record];
+    const uint kind = walked_kind[record];
     const real in_cosine = v3_dot(wi, point.shading), out_cosine = r_after(v3_dot(wo, point.shading), in_cosine);
     const int reflects = in_cosine * out_cosine > R(0);
     const half_vector half_of = half_vector_of(wi, wo, point.shading, reflects, m.ior);

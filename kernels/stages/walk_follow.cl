@@ -26,7 +26,7 @@ walk_follow
      __global real *walk_beam, __global real *walked_vertex, __global const real *triangles,
      __global const real *triangle_normals, __global const real *triangle_tangents, __global const real *spheres,
      uint triangle_count, __global const uint *primitive_material, __global const uint *material_back,
-     __global const uint *material_kind, __global const real *materials,
+     __global const uint *walked_kind, __global const real *materials,
 #if LANDS
      uint most_vertices, uint most_steps, real walk_tolerance, real walk_floor, real walk_back_tolerance,
      __global const real *chain, __global real *walk, __global real *walked, __global uint *walk_bin
@@ -51,8 +51,8 @@ walk_follow
     const vec3 direction = AT_V3(walk_ray, direction, row), from = AT_V3(walk_beam, from, row);
     const primitive_hit hit =
         chain_hit_of(triangles, spheres, unit, triangle_count, present, AT_V3(walk_ray, origin, row), from, direction);
-    surface_point point = surface_point_at(triangles, triangle_normals, triangle_tangents, spheres, unit, triangle_count,
-                                           primitive_material, material_back, present, hit, direction);
+    surface_point point = surface_point_at(triangles, triangle_normals, triangle_tangents, spheres, unit,
+                                           triangle_count, primitive_material, material_back, present, hit, direction);
 #if TRAIT_BLENDS
     /* On the same blend the same part. Its chance is the same there: of textured weights no part has a kind. */
     point.material =
@@ -61,7 +61,7 @@ walk_follow
     const vec3 n = point.shading;
     const normal_change change =
         normal_change_of(triangles, triangle_normals, spheres, unit, triangle_count, present, hit, n, point.geometric);
-    const uint kind = material_kind[point.material];
+    const uint kind = walked_kind[point.material];
     const real ratio = material_load(materials, point.material, unit).ior;
     AT_UINT(walked_vertex, primitive, at) = present;
     SET_SURFACE_VERTEX(walked_vertex, at, is_hit ? kind : kind_none, point, direction)

@@ -34,22 +34,6 @@ StageDeclaration defined_as(StageDeclaration stage, const char *definition, bool
     return stage;
 }
 
-/// By material record. Specular parts of blends whose weight is a texture have no kind: at another place they have
-/// another chance, so no walk leads by them.
-std::vector<std::uint32_t> kinds_for_walks(const Scene &scene, double gather_roughness) {
-    std::vector<std::uint32_t> kinds = material_kinds(scene, gather_roughness);
-    const std::size_t first_part = kinds.size() - scene.blended.size();
-    const auto leave_out = [&](const Bsdf &part) {
-        if (bsdf_kind_traits(part.kind).is_dirac)
-            kinds[first_part + std::size_t(&part - scene.blended.data())] = kind_none;
-    };
-    for (const Blend &blend : scene.blends)
-        if (blend.weight.texture != no_texture)
-            for (const std::uint32_t half : {blend.first, blend.second})
-                for_each_part(scene, scene.blended[half], leave_out);
-    return kinds;
-}
-
 } // namespace
 
 TraitMap gather_traits(const Scene &scene, const RenderOptions &options) {
@@ -73,7 +57,7 @@ GatherPaths::GatherPaths(Session &session, Stages &stages, const Scene &scene, c
       travel_(stages.add(wanted_if({.name = "travel", .numbers = {"first"}}, has_smooth_))),
       gather_(stages.add(gather_stage(features_, planes))),
       shade_(stages.add(wanted_if(shade_stage(false), has_smooth_ || samples_lights_))) {
-    const std::vector<std::uint32_t> kinds = kinds_for_walks(scene, options.gather_roughness);
+    const std::vector<std::uint32_t> kinds = material_kinds(scene, options.gather_roughness);
     session.scene_buffers.emplace_back(session.device, "material_kind", kinds.data(), kinds.size() * sizeof(kinds[0]));
     session.numbers["bins_of_phase"] = static_cast<std::uint32_t>(2 * session.scene.kinds.size());
 }

@@ -31,9 +31,9 @@ struct WalkSettings {
 /// nearer is taken, and the next one is twice as large a share of the whole, at most 1; any other is halved. The answer
 /// of a chain is the same bits whatever the rows beside it and the threads.
 ///
-/// Kernels ask for `material_kind` (by material record, the kind as `kind` in kernels/shared/tables.h), which the
-/// method adds to the scene's buffers before its stages are built, as gradient-domain path tracing does. A vertex of a
-/// chain is specular where that has kind_is_dirac, else glossy; the new one must be of the same kind, flags included.
+/// Kernels ask for `walked_kind` (by material record, the kind as `kind` in kernels/shared/tables.h; kind_none where no
+/// walk leads), which the method adds to the scene's buffers before its stages are built. A vertex of a chain is
+/// specular where that has kind_is_dirac, else glossy; the new one must be of the same kind, flags included.
 class ManifoldWalk {
   public:
     /// Declares the stages `walk ...`. There is room for TableRows::chains.

@@ -4,7 +4,7 @@
 namespace gradus {
 
 Declaration declare_bsdf_normalmap() {
-    return {"a BSDF under normals that a texture holds. Not with `gpm`",
+    return {"a BSDF under normals that a texture holds",
             joined({{{"texture", Takes::objects, nullptr, "in 2.0 and later its name is normalmap; to be read raw"}},
                     parameters_of_maps()})};
 }
