@@ -112,6 +112,15 @@ TEST(FullGradientPhotonImage, HasDifferencesOfThePrimalUnderTexturedWalls) {
     expect_differences_under_walls("textured-walls", maker, textured, blend, 16);
 }
 
+TEST(FullGradientPhotonImage, HasDifferencesOfThePrimalUnderBumpyWalls) {
+    SceneMaker maker(24, passes);
+    maker.scene.textures = {random_texture(4, 4, Bitmap::Format::word, false, 2)};
+    Bsdf bumpy = diffuse(0.9);
+    bumpy.map = {.kind = NormalTexture::Kind::bump, .texture = 0, .scale = 0.5f};
+    maker.floor(-1, 1, 1, maker.material(diffuse(0.5)));
+    expect_differences_under_walls("bumpy-walls", maker, bumpy, bumpy, 16);
+}
+
 /// Surfaces whose photons stay where they are beside others of the same kind, where they are moved: mirrors and walls
 /// under a bump map, painted glass. Neither shifts nor walks mix them up.
 TEST(GradientPhotonImage, HasDifferencesOfThePrimalBesideMapsAndPaintedGlass) {
