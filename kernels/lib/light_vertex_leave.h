@@ -1,8 +1,9 @@
 /* Light paths that leave a vertex in another direction than they did. */
 #ifndef GRADUS_LIB_LIGHT_VERTEX_LEAVE_H
 #define GRADUS_LIB_LIGHT_VERTEX_LEAVE_H
-//! traits: TRAIT_SHADING_NORMALS TRAIT_ANISOTROPIC TRAIT_TEXTURED
+//! traits: TRAIT_SHADING_NORMALS TRAIT_ANISOTROPIC TRAIT_TEXTURED TRAIT_TEXTURED_NORMALS
 #include "kernels/lib/bsdf.h"
+#include "kernels/lib/bsdf_frame.h"
 #include "kernels/lib/light_beam.h"
 #include "kernels/lib/textured_material.h"
 #include "kernels/lib/vertex_frame.h"
@@ -31,20 +32,6 @@ typedef struct {
     int is_possible; /* and the way back, where the same is asked with the directions exchanged */
     GRADUS_NOT_IN_REGISTERS
 } light_leaving;
-
-GRADUS_FN frame light_vertex_frame(GRADUS_GLOBAL const real *light_vertices, uint record, uint unit, material m) {
-    (void)m;
-#if TRAIT_SHADING_NORMALS || TRAIT_ANISOTROPIC
-    const vec3 shading = VERTEX_V3(shading);
-#else
-    const vec3 shading = VERTEX_V3(geometric);
-#endif
-#if TRAIT_ANISOTROPIC
-    return surface_frame(shading, VERTEX_V3(along), m);
-#else
-    return frame_from_normal(shading);
-#endif
-}
 
 /* direction: the one that it took; towards: the new one; unit vectors, world frame. Of a vertex of the kind BSDF, or,
  * with LAST_IS_LIGHT, of one on a light; at infinity both directions are the same, and densities are by area across it.
@@ -80,16 +67,36 @@ GRADUS_FN light_leaving light_vertex_leave(GRADUS_GLOBAL const real *light_verti
 #else
     const material m = material_load(materials, marked, unit);
 #endif
-    const frame axes = light_vertex_frame(light_vertices, record, unit, m);
+#if TRAIT_SHADING_NORMALS || TRAIT_ANISOTROPIC
+    const vec3 shading = VERTEX_V3(shading);
+#else
+    const vec3 shading = geometric;
+#endif
+#if TRAIT_ANISOTROPIC
+    const vec3 along = VERTEX_V3(along);
+#else
+    const vec3 along = v3(R(0), R(0), R(0));
+#endif
+#if TRAIT_TEXTURED_NORMALS
+    /* Who looks is where the path goes, and it chose between two normals before it knew (scatter.cl). */
+    const mapped_normal map = mapped_normal_at(light_vertex_textures, unit, record * (size_t)textured_columns);
+    const bsdf_frame place = bsdf_frame_seen(map, shading, along, towards, m);
+    const real turned_chance = mapped_normal_turned_chance(map, shading);
+    const real chance = mapped_normal_turns(map, shading, towards) ? turned_chance : R(1) - turned_chance;
+#else
+    const bsdf_frame place = bsdf_frame_of(surface_frame(shading, along, m));
+    const real chance = R(1);
+#endif
     const vec3 back = VERTEX_V3(wi);
-    const vec3 wi = frame_to_local(axes, back), wo = frame_to_local(axes, towards);
+    const vec3 wi = frame_to_local(place.axes, back), wo = frame_to_local(place.axes, towards);
 #if BSDF_IS_DIRAC
-    const bsdf_value f = bsdf_value_none();
+    bsdf_value f = bsdf_value_none();
     (void)wi, (void)wo;
 #else
-    const bsdf_value f = PASTE(BSDF, _evaluate)(m, wi, wo, transport_importance);
+    bsdf_value f = MAPPED_VALUE(place, PASTE(BSDF, _evaluate)(m, wi, wo, transport_importance), wi);
 #endif
-#if TRAIT_SHADING_NORMALS
+    f.pdf *= chance;
+#if TRAIT_SHADING_NORMALS || TRAIT_TEXTURED_NORMALS
     /* As light paths are (scatter.cl). */
     turned = r_abs(wi.z * cosine_offset) / r_max(r_abs(v3_dot(geometric, back) * wo.z), R(1e-12));
 #endif

@@ -38,6 +38,13 @@ GRADUS_FN vec3 mapped_normal_seen(mapped_normal map, vec3 own, vec3 wi) {
     return v3_select(map.flags != 0u, seen, own);
 }
 
+/* How likely a light path, which does not know yet who will look, takes the other one: as it is tilted. */
+GRADUS_FN real mapped_normal_turned_chance(mapped_normal map, vec3 own) {
+    const real aligned = v3_dot(map.normal, own);
+    const real tilted = R(0.5) * r_sqrt(r_max(R(1) - aligned * aligned, R(0)));
+    return (map.flags & normal_map_turns) != 0u ? tilted : R(0);
+}
+
 /* tan^2 of the angle whose cosine this is; bounded, so that 0 times it is 0. */
 GRADUS_FN real tangent_squared(real cosine) {
     const real square = cosine * cosine;

@@ -2,7 +2,8 @@
  * their own, each of which knows the one before. They are accessed at random, so these are records and not columns. */
 #ifndef GRADUS_SHARED_LIGHT_VERTEX_H
 #define GRADUS_SHARED_LIGHT_VERTEX_H
-//! traits: TRAIT_SHADING_NORMALS TRAIT_ANISOTROPIC TRAIT_TEXTURED TRAIT_MIXED_LOBES
+//! traits: TRAIT_SHADING_NORMALS TRAIT_ANISOTROPIC TRAIT_TEXTURED TRAIT_TEXTURED_NORMALS
+//! traits: TRAIT_MIXED_LOBES
 #include "kernels/shared/scene_records.h"
 
 #define GRADUS_LIGHT_VERTEX_FIELDS(FIELD)                                                                              \
@@ -71,7 +72,7 @@ GRADUS_LIB_END
 
 /* What textures are worth at a vertex: records of textured_columns numbers (kernels/lib/textured_material.h), in a
  * table that only scenes with textures have. */
-#if TRAIT_TEXTURED
+#if TRAIT_TEXTURED || TRAIT_TEXTURED_NORMALS
 #define LIGHT_VERTEX_TEXTURES_ARGUMENT , __global const real *light_vertex_textures
 #define LIGHT_VERTEX_TEXTURES , light_vertex_textures
 #else

@@ -43,7 +43,7 @@ STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint ma
 #if TRAIT_LIGHT_VERTICES
               ,
               __global real *light_vertices, __global uint *light_vertex_marks, uint to_vertex
-#if TRAIT_TEXTURED
+#if TRAIT_TEXTURED || TRAIT_TEXTURED_NORMALS
               ,
               __global real *light_vertex_textures
 #endif
@@ -70,9 +70,7 @@ STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint ma
     const material m = HIT_MATERIAL(point.material, capacity, old);
 #if TRAIT_TEXTURED_NORMALS
     const mapped_normal map = mapped_normal_at(surface, capacity, old);
-    const real aligned = v3_dot(map.normal, point.shading);
-    const real tilted = R(0.5) * r_sqrt(r_max(R(1) - aligned * aligned, R(0)));
-    const real turned_chance = (map.flags & normal_map_turns) != 0u ? tilted : R(0);
+    const real turned_chance = mapped_normal_turned_chance(map, point.shading);
     const int is_turned = random_draw(key_0, key_1, random_dimension_normal(before)).a < turned_chance;
     const vec3 turned_normal = mapped_normal_turned(point.shading, map.normal);
     const vec3 taken_normal = v3_select(is_turned, turned_normal, map.normal);
@@ -151,7 +149,11 @@ STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint ma
     FIELD_OF(light_vertex, light_vertices, record, power_g) = arriving.g;
     FIELD_OF(light_vertex, light_vertices, record, power_b) = arriving.b;
     FIELD_OF(light_vertex, light_vertices, record, offset) = point.offset;
+#if TRAIT_TEXTURED_NORMALS
+    FIELD_OF(light_vertex, light_vertices, record, pdf) = s.pdf * chance;
+#else
     FIELD_OF(light_vertex, light_vertices, record, pdf) = s.pdf;
+#endif
     FIELD_OF(light_vertex, light_vertices, record, survival) = survival;
 #if TRAIT_SHADING_NORMALS || TRAIT_ANISOTROPIC
     SET_FIELD_V3(light_vertex, light_vertices, record, shading, point.shading);
@@ -169,7 +171,7 @@ STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint ma
     FIELD_OF(light_vertex_mark, light_vertex_marks, record, mirrors) = 0u;
 #endif
 #endif
-#if TRAIT_TEXTURED
+#if TRAIT_TEXTURED || TRAIT_TEXTURED_NORMALS
 #pragma unroll
     for (uint c = 0; c < (uint)textured_columns; ++c)
         (light_vertex_textures + c * (size_t)unit)[record * (uint)textured_columns] =

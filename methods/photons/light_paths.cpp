@@ -90,7 +90,7 @@ std::vector<std::pair<const char *, std::uint32_t>> vertex_tables(const Session 
     if (!session.has("TRAIT_LIGHT_VERTICES"))
         return tables;
     tables = {{"light_vertices", light_vertex_stride}, {"light_vertex_marks", light_vertex_mark_stride}};
-    if (session.has("TRAIT_TEXTURED"))
+    if (session.textured_columns() > 0)
         tables.emplace_back("light_vertex_textures", session.textured_columns());
     return tables;
 }

@@ -13,19 +13,19 @@ using namespace lib_float;
 
 namespace {
 
-/// Whether a texture gives a surface another normal at another place, or another colour to a mirror or glass, where
-/// walks would pass, which read none.
-bool keeps_photons(const Bsdf &bsdf) {
-    return bsdf.map.kind != NormalTexture::Kind::none ||
-           (bsdf_kind_traits(bsdf.kind).is_dirac && !distinct_textures(bsdf).empty());
+/// Whether a surface is another one at another place. Walks pass by none of these, for they read no textures.
+bool has_textures(const Bsdf &bsdf) {
+    return bsdf.map.kind != NormalTexture::Kind::none || !distinct_textures(bsdf).empty();
 }
 
+/// Whether photons are not moved that come from there: a mirror or glass that no walk may pass.
+bool keeps_photons(const Bsdf &bsdf) { return bsdf_kind_traits(bsdf.kind).is_dirac && has_textures(bsdf); }
+
 /// Whether walks move a vertex there: a specular one, or a glossy one, whose half vector is kept (Hua et al. 2017,
-/// section 4.2): held where it is, it would scatter what it sends to its left another way. Not with textures.
+/// section 4.2): held where it is, it would scatter what it sends to its left another way.
 bool is_walked(const Bsdf &bsdf, const RenderOptions &options) {
     const BsdfKindTraits &kind = bsdf_kind_traits(bsdf.kind);
-    return !keeps_photons(bsdf) && (kind.is_dirac || (!is_rough(bsdf, options.gather_roughness) && !kind.is_mixed &&
-                                                      distinct_textures(bsdf).empty()));
+    return !has_textures(bsdf) && (kind.is_dirac || (!is_rough(bsdf, options.gather_roughness) && !kind.is_mixed));
 }
 
 } // namespace

@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <bit>
+
 namespace gradus::testing {
 namespace {
 
@@ -112,13 +114,22 @@ TEST(FullGradientPhotonImage, HasDifferencesOfThePrimalUnderTexturedWalls) {
     expect_differences_under_walls("textured-walls", maker, textured, blend, 16);
 }
 
-TEST(FullGradientPhotonImage, HasDifferencesOfThePrimalUnderBumpyWalls) {
+/// Walls whose normals lean to one side, so that who takes the surface's own is wrong everywhere; from behind the
+/// normal that a light path must take is the other one.
+TEST(GradientPhotonImage, HasDifferencesOfThePrimalUnderWallsWithANormalMap) {
     SceneMaker maker(24, passes);
-    maker.scene.textures = {random_texture(4, 4, Bitmap::Format::word, false, 2)};
-    Bsdf bumpy = diffuse(0.9);
-    bumpy.map = {.kind = NormalTexture::Kind::bump, .texture = 0, .scale = 0.5f};
+    const auto leaning = std::make_shared<Bitmap>();
+    leaning->resize(2, 1, Bitmap::Format::real, true);
+    const float colors[2][3] = {{0.9f, 0.4f, 0.8f}, {0.2f, 0.45f, 0.35f}}; // the second looks into the wall
+    for (std::uint32_t x = 0; x < 2; ++x)
+        for (int c = 0; c < 3; ++c)
+            leaning->set(x, 0, c, std::bit_cast<std::uint32_t>(colors[x][c]));
+    maker.scene.textures.resize(1);
+    maker.scene.textures[0].bitmap = leaning;
+    Bsdf mapped = diffuse(0.9);
+    mapped.map = {.kind = NormalTexture::Kind::normal, .texture = 0, .turns_over = true, .shadows = true};
     maker.floor(-1, 1, 1, maker.material(diffuse(0.5)));
-    expect_differences_under_walls("bumpy-walls", maker, bumpy, bumpy, 16);
+    expect_differences_under_walls("mapped-walls", maker, mapped, mapped, 16);
 }
 
 /// Surfaces whose photons stay where they are beside others of the same kind, where they are moved: mirrors and walls
