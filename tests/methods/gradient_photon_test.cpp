@@ -114,8 +114,8 @@ TEST(FullGradientPhotonImage, HasDifferencesOfThePrimalUnderTexturedWalls) {
     expect_differences_under_walls("textured-walls", maker, textured, blend, 16);
 }
 
-/// Walls whose normals lean to one side, so that who takes the surface's own is wrong everywhere; from behind the
-/// normal that a light path must take is the other one.
+/// Walls of metal whose normals lean to one side, so that who takes the surface's own sees light elsewhere; from behind
+/// the normal that a light path must take is the other one.
 TEST(GradientPhotonImage, HasDifferencesOfThePrimalUnderWallsWithANormalMap) {
     SceneMaker maker(24, passes);
     const auto leaning = std::make_shared<Bitmap>();
@@ -126,7 +126,7 @@ TEST(GradientPhotonImage, HasDifferencesOfThePrimalUnderWallsWithANormalMap) {
             leaning->set(x, 0, c, std::bit_cast<std::uint32_t>(colors[x][c]));
     maker.scene.textures.resize(1);
     maker.scene.textures[0].bitmap = leaning;
-    Bsdf mapped = diffuse(0.9);
+    Bsdf mapped = rough_metal(0.3);
     mapped.map = {.kind = NormalTexture::Kind::normal, .texture = 0, .turns_over = true, .shadows = true};
     maker.floor(-1, 1, 1, maker.material(diffuse(0.5)));
     expect_differences_under_walls("mapped-walls", maker, mapped, mapped, 16);
