@@ -64,7 +64,10 @@ void Diagnostics::replay(const std::vector<Held> &messages) {
             error(location, message);
 }
 
-void Diagnostics::error(const SceneError &error) { add_error(error.what()); }
+void Diagnostics::error(const SceneError &error) {
+    if (error.cause.empty() || causes_.insert(error.cause).second)
+        add_error(error.what());
+}
 
 void Diagnostics::add_error(const std::string &text) {
     if (known_.insert("error " + text).second)

@@ -20,6 +20,8 @@ std::string located(const Location &location, const std::string &message);
 class SceneError : public std::runtime_error {
   public:
     SceneError(const Location &location, const std::string &message) : std::runtime_error(located(location, message)) {}
+    /// What is at fault where many places may say so: nobody needs to hear of it again. Empty: the place itself.
+    std::string cause = {};
 };
 
 class Diagnostics {
@@ -59,7 +61,8 @@ class Diagnostics {
     bool strict_, is_holding_ = false;
     std::vector<Held> held_;
     std::vector<std::string> warnings_, errors_;
-    std::unordered_set<std::string> known_; ///< both, for repetitions
+    std::unordered_set<std::string> known_;  ///< both, for repetitions
+    std::unordered_set<std::string> causes_; ///< that were told
     std::size_t warnings_left_out_ = 0, error_reports_ = 0;
 };
 

@@ -69,6 +69,8 @@ class Reader {
     std::unique_ptr<File> open(const std::shared_ptr<const OpenFile> &opened, const fs::path &path, int version);
     void check_root(const File &file, const pugi::xml_node &root, bool is_main) const;
     void collect_parameters(const File &file, const pugi::xml_node &node, int depth);
+    void collect_nested_defaults(const File &file, const pugi::xml_node &object);
+    void add_default(const File &file, const pugi::xml_node &node);
     bool open_include(const File &file, const pugi::xml_node &node, int depth, bool last_chance);
     void read_deferred_includes();
     Element convert(const File &file, const pugi::xml_node &node, int depth);
@@ -178,20 +180,43 @@ void Reader::collect_parameters(const File &file, const pugi::xml_node &parent, 
     for (pugi::xml_node node : parent.children()) {
         const std::string_view tag = node.name();
         if (tag == "default") {
-            const std::string name(trimmed(node.attribute("name").value()));
-            if (name.empty() || !node.attribute("value"))
-                fail(file.locate(node), "<default> needs name and value");
-            parameters_.add_default(name, node.attribute("value").value(), file.locate(node));
+            add_default(file, node);
         } else if (tag == "include") {
             if (++includes_ > limits_.includes)
                 fail(file.locate(node),
                      "more than " + std::to_string(limits_.includes) + " files are included" + limits_hint);
             if (!open_include(file, node, depth, false))
                 deferred_.push_back({&file, node, depth});
-        } else if (tag == "path")
+        } else if (tag == "path") {
             if (const std::string value = node.attribute("value").value(); value.find('$') == std::string::npos)
                 add_folder(file, node, value);
+        } else if (is_object_tag(std::string(tag)))
+            collect_nested_defaults(file, node);
     }
+}
+
+void Reader::add_default(const File &file, const pugi::xml_node &node) {
+    const std::string name(trimmed(node.attribute("name").value()));
+    if (name.empty() || !node.attribute("value"))
+        fail(file.locate(node), "<default> needs name and value");
+    parameters_.add_default(name, node.attribute("value").value(), file.locate(node));
+}
+
+/// Of an object and all in it, however deep.
+void Reader::collect_nested_defaults(const File &file, const pugi::xml_node &object) {
+    struct Walker final : pugi::xml_tree_walker {
+        Reader &reader;
+        const File &file;
+        Walker(Reader &r, const File &f) : reader(r), file(f) {}
+        bool for_each(pugi::xml_node &node) override {
+            if (std::string_view(node.name()) == "default")
+                reader.add_default(file, node);
+            return true;
+        }
+    };
+    Walker walker(*this, file);
+    pugi::xml_node from = object;
+    from.traverse(walker);
 }
 
 /// False where the file name holds a parameter that is not known yet.

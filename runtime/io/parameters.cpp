@@ -4,6 +4,8 @@
 #include "runtime/io/diagnostics.h"
 #include "runtime/io/text.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <vector>
 
@@ -22,6 +24,10 @@ std::string megabytes(std::uint64_t bytes) { return std::to_string(bytes >> 20) 
 
 bool is_of_name(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || (c & 0x80) != 0;
+}
+
+std::string circle(const std::string &text) {
+    return fmt::format("\"{}\": parameters name each other in a circle", shortened(text, 200));
 }
 
 std::vector<std::string> names_of(const std::map<std::string, std::string, std::less<>> &values) {
@@ -64,9 +70,10 @@ const std::string *Parameters::expanded(const std::string &name, const std::stri
 
 bool Parameters::append(std::string_view text, const Location &location, int depth, std::string &result) {
     if (depth > deepest) {
-        problem_.clear();
+        problems_.clear();
         return false;
     }
+    bool is_known = true;
     while (!text.empty()) {
         const std::size_t dollar = std::min(text.find('$'), text.size());
         result += text.substr(0, dollar);
@@ -84,13 +91,19 @@ bool Parameters::append(std::string_view text, const Location &location, int dep
         while (size > 0 && (found = values_.find(whole.substr(0, size))) == values_.end())
             --size;
         if (size == 0) {
-            problem_ = whole.empty() ? " " : std::string(whole);
-            return false;
+            problems_.push_back(whole.empty() ? " " : std::string(whole));
+            is_known = false;
+            text.remove_prefix(whole.size());
+            continue;
         }
         text.remove_prefix(size);
         const std::string *value = expanded(found->first, found->second, location, depth + 1);
-        if (!value)
-            return false;
+        if (!value) {
+            if (problems_.empty()) // a circle
+                return false;
+            is_known = false;
+            continue;
+        }
         result += *value;
         if (result.size() > limits_.value_bytes)
             fail(location,
@@ -100,11 +113,12 @@ bool Parameters::append(std::string_view text, const Location &location, int dep
             fail(location, "all parameters together expand to more than " + megabytes(limits_.expanded_bytes) +
                                " of text" + limits_hint);
     }
-    return true;
+    return is_known;
 }
 
 bool Parameters::try_expand(const std::string &text, const Location &location, std::string &result) {
     result.clear();
+    problems_.clear();
     if (text.find('$') != std::string::npos)
         return append(text, location, 0, result);
     result = text;
@@ -114,7 +128,7 @@ bool Parameters::try_expand(const std::string &text, const Location &location, s
 std::string Parameters::expand(const std::string &text, const Location &location) {
     std::string result;
     if (!try_expand(text, location, result))
-        fail(location, told_missing(text, location));
+        fail(location, problems_.empty() ? circle(text) : told_missing(problems_.front()));
     return result;
 }
 
@@ -122,16 +136,16 @@ std::string Parameters::expand_or_tell(const std::string &text, const Location &
     std::string result;
     if (try_expand(text, location, result))
         return result;
-    const std::string message = told_missing(text, location);
-    if (told_.insert(problem_).second)
-        diagnostics.error(location, message);
+    if (problems_.empty())
+        fail(location, circle(text));
+    for (const std::string &problem : problems_)
+        if (told_.insert(problem).second)
+            diagnostics.error(location, told_missing(problem));
     return "";
 }
 
-std::string Parameters::told_missing(const std::string &text, const Location &location) const {
-    if (problem_.empty())
-        fail(location, "\"" + shortened(text, 200) + "\": parameters name each other in a circle");
-    const std::string name(trimmed(problem_));
+std::string Parameters::told_missing(const std::string &problem) const {
+    const std::string name(trimmed(problem));
     std::string message = "parameter $" + name + " has no value: give -D " + name + "=... or a <default> for it";
     if (const auto nearest = nearest_name(name, names_of(values_)))
         message += "; did you mean $" + *nearest + "?";

@@ -9,6 +9,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace gradus {
 
@@ -35,8 +36,8 @@ class Parameters {
     using Values = std::map<std::string, std::string, std::less<>>;
 
     bool append(std::string_view text, const Location &location, int depth, std::string &result);
-    /// What is to be said after a try that failed. Throws for a circle.
-    std::string told_missing(const std::string &text, const Location &location) const;
+    /// What is to be said of a problem after a try that failed.
+    std::string told_missing(const std::string &problem) const;
     const std::string *expanded(const std::string &name, const std::string &value, const Location &location, int depth);
 
     const std::map<std::string, std::string> &given_;
@@ -46,7 +47,7 @@ class Parameters {
     std::set<std::string> used_, told_; ///< told_: those that are missing
     std::uint64_t spent_ = 0;           ///< bytes that parameters stood for so far
     std::size_t longest_name_ = 0;
-    std::string problem_; ///< of the last try that failed: a name, or "" for a circle
+    std::vector<std::string> problems_; ///< of the last try that failed: names, or none for a circle
 };
 
 } // namespace gradus

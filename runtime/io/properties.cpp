@@ -131,7 +131,11 @@ double Properties::number_of(const Parameter &parameter, const Element *property
     const std::optional<double> value = parse_number(text);
     if (!value)
         throw error(name, "\"" + name + "\" needs a number, not \"" + text + "\"");
-    if (*value < parameter.lowest || *value > parameter.highest) {
+    return within_bounds(parameter, *value, text);
+}
+
+double Properties::within_bounds(const Parameter &parameter, double value, const std::string &text) {
+    if (value < parameter.lowest || value > parameter.highest) {
         std::string range;
         const auto show = [](double bound) {
             std::string shown = std::to_string(bound);
@@ -144,9 +148,9 @@ double Properties::number_of(const Parameter &parameter, const Element *property
             range += "at least " + show(parameter.lowest);
         if (std::isfinite(parameter.highest))
             range += (range.empty() ? "" : " and ") + ("at most " + show(parameter.highest));
-        throw error(name, "\"" + name + "\" is " + text + " but must be " + range);
+        throw error(parameter.name, "\"" + std::string(parameter.name) + "\" is " + text + " but must be " + range);
     }
-    return std::max(parameter.least, *value);
+    return std::max(parameter.least, value);
 }
 
 Number Properties::textured_number(const std::string &name) {
@@ -155,10 +159,14 @@ Number Properties::textured_number(const std::string &name) {
     if (!property && parameter.like)
         return textured_number(parameter.like);
     const Element *texture = property ? texture_of(*property) : nullptr;
+    if (!texture && property && (property->tag == "rgb" || property->tag == "srgb" || property->tag == "spectrum")) {
+        const Rgb color = read_color(*property, parameter, ColorUse::index);
+        return float(within_bounds(parameter, (color.r + color.g + color.b) / 3, value_of(*property)));
+    }
     if (!texture)
         return float(number_of(parameter, property));
     const FoundTexture found =
-        (*read_texture_)(*texture, std::max(parameter.lowest, parameter.least), parameter.highest);
+        (*read_texture_)(*texture, std::max(parameter.lowest, parameter.least), parameter.highest, StandsFor::number);
     Number result(float(*std::min_element(found.range.least.begin(), found.range.least.end())));
     result.texture = found.index;
     return result;

@@ -24,8 +24,11 @@ struct FoundTexture {
     std::int32_t index = no_texture;
     TextureRange range;
 };
+/// What a texture stands for. As a number a picture's texel is its luminance, any other colour the mean of its channels
+/// (as in Mitsuba 3.9).
+enum class StandsFor { color, number };
 /// The texture that an element describes, whose values are clamped to a range.
-using ReadTexture = std::function<FoundTexture(const Element &, double lowest, double highest)>;
+using ReadTexture = std::function<FoundTexture(const Element &, double lowest, double highest, StandsFor)>;
 
 struct NestedObject {
     const Element *element;
@@ -70,6 +73,7 @@ class Properties {
     Matrix4 transform(const std::string &name);
     /// A colour, which may be a texture where the parameter takes one.
     Color color(const std::string &name);
+    /// A number, which may be a texture, or a colour, whose channels' mean it is then.
     Number textured_number(const std::string &name);
     double refractive_index(const std::string &name);
     std::vector<NestedObject> objects(const std::string &tag);
@@ -90,6 +94,8 @@ class Properties {
     /// What the file says, or the default as if the file said it.
     std::string text_of(const Parameter &parameter, const Element *property);
     double number_of(const Parameter &parameter, const Element *property);
+    /// What was written as `text`, where that is within the parameter's bounds.
+    double within_bounds(const Parameter &parameter, double value, const std::string &text);
     Double3 read_rgb(const std::string &text, const Parameter &parameter, const Location &location);
     Rgb read_spectrum(const Element &property, const std::string &name, ColorUse use);
     Rgb read_black_body(const Element &property, const std::string &name, ColorUse use);

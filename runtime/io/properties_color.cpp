@@ -144,7 +144,7 @@ Rgb Properties::read_color(const Element &property, const Parameter &parameter, 
 }
 
 Color Properties::color_of_texture(const Element &texture, double highest) {
-    const FoundTexture found = (*read_texture_)(texture, 0, highest);
+    const FoundTexture found = (*read_texture_)(texture, 0, highest, StandsFor::color);
     Color color(float(found.range.mean[0]), float(found.range.mean[1]), float(found.range.mean[2]));
     color.texture = found.index;
     return color;

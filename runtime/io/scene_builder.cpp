@@ -6,6 +6,8 @@
 #include "runtime/io/text.h"
 #include "runtime/scene/mesh_builder.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -26,13 +28,16 @@ SceneBuilder::SceneBuilder(const Document &document, const LoadOptions &options,
     : document_(document), limits_(options.limits), ignore_media_(options.ignore_media), phases_(options.phases),
       finder_(finder), diagnostics_(diagnostics),
       resolve_([this](const Element &reference) -> const Element & { return resolve(reference); }),
-      read_texture_([this](const Element &element, double lowest, double highest) {
-          return texture(element, lowest, highest, OneColor::is_no_texture);
+      read_texture_([this](const Element &element, double lowest, double highest, StandsFor stands_for) {
+          return texture(element, lowest, highest, stands_for, OneColor::is_no_texture);
       }),
       instance_choice_(options.instances), most_copied_bytes_(options.most_copied_bytes) {}
 
 /// Reports tags that mean nothing, in every object.
 void SceneBuilder::check_children(const Element &element) {
+    // Nobody reads what is in a medium or in an integrator that is not known; an error says so, or a warning.
+    const bool is_read = element.tag != "medium" && element.tag != "subsurface" && element.tag != "volume" &&
+                         element.tag != "phase" && element.tag != "integrator";
     for (const Element &child : element.children) {
         const std::string &tag = child.tag;
         if (is_object_tag(tag) || is_property_tag(tag) ||
@@ -46,7 +51,10 @@ void SceneBuilder::check_children(const Element &element) {
                        (tag == "camera" ? "a <sensor>" : "an <emitter>") + " now";
         else if (const auto nearest = nearest_name(tag, known))
             message += "; did you mean <" + *nearest + ">?";
-        diagnostics_.error(child.location, message);
+        if (is_read)
+            diagnostics_.error(child.location, message);
+        else
+            diagnostics_.unknown(child.location, message);
     }
 }
 
@@ -155,9 +163,13 @@ std::filesystem::path SceneBuilder::find_file(Properties &properties) {
     std::vector<std::filesystem::path> folders = document_.search_folders;
     if (const auto &file = properties.location().file) // an included file may lie elsewhere, its meshes beside it
         folders.push_back(std::filesystem::path(*file).parent_path());
-    const auto found = finder_.find(name, folders);
-    if (!found)
-        throw properties.error("filename", "cannot find the file \"" + name + "\"" + finder_.hint());
+    const auto found = missing_files_.contains(name) ? std::nullopt : finder_.find(name, folders);
+    if (!found) {
+        missing_files_.insert(name);
+        SceneError error = properties.error("filename", "cannot find the file \"" + name + "\"" + finder_.hint());
+        error.cause = name;
+        throw error;
+    }
     if (!found->exact)
         diagnostics_.warn(properties.location_of("filename"),
                           "\"" + name + "\" differs in case from the file " + found->path.string());
@@ -227,14 +239,30 @@ void SceneBuilder::warn_of_parts_of_no_sensor(const Element &root) {
                                                   (child.tag == "rfilter" ? "the sensor's <film>" : "the <sensor>"));
 }
 
+void SceneBuilder::tell_no_sensor(const Location &location) {
+    for (const Element &child : document_.root.children)
+        for (const Element &inside : child.children)
+            if (inside.tag == "sensor") {
+                diagnostics_.error(inside.location, described(inside) + " inside " + described(child) +
+                                                        ": only a camera that stands in <scene> itself is rendered");
+                return;
+            }
+    diagnostics_.error(location, "the scene has no <sensor>; add one, for example <sensor type=\"perspective\"> with a "
+                                 "<transform name=\"to_world\"> that says where from");
+}
+
 void SceneBuilder::check_whole() {
     const Location location{document_.root.location.file, 0};
     if (!sensor_)
-        diagnostics_.error(location, "the scene has no <sensor>");
+        tell_no_sensor(location);
     if (diagnostics_.has_errors())
         return;
     if (scene_.shapes.empty() && !environment_)
-        diagnostics_.error(location, "the scene has no shapes and no environment: there is nothing to render");
+        diagnostics_.error(location,
+                           fmt::format("the scene has no shapes and no environment: there is nothing to render{}",
+                                       nested_objects(document_.root, "shape", resolve_).empty()
+                                           ? ""
+                                           : "; its file's shapes have no area or only bound a medium"));
     else if (scene_.emitters.empty())
         diagnostics_.warn(location,
                           std::string("nothing in the scene emits light: the image will be black; add an "

@@ -76,7 +76,7 @@ class SceneBuilder {
     /// Whether a texture that is the same everywhere becomes one of the scene's, or its range tells all of it.
     enum class OneColor { is_texture, is_no_texture };
     /// The texture that an element describes, with its values clamped to the range: one of the scene's.
-    FoundTexture texture(const Element &element, double lowest, double highest,
+    FoundTexture texture(const Element &element, double lowest, double highest, StandsFor stands_for = StandsFor::color,
                          OneColor one_color = OneColor::is_texture);
     /// What texture() or a parameter has given an index of.
     const Texture &texture_at(std::int32_t index) const { return scene_.textures[std::size_t(index)]; }
@@ -134,6 +134,7 @@ class SceneBuilder {
     void put_in_line(const Element &element, bool in_group, std::vector<const Element *> &parents,
                      std::deque<ShapeInLine> &line);
     void build_line(std::deque<ShapeInLine> &line, std::vector<Prototype> *group);
+    void check_parts(const Element &shape);
     void finish(ShapeInLine &shape, std::vector<Prototype> *group);
     void add_shape(const Element &element, std::variant<BuiltMesh, Sphere> geometry, std::int32_t group = no_group);
     KnownGroup &known_group(const Element &element);
@@ -150,6 +151,7 @@ class SceneBuilder {
     void count_geometry(std::uint64_t bytes, const Location &location);
     void warn_of_parts_of_no_sensor(const Element &root);
     void check_whole();
+    void tell_no_sensor(const Location &location);
 
     const Document &document_;
     const LoadLimits limits_;
@@ -169,7 +171,7 @@ class SceneBuilder {
     std::vector<std::uint64_t> blend_parts_; ///< of each of the scene's blends
     std::map<const Element *, Emitter> area_emitters_;
     std::map<const Element *, std::variant<Texture, SceneError>> built_textures_;
-    std::map<std::tuple<const Element *, double, double, OneColor>, FoundTexture> textures_;
+    std::map<std::tuple<const Element *, double, double, StandsFor, OneColor>, FoundTexture> textures_;
     struct DecodedBitmap {
         std::shared_ptr<const Bitmap> bitmap;
         bool is_srgb;
@@ -177,7 +179,9 @@ class SceneBuilder {
     std::map<Picture, DecodedBitmap> bitmaps_;
     /// Textures that name one, in the file's order, and whether they are there for others to refer to.
     std::vector<std::pair<const Element *, bool>> pictures_;
-    std::set<std::string> referenced_; ///< ids that anybody refers to
+    std::set<std::string> referenced_;     ///< ids that anybody refers to
+    std::set<std::string> missing_files_;  ///< that were looked for
+    std::set<const Element *> told_media_; ///< that they are not rendered
     std::optional<PicturesAhead> pictures_ahead_;
     std::int64_t default_material_ = -1, default_emitter_material_ = -1, boundary_material_ = -1;
     const Element *sensor_ = nullptr, *integrator_ = nullptr, *environment_ = nullptr;

@@ -72,15 +72,18 @@ void SceneBuilder::count_geometry(std::uint64_t bytes, const Location &location)
                                        limits_hint);
 }
 
-/// Where media are not to be ignored, an error at the first of the object.
+/// Where media are not to be ignored, an error at each, else a warning.
 void SceneBuilder::check_media(const Element &element) {
     for (const char *tag : {"medium", "subsurface", "volume", "phase"})
         for (const NestedObject &found : nested_objects(element, tag, resolve_)) {
+            if (!told_media_.insert(found.element).second)
+                continue;
             const std::string what = described(*found.element);
-            if (!ignore_media_)
-                throw SceneError(found.location, what + ": participating media are not supported; --ignore-media "
-                                                        "renders the scene without them");
-            diagnostics_.warn(found.location, what + " is left out (--ignore-media)");
+            if (ignore_media_)
+                diagnostics_.warn(found.location, what + " is left out (--ignore-media)");
+            else
+                diagnostics_.error(found.location, what + ": participating media are not supported; --ignore-media "
+                                                          "renders the scene without them");
         }
 }
 
@@ -163,10 +166,24 @@ void SceneBuilder::build_line(std::deque<ShapeInLine> &line, std::vector<Prototy
             finish(shape, group);
         } catch (const SceneError &error) {
             diagnostics_.error(error);
+            check_parts(*shape.element);
         }
         shape.geometry = ShapeGroup();
     }
     line.clear();
+}
+
+/// Of a shape that is not built, what else is wrong with it.
+void SceneBuilder::check_parts(const Element &shape) {
+    const auto check = [&](auto &&build) {
+        try {
+            build();
+        } catch (const SceneError &error) {
+            diagnostics_.error(error);
+        }
+    };
+    check([&] { material_of(shape); });
+    check([&] { emitter_of(shape); });
 }
 
 void SceneBuilder::finish(ShapeInLine &shape, std::vector<Prototype> *group) {

@@ -74,8 +74,9 @@ std::shared_ptr<const Bitmap> SceneBuilder::bitmap(const Picture &picture, const
     return known->second.bitmap;
 }
 
-FoundTexture SceneBuilder::texture(const Element &element, double lowest, double highest, OneColor one_color) {
-    const auto key = std::make_tuple(&element, lowest, highest, one_color);
+FoundTexture SceneBuilder::texture(const Element &element, double lowest, double highest, StandsFor stands_for,
+                                   OneColor one_color) {
+    const auto key = std::make_tuple(&element, lowest, highest, stands_for, one_color);
     if (const auto known = textures_.find(key); known != textures_.end())
         return known->second;
     auto built = built_textures_.find(&element);
@@ -89,6 +90,9 @@ FoundTexture SceneBuilder::texture(const Element &element, double lowest, double
     if (const auto *error = std::get_if<SceneError>(&built->second))
         throw *error;
     Texture texture = std::get<Texture>(built->second);
+    if (stands_for == StandsFor::number) // a texture of one colour is a checkerboard, too
+        for (std::array<float, 3> *color : {&texture.color_0, &texture.color_1})
+            color->fill(((*color)[0] + (*color)[1] + (*color)[2]) / 3);
     texture.name = element.attribute_or("id", element.attribute_or("type", "") + " at " + element.location.text());
     texture.lowest = std::numeric_limits<float>::lowest();
     texture.highest = std::numeric_limits<float>::max();

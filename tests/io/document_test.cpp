@@ -27,6 +27,25 @@ TEST(Document, TellsAllParametersWithoutAValueAtOnce) {
     EXPECT_EQ(error.find("$x has"), error.rfind("$x has")) << "once is enough";
 }
 
+TEST(Document, TellsAllParametersOfOneValueAtOnce) {
+    const std::string error =
+        error_of_text(scene_around("<shape type=\"sphere\"><point name=\"center\" value=\"$x, $y, $deep\"/></shape>"
+                                   "<default name=\"deep\" value=\"$a$b\"/>"));
+    for (const char *name : {"$x", "$y", "$a", "$b"})
+        EXPECT_THAT(error, HasSubstr(std::string("parameter ") + name + " has no value"));
+    EXPECT_THAT(error_of_text(scene_around("<shape type=\"$x$c\"/><default name=\"c\" value=\"$d\"/>"
+                                           "<default name=\"d\" value=\"$c\"/>")),
+                HasSubstr("in a circle"));
+}
+
+TEST(Document, TakesDefaultsWhereverTheyStand) {
+    const Scene scene = load_text(scene_around("<shape type=\"sphere\"><bsdf type=\"diffuse\"><default name=\"r\" "
+                                               "value=\"0.25\"/></bsdf><float name=\"radius\" value=\"$r\"/></shape>"
+                                               "<emitter type=\"constant\"/>"))
+                            .scene;
+    EXPECT_EQ(scene.spheres.at(0).radius, 0.25f);
+}
+
 TEST(Document, SaysWhereNoMitsubaHasThatVersion) {
     for (const char *version : {"1.0.0", "4.0"}) {
         // Copper by default in 0.x, a mirror in 3.

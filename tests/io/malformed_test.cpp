@@ -403,6 +403,40 @@ TEST(MalformedScenes, AllMissingFilesAreListedAtOnce) {
     EXPECT_THAT(message, testing::HasSubstr("scene.xml:5: cannot find the file \"c.serialized\""));
 }
 
+/// A file that many shapes name is told of once, and what else is wrong with its shapes beside it.
+TEST(MalformedScenes, AMissingFileHidesNothing) {
+    std::string body;
+    for (int i = 0; i < 150; ++i)
+        body += "<shape type=\"serialized\"><string name=\"filename\" value=\"all.serialized\"/></shape>\n";
+    body += "<shape type=\"obj\"><string name=\"filename\" value=\"b.obj\"/><bsdf type=\"hk\"/>"
+            "<emitter type=\"lamp\"/></shape>\n";
+    const std::string message = error_of_text(in_shape(body));
+    for (const char *part : {"scene.xml:3: cannot find the file \"all.serialized\"",
+                             "scene.xml:153: cannot find the file \"b.obj\"", "\"hk\"", "\"lamp\""})
+        EXPECT_THAT(message, HasSubstr(part));
+    EXPECT_EQ(message.find("all.serialized"), message.rfind("all.serialized"));
+}
+
+/// A medium is told of once, however many shapes it is in, and hides nothing.
+TEST(MalformedScenes, AMediumHidesNothing) {
+    const std::string message = error_of_text(scene_around(
+        "<medium type=\"homogeneous\" id=\"m\"><what/></medium><shape type=\"cube\"><ref name=\"interior\" id=\"m\"/>"
+        "<bsdf type=\"hk\"/></shape><shape type=\"sphere\"><ref name=\"interior\" id=\"m\"/><float name=\"radius\" "
+        "value=\"wide\"/></shape>"));
+    for (const char *part : {"\"hk\"", "needs a number, not \"wide\""})
+        EXPECT_THAT(message, HasSubstr(part));
+    EXPECT_THAT(message, Not(HasSubstr("unknown element")));
+    EXPECT_EQ(message.find("participating media"), message.rfind("participating media"));
+}
+
+TEST(MalformedScenes, ASensorInAShapeIsNamed) {
+    EXPECT_THAT(error_of_text("<scene version=\"3.0.0\">\n<shape type=\"cube\">\n<sensor type=\"irradiancemeter\"/>"
+                              "</shape></scene>"),
+                HasSubstr("scene.xml:3: <sensor type=\"irradiancemeter\"> inside <shape type=\"cube\">"));
+    EXPECT_THAT(error_of_text("<scene version=\"3.0.0\"><shape type=\"cube\"/></scene>"),
+                HasSubstr("add one, for example <sensor type=\"perspective\">"));
+}
+
 TEST(MalformedScenes, AllMissingIncludesAreListedAtOnce) {
     const std::string message =
         error_of_text(scene_around("<include filename=\"a.xml\"/>\n<include filename=\"b.xml\"/>"));

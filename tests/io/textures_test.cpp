@@ -204,6 +204,7 @@ TEST(TextureOfOneColor, IsANumber) {
         expect_rgb(lights.emitters.back().value, 7, 7, 7);
         expect_rgb(lights.emitters.front().value, 0.125, 0.25, 0.5);
         EXPECT_EQ(bsdf("roughconductor", named(tag, "alpha", uniform)).alpha_u, 0.25f);
+        EXPECT_FLOAT_EQ(bsdf("roughconductor", named(tag, "alpha", srgb)).alpha_u, 0.2f) << "the channels' mean";
         const Bsdf metal = bsdf("conductor", named(tag, "eta", uniform) + named(tag, "k", srgb));
         expect_rgb(metal.eta, 0.25, 0.25, 0.25);
         expect_rgb(metal.k, 0.1, 0.2, 0.3);
@@ -228,6 +229,30 @@ TEST(TextureOfOneColor, IsANumber) {
                 "type='diffuse'/></bsdf></shape>"))
             .warnings,
         ElementsAre(HasSubstr("has no slope")));
+}
+
+/// A colour that stands for a number is its channels' mean, as in Mitsuba 3.9; a picture's texel is its luminance.
+TEST(ColorForANumber, IsTheMeanOfItsChannels) {
+    const auto scene = [](const std::string &bsdf) {
+        const LoadedScene loaded =
+            load_text(scene_around("<shape type='cube'>" + bsdf + "</shape><emitter type='constant'/>"));
+        EXPECT_THAT(loaded.warnings, IsEmpty());
+        return loaded.scene;
+    };
+    const std::string blue = "value='0 0 0.9'/>";
+    const Bsdf metal = scene("<bsdf type='roughconductor'><rgb name='alpha' " + blue + "</bsdf>").materials[0].front;
+    EXPECT_FLOAT_EQ(metal.alpha_u, 0.3f);
+    EXPECT_FLOAT_EQ(
+        scene("<bsdf type='mask'><rgb name='opacity' " + blue + "<bsdf type='diffuse'/></bsdf>").materials[0].opacity,
+        0.3f);
+    const Scene board = scene("<bsdf type='mask'><texture name='opacity' type='checkerboard'><rgb name='color0' " +
+                              blue + "<rgb name='color1' value='0.3 0 0'/></texture><bsdf type='diffuse'/></bsdf>");
+    ASSERT_EQ(board.textures.size(), 1u);
+    EXPECT_FLOAT_EQ(float(texture_value(board.textures[0], 0.1, 0.1)[1]), 0.3f);
+    EXPECT_FLOAT_EQ(float(texture_value(board.textures[0], 0.1, 0.6)[1]), 0.1f);
+    EXPECT_THAT(error_of_text(scene_around("<shape type='cube'><bsdf type='mask'>\n<rgb name='opacity' value='1 2 3'/>"
+                                           "<bsdf type='diffuse'/></bsdf></shape>")),
+                HasSubstr("scene.xml:4: \"opacity\" is 1 2 3 but must be at least 0 and at most 1"));
 }
 
 TEST_F(TexturePlugin, Scale) {

@@ -8,8 +8,10 @@ Declaration declare_bsdf_mask() {
         "a BSDF in a surface with holes, also in another mask or a blend. A hole is no edge of a path, and light "
         "samples pass it, as with Mitsuba's `volpath`; its `path` counts it in max_depth and loses light behind it. A "
         "shape that emits is met by all rays",
-        {{"opacity", Takes::reflectance, "0.5",
-          "share of the rays that meet the surface, of a colour its luminance; the others pass as with `null`"},
+        {Parameter{"opacity", Takes::textured_number, "0.5",
+                   "share of the rays that meet the surface; the others pass as with `null`"}
+             .at_least(0)
+             .at_most(1),
          {"bsdf", Takes::objects, nullptr, "one"}}};
 }
 
@@ -18,9 +20,7 @@ Material bsdf_mask(Properties &properties, SceneBuilder &builder) {
     if (nested.size() != 1)
         throw SceneError(properties.location(), "mask needs one nested BSDF, not " + std::to_string(nested.size()));
     Material material = builder.build_object<Material>(*nested.front().element);
-    const Color color = properties.color("opacity");
-    Number opacity(float(luminance(color)));
-    opacity.texture = color.texture;
+    Number opacity = properties.textured_number("opacity");
     // Of a mask in a mask rays must meet both.
     const Number within = material.opacity;
     if (opacity.texture != no_texture && within.texture != no_texture)

@@ -40,7 +40,8 @@ ParameterList parameters_of_camera() {
         {{{"to_world", Takes::transform, nullptr, "from a camera at the origin that looks along +z, +y up"},
           Parameter{"near_clip", Takes::number, "0.01", "what is nearer along the line of sight is not seen"}.in(
               "lengths"),
-          Parameter{"far_clip", Takes::number, "10000", "what is farther is not seen"}.in("lengths"),
+          Parameter{"far_clip", Takes::number, "10000", "what is farther is not seen, nor through holes of a mask"}.in(
+              "lengths"),
           {"film", Takes::objects, nullptr, "one"},
           {"sampler", Takes::objects, nullptr, "one"},
           {"medium", Takes::objects, nullptr, "an error, or left out"}},
