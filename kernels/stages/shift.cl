@@ -13,12 +13,15 @@
  * path. Where it is the Dirac one, the offset path takes its own Dirac lobe, whatever kind that is of; rough ones
  * likewise.
  *
- * The step fails where the next vertex would be seen from its other side, between a Dirac lobe and a rough one,
- * and where the half-vector copy does.
+ * The step fails where the next vertex would be seen from its other side, by the geometric normal or, where the
+ * material is two-sided, by the shading normal, which turns its frame (SIDE_BY_SHADING): each of both paths would have
+ * the vertex in a frame of its own, in which the other one counts for nothing. It fails between a Dirac lobe and a
+ * rough one, too, and where the half-vector copy does.
  *
  * BSDF: where all that is not connected is at vertices of one kind, it is inlined, and what would be asked is answered
  * at once. */
 //! traits: TRAIT_SHIFT_DISTANCE TRAIT_ENVIRONMENT TRAIT_MIXED_LOBES TRAIT_LIGHT_TREE SAMPLES_LIGHTS
+//! traits: TRAIT_TWO_SIDED TRAIT_SHADING_NORMALS TRAIT_TWO_FACED TRAIT_APART
 #include "kernels/lib/bsdf_evaluate.h"
 #include "kernels/lib/bsdf_frame.h"
 #include "kernels/lib/gradient.h"
@@ -37,6 +40,8 @@
 #else
 #define ASKS_DIRAC 0
 #endif
+
+#define SIDE_BY_SHADING (TRAIT_TWO_SIDED && TRAIT_SHADING_NORMALS)
 
 /* Whether light may be sampled at the vertices. */
 #if defined(BSDF) && BSDF_IS_DIRAC
@@ -73,10 +78,10 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
 #if TRAIT_APART
             ,
             __global real *offset_ray
-#if TRAIT_TWO_FACED
+#endif
+#if SIDE_BY_SHADING || (TRAIT_APART && TRAIT_TWO_FACED)
             ,
             __global const real *triangle_normals
-#endif
 #endif
 #if TRAIT_SHIFT_DISTANCE
             ,
@@ -111,6 +116,11 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         offset_at(hit.position, hit.normal,
                   primitive_offset(triangles, spheres, unit, triangle_count, present HIT_ARGUMENT(hit)));
     const vec3 end_normal = v3_scale(hit.normal, r_copysign1(base_side));
+#if SIDE_BY_SHADING
+    const vec3 end_shading = shading_normal_at(triangle_normals, unit, triangle_count, present, hit);
+    const int end_turns = (OF_PRIMITIVE(primitive_material, material, present) & material_two_sided) != 0u;
+    const int base_from_behind = v3_dot(end_shading, base_direction) > R(0);
+#endif
     const real pdf = AT(event, pdf, row);
     const int goes_on = (is_hit | is_escaped) & (pdf > R(0));
 #if TRAIT_APART
@@ -298,7 +308,11 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         const vec3 connection = v3_sub(hit.position, from_after);
         const vec3 to_next = v3_select(is_escaped, base_direction, v3_normalize(connection));
         const real reconnection = is_escaped ? R(1) : reconnection_jacobian(base, from_after, hit.position, hit.normal);
-        const int same_side = is_escaped | (-v3_dot(hit.normal, connection) * base_side > R(0));
+        int same_side = is_escaped | (-v3_dot(hit.normal, connection) * base_side > R(0));
+#if SIDE_BY_SHADING
+        const int from_behind = v3_dot(end_shading, v3_after(to_next, reconnection)) > R(0);
+        same_side &= is_escaped | !end_turns | (from_behind == base_from_behind);
+#endif
 #if TRAIT_APART
         const int both_rough = base_is_rough & ((kind & kind_is_rough) != 0u);
 #if TRAIT_SHIFT_DISTANCE
