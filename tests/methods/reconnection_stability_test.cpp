@@ -85,7 +85,7 @@ TEST(ReconnectionStability, ToTheOtherSideByShadingNormals) {
                     "two-sided vertices that base and offset path see from different sides by the shading normal: each "
                     "has the vertex in a frame of its own",
                     "a floor under a card whose normals lean by 53 degrees, which alone sees the lamp",
-                    "the shift fails for both directions alike; primal and differences are unbiased", 0.1});
+                    "the shift fails for both directions alike; primal and differences are unbiased", 0.02});
 }
 
 // A lamp that stands on the floor: its lower border is where floor and lamp meet, and the floor behind it is dark. The
