@@ -1,4 +1,5 @@
 #include "driver/commands.h"
+#include "driver/device_options.h"
 #include "driver/limits_option.h"
 #include "driver/number_checks.h"
 #include "driver/reconstruction_options.h"
@@ -209,12 +210,7 @@ void add_solver_options(CLI::App &command, SolveRequest &request) {
         ->type_name("NUMBER")
         ->check(check("", complain_about_damping))
         ->group(group);
-    command.add_option("--device", request.device, "OpenCL device: a number of `gradus devices` or a part of its name")
-        ->group(group);
-    command.add_option("--nthreads", request.threads, "Processor threads; 0: all")
-        ->transform(whole_number_between(0, 4096))
-        ->capture_default_str()
-        ->group(group);
+    add_device_options(command, group, request.device, request.threads);
     command
         .add_option("--repeats", request.repeats,
                     "Solve so often, for measuring: the figures are the last one's, without compiling")

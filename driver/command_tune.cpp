@@ -1,4 +1,5 @@
 #include "driver/commands.h"
+#include "driver/device_options.h"
 #include "driver/number_checks.h"
 #include "driver/scene_request.h"
 #include "driver/standard_streams.h"
@@ -56,11 +57,7 @@ void add_tune_command(CLI::App &app, const Services &services, std::function<int
     command.footer("Renders the scene with one candidate after the other, for about half a minute. Later renders on\n"
                    "this device use what was found; their images are the same bit for bit.");
     add_scene_options(command, request->scene);
-    command.add_option("--device", request->device,
-                       "OpenCL device: a number of `gradus devices` or a part of its name");
-    command.add_option("--nthreads", request->threads, "Processor threads; 0: all")
-        ->transform(whole_number_between(0, 4096))
-        ->capture_default_str();
+    add_device_options(command, "Options", request->device, request->threads);
     command.callback(
         [request, &services, &chosen] { chosen = [request, &services] { return run_tune(*request, services); }; });
 }

@@ -1,9 +1,11 @@
 #include "driver/method_request.h"
 #include "planning/make_method.h"
 
+#include "driver/device_options.h"
 #include "driver/number_checks.h"
 #include "driver/photon_options.h"
 #include "driver/reconstruction_options.h"
+#include "driver/word_option.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -24,12 +26,7 @@ void add_method_options(CLI::App &command, const Services &services, MethodReque
         ->check(CLI::IsMember(services.method_names()))
         ->capture_default_str()
         ->group(group);
-    command.add_option("--device", request.device, "OpenCL device: a number of `gradus devices` or a part of its name")
-        ->group(group);
-    command.add_option("--nthreads", request.options.threads, "Processor threads; 0: all")
-        ->transform(whole_number_between(0, 4096))
-        ->capture_default_str()
-        ->group(group);
+    add_device_options(command, group, request.device, request.options.threads);
     command
         .add_option("--batch-size", request.options.batch_size,
                     "Paths in flight at once; 0: what `gradus tune` found, or the device's default. The image does "
@@ -37,37 +34,26 @@ void add_method_options(CLI::App &command, const Services &services, MethodReque
         ->transform(whole_number_between(0, std::uint32_t(1) << 28))
         ->capture_default_str()
         ->group(group);
-    const std::map<std::string, Precision> precisions{
-        {"single", Precision::single}, {"double", Precision::double_}, {"relaxed", Precision::relaxed}};
-    command
-        .add_option_function<std::string>(
-            "--precision",
-            [&request, precisions](const std::string &name) { request.options.precision = precisions.at(name); },
-            "Arithmetic of the kernels: single, double, or relaxed: single, and the compiler may reorder and "
-            "approximate")
-        ->check(CLI::IsMember({"single", "double", "relaxed"}))
-        ->default_str("single")
+    const auto add_words = [&command]<class Value>(const char *name, Value &value, const Words<Value> &words,
+                                                   const char *text) {
+        return add_word_option<Value>(
+            command, name, words, value, [&value](Value given) { value = given; }, text);
+    };
+    add_words("--precision", request.options.precision,
+              {{"single", Precision::single}, {"double", Precision::double_}, {"relaxed", Precision::relaxed}},
+              "Arithmetic of the kernels: single, double, or relaxed: single, and the compiler may reorder and "
+              "approximate")
         ->group(group);
-    const std::map<std::string, RenderOptions::Sampler> samplers{{"sobol", RenderOptions::Sampler::sobol},
-                                                                 {"independent", RenderOptions::Sampler::independent}};
-    command
-        .add_option_function<std::string>(
-            "--sampler", [&request, samplers](const std::string &name) { request.options.sampler = samplers.at(name); },
-            "How the samples of a pixel are drawn: sobol, evenly, from a sequence scrambled by pixel and dimension, "
-            "with less noise; independent, each by itself, whose variances are exact")
-        ->check(CLI::IsMember({"sobol", "independent"}))
-        ->default_str("sobol")
+    using Sampler = RenderOptions::Sampler;
+    add_words("--sampler", request.options.sampler, {{"sobol", Sampler::sobol}, {"independent", Sampler::independent}},
+              "How the samples of a pixel are drawn: sobol, evenly, from a sequence scrambled by pixel and dimension, "
+              "with less noise; independent, each by itself, whose variances are exact")
         ->group(group);
-    const std::map<std::string, RenderOptions::Lights> lights{{"auto", RenderOptions::Lights::automatic},
-                                                              {"tree", RenderOptions::Lights::tree},
-                                                              {"power", RenderOptions::Lights::power}};
-    command
-        .add_option_function<std::string>(
-            "--lights", [&request, lights](const std::string &name) { request.options.lights = lights.at(name); },
-            "How light samples choose a light: power, by what it sends; tree, by what may arrive; auto: tree where "
-            "there are many lights")
-        ->check(CLI::IsMember({"auto", "tree", "power"}))
-        ->default_str("auto")
+    using Lights = RenderOptions::Lights;
+    add_words("--lights", request.options.lights,
+              {{"auto", Lights::automatic}, {"tree", Lights::tree}, {"power", Lights::power}},
+              "How light samples choose a light: power, by what it sends; tree, by what may arrive; auto: tree where "
+              "there are many lights")
         ->group(group);
     CLI::Option *aov =
         command.add_flag("--aov", request.options.aov, "Also write albedo, normal, depth and variance layers")
@@ -113,16 +99,10 @@ void add_method_options(CLI::App &command, const Services &services, MethodReque
         .add_flag("--all-traits", request.options.all_traits,
                   "Compile the kernels for everything, as if the scene had it")
         ->group(measuring);
-    const std::map<std::string, RenderOptions::Strategy> strategies{{"mis", RenderOptions::Strategy::mis},
-                                                                    {"light", RenderOptions::Strategy::light},
-                                                                    {"bsdf", RenderOptions::Strategy::bsdf}};
-    command
-        .add_option_function<std::string>(
-            "--strategy",
-            [&request, strategies](const std::string &name) { request.options.strategy = strategies.at(name); },
-            "How light is found: mis (both, weighted), light or bsdf sampling alone")
-        ->check(CLI::IsMember({"mis", "light", "bsdf"}))
-        ->default_str("mis")
+    using Strategy = RenderOptions::Strategy;
+    add_words("--strategy", request.options.strategy,
+              {{"mis", Strategy::mis}, {"light", Strategy::light}, {"bsdf", Strategy::bsdf}},
+              "How light is found: mis (both, weighted), light or bsdf sampling alone")
         ->group(measuring);
 }
 

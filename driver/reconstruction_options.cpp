@@ -1,6 +1,7 @@
 #include "driver/reconstruction_options.h"
 
 #include "driver/number_checks.h"
+#include "driver/word_option.h"
 #include "runtime/error.h"
 
 #include <CLI/CLI.hpp>
@@ -13,19 +14,16 @@ namespace gradus {
 
 void add_reconstruction_option(CLI::App &command, const char *group, Reconstruction standard,
                                std::function<void(Reconstruction)> set) {
-    static const std::map<std::string, Reconstruction> reconstructions{{"l1", Reconstruction::l1},
-                                                                       {"l2", Reconstruction::l2},
-                                                                       {"weighted", Reconstruction::weighted},
-                                                                       {"guided", Reconstruction::guided}};
+    Words<Reconstruction> words;
+    for (const auto reconstruction :
+         {Reconstruction::l1, Reconstruction::l2, Reconstruction::weighted, Reconstruction::guided})
+        words.emplace_back(reconstruction_name(reconstruction), reconstruction);
     CLI::Option *reconstruction =
-        command
-            .add_option_function<std::string>(
-                "--reconstruction", [set](const std::string &name) { set(reconstructions.at(name)); },
-                "l1: robust; l2: linear, one weight for all pixels; weighted: linear, each pixel and each difference "
-                "weighted by its variance, and without bias: two halves of the samples judge each other; guided: the "
-                "same, and a filtered image where that has less error, by place: consistent, the least error")
-            ->check(CLI::IsMember({"l1", "l2", "weighted", "guided"}))
-            ->default_str(reconstruction_name(standard))
+        add_word_option<Reconstruction>(
+            command, "--reconstruction", words, standard, set,
+            "l1: robust; l2: linear, one weight for all pixels; weighted: linear, each pixel and each difference "
+            "weighted by its variance, and without bias: two halves of the samples judge each other; guided: the "
+            "same, and a filtered image where that has less error, by place: consistent, the least error")
             ->group(group);
     command
         .add_option_function<std::string>(
@@ -38,16 +36,10 @@ void add_reconstruction_option(CLI::App &command, const char *group, Reconstruct
 }
 
 void add_guide_option(CLI::App &command, const char *group, std::function<void(Guide)> set) {
-    command
-        .add_option_function<std::string>(
-            "--guide",
-            [set = std::move(set)](const std::string &name) {
-                set(name == "denoiser" ? Guide::denoiser : Guide::filter);
-            },
-            "Of --reconstruction guided: filter, by albedo, normal, depth and noise; or denoiser, Open Image Denoise "
-            "where it is installed (GRADUS_DENOISER may name its library)")
-        ->check(CLI::IsMember({"filter", "denoiser"}))
-        ->default_str("filter")
+    add_word_option<Guide>(
+        command, "--guide", {{"filter", Guide::filter}, {"denoiser", Guide::denoiser}}, Guide::filter, std::move(set),
+        "Of --reconstruction guided: filter, by albedo, normal, depth and noise; or denoiser, Open Image Denoise where "
+        "it is installed (GRADUS_DENOISER may name its library)")
         ->group(group);
 }
 
