@@ -1,4 +1,5 @@
 #include "driver/commands.h"
+#include "driver/output_files.h"
 #include "driver/standard_streams.h"
 #include "driver/tuning_store.h"
 #include "runtime/error.h"
@@ -65,7 +66,7 @@ std::string device_json(const std::vector<DeviceDescription> &devices) {
                         {"allocation_bytes", device.allocation_bytes},
                         {"double", device.has_double},
                         {"tuning", tuning_json(device)}});
-    return list.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+    return json_text(list);
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 #include "driver/commands.h"
 #include "driver/number_checks.h"
+#include "driver/output_files.h"
 #include "driver/phase_watch.h"
 #include "driver/scene_request.h"
 #include "driver/scene_summary.h"
@@ -145,7 +146,7 @@ std::string summary_json(const Scene &scene, const SceneSummary &summary, const 
           {"tree_bytes_estimated", summary.tree_bytes},
           {"film_bytes", summary.film_bytes}}},
         {"traits", trait_object}};
-    return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+    return json_text(json);
 }
 
 } // namespace

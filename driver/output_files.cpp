@@ -100,9 +100,13 @@ void write_outputs(const OutputFiles &files, const Image &image, const Image &pi
         std::rethrow_exception(failure);
 }
 
-void write_json(const nlohmann::json &json, const std::string &path) {
+std::string json_text(const nlohmann::json &json) {
     // A path in the file system need not be UTF-8.
-    const std::string text = json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+    return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+void write_json(const nlohmann::json &json, const std::string &path) {
+    const std::string text = json_text(json);
     if (path == "-")
         print_result(text);
     else

@@ -46,5 +46,7 @@ void write_outputs(const OutputFiles &files, const Image &image, const Image &pi
 
 /// Writes JSON to a file in one step, or to stdout where `path` is "-".
 void write_json(const nlohmann::json &json, const std::string &path);
+/// As it is written: indented, a line at the end.
+std::string json_text(const nlohmann::json &json);
 
 } // namespace gradus
