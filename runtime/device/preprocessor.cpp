@@ -1,10 +1,10 @@
 #include "runtime/device/preprocessor.h"
 
+#include "runtime/device/source_condition.h"
+
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cstdint>
-#include <stdexcept>
 #include <unordered_map>
 #include <utility>
 
@@ -14,15 +14,6 @@ namespace {
 
 using Kind = SourceToken::Kind;
 using Tokens = std::vector<SourceToken>;
-
-/// The text has what is not understood here.
-struct NotUnderstood : std::runtime_error {
-    using std::runtime_error::runtime_error;
-};
-
-bool begins_name(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
-bool is_of_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 struct Macro {
     bool has_parameters = false, is_variadic = false;
@@ -38,260 +29,6 @@ struct Macro {
     }
 };
 
-/// Reads tokens of text. Newlines are not tokens: each begins a line, and a directive is the first token of its line.
-class Lexer {
-  public:
-    explicit Lexer(std::string_view text) : text_(text) {}
-
-    std::string_view file;
-    int line = 1;
-
-    bool at_end() {
-        skip_space();
-        return at_ == text_.size();
-    }
-    /// Whether the next token is on the line of the last one.
-    bool line_goes_on() {
-        skip_space();
-        return at_ < text_.size() && !begins_line_;
-    }
-    bool begins_line() {
-        skip_space();
-        return begins_line_;
-    }
-    /// Whether this character is next, without a space before it.
-    bool is_at(char c) const { return at_ < text_.size() && text_[at_] == c; }
-    /// The rest of the line as it is, to the end of a comment that begins in it.
-    std::string_view rest_of_line() {
-        const std::size_t start = at_;
-        for (; at_ < text_.size() && text_[at_] != '\n'; ++at_) {
-            if (text_.substr(at_, 2) == "/*")
-                skip_comment();
-            else if (text_.substr(at_, 2) == "\\\n") {
-                ++at_;
-                ++line;
-            }
-        }
-        return text_.substr(start, at_ - start);
-    }
-
-    SourceToken next() {
-        skip_space();
-        SourceToken token;
-        token.file = file;
-        token.line = line;
-        begins_line_ = false;
-        const std::size_t start = at_;
-        const char c = text_[at_];
-        if (begins_name(c)) {
-            token.kind = Kind::identifier;
-            while (at_ < text_.size() && is_of_name(text_[at_]))
-                ++at_;
-        } else if (is_digit(c) || (c == '.' && at_ + 1 < text_.size() && is_digit(text_[at_ + 1]))) {
-            token.kind = Kind::number;
-            while (at_ < text_.size() && (is_of_name(text_[at_]) || text_[at_] == '.' || is_sign_of_exponent()))
-                ++at_;
-        } else if (c == '"' || c == '\'') {
-            token.kind = Kind::text;
-            for (++at_; at_ < text_.size() && text_[at_] != c && text_[at_] != '\n'; ++at_)
-                at_ += text_[at_] == '\\';
-            if (at_ >= text_.size() || text_[at_] == '\n')
-                throw NotUnderstood("a text without an end");
-            ++at_;
-        } else {
-            token.kind = Kind::punctuation;
-            at_ += length_of_punctuation();
-        }
-        token.spelling = text_.substr(start, at_ - start);
-        return token;
-    }
-
-  private:
-    bool is_sign_of_exponent() const {
-        const char before = text_[at_ - 1];
-        return (text_[at_] == '+' || text_[at_] == '-') &&
-               (before == 'e' || before == 'E' || before == 'p' || before == 'P');
-    }
-
-    std::size_t length_of_punctuation() const {
-        static constexpr std::string_view longer[] = {"<<=", ">>=", "...", "->", "++", "--", "<<", ">>",
-                                                      "<=",  ">=",  "==",  "!=", "&&", "||", "*=", "/=",
-                                                      "%=",  "+=",  "-=",  "&=", "^=", "|=", "##"};
-        for (const std::string_view one : longer)
-            if (text_.substr(at_, one.size()) == one)
-                return one.size();
-        return 1;
-    }
-
-    /// To the last character of the comment that begins here.
-    void skip_comment() {
-        const std::size_t end = text_.find("*/", at_ + 2);
-        if (end == std::string_view::npos)
-            throw NotUnderstood("a comment without an end");
-        const std::string_view comment = text_.substr(at_, end - at_);
-        line += static_cast<int>(std::count(comment.begin(), comment.end(), '\n'));
-        at_ = end + 1;
-    }
-
-    void skip_space() {
-        for (; at_ < text_.size(); ++at_) {
-            const char c = text_[at_], after = at_ + 1 < text_.size() ? text_[at_ + 1] : '\0';
-            if (c == '\n') {
-                ++line;
-                begins_line_ = true;
-            } else if (c == '\\' && after == '\n') {
-                ++line;
-                ++at_;
-            } else if (c == '/' && after == '*') {
-                skip_comment();
-            } else if (c == '/' && after == '/') {
-                while (at_ + 1 < text_.size() && text_[at_ + 1] != '\n')
-                    ++at_;
-            } else if (c != ' ' && c != '\t' && c != '\r' && c != '\f' && c != '\v') {
-                return;
-            }
-        }
-    }
-
-    std::string_view text_;
-    std::size_t at_ = 0;
-    bool begins_line_ = true;
-};
-
-/// The value of a condition, whose macros are expanded: names that are left are 0. Precedence climbing.
-class Condition {
-  public:
-    explicit Condition(const Tokens &tokens) : tokens_(tokens) {}
-
-    std::int64_t value() {
-        const std::int64_t result = choice();
-        if (at_ != tokens_.size())
-            throw NotUnderstood("a condition that goes on");
-        return result;
-    }
-
-  private:
-    bool take(std::string_view spelling) {
-        if (at_ == tokens_.size() || !tokens_[at_].is(spelling))
-            return false;
-        ++at_;
-        return true;
-    }
-
-    std::int64_t choice() {
-        const std::int64_t condition = binary(0);
-        if (!take("?"))
-            return condition;
-        const std::int64_t first = choice();
-        if (!take(":"))
-            throw NotUnderstood("? without :");
-        const std::int64_t second = choice();
-        return condition ? first : second;
-    }
-
-    static int precedence(std::string_view operation) {
-        static constexpr std::pair<std::string_view, int> known[] = {
-            {"||", 1}, {"&&", 2}, {"|", 3},  {"^", 4},  {"&", 5}, {"==", 6}, {"!=", 6}, {"<", 7},  {">", 7},
-            {"<=", 7}, {">=", 7}, {"<<", 8}, {">>", 8}, {"+", 9}, {"-", 9},  {"*", 10}, {"/", 10}, {"%", 10}};
-        for (const auto &[spelling, level] : known)
-            if (operation == spelling)
-                return level;
-        return 0;
-    }
-
-    std::int64_t binary(int above) {
-        std::int64_t left = unary();
-        while (at_ < tokens_.size()) {
-            const std::string_view operation = tokens_[at_].spelling;
-            const int level = precedence(operation);
-            if (level <= above)
-                break;
-            ++at_;
-            left = result(operation, left, binary(level));
-        }
-        return left;
-    }
-
-    static std::int64_t result(std::string_view operation, std::int64_t a, std::int64_t b) {
-        if ((operation == "/" || operation == "%") && b == 0)
-            throw NotUnderstood("a division by zero");
-        if (operation == "||")
-            return a || b;
-        if (operation == "&&")
-            return a && b;
-        if (operation == "|")
-            return a | b;
-        if (operation == "^")
-            return a ^ b;
-        if (operation == "&")
-            return a & b;
-        if (operation == "==")
-            return a == b;
-        if (operation == "!=")
-            return a != b;
-        if (operation == "<")
-            return a < b;
-        if (operation == ">")
-            return a > b;
-        if (operation == "<=")
-            return a <= b;
-        if (operation == ">=")
-            return a >= b;
-        if (operation == "<<")
-            return a << b;
-        if (operation == ">>")
-            return a >> b;
-        if (operation == "+")
-            return a + b;
-        if (operation == "-")
-            return a - b;
-        if (operation == "*")
-            return a * b;
-        return operation == "/" ? a / b : a % b;
-    }
-
-    std::int64_t unary() {
-        if (at_ == tokens_.size())
-            throw NotUnderstood("a condition that ends early");
-        if (take("!"))
-            return !unary();
-        if (take("-"))
-            return -unary();
-        if (take("+"))
-            return unary();
-        if (take("~"))
-            return ~unary();
-        if (take("(")) {
-            const std::int64_t inner = choice();
-            if (!take(")"))
-                throw NotUnderstood("( without )");
-            return inner;
-        }
-        const SourceToken &token = tokens_[at_++];
-        if (token.kind == Kind::identifier)
-            return 0;
-        if (token.kind != Kind::number)
-            throw NotUnderstood("a condition of other things");
-        std::string_view digits = token.spelling;
-        int base = 10;
-        if (digits.starts_with("0x") || digits.starts_with("0X")) {
-            base = 16;
-            digits.remove_prefix(2);
-        } else if (digits.size() > 1 && digits[0] == '0') {
-            base = 8;
-        }
-        std::int64_t number = 0;
-        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number, base);
-        digits.remove_prefix(static_cast<std::size_t>(end - digits.data()));
-        if (error != std::errc() || digits.find_first_not_of("uUlL") != std::string_view::npos)
-            throw NotUnderstood("a number that is not whole");
-        return number;
-    }
-
-    const Tokens &tokens_;
-    std::size_t at_ = 0;
-};
-
 class Preprocessor {
   public:
     Preprocessor(std::string_view text, PreprocessedSource &result) : lexer_(text), result_(result) {}
@@ -300,10 +37,10 @@ class Preprocessor {
         const std::string_view definition = result_.made.emplace_back(text);
         const std::size_t equals = definition.find('=');
         const std::string_view name = definition.substr(0, equals);
-        if (name.empty() || !begins_name(name[0]) || !std::all_of(name.begin(), name.end(), is_of_name))
+        if (!is_source_name(name))
             throw NotUnderstood("a definition with parameters");
         Macro macro;
-        Lexer value(equals == std::string_view::npos ? "1" : definition.substr(equals + 1));
+        SourceLexer value(equals == std::string_view::npos ? "1" : definition.substr(equals + 1));
         while (!value.at_end())
             macro.body.push_back(value.next());
         macros_[name] = std::move(macro);
@@ -452,7 +189,7 @@ class Preprocessor {
 
     SourceToken joined(const SourceToken &left, const SourceToken &right) {
         result_.made.push_back(std::string(left.spelling) + std::string(right.spelling));
-        Lexer lexer(result_.made.back());
+        SourceLexer lexer(result_.made.back());
         SourceToken token = lexer.next();
         if (token.spelling.size() != result_.made.back().size())
             throw NotUnderstood("## of what is no token");
@@ -525,7 +262,7 @@ class Preprocessor {
             tokens.push_back(number);
             i = name + (in_parentheses ? 1 : 0);
         }
-        return Condition(expanded(tokens)).value();
+        return value_of_condition(expanded(tokens));
     }
 
     void read_macro() {
@@ -608,7 +345,7 @@ class Preprocessor {
         return false;
     }
 
-    Lexer lexer_;
+    SourceLexer lexer_;
     PreprocessedSource &result_;
     std::unordered_map<std::string_view, Macro> macros_;
     std::vector<Frame> frames_;

@@ -1,6 +1,8 @@
 // What a compiler sees of a kernel source: conditionals decided, macros expanded, comments gone.
 #pragma once
 
+#include "runtime/device/source_lexer.h"
+
 #include <deque>
 #include <optional>
 #include <string>
@@ -8,17 +10,6 @@
 #include <vector>
 
 namespace gradus {
-
-struct SourceToken {
-    enum class Kind { identifier, number, text, punctuation, pragma };
-    Kind kind = Kind::punctuation;
-    std::string_view spelling; ///< a pragma's is what follows the word on its line
-    std::string_view file;     ///< by the last #line before it; of a macro's tokens, where the macro was named
-    int line = 0;
-    bool is_painted = false; ///< names a macro within that macro, and stays as it is
-
-    bool is(std::string_view other) const { return spelling == other; }
-};
 
 /// The tokens live as long as both this and the text that they are of.
 struct PreprocessedSource {
