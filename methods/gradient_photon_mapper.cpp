@@ -37,8 +37,8 @@ TraitMap light_vertex_traits(const Scene &scene, const RenderOptions &options) {
     return traits;
 }
 
-const Scene &checked(const Scene &scene, const RenderOptions &options) {
-    if (const std::string reason = reason_against_gpm(scene, options); !reason.empty())
+const Scene &checked(const Scene &scene) {
+    if (const std::string reason = reason_against_gpm(scene); !reason.empty())
         throw Error(ExitCode::usage, reason);
     return scene;
 }
@@ -59,20 +59,15 @@ const std::vector<std::string> chain_numbers = {"first", "pairs", "chain_rows", 
 
 } // namespace
 
-std::string reason_against_gpm(const Scene &scene, const RenderOptions &options) {
+std::string reason_against_gpm(const Scene &scene) {
     // Walks would have to know how normals of an instance change.
     if (!scene.instances.empty())
         return "gpm knows no instances; pt, gpt and sppm do, and --instances copies makes shapes of them";
-    // Of a blend nobody tells which part a photon meets that has been moved there.
-    if (!blends_gather_alike(scene, options.gather_roughness))
-        return fmt::format("gpm knows no blends of surfaces where photons are gathered (roughness {} or more), on one "
-                           "side or on both, with others; pt, gpt and sppm do",
-                           options.gather_roughness);
     return "";
 }
 
 GradientPhotonMapper::GradientPhotonMapper(Device &device, const Scene &scene, const RenderOptions &options)
-    : options_(options), session_(device, checked_for_gathering(checked(scene, options), options), options,
+    : options_(options), session_(device, checked_for_gathering(checked(scene), options), options,
                                   light_vertex_traits(scene, options)),
       walked_kinds_(walked_kinds(scene, options)), paths_(session_, stages_, scene, options, true),
       photons_(session_, stages_, scene, options, 0.5, needs_halves(options.reconstruction)), pairs_(stages_, true),

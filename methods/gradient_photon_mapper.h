@@ -29,7 +29,7 @@
 namespace gradus {
 
 /// Why the method cannot render a scene; empty where it can.
-std::string reason_against_gpm(const Scene &scene, const RenderOptions &options);
+std::string reason_against_gpm(const Scene &scene);
 
 class GradientPhotonMapper final : public Method {
   public:

@@ -52,7 +52,7 @@ struct Mean {
 
 bool may_ask_for_photons(const Scene &scene, const RenderOptions &options) {
     const GatheringSurfaces surfaces = gathering_surfaces(scene, options.gather_roughness);
-    return reason_against_gpm(scene, options).empty() && !surfaces.passed.empty() && !surfaces.gathered.empty() &&
+    return reason_against_gpm(scene).empty() && !surfaces.passed.empty() && !surfaces.gathered.empty() &&
            !scene.emitters.empty() && scene.settings.max_depth != 0 && scene.settings.max_depth != 1;
 }
 

@@ -12,7 +12,7 @@ STAGE photon_arrive(uint count, uint unit, uint pairs, uint gather_rows, uint pa
                     __global real *moved, __global const real *materials, __global const real *triangles,
                     __global const real *triangle_normals, __global const real *triangle_tangents,
                     __global const real *spheres, uint triangle_count, __global const uint *primitive_material,
-                    __global const uint *material_back, __global const uint *material_gathers,
+                    __global const uint *material_back, __global const uint *material_keeps,
                     __global real *pair_difference) {
     const size_t i = work_item();
     if (i >= count)
@@ -26,7 +26,7 @@ STAGE photon_arrive(uint count, uint unit, uint pairs, uint gather_rows, uint pa
                                                  triangle_count, primitive_material, material_back,
                                                  is_hit ? primitive : 0u, AT_V3(moved, origin, i), direction);
     const photon_disc base_disc = PHOTON_DISC(row), offset_disc = PHOTON_DISC(at);
-    const uint gathers = material_gathers[point.material];
+    const uint gathers = material_keeps[point.material];
     const int is_photon =
         (gathers == gathers_around) | ((gathers == gathers_in_front) & (v3_dot(point.shading, direction) < R(0)));
     const int arrives = is_hit & is_photon & photon_counts(offset_disc, point.position, point.geometric) &

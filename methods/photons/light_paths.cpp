@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <set>
 #include <string_view>
 #include <utility>
 
@@ -53,25 +52,23 @@ std::vector<std::uint32_t> gathers_by_material(const Scene &scene, double roughn
     return gathers;
 }
 
-/// The same of where light paths leave photons: wherever any part of a blend gathers them.
+/// The same of where light paths leave photons: wherever any part of a blend gathers them, and of the blend itself,
+/// which is what is known of a surface that a moved photon has met.
 std::vector<std::uint32_t> keeps_by_material(const Scene &scene, double roughness) {
     std::vector<std::uint32_t> keeps = gathers_by_material(scene, roughness);
+    const std::vector<Bsdf> records = material_records(scene);
     const std::size_t first_part = keeps.size() - scene.blended.size();
-    const auto settle = [&](const Bsdf &bsdf) {
-        if (bsdf.blend == no_blend)
-            return;
+    for (std::size_t i = 0; i < first_part; ++i) {
+        if (records[i].blend == no_blend)
+            continue;
         std::uint32_t most = gathers_nowhere;
-        for_each_part(scene, bsdf, [&](const Bsdf &part) {
+        for_each_part(scene, records[i], [&](const Bsdf &part) {
             const std::uint32_t at = gathers_at(part, roughness);
             most = most == gathers_around || at == gathers_nowhere ? most : at;
         });
-        for_each_part(scene, bsdf,
+        keeps[i] = most;
+        for_each_part(scene, records[i],
                       [&](const Bsdf &part) { keeps[first_part + std::size_t(&part - scene.blended.data())] = most; });
-    };
-    for (const Material &material : scene.materials) {
-        settle(material.front);
-        if (material.two_sided)
-            settle(material.back);
     }
     return keeps;
 }
@@ -159,20 +156,6 @@ TableList own_tables(const Session &session, const Wavefront &paths) {
 }
 
 } // namespace
-
-bool blends_gather_alike(const Scene &scene, double roughness) {
-    bool alike = true;
-    const auto visit = [&](const Bsdf &bsdf) {
-        std::set<std::uint32_t> parts;
-        for_each_part(scene, bsdf, [&](const Bsdf &part) { parts.insert(gathers_at(part, roughness)); });
-        alike = alike && parts.size() == 1;
-    };
-    for (const Shape &shape : scene.shapes) {
-        visit(scene.materials[shape.material].front);
-        visit(scene.materials[shape.material].back);
-    }
-    return alike;
-}
 
 double photons_a_pass(std::uint64_t film_pixels) {
     return std::clamp(photons_a_pixel * double(film_pixels), least_photons, largest_photons);

@@ -19,10 +19,6 @@ namespace gradus {
 double photons_a_pass(std::uint64_t film_pixels);
 double most_light_paths_a_pass(std::uint64_t film_pixels);
 
-/// Whether of each blend all parts leave photons, on the same sides, or none does: then a blend's entry of
-/// `material_gathers` says what holds of any part.
-bool blends_gather_alike(const Scene &scene, double gather_roughness);
-
 class LightPaths {
   public:
     /// Photons of depth 1, which lights send directly, are left out where the caller samples lights himself.

@@ -379,28 +379,45 @@ TEST(GradientPhotonImage, HasFarLessErrorThanPhotonMapping) {
     EXPECT_LT(ours, 0.5 * plain);
 }
 
-/// Scenes that it does not render end with an error that says what it is that it does not know.
-TEST(GradientPhotonImage, SaysWhatItDoesNotKnow) {
-    const auto error_of = [](Bsdf bsdf, const std::vector<Bsdf> &blended) -> std::string {
-        SceneMaker maker(8, 1);
-        maker.look({0, 3, 3}, {0, 0, 0}, 20);
-        maker.scene.textures = {random_texture()};
-        maker.scene.blended = blended;
-        maker.scene.blends = {{0, 1, 0.5f}};
-        bsdf.blend = blended.empty() ? no_blend : 0;
-        maker.floor(-1, 1, 1, maker.material(diffuse(0.5)));
-        maker.sphere({0, 1, 0}, 0.5f, maker.material(bsdf));
-        maker.point_light({1, 1, 1}, {0, 3, 0});
-        try {
-            render(maker.scene, few_photons(), "gpm");
-        } catch (const Error &error) {
-            EXPECT_EQ(error.code, ExitCode::usage);
-            return error.what();
-        }
-        return "";
-    };
-    EXPECT_THAT(error_of(diffuse(0.5), {diffuse(0.5), mirror()}), ::testing::HasSubstr("blends"));
-    EXPECT_EQ(error_of(diffuse(0.5), {diffuse(0.5), rough_metal(0.3)}), "");
+/// Blends of what gathers photons with what mirrors them, beside what only gathers: photons are kept wherever any part
+/// gathers, also those that have been moved there.
+TEST(GradientPhotonImage, HasDifferencesOfThePrimalOfBlendsThatGatherInPart) {
+    SceneMaker maker(24, passes);
+    maker.look({0, 2, 2.5}, {0, 0, 0}, 30);
+    maker.scene.settings.max_depth = 5;
+    maker.scene.textures = {random_texture(5, 5, Bitmap::Format::word, false, 4)};
+    maker.scene.blended = {diffuse(0.7), mirror(), glass(1.5), diffuse(0.4)};
+    maker.scene.blends = {{0, 1, 0.5f}, {2, 3, 0.5f}};
+    maker.scene.blends[1].weight.texture = 0;
+    Bsdf varnished, stained;
+    varnished.blend = 0;
+    stained.blend = 1;
+    for (int i = 0; i < 6; ++i) // stripes
+        maker.floor(-1.2f + 0.4f * float(i), -0.8f + 0.4f * float(i), 1,
+                    maker.material(i % 3 == 0   ? two_sided(varnished)
+                                   : i % 3 == 1 ? two_sided(diffuse(0.6))
+                                                : material_of(stained)));
+    maker.parallelogram({0.5f, 0, 0.6f}, {0, 0, -1.2f}, {0.3f, 0.9f, 0}, maker.material(two_sided(varnished)));
+    maker.point_light({9, 9, 9}, {-0.3f, 2.5f, 0.4f});
+    const std::map<std::string, std::uint64_t> shifts = render(maker.scene, few_photons(), "gpm").statistics.shifts;
+    EXPECT_GT(shifts.at("walked"), 100u);
+    EXPECT_GT(shifts.at("reconnected"), 500u);
+    expect_differences_of_the_primal("blends", maker.scene, few_photons());
+}
+
+/// An instance ends with an error that says what to do.
+TEST(GradientPhotonImage, KnowsNoInstances) {
+    SceneMaker maker(8, 1);
+    maker.floor(-1, 1, 1, maker.material(diffuse(0.5)));
+    maker.point_light({1, 1, 1}, {0, 3, 0});
+    maker.scene.instances.resize(1);
+    try {
+        render(maker.scene, few_photons(), "gpm");
+        FAIL() << "it was rendered";
+    } catch (const Error &error) {
+        EXPECT_EQ(error.code, ExitCode::usage);
+        EXPECT_THAT(error.what(), ::testing::HasSubstr("--instances copies"));
+    }
 }
 
 /// Photons are shifted that came by a part of a blend, but not where the part's chance differs from place to place.

@@ -5,9 +5,8 @@
 namespace gradus {
 
 Declaration declare_bsdf_blendbsdf() {
-    return {"a mixture of two BSDFs, each of which may be a mixture again. With `gpm` of parts where photons are "
-            "gathered, or of parts where none are. A part `null` is no hole of a `mask`: it counts as an edge, and "
-            "light samples do not pass it",
+    return {"a mixture of two BSDFs, each of which may be a mixture again. A part `null` is no hole of a `mask`: it "
+            "counts as an edge, and light samples do not pass it",
             {Parameter{"weight", Takes::textured_number, "0.5", "share of the second"}.at_least(0).at_most(1),
              {"bsdf", Takes::objects, nullptr, "the first and the second"}}};
 }
