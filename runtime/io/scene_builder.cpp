@@ -210,6 +210,7 @@ Scene SceneBuilder::build() {
         build_shapes(shapes, nullptr);
         settle_instances();
         each("bsdf", [&](const Element &element) { check_unused_bsdf(element); });
+        each("texture", [&](const Element &element) { check_unused_texture(element); });
         check_media(root);
         scene.report_unknown();
         warn_of_parts_of_no_sensor(root);

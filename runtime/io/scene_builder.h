@@ -146,6 +146,7 @@ class SceneBuilder {
     std::uint32_t boundary_material();
     void build_emitter(const Element &element);
     void check_unused_bsdf(const Element &element);
+    void check_unused_texture(const Element &element);
     std::uint32_t material_of(const Element &shape);
     std::int32_t emitter_of(const Element &shape);
     void count_geometry(std::uint64_t bytes, const Location &location);

@@ -123,6 +123,12 @@ FoundTexture SceneBuilder::texture(const Element &element, double lowest, double
     return found;
 }
 
+/// Pictures are not read for it.
+void SceneBuilder::check_unused_texture(const Element &element) {
+    if (!built_textures_.contains(&element) && !find_plugin<Texture>(type_of(element)))
+        diagnostics_.warn(element.location, "unused texture: " + unknown_plugin("texture", type_of(element)));
+}
+
 std::int32_t SceneBuilder::scaled(std::int32_t index, float factor) {
     if (factor == 1)
         return index;

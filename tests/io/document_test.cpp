@@ -223,6 +223,11 @@ TEST(UnknownParameters, WarnWithTheNearestName) {
     EXPECT_THAT(error_of_text(text, {{}, true}), HasSubstr("scene.xml:4: unknown parameter \"raduis\""));
 }
 
+TEST(UnknownParameters, OfAnUnusedTexture) {
+    EXPECT_THAT(load_text(scene_around("<texture type=\"bitmpa\"/><emitter type=\"constant\"/>")).warnings,
+                Contains(AllOf(HasSubstr("scene.xml:3: unused texture"), HasSubstr("bitmap"))));
+}
+
 TEST(UnknownParameters, OfTheSceneAndUnusedObjects) {
     const std::string text = scene_around("<integer name=\"depth\" value=\"2\"/>\n<shape type=\"cube\">"
                                           "<film type=\"hdrfilm\"/></shape><emitter type=\"constant\"/>");
