@@ -24,7 +24,7 @@ int run_warm(const WarmRequest &request, const Services &services) {
     const auto start = std::chrono::steady_clock::now();
     check_method_options(request.method);
     const auto warn = [](const std::string &warning) { print_message("gradus: warning: " + warning + "\n"); };
-    const Scene scene = load_requested_scene(request.scene, services, warn);
+    const Scene scene = load_requested_scene(for_method(request.scene, request.method.method), services, warn);
     for (const std::string &sentence : unread_options(request.method, request.method.method))
         warn(sentence);
     check_memory(scene, request.method.options);

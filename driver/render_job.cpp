@@ -74,7 +74,7 @@ class RenderJob {
         // What will write the image, while there is memory for it and nothing to lose.
         picture_library();
         Scene scene = load_requested_scene(
-            request_.scene, services_,
+            for_method(request_.scene, request_.method.method), services_,
             [this](const std::string &warning) { progress_.message("gradus: warning: " + warning); }, &files_read_,
             &phases_);
         check_distinct(output_list(request_.outputs), files_read_);

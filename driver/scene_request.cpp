@@ -89,7 +89,8 @@ void add_scene_options(CLI::App &command, SceneRequest &request) {
         ->group(group);
     command
         .add_option("--instances", request.instances,
-                    "Instances of groups: as shapes of their own where that is small, always (copies), never (kept)")
+                    "Instances of groups: as shapes of their own where that is small, always (copies; so does gpm by "
+                    "default), never (kept)")
         ->transform(CLI::CheckedTransformer(std::map<std::string, InstanceChoice>{
             {"auto", InstanceChoice::automatic}, {"copies", InstanceChoice::copies}, {"kept", InstanceChoice::kept}}))
         ->option_text("auto|copies|kept [auto]")
@@ -159,6 +160,12 @@ void apply_request(const SceneRequest &request, Scene &scene) {
     }
     if (request.rr_depth)
         scene.settings.rr_depth = *request.rr_depth;
+}
+
+SceneRequest for_method(SceneRequest request, const std::string &method) {
+    if (method == "gpm" && request.instances == InstanceChoice::automatic)
+        request.instances = InstanceChoice::copies;
+    return request;
 }
 
 Scene load_requested_scene(const SceneRequest &request, const Services &services,

@@ -45,6 +45,9 @@ void add_scene_options(CLI::App &command, SceneRequest &request);
 /// Throws Error(ExitCode::usage) for a crop that is not inside the film.
 void apply_request(const SceneRequest &request, Scene &scene);
 
+/// As asked for, but for a method that renders no instances: that has copies of them where the user leaves it open.
+SceneRequest for_method(SceneRequest request, const std::string &method);
+
 /// Loads the scene, hands each warning to `warn`, and applies the request. `files`: takes the names of all files that
 /// were read. `phases`: where loading counts its time.
 Scene load_requested_scene(const SceneRequest &request, const Services &services,

@@ -116,5 +116,13 @@ TEST(SceneRequest, LoadHandsOnParametersAndWarnings) {
     EXPECT_EQ(scene.settings.max_depth, 9);
 }
 
+TEST(SceneRequest, HasCopiesOfInstancesForWhoRendersNone) {
+    SceneRequest request;
+    EXPECT_EQ(for_method(request, "gpm").instances, InstanceChoice::copies);
+    EXPECT_EQ(for_method(request, "gpt").instances, InstanceChoice::automatic);
+    request.instances = InstanceChoice::kept;
+    EXPECT_EQ(for_method(request, "gpm").instances, InstanceChoice::kept);
+}
+
 } // namespace
 } // namespace gradus

@@ -1,6 +1,5 @@
 // Gradient-domain photon mapping: its differences have the means that those of its primal image have, its primal is
 // photon mapping's image, and neither batches nor threads show.
-#include "runtime/error.h"
 #include "tests/methods/reference_scene.h"
 #include "tests/support/gradient_layers.h"
 #include "tests/support/small_scenes.h"
@@ -8,7 +7,6 @@
 #include "tests/support/textures.h"
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
 
 #include <bit>
 
@@ -403,21 +401,6 @@ TEST(GradientPhotonImage, HasDifferencesOfThePrimalOfBlendsThatGatherInPart) {
     EXPECT_GT(shifts.at("walked"), 100u);
     EXPECT_GT(shifts.at("reconnected"), 500u);
     expect_differences_of_the_primal("blends", maker.scene, few_photons());
-}
-
-/// An instance ends with an error that says what to do.
-TEST(GradientPhotonImage, KnowsNoInstances) {
-    SceneMaker maker(8, 1);
-    maker.floor(-1, 1, 1, maker.material(diffuse(0.5)));
-    maker.point_light({1, 1, 1}, {0, 3, 0});
-    maker.scene.instances.resize(1);
-    try {
-        render(maker.scene, few_photons(), "gpm");
-        FAIL() << "it was rendered";
-    } catch (const Error &error) {
-        EXPECT_EQ(error.code, ExitCode::usage);
-        EXPECT_THAT(error.what(), ::testing::HasSubstr("--instances copies"));
-    }
 }
 
 /// Photons are shifted that came by a part of a blend, but not where the part's chance differs from place to place.
