@@ -2,8 +2,12 @@
  * scene. */
 #ifndef GRADUS_LIB_SURFACE_SIDE_H
 #define GRADUS_LIB_SURFACE_SIDE_H
-//! traits: TRAIT_SHADING_NORMALS TRAIT_INSTANCES
+//! traits: TRAIT_SHADING_NORMALS TRAIT_INSTANCES TRAIT_TWO_SIDED
 #include "kernels/lib/scene_hit.h"
+
+/* Whether there are surfaces whose frame turns with the side, and whose side may be another one than the geometric
+ * normal's. */
+#define SIDE_BY_SHADING (TRAIT_TWO_SIDED && TRAIT_SHADING_NORMALS)
 
 GRADUS_LIB_BEGIN
 

@@ -1,16 +1,21 @@
 /* advance: offset paths follow their base paths, which have taken rows `to` on from places `first` on of the index:
- * their state moves to the new rows. Those that reconnected to what they do not see have failed; so have all where the
- * vertex is not rough and the path could only end there.
+ * their state moves to the new rows. Those that reconnected to what they do not see have failed; so have all that could
+ * only end there: where the vertex is not rough, or of another side (shift_ends).
  *
  * APART: some have vertices of their own, which their rays have met. */
 //! traits: TRAIT_APART
 #include "kernels/lib/surface_point.h"
+#include "kernels/lib/surface_side.h"
 #include "kernels/lib/textured_material.h"
 #include "kernels/lib/vertex_frame.h"
 #include "kernels/shared/stage.h"
 
 STAGE advance(uint count, uint unit, uint first, uint to, uint stride, uint capacity, __global const uint *index,
               __global const real *offset_old, __global real *offset, __global const real *link
+#if SIDE_BY_SHADING
+              ,
+              __global const real *shift
+#endif
 #if TRAIT_APART
               ,
               __global const real *vertex
@@ -38,9 +43,12 @@ STAGE advance(uint count, uint unit, uint first, uint to, uint stride, uint capa
         const real ratio = AT_IN(offset_old, offset, ratio, from);
         const int open = AT_UINT(link, open, (int)((4u + j) * stride) + old) != 0u;
         int holds = open;
+#if SIDE_BY_SHADING
+        holds &= (AT_UINT(shift, outcome, from) & shift_ends) == 0u;
+#endif
 #if TRAIT_APART
         const uint state = AT_UINT_IN(offset_old, offset, state, from);
-        holds = (open & is_rough) | (state != connection_recent);
+        holds = (holds & is_rough) | (state != connection_recent);
         AT_UINT(offset, state, at) = state;
 #endif
         const real failed = shift_failed(open ? outcome_failed_kinds : outcome_failed_hidden);

@@ -37,7 +37,9 @@ STAGE emit(uint count, uint unit, uint capacity, uint first_row, uint first_slot
         R(0.5) * scene_diameter, unit, choice, leaving ENVIRONMENT_ARGUMENTS LIGHT_TEXTURE_ARGUMENTS);
     SET_V3(ray, origin, row, emitted.origin);
     SET_V3(ray, direction, row, emitted.direction);
-    AT_UINT(ray, primitive, row) = ray_pending;
+    /* Where a picture or a texture is black nothing is sent, or it would be moved to where there is light; who comes from
+     * there has no way back. */
+    AT_UINT(ray, primitive, row) = rgb_max(emitted.power) > R(0) ? ray_pending : ray_none;
     AT_UINT(light_path, slot, row) = slot;
     AT_UINT(light_path, key_0, row) = key.x;
     AT_UINT(light_path, key_1, row) = key.y;

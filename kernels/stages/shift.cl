@@ -15,8 +15,9 @@
  *
  * The step fails where the next vertex would be seen from its other side, by the geometric normal or, where the
  * material is two-sided, by the shading normal, which turns its frame (SIDE_BY_SHADING): each of both paths would have
- * the vertex in a frame of its own, in which the other one counts for nothing. It fails between a Dirac lobe and a
- * rough one, too, and where the half-vector copy does.
+ * the vertex in a frame of its own, in which the other one counts for nothing. A lamp's light knows of no frame, so
+ * that paths may end there (shift_ends). It fails between a Dirac lobe and a rough one, too, and where the half-vector
+ * copy does.
  *
  * BSDF: where all that is not connected is at vertices of one kind, it is inlined, and what would be asked is answered
  * at once. */
@@ -40,8 +41,6 @@
 #else
 #define ASKS_DIRAC 0
 #endif
-
-#define SIDE_BY_SHADING (TRAIT_TWO_SIDED && TRAIT_SHADING_NORMALS)
 
 /* Whether light may be sampled at the vertices. */
 #if defined(BSDF) && BSDF_IS_DIRAC
@@ -119,6 +118,7 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
 #if SIDE_BY_SHADING
     const vec3 end_shading = shading_normal_at(triangle_normals, unit, triangle_count, present, hit);
     const int end_turns = (OF_PRIMITIVE(primitive_material, material, present) & material_two_sided) != 0u;
+    const int end_emits = LIGHT_OF_PRIMITIVE(primitive_light, present) != no_light;
     const int base_from_behind = v3_dot(end_shading, base_direction) > R(0);
 #endif
     const real pdf = AT(event, pdf, row);
@@ -309,9 +309,12 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         const vec3 to_next = v3_select(is_escaped, base_direction, v3_normalize(connection));
         const real reconnection = is_escaped ? R(1) : reconnection_jacobian(base, from_after, hit.position, hit.normal);
         int same_side = is_escaped | (-v3_dot(hit.normal, connection) * base_side > R(0));
+        uint ends = 0u;
 #if SIDE_BY_SHADING
         const int from_behind = v3_dot(end_shading, v3_after(to_next, reconnection)) > R(0);
-        same_side &= is_escaped | !end_turns | (from_behind == base_from_behind);
+        const int turns = !is_escaped & end_turns & (from_behind != base_from_behind);
+        same_side &= !turns | end_emits;
+        ends = turns ? shift_ends : 0u;
 #endif
 #if TRAIT_APART
         const int both_rough = base_is_rough & ((kind & kind_is_rough) != 0u);
@@ -353,14 +356,14 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         int works = goes_on & (reconnects ? same_side & (reconnection > R(0)) : copies);
         const uint reason = reconnects ? outcome_failed_side : alike ? outcome_failed_copy : outcome_failed_kinds;
         const uint way =
-            (reconnects ? outcome_reconnected : outcome_half_vector) | (both_rough ? shift_both_rough : 0u);
+            (reconnects ? outcome_reconnected | ends : outcome_half_vector) | (both_rough ? shift_both_rough : 0u);
 #else
         const int reconnects = 1;
         const vec3 direction = to_next;
         const real step_jacobian = reconnection;
         int works = goes_on & same_side & (reconnection > R(0));
         const uint reason = kind == kind_none ? outcome_failed_at_once : outcome_failed_side;
-        const uint way = outcome_reconnected;
+        const uint way = outcome_reconnected | ends;
 #endif
         const size_t step = (size_t)(4u + j) * capacity + row;
 #ifdef BSDF

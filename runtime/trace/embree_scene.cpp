@@ -26,7 +26,7 @@ constexpr std::size_t most_spheres_by_packet = 256;
 /// Embree's filter of hits with what rays may pass.
 void drop_passed(const RTCFilterFunctionNArguments *hits) {
     const auto &opacity = *static_cast<const Opacity *>(hits->geometryUserPtr);
-    const bool passes_emitters = reinterpret_cast<const TraceContext *>(hits->context)->passes_emitters;
+    const auto &context = *reinterpret_cast<const TraceContext *>(hits->context);
     RTCRayN *rays = hits->ray;
     for (unsigned lane = 0; lane < hits->N; ++lane) {
         if (hits->valid[lane] == 0)
@@ -39,8 +39,9 @@ void drop_passed(const RTCFilterFunctionNArguments *hits) {
         const float outward = direction.x * RTCHitN_Ng_x(hits->hit, hits->N, lane) +
                               direction.y * RTCHitN_Ng_y(hits->hit, hits->N, lane) +
                               direction.z * RTCHitN_Ng_z(hits->hit, hits->N, lane);
-        if (!opacity.has_side(number, outward) || (passes_emitters && opacity.emits(number)) ||
-            !opacity.is_met(number, origin, direction))
+        const bool is_met = context.without_chance ? opacity.at(number, origin, direction) > 0
+                                                   : opacity.is_met(number, origin, direction);
+        if (!opacity.has_side(number, outward) || (context.passes_emitters && opacity.emits(number)) || !is_met)
             hits->valid[lane] = 0;
     }
 }
@@ -258,9 +259,11 @@ void EmbreeScene::drop_passed_in_instance(const RTCFilterFunctionNArguments *hit
         const unsigned ray = RTCRayN_id(hits->ray, hits->N, lane);
         const std::size_t row = context.rows ? context.rows[ray] : ray;
         const unsigned instance = RTCHitN_instID(hits->hit, hits->N, lane, 0) - first_instance;
-        if (!shape.opacity.is_met(RTCHitN_primID(hits->hit, hits->N, lane), axis_values(context.origin, row),
-                                  axis_values(context.direction, row), instance + 1,
-                                  matrix_of(shape.scene->instances_[instance])))
+        const unsigned number = RTCHitN_primID(hits->hit, hits->N, lane);
+        const Vector3 origin = axis_values(context.origin, row), direction = axis_values(context.direction, row);
+        const Matrix4 to_world = matrix_of(shape.scene->instances_[instance]);
+        if (!(context.without_chance ? shape.opacity.at(number, origin, direction, to_world) > 0
+                                     : shape.opacity.is_met(number, origin, direction, instance + 1, to_world)))
             hits->valid[lane] = 0;
     }
 }

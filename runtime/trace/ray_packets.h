@@ -82,6 +82,7 @@ struct TraceContext {
     const float *origin[3], *direction[3];
     const std::uint32_t *rows = nullptr; ///< of ray `id`; null: that number itself
     bool passes_emitters = false;        ///< rays of a camera that sees none
+    bool without_chance = false;         ///< RayColumns::without_chance
 
     TraceContext(bool beams, const SegmentColumns &rays) : embree(new_context(beams)) {
         std::copy_n(rays.origin, 3, origin);

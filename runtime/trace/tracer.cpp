@@ -150,10 +150,15 @@ std::uint64_t Tracer::Implementation::trace_asked(const RayColumns &ray, std::ui
     const bool as_beams = of_camera || beams(extension_order);
     TraceContext context(as_beams, ray);
     context.passes_emitters = asked == ray_unhindered;
+    context.without_chance = ray.without_chance;
     if (record)
         record->of_camera = of_camera;
     alignas(64) RTCRayHit16 packet;
     prepare_packet(packet.ray);
+    const auto opacity_of = [&](int lane, std::uint32_t number) {
+        return scene.opacity_of(packet.hit.instID[0][lane], packet.hit.geomID[lane], packet.hit.primID[lane],
+                                axis_values(ray.origin, number), axis_values(ray.direction, number));
+    };
     for_each_packet(rows, ordering.groups(), as_beams, [&](const std::uint32_t *row, int lanes) {
         fill_packet(packet.ray, ray, row, std::numeric_limits<float>::infinity());
         for (int lane = 0; lane < packet_width; ++lane)
@@ -175,10 +180,9 @@ std::uint64_t Tracer::Implementation::trace_asked(const RayColumns &ray, std::ui
             if (ray.instance && geometry != RTC_INVALID_GEOMETRY_ID)
                 ray.instance[row[lane]] = scene.instance_record(instance);
             if (ray.opacity && geometry != RTC_INVALID_GEOMETRY_ID)
-                ray.opacity[row[lane]] = std::uint32_t(double(ray_opacity_one) *
-                                                       scene.opacity_of(instance, geometry, packet.hit.primID[lane],
-                                                                        axis_values(ray.origin, row[lane]),
-                                                                        axis_values(ray.direction, row[lane])));
+                ray.opacity[row[lane]] = std::uint32_t(double(ray_opacity_one) * opacity_of(lane, row[lane]));
+            if (ray.without_chance && geometry != RTC_INVALID_GEOMETRY_ID && opacity_of(lane, row[lane]) < 1)
+                ray.primitive[row[lane]] = ray_none;
         }
     });
     return rows.size();

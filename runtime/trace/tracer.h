@@ -21,6 +21,9 @@ struct RayColumns : SegmentColumns {
     /// Out, where asked for: the opacity of what was hit, there, in ray_opacity_one. A surface of opacity 0.5 is hit by
     /// half of the rays, and photons on it are half of those that arrive.
     std::uint32_t *opacity = nullptr;
+    /// Whoever traces a path's segments again, by rays that differ in rounding, may not have chance decide anew: these
+    /// meet whatever is not open altogether, and find nothing (ray_none) where chance would have decided.
+    bool without_chance = false;
 };
 
 /// The host's view of the columns of a shadow table: see GRADUS_SHADOW_COLUMNS.

@@ -209,9 +209,12 @@ std::vector<std::uint32_t> ManifoldWalk::sort(std::uint32_t rows) {
 
 void ManifoldWalk::trace(std::uint32_t rows) {
     session_.ask_to_go_on();
-    const TraceCounts traced = session_.segments.trace(
-        {&(*tables_)["walk_ray"], chain_rows_, rows, walk_ray_origin_x, walk_ray_direction_x, walk_ray_primitive}, {});
-    session_.rays["walk"] += traced.extension;
+    SegmentTable rays{&(*tables_)["walk_ray"], chain_rows_,          rows,
+                      walk_ray_origin_x,       walk_ray_direction_x, walk_ray_primitive};
+    // A walk back traces the chain that is there again, and what that has met or passed by chance is decided. Where
+    // there is such a surface on either way, none leads back or forth.
+    rays.without_chance = true;
+    session_.rays["walk"] += session_.segments.trace(rays, {}).extension;
 }
 
 } // namespace gradus

@@ -206,7 +206,7 @@ TraceCounts SegmentTracer::trace(const SegmentTable &rays, const SegmentTable &s
             if (round.rays.count > 0) {
                 rays_on_host->arrive();
                 ray_view.emplace(*rays_on_host, rays, round.rays, precision_);
-                ray = {ray_view->columns, ray_view->answer, ray_view->instance, ray_view->opacity};
+                ray = {ray_view->columns, ray_view->answer, ray_view->instance, ray_view->opacity, rays.without_chance};
             }
             if (round.segments.count > 0) {
                 segments_on_host->arrive();

@@ -22,8 +22,9 @@ struct SegmentTable {
     std::uint32_t line = 0;                    ///< SegmentColumns::line
     /// SegmentColumns::alike_from
     std::size_t alike_from = std::numeric_limits<std::size_t>::max();
-    int instance = -1; ///< the column of the second answer, where there are instances: RayColumns::instance
-    int opacity = -1;  ///< that of the third, where it is asked for: RayColumns::opacity
+    int instance = -1;           ///< the column of the second answer, where there are instances: RayColumns::instance
+    int opacity = -1;            ///< that of the third, where it is asked for: RayColumns::opacity
+    bool without_chance = false; ///< RayColumns::without_chance
 };
 
 /// What Session hands tables to its tracer by.

@@ -107,9 +107,9 @@ class Tables {
     std::uint64_t grown_ = 0;
 };
 
-/// Rows for so many, a few more than those: an odd number of cache lines. For tables of which kernels read or write many
-/// columns at once, at rows that are not quite in order: columns a power of two apart would share the same few lines of
-/// the caches. Where rows are in order, as most of paths are, it gains nothing.
+/// Rows for so many, a few more than those: an odd number of cache lines. For tables of which kernels read or write
+/// many columns at once, at rows that are not quite in order: columns a power of two apart would share the same few
+/// lines of the caches. Where rows are in order, as most of paths are, it gains nothing.
 std::uint32_t odd_lines(std::uint32_t rows);
 
 /// Passes are this many batches long.

@@ -69,23 +69,51 @@ TEST(ReconnectionStability, ToPlatesSeenFromTheBack) {
                     "the shift fails for both directions alike; primal and differences are unbiased", 0.15});
 }
 
-// A lamp lights the floor by a two-sided card alone, whose normals lean by 53 degrees: along the floor the card is seen
-// from the front, then from behind, by these, and always from the front by its own. Normals of a mesh that are averaged
-// over its edges do as much.
-TEST(ReconnectionStability, ToTheOtherSideByShadingNormals) {
+/// A lamp lights the floor by a two-sided card alone, whose normals lean by 53 degrees: along the floor the card is
+/// seen from the front, then from behind, by these, and always from the front by its own. Normals of a mesh that are
+/// averaged over its edges do as much. `glow`: what the card emits.
+GradientBias bias_under_a_leaning_card(float glow) {
     SceneMaker scene = scene_for_bias(3);
     scene.floor(-9, 9, 9, scene.material(diffuse(0.8)));
-    scene.parallelogram({-2, 2, -2}, {4, 0, 0}, {0, 0, 4}, scene.material(two_sided(diffuse(0.9))));
+    const std::int32_t of_card = glow > 0 ? scene.emitter(Emitter::Kind::area, {glow, glow, glow}) : -1;
+    scene.parallelogram({-2, 2, -2}, {4, 0, 0}, {0, 0, 4}, scene.material(two_sided(diffuse(0.9))), of_card);
     scene.scene.meshes.back().normals.assign(4, {-0.8f, -0.6f, 0});
     const std::int32_t light = scene.emitter(Emitter::Kind::area, {50, 50, 50});
     scene.parallelogram({-4, 0.05f, -1}, {0, 0, 2}, {1, 0, 0}, scene.material(diffuse(0)), light);
     scene.look({1, 1.8, -1.8}, {1, 0, 0}, 45);
-    expect_no_bias(gradient_bias(scene.scene, {8, 1024, 2048}),
-                   {area,
-                    "two-sided vertices that base and offset path see from different sides by the shading normal: each "
-                    "has the vertex in a frame of its own",
+    return gradient_bias(scene.scene, {8, 1024, 2048});
+}
+
+constexpr const char *other_side = "two-sided vertices that base and offset path see from different sides by the "
+                                   "shading normal: each has the vertex in a frame of its own";
+
+TEST(ReconnectionStability, ToTheOtherSideByShadingNormals) {
+    expect_no_bias(bias_under_a_leaning_card(0),
+                   {area, other_side,
                     "a floor under a wide card whose normals lean by 53 degrees, which alone sees the lamp",
                     "the shift fails for both directions alike; primal and differences are unbiased", 0.25});
+}
+
+TEST(ReconnectionStability, ToTheOtherSideOfWhatGlows) {
+    expect_no_bias(bias_under_a_leaning_card(0.3f),
+                   {area, other_side, "such a card, which also glows",
+                    "paths end there by its light; those that go on fail alike both ways; unbiased", 0.25});
+}
+
+// Stripes of chalk and metal, which find the lamp by quite different densities, under a lamp whose normals lean.
+TEST(ReconnectionStability, ToALampFromEitherSideByShadingNormals) {
+    SceneMaker scene = scene_for_bias(2);
+    const std::uint32_t stripes[] = {scene.material(diffuse(0.7)), scene.material(two_sided(rough_metal(0.1)))};
+    for (int i = 0; i < 16; ++i)
+        scene.floor(0.08f * float(i - 8), 0.08f * float(i - 7), 2, stripes[i % 2]);
+    const std::int32_t light = scene.emitter(Emitter::Kind::area, {3, 3, 3});
+    scene.parallelogram({0.447f, 0.7f, -1}, {0.16f, 0, 0}, {0, 0, 2}, scene.material(two_sided(diffuse(0.5))), light);
+    scene.scene.meshes.back().normals.assign(4, {0.8f, -0.6f, 0});
+    scene.look({-1.8, 2.4, 0}, {0, 0, 0}, 20);
+    expect_no_bias(gradient_bias(scene.scene, {8, 512, 1024}),
+                   {area, "a lamp that base and offset path see from different sides by its shading normal",
+                    "stripes of chalk and metal under a lamp whose normals lean by 53 degrees",
+                    "its light knows of no side: paths reconnect and end there; unbiased", 0.1});
 }
 
 // A lamp that stands on the floor: its lower border is where floor and lamp meet, and the floor behind it is dark. The
