@@ -137,6 +137,28 @@ TEST(GradientPhotonImage, HasQuietDifferencesOfThePrimalUnderAWallWithANormalMap
     EXPECT_LT(expect_differences_of_the_primal("mapped-wall", maker.scene, options), 0.01);
 }
 
+/// By a mirror in a mask, and past a pane that half of the rays pass: where chance decides whether a chain is there, it
+/// decides once.
+TEST(GradientPhotonImage, HasDifferencesOfThePrimalByMirrorsInAMask) {
+    SceneMaker maker(16, passes);
+    maker.look({0, 2, 1.5f}, {0, 0, 0}, 30);
+    maker.scene.settings.max_depth = 4;
+    maker.scene.textures = {random_texture(3, 3, Bitmap::Format::word, false, 6)};
+    Material masked = two_sided(mirror()), pane = two_sided(diffuse(0));
+    masked.opacity.texture = 0;
+    pane.opacity = 0.4f;
+    maker.floor(-1, 1, 1, maker.material(diffuse(0.6)));
+    maker.parallelogram({0.8f, 0, 0.9f}, {0, 0, -0.9f}, {0.2f, 1.2f, 0}, maker.material(masked));
+    maker.parallelogram({0.8f, 0, 0}, {0, 0, -0.9f}, {0.2f, 1.2f, 0}, maker.material(two_sided(mirror())));
+    maker.parallelogram({0.2f, 0.9f, -0.5f}, {0, 0, -0.5f}, {0.2f, 0.9f, 0}, maker.material(pane));
+    maker.point_light({9, 9, 9}, {-0.4f, 1.6f, 0});
+    RenderOptions options = few_photons();
+    options.only_chains = true;
+    const std::map<std::string, std::uint64_t> shifts = render(maker.scene, options, "gpm").statistics.shifts;
+    EXPECT_GT(shifts.at("walked"), 500u); // by the plain mirror
+    expect_differences_of_the_primal("masks", maker.scene, options);
+}
+
 /// Surfaces whose photons stay where they are beside others of the same kind, where they are moved: mirrors and walls
 /// under a bump map, painted glass. Neither shifts nor walks mix them up.
 TEST(GradientPhotonImage, HasDifferencesOfThePrimalBesideMapsAndPaintedGlass) {
@@ -221,7 +243,14 @@ TEST(GradientPhotonImage, HasTheDifferencesOfMirrorsByGlossyMetalAndGlass) {
 /// What throws a picture whose colours are another in each direction, downwards.
 Emitter picture_thrower(SceneMaker &maker, Emitter::Kind kind, Vector3 position) {
     maker.scene.textures.push_back(random_texture(7, 5, Bitmap::Format::word, true));
-    maker.scene.textures.back().wrap = Texture::Wrap::clamp;
+    Texture &picture = maker.scene.textures.back();
+    picture.wrap = Texture::Wrap::clamp;
+    if (kind == Emitter::Kind::projector) { // black in part
+        picture = Texture();
+        picture.kind = Texture::Kind::checkerboard;
+        picture.color_0 = {1, 0.7f, 0.4f};
+        picture.color_1 = {0, 0, 0};
+    }
     Emitter emitter;
     emitter.kind = kind;
     emitter.value = {2, 2, 2};
