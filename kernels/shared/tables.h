@@ -512,8 +512,8 @@ GRADUS_COLUMN_ENUM(splat, GRADUS_SPLAT_COLUMNS) /* its rows are its writer's */
 #define shift_first_failed R(0)
 #define shift_first_absent R(-1.75)
 
-/* shift_outcome holds these beside the outcome: where base and offset vertex are rough; where both see a lamp whose
- * surface they meet from different sides, so that they can only end there. */
+/* shift_outcome holds these beside the outcome: where base and offset vertex are rough; where the paths can only end.
+ */
 #define shift_both_rough 0x100u
 #define shift_ends 0x200u
 #define shift_outcome_of(outcome) ((outcome)&0xFFu)

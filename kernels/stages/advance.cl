@@ -1,6 +1,6 @@
 /* advance: offset paths follow their base paths, which have taken rows `to` on from places `first` on of the index:
  * their state moves to the new rows. Those that reconnected to what they do not see have failed; so have all that could
- * only end there: where the vertex is not rough, or of another side (shift_ends).
+ * only end there: where the vertex is not rough, or met from another side (shift_ends).
  *
  * APART: some have vertices of their own, which their rays have met. */
 //! traits: TRAIT_APART
@@ -43,15 +43,17 @@ STAGE advance(uint count, uint unit, uint first, uint to, uint stride, uint capa
         const real ratio = AT_IN(offset_old, offset, ratio, from);
         const int open = AT_UINT(link, open, (int)((4u + j) * stride) + old) != 0u;
         int holds = open;
+        uint reason = outcome_failed_kinds;
 #if SIDE_BY_SHADING
         holds &= (AT_UINT(shift, outcome, from) & shift_ends) == 0u;
+        reason = holds ? reason : outcome_failed_side;
 #endif
 #if TRAIT_APART
         const uint state = AT_UINT_IN(offset_old, offset, state, from);
         holds = (holds & is_rough) | (state != connection_recent);
         AT_UINT(offset, state, at) = state;
 #endif
-        const real failed = shift_failed(open ? outcome_failed_kinds : outcome_failed_hidden);
+        const real failed = shift_failed(open ? reason : outcome_failed_hidden);
         AT(offset, ratio, at) = ratio < R(0) || holds ? ratio : failed;
         const rgb value = AT_RGB_IN(offset_old, offset, value, from);
         SET_RGB(offset, value, at, value);

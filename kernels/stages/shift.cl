@@ -13,11 +13,10 @@
  * path. Where it is the Dirac one, the offset path takes its own Dirac lobe, whatever kind that is of; rough ones
  * likewise.
  *
- * The step fails where the next vertex would be seen from its other side, by the geometric normal or, where the
- * material is two-sided, by the shading normal, which turns its frame (SIDE_BY_SHADING): each of both paths would have
- * the vertex in a frame of its own, in which the other one counts for nothing. A lamp's light knows of no frame, so
- * that paths may end there (shift_ends). It fails between a Dirac lobe and a rough one, too, and where the half-vector
- * copy does.
+ * The step fails where the next vertex would be seen from its other side, between a Dirac lobe and a rough one, and
+ * where the half-vector copy does. Where the vertex is two-sided and seen from its other side by the shading normal
+ * alone, which turns its frame (SIDE_BY_SHADING), each of both paths has it in a frame of its own, in which the other
+ * one counts for nothing: then they end there together (shift_ends), by light that it may emit.
  *
  * BSDF: where all that is not connected is at vertices of one kind, it is inlined, and what would be asked is answered
  * at once. */
@@ -118,7 +117,6 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
 #if SIDE_BY_SHADING
     const vec3 end_shading = shading_normal_at(triangle_normals, unit, triangle_count, present, hit);
     const int end_turns = (OF_PRIMITIVE(primitive_material, material, present) & material_two_sided) != 0u;
-    const int end_emits = LIGHT_OF_PRIMITIVE(primitive_light, present) != no_light;
     const int base_from_behind = v3_dot(end_shading, base_direction) > R(0);
 #endif
     const real pdf = AT(event, pdf, row);
@@ -308,13 +306,11 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         const vec3 connection = v3_sub(hit.position, from_after);
         const vec3 to_next = v3_select(is_escaped, base_direction, v3_normalize(connection));
         const real reconnection = is_escaped ? R(1) : reconnection_jacobian(base, from_after, hit.position, hit.normal);
-        int same_side = is_escaped | (-v3_dot(hit.normal, connection) * base_side > R(0));
+        const int same_side = is_escaped | (-v3_dot(hit.normal, connection) * base_side > R(0));
         uint ends = 0u;
 #if SIDE_BY_SHADING
         const int from_behind = v3_dot(end_shading, v3_after(to_next, reconnection)) > R(0);
-        const int turns = !is_escaped & end_turns & (from_behind != base_from_behind);
-        same_side &= !turns | end_emits;
-        ends = turns ? shift_ends : 0u;
+        ends = is_hit & end_turns & (from_behind != base_from_behind) ? shift_ends : 0u;
 #endif
 #if TRAIT_APART
         const int both_rough = base_is_rough & ((kind & kind_is_rough) != 0u);
