@@ -113,7 +113,7 @@ TEST(ReconnectionStability, ToALampFromEitherSideByShadingNormals) {
     expect_no_bias(gradient_bias(scene.scene, {8, 512, 1024}),
                    {area, "a lamp that base and offset path see from different sides by its shading normal",
                     "stripes of chalk and metal under a lamp whose normals lean by 53 degrees",
-                    "its light knows of no side: paths reconnect and end there; unbiased", 0.1});
+                    "its light knows of no side: paths reconnect and end there; unbiased", 0.04});
 }
 
 // A lamp that stands on the floor: its lower border is where floor and lamp meet, and the floor behind it is dark. The
