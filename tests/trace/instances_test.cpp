@@ -225,7 +225,12 @@ TEST(InstanceTracing, TakesSoMuchMemory) {
     const double an_instance = double(resident_bytes() - before) / double(count);
     std::printf("an instance takes %.0f bytes; Embree counts %.0f\n", an_instance,
                 double(tracer.memory_bytes()) / double(count));
-    EXPECT_LT(an_instance, 500);
+#ifdef __SANITIZE_ADDRESS__
+    constexpr double most = 1000; // it keeps room around each allocation
+#else
+    constexpr double most = 500;
+#endif
+    EXPECT_LT(an_instance, most);
 }
 
 } // namespace
