@@ -17,7 +17,7 @@
     FIELD(light_vertex, wi_x, "unit vector to the vertex before, world frame")                                         \
     FIELD(light_vertex, wi_y, "")                                                                                      \
     FIELD(light_vertex, wi_z, "")                                                                                      \
-    FIELD(light_vertex, power_r, "flux that arrives, as a photon's; of a beam its light's value by chance")              \
+    FIELD(light_vertex, power_r, "flux that arrives, as a photon's; of a beam its light's value by chance")            \
     FIELD(light_vertex, power_g, "")                                                                                   \
     FIELD(light_vertex, power_b, "")                                                                                   \
     FIELD(light_vertex, offset, "how far a new ray starts off the surface; of a light chain_start_at_infinity or 0")   \
@@ -34,7 +34,7 @@
 /* The whole numbers of these records, in a table of their own. */
 #define GRADUS_LIGHT_VERTEX_MARKS(FIELD)                                                                               \
     FIELD(light_vertex_mark, material, "record of the material on this side, or light_vertex_on_surface...")           \
-    FIELD(light_vertex_mark, primitive, "of a light its number")                                                                            \
+    FIELD(light_vertex_mark, primitive, "of a light its number")                                                       \
     FIELD(light_vertex_mark, before, "the record of the vertex before; light_vertex_none for the light itself")        \
     FIELD(light_vertex_mark, mirrors, "only with TRAIT_MIXED_LOBES: whether the path goes on so")
 
