@@ -17,7 +17,7 @@
     FIELD(light_vertex, wi_x, "unit vector to the vertex before, world frame")                                         \
     FIELD(light_vertex, wi_y, "")                                                                                      \
     FIELD(light_vertex, wi_z, "")                                                                                      \
-    FIELD(light_vertex, power_r, "flux that arrives, as a photon's; of a beam its light's value by chance")            \
+    FIELD(light_vertex, power_r, "flux that arrives, as a photon's; of a beam light_emission.value")                   \
     FIELD(light_vertex, power_g, "")                                                                                   \
     FIELD(light_vertex, power_b, "")                                                                                   \
     FIELD(light_vertex, offset, "how far a new ray starts off the surface; of a light chain_start_at_infinity or 0")   \
