@@ -1,6 +1,5 @@
 #include "driver/commands.h"
 #include "driver/device_options.h"
-#include "driver/number_checks.h"
 #include "driver/scene_request.h"
 #include "driver/standard_streams.h"
 #include "driver/tuning_store.h"

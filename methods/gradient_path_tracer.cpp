@@ -66,7 +66,7 @@ GradientPathTracer::GradientPathTracer(Device &device, const Scene &scene, const
       join_(stages_.add({.name = "join", .by_kind = true, .dirac = DiracKinds::alike, .numbers = {"first", "keeps"}})),
       count_(stages_.add(count_stage())), film_(session_, stages_, options_, "outcome") {
     const std::vector<std::uint32_t> kinds = material_kinds(scene, options.shift_threshold);
-    session_.scene_buffers.emplace_back(device, "material_kind", kinds.data(), kinds.size() * sizeof(kinds[0]));
+    session_.add_scene_buffer("material_kind", kinds);
     total_ = session_.pixels() * session_.settings.samples_per_pixel;
     allocate();
 }

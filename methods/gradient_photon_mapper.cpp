@@ -67,8 +67,8 @@ std::string reason_against_gpm(const Scene &scene) {
 }
 
 GradientPhotonMapper::GradientPhotonMapper(Device &device, const Scene &scene, const RenderOptions &options)
-    : options_(options), session_(device, checked_for_gathering(checked(scene), options), options,
-                                  light_vertex_traits(scene, options)),
+    : options_(options),
+      session_(device, checked_for_gathering(checked(scene), options), options, light_vertex_traits(scene, options)),
       walked_kinds_(walked_kinds(scene, options)), paths_(session_, stages_, scene, options, true),
       photons_(session_, stages_, scene, options, 0.5, needs_halves(options.reconstruction)), pairs_(stages_, true),
       bin_(stages_.add({.name = "gather_bin"})),
@@ -106,12 +106,9 @@ GradientPhotonMapper::GradientPhotonMapper(Device &device, const Scene &scene, c
     if (has_chains())
         manifold_walk_.emplace(session_, stages_, WalkSettings{.most_vertices = most_inner});
     const std::vector<std::string> &kinds = session_.scene.kinds;
-    const auto add_by_material = [&](const char *name, const std::vector<std::uint32_t> &values) {
-        session_.scene_buffers.emplace_back(device, name, values.data(), values.size() * sizeof(values[0]));
-    };
-    add_by_material("material_bin", bins_of_kinds(scene, kinds));
-    add_by_material("leaving_bin", bins_of_leaving(scene, kinds, options));
-    add_by_material("walked_kind", kinds_for_walks(scene, options.gather_roughness));
+    session_.add_scene_buffer("material_bin", bins_of_kinds(scene, kinds));
+    session_.add_scene_buffer("leaving_bin", bins_of_leaving(scene, kinds, options));
+    session_.add_scene_buffer("walked_kind", kinds_for_walks(scene, options.gather_roughness));
     statistics_.surfaces = gathering_surfaces(scene, options.gather_roughness);
     total_ = std::uint64_t(session_.pixels()) * session_.settings.samples_per_pixel;
     allocate();

@@ -20,10 +20,7 @@ typedef struct {
 GRADUS_FN light_beam light_beam_towards(GRADUS_GLOBAL const real *lights, GRADUS_GLOBAL const uint *light_kinds,
                                         uint light, uint unit, vec3 direction LIGHT_TEXTURE_PARAMETERS) {
     const vec3 axis = LIGHT_V3(light, e1);
-    uint kind = 0u;
-#if LIGHT_KINDS > 1
-    kind = OF_LIGHT(light_kinds, light, 1u, 0u);
-#endif
+    const uint kind = KIND_OF_LIGHT(light);
     (void)light_kinds, (void)kind;
     light_beam beam;
     real intensity = R(0);

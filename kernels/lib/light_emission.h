@@ -160,10 +160,7 @@ GRADUS_FN light_emission emission_sampling(GRADUS_GLOBAL const real *lights, GRA
 #if TRAIT_LIGHT_TRIANGLE || TRAIT_LIGHT_SPHERE
     const real offset = LIGHT_FIELD(light, offset);
 #endif
-    uint kind = 0u;
-#if LIGHT_KINDS > 1
-    kind = OF_LIGHT(light_kinds, light, 1u, 0u);
-#endif
+    const uint kind = KIND_OF_LIGHT(light);
     (void)kind;
     point2 on_light, away;
     on_light.x = choice.c;

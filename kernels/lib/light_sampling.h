@@ -14,9 +14,11 @@
     (TRAIT_LIGHT_TRIANGLE + TRAIT_LIGHT_SPHERE + TRAIT_LIGHT_POINT + TRAIT_LIGHT_DIRECTIONAL + TRAIT_LIGHT_CONSTANT +  \
      TRAIT_LIGHT_ENVIRONMENT + TRAIT_LIGHT_SPOT + LIGHTS_HAVE_PROJECTORS)
 #if LIGHT_KINDS > 1
+#define KIND_OF_LIGHT(light) OF_LIGHT(light_kinds, light, 1u, 0u)
 #define IS_LIGHT_KIND(name) (kind == light_kind_##name)
 #define IS_LIGHT(chosen, name, trait) ((trait) && (chosen).kind == light_kind_##name)
 #else
+#define KIND_OF_LIGHT(light) 0u
 #define IS_LIGHT_KIND(name) 1
 #define IS_LIGHT(chosen, name, trait) (trait)
 #endif
@@ -179,10 +181,7 @@ light_sampling(GRADUS_GLOBAL const real *lights, GRADUS_GLOBAL const uint *light
 #if TRAIT_LIGHT_TRIANGLE || TRAIT_LIGHT_SPHERE || TRAIT_LIGHT_ENVIRONMENT || TRAIT_LIGHT_SPOT || LIGHTS_HAVE_PROJECTORS
     const vec3 e1 = LIGHT_V3(light, e1);
 #endif
-    uint kind = 0u;
-#if LIGHT_KINDS > 1
-    kind = OF_LIGHT(light_kinds, light, 1u, 0u);
-#endif
+    const uint kind = KIND_OF_LIGHT(light);
 
     /* Every kind that the scene has is computed, and the one chosen is kept: loads behind conditions, and conditions
      * around so much, keep PoCL from vectorising. */

@@ -72,7 +72,8 @@ GRADUS_LIB_END
 
 /* What textures are worth at a vertex: records of textured_columns numbers (kernels/lib/textured_material.h), in a
  * table that only scenes with textures have. */
-#if TRAIT_TEXTURED || TRAIT_TEXTURED_NORMALS
+#define LIGHT_VERTICES_HAVE_TEXTURES (TRAIT_TEXTURED || TRAIT_TEXTURED_NORMALS)
+#if LIGHT_VERTICES_HAVE_TEXTURES
 #define LIGHT_VERTEX_TEXTURES_ARGUMENT , __global const real *light_vertex_textures
 #define LIGHT_VERTEX_TEXTURES , light_vertex_textures
 #else

@@ -43,7 +43,7 @@ STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint ma
 #if TRAIT_LIGHT_VERTICES
               ,
               __global real *light_vertices, __global uint *light_vertex_marks, uint to_vertex
-#if TRAIT_TEXTURED || TRAIT_TEXTURED_NORMALS
+#if LIGHT_VERTICES_HAVE_TEXTURES
               ,
               __global real *light_vertex_textures
 #endif
@@ -126,6 +126,7 @@ STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint ma
     const real chance = is_turned ? turned_chance : R(1) - turned_chance;
     const bsdf_sample s = mapped_sample(sampled, is_seen ? mapped_factor(place.flags, place.own, wi) / chance : R(0));
 #else
+    const real chance = R(1);
     const bsdf_sample s = sampled;
 #endif
     real turned = R(1);
@@ -149,11 +150,7 @@ STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint ma
     FIELD_OF(light_vertex, light_vertices, record, power_g) = arriving.g;
     FIELD_OF(light_vertex, light_vertices, record, power_b) = arriving.b;
     FIELD_OF(light_vertex, light_vertices, record, offset) = point.offset;
-#if TRAIT_TEXTURED_NORMALS
     FIELD_OF(light_vertex, light_vertices, record, pdf) = s.pdf * chance;
-#else
-    FIELD_OF(light_vertex, light_vertices, record, pdf) = s.pdf;
-#endif
     FIELD_OF(light_vertex, light_vertices, record, survival) = survival;
 #if TRAIT_SHADING_NORMALS || TRAIT_ANISOTROPIC
     SET_FIELD_V3(light_vertex, light_vertices, record, shading, point.shading);
@@ -171,7 +168,7 @@ STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint ma
     FIELD_OF(light_vertex_mark, light_vertex_marks, record, mirrors) = 0u;
 #endif
 #endif
-#if TRAIT_TEXTURED || TRAIT_TEXTURED_NORMALS
+#if LIGHT_VERTICES_HAVE_TEXTURES
 #pragma unroll
     for (uint c = 0; c < (uint)textured_columns; ++c)
         (light_vertex_textures + c * (size_t)unit)[record * (uint)textured_columns] =

@@ -21,7 +21,6 @@
  * BSDF: where all that is not connected is at vertices of one kind, it is inlined, and what would be asked is answered
  * at once. */
 //! traits: TRAIT_SHIFT_DISTANCE TRAIT_ENVIRONMENT TRAIT_MIXED_LOBES TRAIT_LIGHT_TREE SAMPLES_LIGHTS
-//! traits: TRAIT_TWO_SIDED TRAIT_SHADING_NORMALS TRAIT_TWO_FACED TRAIT_APART
 #include "kernels/lib/bsdf_evaluate.h"
 #include "kernels/lib/bsdf_frame.h"
 #include "kernels/lib/gradient.h"

@@ -57,8 +57,7 @@ GatherPaths::GatherPaths(Session &session, Stages &stages, const Scene &scene, c
       travel_(stages.add(wanted_if({.name = "travel", .numbers = {"first"}}, has_smooth_))),
       gather_(stages.add(gather_stage(features_, planes))),
       shade_(stages.add(wanted_if(shade_stage(false), has_smooth_ || samples_lights_))) {
-    const std::vector<std::uint32_t> kinds = material_kinds(scene, options.gather_roughness);
-    session.scene_buffers.emplace_back(session.device, "material_kind", kinds.data(), kinds.size() * sizeof(kinds[0]));
+    session.add_scene_buffer("material_kind", material_kinds(scene, options.gather_roughness));
     session.numbers["bins_of_phase"] = static_cast<std::uint32_t>(2 * session.scene.kinds.size());
 }
 

@@ -174,11 +174,8 @@ LightPaths::LightPaths(Session &session, Stages &consumers, const Scene &scene, 
       place_(stages_.add(photons_stage("place", {"rows"}))), order_(stages_.add(order_stage())) {
     if (wanted_ > std::numeric_limits<std::int32_t>::max())
         throw Error(ExitCode::usage, "there can be 2^31 - 1 light paths a pass at most");
-    const std::vector<std::uint32_t> gathers = gathers_by_material(scene, options.gather_roughness);
-    session.scene_buffers.emplace_back(session.device, "material_gathers", gathers.data(),
-                                       gathers.size() * sizeof(gathers[0]));
-    const std::vector<std::uint32_t> keeps = keeps_by_material(scene, options.gather_roughness);
-    session.scene_buffers.emplace_back(session.device, "material_keeps", keeps.data(), keeps.size() * sizeof(keeps[0]));
+    session.add_scene_buffer("material_gathers", gathers_by_material(scene, options.gather_roughness));
+    session.add_scene_buffer("material_keeps", keeps_by_material(scene, options.gather_roughness));
     const TableList list = own_tables(session, paths_);
     const std::uint32_t batch =
         choose_batch_size(session.device, session.options.batch_size,

@@ -195,11 +195,7 @@ Scene SceneBuilder::build() {
     Properties scene(root, of_scene, resolve_, diagnostics_);
     const auto each = [&](const char *tag, auto &&function) {
         for (const NestedObject &object : scene.objects(tag))
-            try {
-                function(*object.element);
-            } catch (const SceneError &error) {
-                diagnostics_.error(error);
-            }
+            tell_errors([&] { function(*object.element); });
     };
     try {
         each("integrator", [&](const Element &element) { build_integrator(element); });

@@ -135,6 +135,15 @@ class SceneBuilder {
                      std::deque<ShapeInLine> &line);
     void build_line(std::deque<ShapeInLine> &line, std::vector<Prototype> *group);
     void check_parts(const Element &shape);
+    /// Does work on one object, and tells what is wrong with it.
+    template <class Work>
+    void tell_errors(Work work) {
+        try {
+            work();
+        } catch (const SceneError &error) {
+            diagnostics_.error(error);
+        }
+    }
     void finish(ShapeInLine &shape, std::vector<Prototype> *group);
     void add_shape(const Element &element, std::variant<BuiltMesh, Sphere> geometry, std::int32_t group = no_group);
     KnownGroup &known_group(const Element &element);

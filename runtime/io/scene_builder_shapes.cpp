@@ -175,15 +175,8 @@ void SceneBuilder::build_line(std::deque<ShapeInLine> &line, std::vector<Prototy
 
 /// Of a shape that is not built, what else is wrong with it.
 void SceneBuilder::check_parts(const Element &shape) {
-    const auto check = [&](auto &&build) {
-        try {
-            build();
-        } catch (const SceneError &error) {
-            diagnostics_.error(error);
-        }
-    };
-    check([&] { material_of(shape); });
-    check([&] { emitter_of(shape); });
+    tell_errors([&] { material_of(shape); });
+    tell_errors([&] { emitter_of(shape); });
 }
 
 void SceneBuilder::finish(ShapeInLine &shape, std::vector<Prototype> *group) {

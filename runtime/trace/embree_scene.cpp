@@ -39,9 +39,8 @@ void drop_passed(const RTCFilterFunctionNArguments *hits) {
         const float outward = direction.x * RTCHitN_Ng_x(hits->hit, hits->N, lane) +
                               direction.y * RTCHitN_Ng_y(hits->hit, hits->N, lane) +
                               direction.z * RTCHitN_Ng_z(hits->hit, hits->N, lane);
-        const bool is_met = context.without_chance ? opacity.at(number, origin, direction) > 0
-                                                   : opacity.is_met(number, origin, direction);
-        if (!opacity.has_side(number, outward) || (context.passes_emitters && opacity.emits(number)) || !is_met)
+        if (!opacity.has_side(number, outward) || (context.passes_emitters && opacity.emits(number)) ||
+            !opacity.is_met(number, origin, direction, context.without_chance))
             hits->valid[lane] = 0;
     }
 }
@@ -259,11 +258,9 @@ void EmbreeScene::drop_passed_in_instance(const RTCFilterFunctionNArguments *hit
         const unsigned ray = RTCRayN_id(hits->ray, hits->N, lane);
         const std::size_t row = context.rows ? context.rows[ray] : ray;
         const unsigned instance = RTCHitN_instID(hits->hit, hits->N, lane, 0) - first_instance;
-        const unsigned number = RTCHitN_primID(hits->hit, hits->N, lane);
-        const Vector3 origin = axis_values(context.origin, row), direction = axis_values(context.direction, row);
-        const Matrix4 to_world = matrix_of(shape.scene->instances_[instance]);
-        if (!(context.without_chance ? shape.opacity.at(number, origin, direction, to_world) > 0
-                                     : shape.opacity.is_met(number, origin, direction, instance + 1, to_world)))
+        if (!shape.opacity.is_met(RTCHitN_primID(hits->hit, hits->N, lane), axis_values(context.origin, row),
+                                  axis_values(context.direction, row), context.without_chance, instance + 1,
+                                  matrix_of(shape.scene->instances_[instance])))
             hits->valid[lane] = 0;
     }
 }

@@ -127,13 +127,15 @@ float Opacity::at(std::size_t i, const Vector3 &origin, const Vector3 &direction
     return opacity_of(placed, origin, direction);
 }
 
-bool Opacity::is_met(std::size_t i, const Vector3 &origin, const Vector3 &direction) const {
-    return decide(primitives_[i], at(i, origin, direction), origin, direction, 0);
+bool Opacity::is_met(std::size_t i, const Vector3 &origin, const Vector3 &direction, bool without_chance) const {
+    const float opacity = at(i, origin, direction);
+    return without_chance ? opacity > 0 : decide(primitives_[i], opacity, origin, direction, 0);
 }
 
-bool Opacity::is_met(std::size_t i, const Vector3 &origin, const Vector3 &direction, std::uint32_t instance,
-                     const Matrix4 &to_world) const {
-    return decide(primitives_[i], at(i, origin, direction, to_world), origin, direction, instance);
+bool Opacity::is_met(std::size_t i, const Vector3 &origin, const Vector3 &direction, bool without_chance,
+                     std::uint32_t instance, const Matrix4 &to_world) const {
+    const float opacity = at(i, origin, direction, to_world);
+    return without_chance ? opacity > 0 : decide(primitives_[i], opacity, origin, direction, instance);
 }
 
 bool Opacity::decide(const Primitive &primitive, float opacity, const Vector3 &origin, const Vector3 &direction,

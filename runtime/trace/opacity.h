@@ -41,12 +41,12 @@ class Opacity {
     /// The opacity of the i-th primitive where the ray comes to it; with `to_world`, of an instance of its group.
     float at(std::size_t i, const Vector3 &origin, const Vector3 &direction) const;
     float at(std::size_t i, const Vector3 &origin, const Vector3 &direction, const Matrix4 &to_world) const;
-    /// Whether the ray meets the i-th primitive, which lies in its way.
-    bool is_met(std::size_t i, const Vector3 &origin, const Vector3 &direction) const;
+    /// Whether the ray meets the i-th primitive, which lies in its way; `without_chance`: it meets what is not open.
+    bool is_met(std::size_t i, const Vector3 &origin, const Vector3 &direction, bool without_chance) const;
     /// The same of an instance of the group that the primitive is of, by its number from 1 on and where it stands. Each
     /// instance decides anew.
-    bool is_met(std::size_t i, const Vector3 &origin, const Vector3 &direction, std::uint32_t instance,
-                const Matrix4 &to_world) const;
+    bool is_met(std::size_t i, const Vector3 &origin, const Vector3 &direction, bool without_chance,
+                std::uint32_t instance, const Matrix4 &to_world) const;
 
   private:
     /// Where the opacity is a texture: what tells (u, v).

@@ -177,11 +177,13 @@ std::uint64_t Tracer::Implementation::trace_asked(const RayColumns &ray, std::ui
             ray.primitive[row[lane]] = geometry == RTC_INVALID_GEOMETRY_ID
                                            ? ray_escaped
                                            : scene.primitive_of(instance, geometry, packet.hit.primID[lane]);
-            if (ray.instance && geometry != RTC_INVALID_GEOMETRY_ID)
+            if (geometry == RTC_INVALID_GEOMETRY_ID)
+                continue;
+            if (ray.instance)
                 ray.instance[row[lane]] = scene.instance_record(instance);
-            if (ray.opacity && geometry != RTC_INVALID_GEOMETRY_ID)
+            if (ray.opacity)
                 ray.opacity[row[lane]] = std::uint32_t(double(ray_opacity_one) * opacity_of(lane, row[lane]));
-            if (ray.without_chance && geometry != RTC_INVALID_GEOMETRY_ID && opacity_of(lane, row[lane]) < 1)
+            if (ray.without_chance && opacity_of(lane, row[lane]) < 1)
                 ray.primitive[row[lane]] = ray_none;
         }
     });

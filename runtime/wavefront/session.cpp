@@ -190,8 +190,7 @@ void add_class_numbers(Session &session) {
     for (std::uint32_t &number : numbers)
         if (!session.is_left_to_material(session.material_classes.classes[number]))
             number = bin_none;
-    session.scene_buffers.emplace_back(session.device, "material_class", numbers.data(),
-                                       numbers.size() * sizeof(numbers[0]));
+    session.add_scene_buffer("material_class", numbers);
 }
 
 } // namespace

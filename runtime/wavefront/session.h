@@ -48,6 +48,10 @@ struct Session {
             throw Stopped();
     }
 
+    /// One more scene buffer.
+    void add_scene_buffer(const std::string &name, const std::vector<std::uint32_t> &values) {
+        scene_buffers.emplace_back(device, name, values.data(), values.size() * sizeof(values[0]));
+    }
     bool has(const char *trait) const { return traits.at(trait) != 0; }
     std::uint32_t pixels() const { return film.crop_width * film.crop_height; }
     std::uint32_t max_depth() const;

@@ -43,17 +43,9 @@ Texture picture() {
 /// A spot or a projector above the floor, that looks down.
 void throw_picture(SceneMaker &maker, Emitter::Kind kind) {
     maker.scene.textures.push_back(picture());
-    Emitter emitter;
-    emitter.kind = kind;
-    emitter.value = {3, 3, 3};
-    emitter.texture = std::int32_t(maker.scene.textures.size()) - 1;
-    emitter.position = {0.2f, 1.8f, 0.1f};
-    emitter.axes = {{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}};
-    emitter.direction = emitter.axes[2];
-    emitter.picture = {1.2f, 0.9f};
+    Emitter &emitter = maker.picture(kind, {3, 3, 3}, maker.scene.textures.size() - 1, {0.2f, 1.8f, 0.1f}, 1.2f, 0.9f);
     emitter.cutoff = 0.5f;
     emitter.beam = 0.3f;
-    maker.scene.emitters.push_back(emitter);
 }
 
 /// A floor and a glossy wall under a lamp and beside a ball, close to both; and a mirror, in which the lamp is seen.

@@ -17,17 +17,9 @@ namespace {
 
 /// A spot or a projector that looks at the middle from above.
 void add_picture(SceneMaker &maker, Emitter::Kind kind, std::int32_t texture, const Vector3 &position) {
-    Emitter emitter;
-    emitter.kind = kind;
-    emitter.value = {3, 4, 5};
-    emitter.texture = texture;
-    emitter.position = position;
-    emitter.axes = {{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}};
-    emitter.direction = emitter.axes[2];
-    emitter.picture = {1.2f, 0.9f};
+    Emitter &emitter = maker.picture(kind, {3, 4, 5}, std::size_t(texture), position, 1.2f, 0.9f);
     emitter.cutoff = 0.6f;
     emitter.beam = 0.2f;
-    maker.scene.emitters.push_back(emitter);
 }
 
 Emitters make_case() {

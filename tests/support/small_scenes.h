@@ -100,6 +100,16 @@ struct SceneMaker {
         spot.beam = float(beam * std::numbers::pi / 180);
         spot.cutoff = float(cutoff * std::numbers::pi / 180);
     }
+    /// A spot or a projector that throws a texture straight down, so wide and high at distance 1.
+    Emitter &picture(Emitter::Kind kind, Rgb value, std::size_t texture, Vector3 position, float width, float height) {
+        Emitter &thrower = scene.emitters[std::size_t(emitter(kind, value))];
+        thrower.texture = std::int32_t(texture);
+        thrower.position = position;
+        thrower.axes = {{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}};
+        thrower.direction = thrower.axes[2];
+        thrower.picture = {width, height};
+        return thrower;
+    }
     void shape(Shape::Kind kind, std::size_t geometry, std::uint32_t material, std::int32_t emitter) {
         Shape shape;
         shape.kind = kind;

@@ -52,7 +52,7 @@ class Walker {
            const SessionOptions &options = {}, Device &device = walk_device())
         : session(device, scene, options, {}), walk(session, stages_, settings), kinds(material_kinds(scene)),
           sampler(scene, kinds, session.tracer) {
-        session.scene_buffers.emplace_back(device, "walked_kind", kinds.data(), kinds.size() * sizeof(kinds[0]));
+        session.add_scene_buffer("walked_kind", kinds);
         tables.emplace(device, walk.tables(),
                        TableRows{capacity, capacity, 16, 4, chunks_of(capacity), odd_lines(capacity)},
                        options.precision);
