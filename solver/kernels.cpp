@@ -8,51 +8,56 @@ namespace gradus::solver {
 
 namespace {
 
+/// The weights for which a kernel is there, if not for all.
+enum class Only { neither, uniform, weighted };
+
 struct Entry {
     Kernel Kernels::*kernel;
     const char *file, *name;
-    bool weighted_only;
+    Only only = Only::neither;
     const char *entry = nullptr; ///< in the file, where it is not the name
 };
 
 constexpr Entry entries[] = {
-    {&Kernels::residual, "stencil", "residual", false},
-    {&Kernels::smooth, "stencil", "smooth", false},
-    {&Kernels::smooth_twice_from_zero, "stencil", "smooth_twice_from_zero", false},
-    {&Kernels::copy, "stencil", "copy", false},
-    {&Kernels::invert_diagonal, "stencil", "invert_diagonal", false},
-    {&Kernels::restrict_sum, "transfer", "restrict_sum", false},
-    {&Kernels::prolong, "transfer", "prolong", false},
-    {&Kernels::prolong_onto, "transfer", "prolong_onto", false},
-    {&Kernels::coarsen_weights, "transfer", "coarsen_weights", true},
-    {&Kernels::direction, "conjugate_gradient", "direction", false},
-    {&Kernels::advance, "conjugate_gradient", "advance", false},
-    {&Kernels::reduce, "sum", "reduce", false},
-    {&Kernels::reduce_product, "sum", "reduce_products", false},
-    {&Kernels::reduce_two_products, "sum", "reduce_products", false, "reduce_two_products"},
-    {&Kernels::reduce_plane, "sum", "reduce_plane", false},
-    {&Kernels::finish_sum, "sum", "finish_sum", false},
-    {&Kernels::start, "input", "start", false},
-    {&Kernels::start_between_neighbours, "input", "start_between_neighbours", true},
-    {&Kernels::import_plane, "input", "import_plane", false},
-    {&Kernels::gradient_residual, "input", "gradient_residual", false},
-    {&Kernels::right_side, "input", "right_side", false},
-    {&Kernels::compose, "output", "compose", false},
-    {&Kernels::base_weights, "weights", "base_weights", true},
-    {&Kernels::least_squares_weights, "weights", "least_squares_weights", true},
-    {&Kernels::residual_scale, "weights", "residual_scale", true},
-    {&Kernels::reweight, "weights", "reweight", true},
-    {&Kernels::extrapolate, "weights", "extrapolate", true},
-    {&Kernels::squared_norm, "weights", "squared_norm", false},
-    {&Kernels::fill_ring, "fill", "fill_ring", false},
-    {&Kernels::mark_held, "fill", "mark_held", true},
-    {&Kernels::add_base, "fill", "add_base", false},
-    {&Kernels::largest_of_columns, "mean_correction", "largest_of_columns", true},
-    {&Kernels::third_largest, "mean_correction", "third_largest", true},
-    {&Kernels::correction_weights, "mean_correction", "correction_weights", true},
-    {&Kernels::correction_right_side, "mean_correction", "correction_right_side", true},
-    {&Kernels::correction_pass, "mean_correction", "correction_pass", true},
-    {&Kernels::add_correction, "mean_correction", "add_correction", true},
+    {&Kernels::residual, "stencil", "residual"},
+    {&Kernels::smooth, "stencil", "smooth"},
+    {&Kernels::smooth_twice_from_zero, "stencil", "smooth_twice_from_zero"},
+    {&Kernels::copy, "stencil", "copy"},
+    {&Kernels::invert_diagonal, "stencil", "invert_diagonal"},
+    {&Kernels::store_weights, "stencil", "store_weights", Only::uniform},
+    {&Kernels::restrict_residual, "transfer", "restrict_residual"},
+    {&Kernels::prolong, "transfer", "prolong"},
+    {&Kernels::prolong_onto, "transfer", "prolong_onto"},
+    {&Kernels::coarsen_weights, "transfer", "coarsen_weights", Only::weighted},
+    {&Kernels::coarse_cycle, "coarse_cycle", "coarse_cycle"},
+    {&Kernels::direction, "conjugate_gradient", "direction"},
+    {&Kernels::advance, "conjugate_gradient", "advance"},
+    {&Kernels::reduce, "sum", "reduce"},
+    {&Kernels::reduce_product, "sum", "reduce_products"},
+    {&Kernels::reduce_two_products, "sum", "reduce_products", Only::neither, "reduce_two_products"},
+    {&Kernels::reduce_plane, "sum", "reduce_plane"},
+    {&Kernels::finish_sum, "sum", "finish_sum"},
+    {&Kernels::start, "input", "start"},
+    {&Kernels::start_between_neighbours, "input", "start_between_neighbours", Only::weighted},
+    {&Kernels::import_plane, "input", "import_plane"},
+    {&Kernels::gradient_residual, "input", "gradient_residual"},
+    {&Kernels::right_side, "input", "right_side"},
+    {&Kernels::compose, "output", "compose"},
+    {&Kernels::base_weights, "weights", "base_weights", Only::weighted},
+    {&Kernels::least_squares_weights, "weights", "least_squares_weights", Only::weighted},
+    {&Kernels::residual_scale, "weights", "residual_scale", Only::weighted},
+    {&Kernels::reweight, "weights", "reweight", Only::weighted},
+    {&Kernels::extrapolate, "weights", "extrapolate", Only::weighted},
+    {&Kernels::squared_norm, "weights", "squared_norm"},
+    {&Kernels::fill_ring, "fill", "fill_ring"},
+    {&Kernels::mark_held, "fill", "mark_held", Only::weighted},
+    {&Kernels::add_base, "fill", "add_base"},
+    {&Kernels::largest_of_columns, "mean_correction", "largest_of_columns", Only::weighted},
+    {&Kernels::third_largest, "mean_correction", "third_largest", Only::weighted},
+    {&Kernels::correction_weights, "mean_correction", "correction_weights", Only::weighted},
+    {&Kernels::correction_right_side, "mean_correction", "correction_right_side", Only::weighted},
+    {&Kernels::correction_pass, "mean_correction", "correction_pass", Only::weighted},
+    {&Kernels::add_correction, "mean_correction", "add_correction", Only::weighted},
 };
 
 } // namespace
@@ -67,7 +72,7 @@ Kernels::Kernels(Device &device, Precision precision, std::uint32_t channels, We
     std::vector<const Entry *> wanted;
     std::vector<KernelRequest> requests;
     for (const Entry &entry : entries) {
-        if (entry.weighted_only && weights == Weights::uniform)
+        if (entry.only == (weights == Weights::uniform ? Only::weighted : Only::uniform))
             continue;
         wanted.push_back(&entry);
         requests.push_back(

@@ -19,6 +19,10 @@ constexpr std::size_t band_bytes = std::size_t(4) << 20;
 /// What the way down touches of each pixel: right side, inverse diagonal, three weights, the smoothed image, residual.
 constexpr std::size_t values_by_pixel = 7;
 
+/// Grids of so few pixels are done in one launch, by a work-group for each channel: launches of their own, seven for
+/// each grid, took 30 us each on two cores, and this one 50 to 100 in all.
+constexpr std::uint64_t most_of_coarsest = 4096;
+
 /// Steps that damp the upper three quarters of the spectrum most: the inverse roots of the Chebyshev polynomial of
 /// degree `steps` on [1/2, 2].
 double chebyshev_step(int i, int steps) {
@@ -44,6 +48,7 @@ struct Line {
 /// A kernel of transfer.cl: an item for 8 coarse columns of each of `rows` rows from `first_row` on, a multiple of 8.
 void launch_transfer(Kernel &kernel, const Grid &fine, const Grid &coarse, std::uint32_t rows, Planes planes,
                      std::uint32_t first_row = 0) {
+    kernel.set("first_channel", planes.first);
     kernel.set("first_row", first_row);
     kernel.set("height", fine.height);
     kernel.set("row", fine.row);
@@ -88,19 +93,62 @@ Multigrid::Multigrid(const PlaneMaker &make, std::uint32_t width, std::uint32_t 
         system.row_down = make.reals("row_down", rows.after);
         system.row_size = make.reals("row_size", rows.size);
         levels_.push_back(std::move(level));
+        if (levels_.size() == 1 || std::uint64_t(w) * h > most_of_coarsest)
+            first_coarsest_ = levels_.size();
+        else
+            coarsest_.plane += levels_.back().system.grid.plane;
         if (w == 1 && h == 1 && levels_.size() > 1)
             break;
     }
 }
 
 void Multigrid::allocate() {
-    for (Level &level : levels_) {
-        if (level.right_side.valid())
-            return;
+    if (levels_.front().right_side.valid())
+        return;
+    for (std::size_t i = 0; i < first_coarsest_; ++i) {
+        Level &level = levels_[i];
         level.right_side = make_.planes("right_side", level.system.grid, together_);
         level.smoothed = make_.planes("smoothed", level.system.grid, together_);
         level.other = make_.planes("smoothed", level.system.grid, together_);
     }
+    make_coarsest(coarsest_.right_side, "right_side", together_, [](Level &l) -> Buffer & { return l.right_side; });
+    make_coarsest(coarsest_.smoothed, "smoothed", together_, [](Level &l) -> Buffer & { return l.smoothed; });
+    make_coarsest(coarsest_.other, "smoothed", together_, [](Level &l) -> Buffer & { return l.other; });
+}
+
+void Multigrid::make_coarsest(Buffer &all, const std::string &name, std::uint32_t count,
+                              const std::function<Buffer &(Level &)> &part) {
+    const std::size_t bytes = count * real_bytes(make_.precision());
+    all = make_.reals(name, std::size_t(coarsest_.plane) * count);
+    std::size_t first = 0;
+    for (std::size_t i = first_coarsest_; i < levels_.size(); ++i) {
+        const std::size_t plane = levels_[i].system.grid.plane;
+        part(levels_[i]) = all.part(first * bytes, plane * bytes);
+        first += plane;
+    }
+}
+
+void Multigrid::allocate_weights_of_coarsest(std::uint32_t planes) {
+    if (coarsest_.weight_planes == planes)
+        return;
+    coarsest_.weight_planes = planes;
+    make_coarsest(coarsest_.weight_x, "weight_x", planes, [](Level &l) -> Buffer & { return l.system.weight_x; });
+    make_coarsest(coarsest_.weight_y, "weight_y", planes, [](Level &l) -> Buffer & { return l.system.weight_y; });
+    make_coarsest(coarsest_.weight_data, "weight_data", planes,
+                  [](Level &l) -> Buffer & { return l.system.weight_data; });
+    make_coarsest(coarsest_.inverse_diagonal, "inverse_diagonal", planes,
+                  [](Level &l) -> Buffer & { return l.system.inverse_diagonal; });
+    std::vector<solver_level> records;
+    std::uint32_t first = 0;
+    for (std::size_t i = first_coarsest_; i < levels_.size(); ++i) {
+        System &system = levels_[i].system;
+        const Grid &grid = system.grid;
+        system.weight_plane = planes > 1 ? grid.plane : 0;
+        records.push_back(
+            {grid.width, grid.height, grid.row, grid.plane, first * together_, first * planes, system.weight_plane});
+        first += grid.plane;
+    }
+    coarsest_.levels = Buffer(make_.device(), "levels", records.data(), records.size() * sizeof(solver_level));
 }
 
 void Multigrid::invert_diagonal(Kernels &kernels, System &system) {
@@ -112,26 +160,31 @@ void Multigrid::invert_finest_diagonal(Kernels &kernels) { invert_diagonal(kerne
 
 void Multigrid::set_uniform(Kernels &kernels, double data) {
     allocate();
+    allocate_weights_of_coarsest(1);
     used_ = 0;
     for (Level &level : levels_) {
-        level.system.data = data;
-        if (!level.system.inverse_diagonal.valid())
-            level.system.inverse_diagonal = make_.planes("inverse_diagonal", level.system.grid, 1);
-        invert_diagonal(kernels, level.system);
-        ++used_;
+        System &system = level.system;
+        // The mean of the right side is rounding error: the solution has none, and alpha^2 would not tame it. A single
+        // pixel without weights stays at zero.
+        system.data = &level == &levels_.back() ? 0 : data;
+        if (!system.inverse_diagonal.valid())
+            system.inverse_diagonal = make_.planes("inverse_diagonal", system.grid, 1);
+        invert_diagonal(kernels, system);
+        if (used_++ >= first_coarsest_) {
+            system.bind(kernels.store_weights);
+            system.grid.launch(kernels.store_weights, {});
+        }
         if (data > dominant_data_weight && used_ > 1)
             break;
         data *= 4;
     }
-    // The mean of the right side is rounding error: the solution has none, and alpha^2 would not tame it.
-    if (used_ == levels_.size())
-        levels_.back().system.inverse_diagonal.clear();
 }
 
 void Multigrid::allocate_weights(std::uint32_t planes) {
     allocate();
-    for (Level &level : levels_) {
-        System &system = level.system;
+    allocate_weights_of_coarsest(planes);
+    for (std::size_t i = 0; i < first_coarsest_; ++i) {
+        System &system = levels_[i].system;
         const std::uint32_t plane = planes > 1 ? system.grid.plane : 0;
         if (system.weight_x.valid() && system.weight_plane == plane)
             continue;
@@ -179,32 +232,46 @@ void Multigrid::bind_smooth(Kernels &kernels, const Level &level, const Buffer &
     smooth.set_real("step_size", step_size);
 }
 
+void Multigrid::cycle_coarsest(Kernels &kernels, Planes channels) {
+    Kernel &kernel = kernels.coarse_cycle;
+    kernel.set("first_channel", channels.first);
+    kernel.set("level_count", static_cast<std::uint32_t>(used_ - first_coarsest_));
+    kernel.set_real("step_0", chebyshev_step(0, 2));
+    kernel.set_real("step_1", chebyshev_step(1, 2));
+    kernel.bind(coarsest_.levels);
+    kernel.bind(coarsest_.right_side);
+    kernel.bind("smoothed", coarsest_.smoothed);
+    kernel.bind("other", coarsest_.other);
+    kernel.bind(coarsest_.weight_x);
+    kernel.bind(coarsest_.weight_y);
+    kernel.bind(coarsest_.weight_data);
+    kernel.bind(coarsest_.inverse_diagonal);
+    launch_groups(kernel, channels.count);
+}
+
 void Multigrid::run_cycle(Kernels &kernels, Planes channels, int steps_after, const Buffer *onto) {
     // With weights that jump, a third step gains less than it costs.
     const bool third_step = kernels.weights == Weights::uniform;
     const int steps = third_step ? 3 : 2;
-    for (std::size_t i = 0; i < used_; ++i) {
+    const std::size_t fine = std::min(used_, first_coarsest_);
+    for (std::size_t i = 0; i < fine; ++i) {
         Level &level = levels_[i];
         Level *next = i + 1 < used_ ? &levels_[i + 1] : nullptr;
         const Grid &grid = level.system.grid;
-        // A single pixel is solved exactly by one plain step.
-        const bool single = grid.width == 1 && grid.height == 1;
         Kernel &twice = kernels.smooth_twice_from_zero;
         level.system.bind(twice);
         twice.bind(level.right_side);
         twice.bind("smoothed", third_step ? level.other : level.smoothed);
-        twice.set_real("step_0", single ? 1 : chebyshev_step(0, steps));
-        twice.set_real("step_1", single ? 0 : chebyshev_step(1, steps));
+        twice.set_real("step_0", chebyshev_step(0, steps));
+        twice.set_real("step_1", chebyshev_step(1, steps));
         if (third_step)
-            bind_smooth(kernels, level, level.other, level.smoothed, single ? 0 : chebyshev_step(2, 3));
-        Kernel &residual = kernels.residual, &restrict_sum = kernels.restrict_sum;
+            bind_smooth(kernels, level, level.other, level.smoothed, chebyshev_step(2, 3));
+        Kernel &restrict_residual = kernels.restrict_residual;
         if (next) {
-            level.system.bind(residual);
-            residual.bind("u", level.smoothed);
-            residual.bind(level.right_side);
-            residual.bind("residual", level.other);
-            restrict_sum.bind("fine", level.other);
-            restrict_sum.bind("coarse", next->right_side);
+            level.system.bind(restrict_residual);
+            restrict_residual.bind("u", level.smoothed);
+            restrict_residual.bind(level.right_side);
+            restrict_residual.bind("coarse", next->right_side);
         }
         // Each of these reads a row more than it writes, so those before it are a row ahead.
         const std::uint32_t band = rows_of_band(grid, kernels.weights, channels.count);
@@ -220,12 +287,13 @@ void Multigrid::run_cycle(Kernels &kernels, Planes channels, int steps_after, co
                 launch(kernels.smooth, 1);
             if (!next)
                 continue;
-            launch(residual, 0);
             const std::uint32_t coarse = begin / 2, rows = next->system.grid.height - coarse;
-            launch_transfer(restrict_sum, grid, next->system.grid, std::min(rows, band / 2), channels, coarse);
+            launch_transfer(restrict_residual, grid, next->system.grid, std::min(rows, band / 2), channels, coarse);
         }
     }
-    for (std::size_t i = used_ - 1; i-- > 0;) {
+    if (used_ > fine)
+        cycle_coarsest(kernels, channels);
+    for (std::size_t i = std::min(used_ - 1, fine); i-- > 0;) {
         Level &level = levels_[i];
         const Level &next = levels_[i + 1];
         Kernel &kernel = i == 0 && onto ? kernels.prolong_onto : kernels.prolong;

@@ -5,12 +5,15 @@
 // its residual over 2 x 2 pixels to the next; going up, corrections are interpolated linearly. A cycle divides the
 // residual of the five-point operator by about ten, whatever the size and alpha (Trottenberg, Oosterlee and Schueller
 // 2001, chapter 2). Inside conjugate gradients it may smooth on the way up, too. Coarse weights are sums of fine ones
-// (see coarsen_weights), which keeps that rate at odd sizes and, inside conjugate gradients, where weights jump.
+// (see coarsen_weights), which keeps that rate at odd sizes and, inside conjugate gradients, where weights jump. The
+// coarsest grids are done in one launch (kernels/solver/coarse_cycle.cl), which smooths on the way up in any case.
 #pragma once
 
 #include "solver/grid.h"
 #include "solver/kernels.h"
 
+#include <functional>
+#include <string>
 #include <vector>
 
 namespace gradus::solver {
@@ -63,12 +66,25 @@ class Multigrid {
         Buffer right_side;
         Buffer smoothed, other;
     };
+    /// The planes of the coarsest levels, one level after the other; those levels have parts of them.
+    struct Coarsest {
+        std::uint32_t plane = 0; ///< elements of a plane of each level
+        Buffer right_side, smoothed, other;
+        Buffer weight_x, weight_y, weight_data, inverse_diagonal;
+        std::uint32_t weight_planes = 0;
+        Buffer levels; ///< a solver_level each
+    };
+    /// Makes planes for each of the coarsest levels within one buffer.
+    void make_coarsest(Buffer &all, const std::string &name, std::uint32_t count,
+                       const std::function<Buffer &(Level &)> &part);
+    void allocate_weights_of_coarsest(std::uint32_t planes);
     void invert_diagonal(Kernels &kernels, System &system);
     /// Rows that the kernels on the way down do one after the other before they go on to the next; even.
     std::uint32_t rows_of_band(const Grid &grid, Weights weights, std::uint32_t channels) const;
     /// One step of smoothing as the kernel's arguments.
     static void bind_smooth(Kernels &kernels, const Level &level, const Buffer &from, const Buffer &to,
                             double step_size);
+    void cycle_coarsest(Kernels &kernels, Planes channels);
     void run_cycle(Kernels &kernels, Planes channels, int steps_after, const Buffer *onto);
 
     void allocate();
@@ -77,6 +93,8 @@ class Multigrid {
     const std::uint32_t together_;
     const bool in_bands_; ///< goes down through large grids in bands
     std::vector<Level> levels_;
+    std::size_t first_coarsest_ = 0; ///< of levels_; never the finest
+    Coarsest coarsest_;
     std::size_t used_ = 0; ///< levels that the current weights need
 };
 

@@ -13,7 +13,7 @@ const std::map<std::string, double> values_of_item = {
     {"residual", 3},                           // u, right side; residual
     {"smooth", 4},                             // u, right side, inverse diagonal; smoothed: a step of Chebyshev's
     {"smooth_twice_from_zero", 3},             // right side, inverse diagonal; smoothed
-    {"restrict_sum", 4 * 8 + 8},               // fine; coarse
+    {"restrict_residual", 4 * 8 * 2 + 8},      // u and right side of four fine pixels for each coarse one
     {"prolong", 8 / 2 + 16 + 16},              // coarse, each of its rows for two fine ones; u twice
     {"prolong_onto", 8 / 2 + 16 + 16 + 16},    // and smoothed
     {"direction", 4},                          // z, old direction; direction, image

@@ -23,6 +23,9 @@ int GRADUS_BUILTIN min(int, int);
 uint GRADUS_BUILTIN min(uint, uint);
 uint GRADUS_BUILTIN mul_hi(uint, uint);
 
+/* All items of a work-group must come to the same call. */
+void __attribute__((overloadable, convergent, noduplicate)) barrier(uint flags);
+
 /* They read and write memory, so they are not const. */
 #define GRADUS_LOAD_OR_STORE __attribute__((overloadable))
 #define GRADUS_DECLARE_VECTORS(real8, real16)                                                                          \

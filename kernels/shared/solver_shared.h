@@ -18,4 +18,14 @@
 /* Side of the blocks in which the mean correction looks for outliers. */
 #define SOLVER_BLOCK 32
 
+/* One of the coarsest grids, whose planes lie one after the other in common buffers (kernels/solver/coarse_cycle.cl).
+ */
+typedef struct {
+    unsigned width, height;
+    unsigned row, plane;   /* elements from a row to the next, and from a channel */
+    unsigned values;       /* where the grid begins in buffers with planes for channels */
+    unsigned weights;      /* and in those with planes of weights */
+    unsigned weight_plane; /* elements from a channel's weights to the next; 0 where all share one */
+} solver_level;
+
 #endif

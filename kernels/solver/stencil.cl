@@ -47,3 +47,16 @@ SOLVE invert_diagonal(GRID, WEIGHTS_OF_DIAGONAL, __global real *inverse_diagonal
     const real diagonal = c.data + ((c.left + c.right) + (c.up + c.down));
     inverse_diagonal[WEIGHT_AT(x, y)] = diagonal > R(0) ? R(1) / diagonal : R(0);
 }
+
+#if !SOLVER_WEIGHTED
+/* Uniform weights, stored by pixel. */
+SOLVE store_weights(GRID, WEIGHTS_OF_DIAGONAL, __global real *weight_x, __global real *weight_y,
+                    __global real *weight_data) {
+    SOLVER_PLACE
+    const size_t at = WEIGHT_AT(x, y);
+    const cell_weights c = CELL(x, y);
+    weight_x[at] = c.right;
+    weight_y[at] = c.down;
+    weight_data[at] = c.data;
+}
+#endif
