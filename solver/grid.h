@@ -11,6 +11,8 @@
 
 namespace gradus::solver {
 
+constexpr std::uint32_t quotient_up(std::uint32_t a, std::uint32_t b) { return (a + b - 1) / b; }
+
 /// The planes that a launch does: channels, or planes of weights.
 struct Planes {
     std::uint32_t first = 0, count = 1;

@@ -1,7 +1,12 @@
 #include "solver/kernels.h"
 
+#include "solver/tiles.h"
+
 #include <fmt/format.h>
 
+#include <map>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace gradus::solver {
@@ -21,13 +26,12 @@ struct Entry {
 constexpr Entry entries[] = {
     {&Kernels::residual, "stencil", "residual"},
     {&Kernels::smooth, "stencil", "smooth"},
-    {&Kernels::smooth_twice_from_zero, "stencil", "smooth_twice_from_zero"},
     {&Kernels::copy, "stencil", "copy"},
     {&Kernels::invert_diagonal, "stencil", "invert_diagonal"},
     {&Kernels::store_weights, "stencil", "store_weights", Only::uniform},
-    {&Kernels::restrict_residual, "transfer", "restrict_residual"},
+    {&Kernels::descend, "cycle", "descend"},
+    {&Kernels::ascend, "cycle", "ascend"},
     {&Kernels::prolong, "transfer", "prolong"},
-    {&Kernels::prolong_onto, "transfer", "prolong_onto"},
     {&Kernels::coarsen_weights, "transfer", "coarsen_weights", Only::weighted},
     {&Kernels::coarse_cycle, "coarse_cycle", "coarse_cycle"},
     {&Kernels::direction, "conjugate_gradient", "direction"},
@@ -71,12 +75,15 @@ Kernels::Kernels(Device &device, Precision precision, std::uint32_t channels, We
                           precision);
     std::vector<const Entry *> wanted;
     std::vector<KernelRequest> requests;
+    const std::map<std::string, std::string> tiles = {
+        {"LOCAL_REALS", std::to_string(Tiles(device.description(), precision).local_reals())}};
     for (const Entry &entry : entries) {
         if (entry.only == (weights == Weights::uniform ? Only::weighted : Only::uniform))
             continue;
         wanted.push_back(&entry);
-        requests.push_back(
-            {entry.name, fmt::format("kernels/solver/{}.cl", entry.file), entry.entry ? entry.entry : entry.name, {}});
+        requests.push_back({entry.name, fmt::format("kernels/solver/{}.cl", entry.file),
+                            entry.entry ? entry.entry : entry.name,
+                            std::string_view(entry.file) == "cycle" ? tiles : std::map<std::string, std::string>()});
     }
     std::vector<Kernel> built = library.build(requests);
     for (std::size_t i = 0; i < wanted.size(); ++i)

@@ -21,8 +21,8 @@ struct Kernels {
     const std::uint32_t channels;
     const std::uint32_t weight_planes;
 
-    Kernel residual, smooth, smooth_twice_from_zero, copy, invert_diagonal, store_weights;
-    Kernel restrict_residual, prolong, prolong_onto, coarsen_weights, coarse_cycle;
+    Kernel residual, smooth, copy, invert_diagonal, store_weights;
+    Kernel descend, ascend, prolong, coarsen_weights, coarse_cycle;
     Kernel direction, advance;
     Kernel reduce, reduce_product, reduce_two_products, reduce_plane, finish_sum;
     Kernel import_plane, gradient_residual, right_side, start, start_between_neighbours, compose;

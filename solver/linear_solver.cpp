@@ -243,7 +243,7 @@ void LinearSolver::conjugate_gradients(Kernels &kernels, bool preconditioned, co
         if (preconditioned) {
             // The cycle is not symmetric, so beta is that of Polak and Ribiere: <z, r - r_old> / <z_old, r_old>, where
             // r - r_old = -alpha image, so beta = -<z, image> / <direction, image> (Notay 2000).
-            multigrid_.cycle(kernels, channels, progress.request.steps_after);
+            multigrid_.cycle(kernels, channels, progress.request.smooths_after);
             sums_.products(kernels, channels, multigrid_.solution(), r, image_, slot_residual_product,
                            slot_image_product);
             numerator = slot_image_product;

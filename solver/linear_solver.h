@@ -27,11 +27,11 @@ class LinearSolver {
 
     struct Request {
         LinearMethod method = LinearMethod::multigrid;
-        double tolerance = 0; ///< on the relative residual of each channel
-        int iterations = 0;   ///< at most
-        double damping = 1;   ///< Jacobi's step
-        int steps_after = 0;  ///< of smoothing after each level's correction, where cycles precondition
-        bool watch = true;    ///< false: does all iterations, reads nothing back, and reports no residuals
+        double tolerance = 0;       ///< on the relative residual of each channel
+        int iterations = 0;         ///< at most
+        double damping = 1;         ///< Jacobi's step
+        bool smooths_after = false; ///< cycles that precondition smooth on the way up, too
+        bool watch = true;          ///< false: does all iterations, reads nothing back, and reports no residuals
     };
 
     /// The right side of a group, in a buffer of its own.

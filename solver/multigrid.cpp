@@ -14,19 +14,18 @@ namespace {
 /// With uniform weights, a grid whose data term outweighs its edges so far is solved by smoothing alone.
 constexpr double dominant_data_weight = 64;
 
-/// Of memory that kernels which follow each other go through, so that the next finds it in the last-level cache.
-constexpr std::size_t band_bytes = std::size_t(4) << 20;
-/// What the way down touches of each pixel: right side, inverse diagonal, three weights, the smoothed image, residual.
-constexpr std::size_t values_by_pixel = 7;
-
 /// Grids of so few pixels are done in one launch, by a work-group for each channel: launches of their own, seven for
 /// each grid, took 30 us each on two cores, and this one 50 to 100 in all.
 constexpr std::uint64_t most_of_coarsest = 4096;
 
-/// Steps that damp the upper three quarters of the spectrum most: the inverse roots of the Chebyshev polynomial of
-/// degree `steps` on [1/2, 2].
-double chebyshev_step(int i, int steps) {
-    return 1 / (1.25 + 0.75 * std::cos(std::numbers::pi * (2 * i + 1) / (2 * steps)));
+/// Two steps of smoothing that damp the upper three quarters of the spectrum most: the inverse roots of the Chebyshev
+/// polynomial of degree 2 on [1/2, 2].
+constexpr double smoothing_steps[] = {1 / (1.25 + 0.75 * std::numbers::sqrt2 / 2),
+                                      1 / (1.25 - 0.75 * std::numbers::sqrt2 / 2)};
+
+void set_steps(Kernel &kernel) {
+    kernel.set_real("step_0", smoothing_steps[0]);
+    kernel.set_real("step_1", smoothing_steps[1]);
 }
 
 /// The columns (or rows) of a grid, as kernels/solver/grid.h multiplies them.
@@ -45,11 +44,8 @@ struct Line {
     }
 };
 
-/// A kernel of transfer.cl: an item for 8 coarse columns of each of `rows` rows from `first_row` on, a multiple of 8.
-void launch_transfer(Kernel &kernel, const Grid &fine, const Grid &coarse, std::uint32_t rows, Planes planes,
-                     std::uint32_t first_row = 0) {
-    kernel.set("first_channel", planes.first);
-    kernel.set("first_row", first_row);
+/// A kernel of transfer.cl: an item for 8 coarse columns of each of `rows` rows.
+void launch_transfer(Kernel &kernel, const Grid &fine, const Grid &coarse, std::uint32_t rows, Planes planes) {
     kernel.set("height", fine.height);
     kernel.set("row", fine.row);
     kernel.set("plane", fine.plane);
@@ -77,7 +73,7 @@ void System::bind(Kernel &kernel) const {
 }
 
 Multigrid::Multigrid(const PlaneMaker &make, std::uint32_t width, std::uint32_t height, std::uint32_t together)
-    : make_(make), together_(together), in_bands_(make.device().description().is_host) {
+    : make_(make), together_(together), tiles_(make.device().description(), make.precision()) {
     double pitch = 1;
     for (std::uint32_t w = width, h = height;; w = (w + 1) / 2, h = (h + 1) / 2, pitch *= 2) {
         Level level;
@@ -213,31 +209,12 @@ void Multigrid::coarsen_weights(Kernels &kernels) {
     }
 }
 
-std::uint32_t Multigrid::rows_of_band(const Grid &grid, Weights weights, std::uint32_t channels) const {
-    const std::size_t row = values_by_pixel * grid.row * channels * real_bytes(make_.precision());
-    const std::size_t rows = std::max<std::size_t>(band_bytes / row / 16 * 16, 16);
-    // Elsewhere a launch is to fill the device; and a little more than a band is not worth two. With weights in memory
-    // bands gain nothing.
-    return in_bands_ && weights == Weights::uniform && grid.height > 2 * rows ? static_cast<std::uint32_t>(rows)
-                                                                              : grid.height + grid.height % 2;
-}
-
-void Multigrid::bind_smooth(Kernels &kernels, const Level &level, const Buffer &from, const Buffer &to,
-                            double step_size) {
-    Kernel &smooth = kernels.smooth;
-    level.system.bind(smooth);
-    smooth.bind("u", from);
-    smooth.bind(level.right_side);
-    smooth.bind("smoothed", to);
-    smooth.set_real("step_size", step_size);
-}
-
 void Multigrid::cycle_coarsest(Kernels &kernels, Planes channels) {
     Kernel &kernel = kernels.coarse_cycle;
     kernel.set("first_channel", channels.first);
     kernel.set("level_count", static_cast<std::uint32_t>(used_ - first_coarsest_));
-    kernel.set_real("step_0", chebyshev_step(0, 2));
-    kernel.set_real("step_1", chebyshev_step(1, 2));
+    kernel.set("lanes", tiles_.lanes());
+    set_steps(kernel);
     kernel.bind(coarsest_.levels);
     kernel.bind(coarsest_.right_side);
     kernel.bind("smoothed", coarsest_.smoothed);
@@ -249,68 +226,47 @@ void Multigrid::cycle_coarsest(Kernels &kernels, Planes channels) {
     launch_groups(kernel, channels.count);
 }
 
-void Multigrid::run_cycle(Kernels &kernels, Planes channels, int steps_after, const Buffer *onto) {
-    // With weights that jump, a third step gains less than it costs.
-    const bool third_step = kernels.weights == Weights::uniform;
-    const int steps = third_step ? 3 : 2;
+void Multigrid::run_cycle(Kernels &kernels, Planes channels, bool smooths_after, const Buffer *onto) {
     const std::size_t fine = std::min(used_, first_coarsest_);
     for (std::size_t i = 0; i < fine; ++i) {
-        Level &level = levels_[i];
-        Level *next = i + 1 < used_ ? &levels_[i + 1] : nullptr;
-        const Grid &grid = level.system.grid;
-        Kernel &twice = kernels.smooth_twice_from_zero;
-        level.system.bind(twice);
-        twice.bind(level.right_side);
-        twice.bind("smoothed", third_step ? level.other : level.smoothed);
-        twice.set_real("step_0", chebyshev_step(0, steps));
-        twice.set_real("step_1", chebyshev_step(1, steps));
-        if (third_step)
-            bind_smooth(kernels, level, level.other, level.smoothed, chebyshev_step(2, 3));
-        Kernel &restrict_residual = kernels.restrict_residual;
-        if (next) {
-            level.system.bind(restrict_residual);
-            restrict_residual.bind("u", level.smoothed);
-            restrict_residual.bind(level.right_side);
-            restrict_residual.bind("coarse", next->right_side);
-        }
-        // Each of these reads a row more than it writes, so those before it are a row ahead.
-        const std::uint32_t band = rows_of_band(grid, kernels.weights, channels.count);
-        for (std::uint32_t begin = 0; begin < grid.height; begin += band) {
-            const auto launch = [&](Kernel &kernel, std::uint32_t ahead) {
-                const std::uint32_t first = begin == 0 ? 0 : std::min(begin + ahead, grid.height);
-                const std::uint32_t end = std::min(begin + band + ahead, grid.height);
-                if (end > first)
-                    grid.launch(kernel, channels, end - first, first);
-            };
-            launch(twice, third_step ? 2 : 1);
-            if (third_step)
-                launch(kernels.smooth, 1);
-            if (!next)
-                continue;
-            const std::uint32_t coarse = begin / 2, rows = next->system.grid.height - coarse;
-            launch_transfer(restrict_residual, grid, next->system.grid, std::min(rows, band / 2), channels, coarse);
-        }
+        const Level &level = levels_[i];
+        Kernel &descend = kernels.descend;
+        level.system.bind(descend);
+        set_steps(descend);
+        descend.bind(level.right_side);
+        descend.bind("smoothed", level.smoothed);
+        // The last grid's residual is asked for by nobody.
+        const Level &next = levels_[i + 1];
+        descend.bind("coarse", next.right_side);
+        descend.set("coarse_row", next.system.grid.row);
+        descend.set("coarse_plane", next.system.grid.plane);
+        tiles_.launch(descend, level.system.grid, channels);
     }
     if (used_ > fine)
         cycle_coarsest(kernels, channels);
     for (std::size_t i = std::min(used_ - 1, fine); i-- > 0;) {
         Level &level = levels_[i];
         const Level &next = levels_[i + 1];
-        Kernel &kernel = i == 0 && onto ? kernels.prolong_onto : kernels.prolong;
-        kernel.bind("coarse", next.smoothed);
-        kernel.bind("coarse_left", next.system.column_left);
-        kernel.bind("coarse_right", next.system.column_right);
-        kernel.bind(level.system.column_inside);
-        kernel.bind("smoothed", level.smoothed);
-        kernel.bind("u", i == 0 && onto ? *onto : level.smoothed);
-        launch_transfer(kernel, level.system.grid, next.system.grid, level.system.grid.height, channels);
-        for (int step = 0; step < steps_after; ++step) {
-            // In the other order than on the way down, which makes the cycle symmetric but for the interpolation.
-            bind_smooth(kernels, level, level.smoothed, level.other,
-                        chebyshev_step(steps_after - 1 - step, steps_after));
-            level.system.grid.launch(kernels.smooth, channels);
+        Kernel &prolong = kernels.prolong;
+        prolong.bind("coarse", next.smoothed);
+        prolong.bind("coarse_left", next.system.column_left);
+        prolong.bind("coarse_right", next.system.column_right);
+        prolong.bind(level.system.column_inside);
+        prolong.bind("u", level.smoothed);
+        launch_transfer(prolong, level.system.grid, next.system.grid, level.system.grid.height, channels);
+        if (!smooths_after)
+            continue;
+        const bool adds = i == 0 && onto;
+        Kernel &ascend = kernels.ascend;
+        level.system.bind(ascend);
+        set_steps(ascend);
+        ascend.set("adds", adds);
+        ascend.bind(level.right_side);
+        ascend.bind("u", level.smoothed);
+        ascend.bind("smoothed", adds ? *onto : level.other);
+        tiles_.launch(ascend, level.system.grid, channels);
+        if (!adds)
             std::swap(level.smoothed, level.other);
-        }
     }
 }
 

@@ -1,16 +1,19 @@
 // A hierarchy of grids and its cycle, which approximates the inverse of the operator.
 //
-// Each grid's pixels are 2 x 2 pixels of the finer one. Going down, each level smooths two or three times from
-// zero, with Chebyshev steps over the upper three quarters of the spectrum of D^-1 A, [1/2, 2], and hands the sum of
-// its residual over 2 x 2 pixels to the next; going up, corrections are interpolated linearly. A cycle divides the
-// residual of the five-point operator by about ten, whatever the size and alpha (Trottenberg, Oosterlee and Schueller
-// 2001, chapter 2). Inside conjugate gradients it may smooth on the way up, too. Coarse weights are sums of fine ones
-// (see coarsen_weights), which keeps that rate at odd sizes and, inside conjugate gradients, where weights jump. The
-// coarsest grids are done in one launch (kernels/solver/coarse_cycle.cl), which smooths on the way up in any case.
+// Each grid's pixels are 2 x 2 pixels of the finer one. Going down, each level smooths twice from zero, with Chebyshev
+// steps over the upper three quarters of the spectrum of D^-1 A, [1/2, 2], and hands the sum of its residual over 2 x 2
+// pixels to the next; going up, corrections are interpolated linearly, and two steps smooth again, in the other order.
+// A cycle divides the residual of the five-point operator by more than ten, whatever the size and alpha (Trottenberg,
+// Oosterlee and Schueller 2001, chapter 2). Coarse weights are sums of fine ones (see coarsen_weights), which keeps
+// that rate at odd sizes and, inside conjugate gradients, where weights jump.
+//
+// A grid takes three launches: down and up again in tiles that stay in a cache (kernels/solver/cycle.cl), and the
+// interpolation. The coarsest grids share one (kernels/solver/coarse_cycle.cl).
 #pragma once
 
 #include "solver/grid.h"
 #include "solver/kernels.h"
+#include "solver/tiles.h"
 
 #include <functional>
 #include <string>
@@ -52,13 +55,14 @@ class Multigrid {
     void invert_finest_diagonal(Kernels &kernels);
 
     /// Writes an approximate solution of A z = right_side() to solution(), for a group of channels, which all buffers
-    /// hold alone. `steps_after`: of smoothing on each level on the way up, which pay where weights jump.
-    void cycle(Kernels &kernels, Planes channels, int steps_after) {
-        run_cycle(kernels, channels, steps_after, nullptr);
+    /// hold alone. `smooths_after`: on the way up, too: twice the work, which few cycles for each set of weights do not
+    /// pay back.
+    void cycle(Kernels &kernels, Planes channels, bool smooths_after) {
+        run_cycle(kernels, channels, smooths_after, nullptr);
     }
     const Buffer &solution() const { return levels_.front().smoothed; }
     /// Adds it to `u` instead.
-    void cycle_onto(Kernels &kernels, Planes channels, const Buffer &u) { run_cycle(kernels, channels, 0, &u); }
+    void cycle_onto(Kernels &kernels, Planes channels, const Buffer &u) { run_cycle(kernels, channels, true, &u); }
 
   private:
     struct Level {
@@ -79,19 +83,14 @@ class Multigrid {
                        const std::function<Buffer &(Level &)> &part);
     void allocate_weights_of_coarsest(std::uint32_t planes);
     void invert_diagonal(Kernels &kernels, System &system);
-    /// Rows that the kernels on the way down do one after the other before they go on to the next; even.
-    std::uint32_t rows_of_band(const Grid &grid, Weights weights, std::uint32_t channels) const;
-    /// One step of smoothing as the kernel's arguments.
-    static void bind_smooth(Kernels &kernels, const Level &level, const Buffer &from, const Buffer &to,
-                            double step_size);
     void cycle_coarsest(Kernels &kernels, Planes channels);
-    void run_cycle(Kernels &kernels, Planes channels, int steps_after, const Buffer *onto);
+    void run_cycle(Kernels &kernels, Planes channels, bool smooths_after, const Buffer *onto);
 
     void allocate();
 
     const PlaneMaker make_;
     const std::uint32_t together_;
-    const bool in_bands_; ///< goes down through large grids in bands
+    const Tiles tiles_;
     std::vector<Level> levels_;
     std::size_t first_coarsest_ = 0; ///< of levels_; never the finest
     Coarsest coarsest_;

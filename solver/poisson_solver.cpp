@@ -22,9 +22,6 @@ using namespace solver;
 namespace {
 
 constexpr double default_tolerance = 1e-5;
-/// With weights that jump, cycles that also smooth on the way up take half to a quarter of the steps, which are 1.4
-/// times as long.
-constexpr int smoothing_steps_after = 2;
 constexpr std::uint32_t most_channels = 8;
 
 /// The weights of a problem in which something may be missing.
@@ -130,7 +127,7 @@ void PoissonSolver::Implementation::least_squares(const Inputs &images, const Po
     request.tolerance = options.tolerance > 0 ? options.tolerance : default_tolerance;
     request.iterations = options.iterations > 0 ? options.iterations : default_iterations(request.method);
     request.damping = options.damping;
-    request.steps_after = uniform ? 0 : smoothing_steps_after;
+    request.smooths_after = true;
     const double norm = images.start ? problem.norm_of_right_side(kernels) : 0;
     problem.start(images);
     if (uniform && images.start)
@@ -165,8 +162,7 @@ PoissonReport PoissonSolver::Implementation::solve(const Inputs &images, const P
                                                    const std::function<Buffer &()> &result, const Call &all_read) {
     const auto begin = std::chrono::steady_clock::now();
     for (auto &[weights, kernels] : workspace.all_kernels())
-        for (Kernel *kernel : kernels->all())
-            kernel->reset_usage();
+        reset_times(kernels->all());
     PoissonReport report;
     workspace.set_any_kernels(weights_for(options, false));
     problem.import(images, report);
@@ -188,18 +184,8 @@ PoissonReport PoissonSolver::Implementation::solve(const Inputs &images, const P
     finish(device);
     report.device_bytes = peak_device_bytes(device);
     report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    std::map<std::string, KernelTime> times;
     for (auto &[weights, kernels] : workspace.all_kernels())
-        for (Kernel *kernel : kernels->all()) {
-            const Kernel::Usage usage = kernel->usage();
-            KernelTime &time = times[kernel->name()];
-            time.name = kernel->name();
-            time.seconds += usage.seconds;
-            time.launches += usage.launches;
-        }
-    for (const auto &[name, time] : times)
-        if (time.launches > 0)
-            report.kernels.push_back(time);
+        add_times(report.kernels, kernels->all());
     return report;
 }
 

@@ -5,6 +5,7 @@
 #include "runtime/device/buffer.h"
 #include "runtime/device/device.h"
 #include "runtime/device/precision.h"
+#include "solver/kernel_times.h"
 
 #include <cstdint>
 #include <functional>
@@ -84,12 +85,6 @@ struct PoissonOptions {
     bool keep_mean = true;
 
     bool operator==(const PoissonOptions &) const = default;
-};
-
-struct KernelTime {
-    std::string name;
-    double seconds = 0;
-    std::uint64_t launches = 0;
 };
 
 /// The method of a report on images without differences, of which there is no system to solve.

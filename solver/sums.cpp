@@ -11,8 +11,6 @@ namespace {
 /// So few parts are added by one work-item.
 constexpr std::uint32_t few = 1024;
 
-std::uint32_t quotient_up(std::uint32_t a, std::uint32_t b) { return (a + b - 1) / b; }
-
 } // namespace
 
 Sums::Sums(const PlaneMaker &make, const Grid &grid, std::uint32_t channels)

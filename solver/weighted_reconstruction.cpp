@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <initializer_list>
-#include <map>
 #include <utility>
 
 namespace gradus {
@@ -162,6 +161,7 @@ PoissonReport WeightedReconstruction::solve_half(const HalfImages &half, const H
     const auto variance = [&](const Buffer &buffer, VarianceSmoother::Differences differences) {
         return [&, differences]() -> const Buffer & { return smoother_.smoothed(buffer, differences); };
     };
+    reset_times(smoother_.kernels());
     smoother_.begin(judge);
     BufferSources images;
     images.primal = image(half.primal);
@@ -170,7 +170,9 @@ PoissonReport WeightedReconstruction::solve_half(const HalfImages &half, const H
     images.primal_variance = variance(judge.primal_variance, VarianceSmoother::Differences::none);
     images.dx_variance = variance(judge.dx_variance, VarianceSmoother::Differences::right);
     images.dy_variance = variance(judge.dy_variance, VarianceSmoother::Differences::down);
-    return solver_.solve(images, options(), result);
+    PoissonReport report = solver_.solve(images, options(), result);
+    add_times(report.kernels, smoother_.kernels());
+    return report;
 }
 
 PoissonReport WeightedReconstruction::solve(const HalvedImages &halves, Buffer &result, SquaredErrors *errors) {
@@ -194,17 +196,8 @@ PoissonReport WeightedReconstruction::solve_both(const HalvedImages &halves, std
     report.missing_dy += of_first.missing_dy;
     report.filled += of_first.filled;
     report.seconds += of_first.seconds;
-    std::map<std::string, KernelTime> times;
-    for (const PoissonReport *part : {&of_first, static_cast<const PoissonReport *>(&report)})
-        for (const KernelTime &time : part->kernels) {
-            KernelTime &sum = times[time.name];
-            sum.name = time.name;
-            sum.seconds += time.seconds;
-            sum.launches += time.launches;
-        }
-    report.kernels.clear();
-    for (const auto &[name, time] : times)
-        report.kernels.push_back(time);
+    for (const KernelTime &time : of_first.kernels)
+        add_time(report.kernels, time);
     return report;
 }
 

@@ -31,6 +31,8 @@ class VarianceSmoother {
     /// buffer is used again by the next call.
     const Buffer &smoothed(const Buffer &variance, Differences differences);
 
+    std::vector<Kernel *> kernels() { return {&mean_, &smooth_, &smooth_and_add_, &finish_}; }
+
     /// How far a pixel's neighbours are, and how much they count, from each smoothing to the next.
     struct Smoothing {
         std::uint32_t apart;

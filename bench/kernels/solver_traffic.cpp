@@ -8,14 +8,13 @@ namespace gradus::bench {
 
 namespace {
 
-// From reading kernels/solver. An item is one pixel, but for transfers: 8 pixels of a coarse row.
+// From reading kernels/solver. An item is one pixel, but for the interpolation: 8 pixels of a coarse row.
 const std::map<std::string, double> values_of_item = {
-    {"residual", 3},                           // u, right side; residual
-    {"smooth", 4},                             // u, right side, inverse diagonal; smoothed: a step of Chebyshev's
-    {"smooth_twice_from_zero", 3},             // right side, inverse diagonal; smoothed
-    {"restrict_residual", 4 * 8 * 2 + 8},      // u and right side of four fine pixels for each coarse one
+    {"residual", 3}, // u, right side; residual
+    {"smooth", 4},   // u, right side, inverse diagonal; smoothed: a step of Chebyshev's
+    {"descend", 0},  // an item takes a part of a tile, large or small
+    {"ascend", 0},
     {"prolong", 8 / 2 + 16 + 16},              // coarse, each of its rows for two fine ones; u twice
-    {"prolong_onto", 8 / 2 + 16 + 16 + 16},    // and smoothed
     {"direction", 4},                          // z, old direction; direction, image
     {"advance", 6},                            // direction, image, u, residual; u, residual
     {"reduce_products", SOLVER_REDUCTION + 1}, // <r, r>, which is the first that a solve asks for

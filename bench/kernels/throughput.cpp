@@ -193,7 +193,7 @@ class Throughput {
 
     static std::optional<double> bytes_an_item(CapturedLaunch &launch) {
         if (const auto traffic = solver_traffic(launch.name()); traffic && launch.file().starts_with("kernels/solver/"))
-            return sizeof(float) * *traffic;
+            return *traffic > 0 ? std::optional<double>(sizeof(float) * *traffic) : std::nullopt;
         // An item of the partition takes a chunk of rows.
         if (launch.file() == "kernels/stages/partition.cl")
             return std::nullopt;

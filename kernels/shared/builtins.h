@@ -26,13 +26,23 @@ uint GRADUS_BUILTIN mul_hi(uint, uint);
 /* All items of a work-group must come to the same call. */
 void __attribute__((overloadable, convergent, noduplicate)) barrier(uint flags);
 
-/* They read and write memory, so they are not const. */
-#define GRADUS_LOAD_OR_STORE __attribute__((overloadable))
-#define GRADUS_DECLARE_VECTORS(real8, real16)                                                                          \
-    real8 GRADUS_LOAD_OR_STORE __attribute__((pure)) vload8(size_t, const __global real *);                            \
-    real16 GRADUS_LOAD_OR_STORE __attribute__((pure)) vload16(size_t, const __global real *);                          \
-    void GRADUS_LOAD_OR_STORE vstore8(real8, size_t, __global real *);                                                 \
-    void GRADUS_LOAD_OR_STORE vstore16(real16, size_t, __global real *);
+/* Loads and stores of vectors at any address are defined here: PoCL's are made of halves, and what is computed with
+ * those then is, too. */
+#define GRADUS_ANYWHERE __attribute__((aligned(sizeof(real))))
+#define GRADUS_VECTOR_FN static inline __attribute__((overloadable, always_inline))
+#define GRADUS_LOAD_AND_STORE(memory, width, vector, anywhere)                                                         \
+    GRADUS_VECTOR_FN vector vload##width(size_t i, const memory real *p) {                                             \
+        return *(const memory anywhere *)(p + i * width);                                                              \
+    }                                                                                                                  \
+    GRADUS_VECTOR_FN void vstore##width(vector value, size_t i, memory real *p) {                                      \
+        *(memory anywhere *)(p + i * width) = value;                                                                   \
+    }
+#define GRADUS_DEFINE_VECTORS(real8, real16)                                                                           \
+    typedef real8 GRADUS_ANYWHERE real8_anywhere;                                                                      \
+    typedef real16 GRADUS_ANYWHERE real16_anywhere;                                                                    \
+    GRADUS_LOAD_AND_STORE(__global, 8, real8, real8_anywhere)                                                          \
+    GRADUS_LOAD_AND_STORE(__global, 16, real16, real16_anywhere)                                                       \
+    GRADUS_LOAD_AND_STORE(__local, 8, real8, real8_anywhere)
 #ifdef GRADUS_DOUBLE
 /* kernels/lib/approximation.h has no polynomials in double. */
 real GRADUS_BUILTIN exp(real);
@@ -42,9 +52,9 @@ real GRADUS_BUILTIN cospi(real);
 real GRADUS_BUILTIN atan2(real, real);
 real GRADUS_BUILTIN erf(real);
 real GRADUS_BUILTIN erfc(real);
-GRADUS_DECLARE_VECTORS(double8, double16)
+GRADUS_DEFINE_VECTORS(double8, double16)
 #else
-GRADUS_DECLARE_VECTORS(float8, float16)
+GRADUS_DEFINE_VECTORS(float8, float16)
 #endif
 
 #endif

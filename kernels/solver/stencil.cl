@@ -8,24 +8,6 @@ SOLVE residual(GRID, WEIGHTS_OF_DIAGONAL, __global const real *u, __global const
     residual[OWN_AT(x, y)] = RESIDUAL(x, y);
 }
 
-/* Two steps of smoothing that start at zero: first = step_0 right_side / D, smoothed = first + step_1 (right_side - A
- * first) / D, D being the diagonal of A. `first` is computed where it is needed. */
-SOLVE smooth_twice_from_zero(GRID, WEIGHTS, real step_0, real step_1, __global const real *right_side,
-                             __global real *smoothed) {
-    SOLVER_PLACE
-    const size_t at = OWN_AT(x, y), w = WEIGHT_AT(x, y);
-    const cell_weights c = CELL(x, y);
-    const real b = right_side[at];
-    const real here = b * inverse_diagonal[w];
-    const real left = right_side[at - 1] * inverse_diagonal[w - 1];
-    const real right = right_side[at + 1] * inverse_diagonal[w + 1];
-    const real up = right_side[at - row] * inverse_diagonal[w - row];
-    const real down = right_side[at + row] * inverse_diagonal[w + row];
-    const real a = c.data * here + (c.left * (here - left) + c.right * (here - right)) +
-                   (c.up * (here - up) + c.down * (here - down));
-    smoothed[at] = step_0 * here + step_1 * inverse_diagonal[w] * (b - step_0 * a);
-}
-
 /* One step of smoothing, or of Jacobi's method: smoothed = u + step_size (right_side - A u) / D. */
 SOLVE smooth(GRID, WEIGHTS, real step_size, __global const real *u, __global const real *right_side,
              __global real *smoothed) {

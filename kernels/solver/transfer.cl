@@ -2,32 +2,16 @@
  * columns and 8 rows. */
 #include "kernels/solver/vectors.h"
 
-#define COARSE                                                                                                         \
-    uint first_channel, uint first_row, uint coarse_width, uint coarse_height, uint coarse_row, uint coarse_plane
+#define COARSE uint coarse_width, uint coarse_height, uint coarse_row, uint coarse_plane
 #define COARSE_AT(x, y) (own * coarse_plane + ((y) + 1) * coarse_row + SOLVER_MARGIN + (x))
 #define SOLVER_VECTOR_PLACE(rows)                                                                                      \
     const uint group = (uint)get_group_id(0), item = (uint)get_local_id(0);                                            \
     const uint tiles = (coarse_width + SOLVER_TILE - 1) / SOLVER_TILE;                                                 \
-    const uint own = group / tiles, channel = first_channel + own;                                                     \
+    const uint own = group / tiles;                                                                                    \
     const uint coarse_x = group % tiles * SOLVER_TILE + item % 8 * 8;                                                  \
-    const uint vector_row = first_row + (uint)get_group_id(1) * 8 + item / 8;                                          \
+    const uint vector_row = (uint)get_group_id(1) * 8 + item / 8;                                                      \
     if (coarse_x >= coarse_width || vector_row >= (rows))                                                              \
         return;
-
-/* coarse = the sum of right_side - A u over 2 x 2 pixels. */
-SOLVE restrict_residual(uint height, uint row, uint plane, COARSE, WEIGHTS_OF_DIAGONAL, __global const real *u,
-                        __global const real *right_side, __global real *coarse) {
-    SOLVER_VECTOR_PLACE(coarse_height)
-    const uint x = 2 * coarse_x, y = 2 * vector_row;
-    const uint at = OWN_AT(x, y);
-    real8 low = residual_of_8(CELLS(x, y), u, right_side, at, row);
-    real8 high = residual_of_8(CELLS(x + 8, y), u, right_side, at + 8, row);
-    if (y + 1 < height) {
-        low += residual_of_8(CELLS(x, y + 1), u, right_side, at + row, row);
-        high += residual_of_8(CELLS(x + 8, y + 1), u, right_side, at + row + 8, row);
-    }
-    vstore8(EVEN(low, high) + ODD(low, high), 0, coarse + COARSE_AT(coarse_x, vector_row));
-}
 
 /* The place of 16 fine pixels, and what 8 coarse ones give to them. */
 #define INTERPOLATE                                                                                                    \
@@ -48,13 +32,6 @@ SOLVE prolong(INTERPOLATION_ARGUMENTS, __global real *u) {
     vstore16(vload16(0, u + at) + correction, 0, u + at);
 }
 
-/* u += smoothed + the interpolated coarse grid. */
-SOLVE prolong_onto(INTERPOLATION_ARGUMENTS, __global const real *smoothed, __global real *u) {
-    SOLVER_VECTOR_PLACE(height)
-    INTERPOLATE
-    vstore16(vload16(0, u + at) + (vload16(0, smoothed + at) + correction), 0, u + at);
-}
-
 #if SOLVER_WEIGHTED
 /* The weights of a coarse grid: data terms add up; of the edges between two coarse pixels, two fine ones cross, over
  * half the distance, so their mean counts. */
@@ -62,8 +39,8 @@ SOLVE coarsen_weights(uint row, uint weight_plane, COARSE, uint coarse_weight_pl
                       __global const real *weight_y, __global const real *weight_data, __global real *coarse_weight_x,
                       __global real *coarse_weight_y, __global real *coarse_weight_data) {
     SOLVER_VECTOR_PLACE(coarse_height)
-    const uint at = channel * weight_plane + (2 * vector_row + 1) * row + SOLVER_MARGIN + 2 * coarse_x;
-    const uint to = channel * coarse_weight_plane + (vector_row + 1) * coarse_row + SOLVER_MARGIN + coarse_x;
+    const uint at = own * weight_plane + (2 * vector_row + 1) * row + SOLVER_MARGIN + 2 * coarse_x;
+    const uint to = own * coarse_weight_plane + (vector_row + 1) * coarse_row + SOLVER_MARGIN + coarse_x;
     const real8 x_low = vload8(0, weight_x + at) + vload8(0, weight_x + at + row);
     const real8 x_high = vload8(1, weight_x + at) + vload8(1, weight_x + at + row);
     const real8 y_low = vload8(0, weight_y + at + row), y_high = vload8(1, weight_y + at + row);

@@ -39,6 +39,7 @@ DeviceDescription describe(const cl::Platform &platform, const cl::Device &devic
     d.type = type & CL_DEVICE_TYPE_CPU ? "cpu" : type & CL_DEVICE_TYPE_GPU ? "gpu" : "accelerator";
     d.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
     d.memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
+    d.local_bytes = device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>();
     d.allocation_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
     // Deprecated since OpenCL 2.0, without another that tells it.
     d.is_host = (type & CL_DEVICE_TYPE_CPU) != 0;

@@ -18,6 +18,7 @@ struct DeviceDescription {
     std::string type;             ///< "cpu", "gpu" or "accelerator"
     unsigned compute_units = 0;
     std::uint64_t memory_bytes = 0;     ///< as the implementation reports it, which is not always true
+    std::uint64_t local_bytes = 0;      ///< that a work-group shares
     std::uint64_t allocation_bytes = 0; ///< largest single allocation
     bool has_double = false;
     bool is_host = true;       ///< the host's own processor, whose cores trace rays, too

@@ -74,8 +74,7 @@ def expect(condition, message):
 def check_throughput(rows, has_double):
     names = {row["kernel"] for row in rows}
     for kernel in ("camera", "classify", "emission", "connect", "accumulate", "shade diffuse", "shift", "weigh",
-                   "join diffuse", "direction", "advance", "smooth", "smooth_twice_from_zero", "residual",
-                   "restrict_residual", "prolong"):
+                   "join diffuse", "direction", "advance", "descend", "ascend", "residual", "prolong"):
         expect(kernel in names, f"kernel {kernel} was not measured")
     # A stage and a kernel of the solver have that name.
     expect(sum(row["kernel"] == "advance" for row in rows) == 2, "one of two kernels `advance` was not measured")

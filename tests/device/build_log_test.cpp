@@ -6,12 +6,12 @@ namespace gradus {
 namespace {
 
 const std::string two_files = "#line 1 \"kernels/a.cl\"\n" // line 1
-                           "first\n"
-                           "#line 1 \"kernels/b.h\"\n"
-                           "inner\n"
-                           "#line 7 \"kernels/a.cl\"\n"
-                           "seventh\n" // line 6
-                           "eighth\n";
+                              "first\n"
+                              "#line 1 \"kernels/b.h\"\n"
+                              "inner\n"
+                              "#line 7 \"kernels/a.cl\"\n"
+                              "seventh\n" // line 6
+                              "eighth\n";
 
 TEST(BuildLog, OfLinesOfTheWholeSourceNamesTheirFiles) {
     EXPECT_EQ(with_file_names("<kernel>:2:9: error: x\n", two_files), "kernels/a.cl:1:9: error: x\n");

@@ -41,6 +41,7 @@ TEST(Device, IsAProcessorUnlessToldOtherwise) {
     EXPECT_EQ(device.description().type, "cpu");
     EXPECT_GT(device.description().compute_units, 0u);
     EXPECT_GT(device.description().memory_bytes, 0u);
+    EXPECT_GE(device.description().local_bytes, 16384u);
     EXPECT_GT(device.description().allocation_bytes, 0u);
     EXPECT_LE(device.description().allocation_bytes, device.description().memory_bytes);
 }
