@@ -82,7 +82,8 @@ GRADUS_FN light_leaving light_vertex_leave(GRADUS_GLOBAL const real *light_verti
     const mapped_normal map = mapped_normal_at(light_vertex_textures, unit, record * (size_t)textured_columns);
     const bsdf_frame place = bsdf_frame_seen(map, shading, along, towards, m);
     const real turned_chance = mapped_normal_turned_chance(map, shading);
-    const real chance = mapped_normal_turns(map, shading, towards) ? turned_chance : R(1) - turned_chance;
+    const real of_side = mapped_normal_turns(map, shading, towards) ? turned_chance : R(1) - turned_chance;
+    const real chance = mapped_normal_lets_leave(map, shading, towards) ? of_side : R(0);
 #else
     const bsdf_frame place = bsdf_frame_of(surface_frame(shading, along, m));
     const real chance = R(1);

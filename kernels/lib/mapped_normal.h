@@ -45,6 +45,12 @@ GRADUS_FN real mapped_normal_turned_chance(mapped_normal map, vec3 own) {
     return (map.flags & normal_map_turns) != 0u ? tilted : R(0);
 }
 
+/* Whether light that came from the side of `own` may leave along `next`: who looks at what is two-sided from behind
+ * sees another surface, which that light does not reach. */
+GRADUS_FN int mapped_normal_lets_leave(mapped_normal map, vec3 own, vec3 next) {
+    return ((map.flags & normal_map_on_two_sided) == 0u) | (v3_dot(own, next) > R(0));
+}
+
 /* tan^2 of the angle whose cosine this is; bounded, so that 0 times it is 0. */
 GRADUS_FN real tangent_squared(real cosine) {
     const real square = cosine * cosine;

@@ -124,7 +124,8 @@
 #define normal_map_shadows 4u /* light that grazes is dimmed */
 #define normal_map_of_vertex 7u
 #define normal_map_is_bump 8u
-#define normal_map_is_outside 16u /* of what makes the material two-sided */
+#define normal_map_is_outside 16u   /* of what makes the material two-sided */
+#define normal_map_on_two_sided 32u /* with a vertex alone: the other side is seen from behind */
 
 /* Bits of TRAIT_TEXTURED_NORMALS. */
 #define textured_normals_given 1

@@ -116,9 +116,8 @@ STAGE read_material(uint count, uint unit, uint first, uint traced_rows, uint pa
 #endif
 #if TRAIT_SHARED_JITTER
     /* An additive sequence, as the places within the pixel are: what all pixels share does not average out. */
-    const sample_place sample =
-        shared_number_at(sample_place_after(first_sample_low, first_sample_high,
-                                            divide(AT_UINT(path, slot, base), pixels_multiplier, pixels_shift)));
+    const sample_place sample = shared_number_at(sample_place_after(
+        first_sample_low, first_sample_high, divide(AT_UINT(path, slot, base), pixels_multiplier, pixels_shift)));
     const random_bits start = random_key(seed_low, seed_high, 0xFFFFFFFDu, 0u, sample.high);
     const real shared = random_unit(start.x + sample.low * 2654435769u);
     choice = depth == 0u ? shared : choice;
@@ -191,16 +190,18 @@ STAGE read_material(uint count, uint unit, uint first, uint traced_rows, uint pa
     const vec3 bumped = normal_of_height(place, bump_scale * slope.u, bump_scale * slope.v);
     mapped = v3_select((map_flags & normal_map_is_bump) != 0u, bumped, mapped);
 #endif
+    uint vertex_flags = map_flags & normal_map_of_vertex;
 #if TRAIT_TWO_SIDED
-    const int is_from_behind = ((OF_PRIMITIVE(primitive_material, material, primitive) & material_two_sided) != 0u) &
-                               (v3_dot(place.shading, direction) > R(0));
+    const int is_two_sided = (OF_PRIMITIVE(primitive_material, material, primitive) & material_two_sided) != 0u;
+    vertex_flags |= is_two_sided & (vertex_flags != 0u) ? normal_map_on_two_sided : 0u;
+    const int is_from_behind = is_two_sided & (v3_dot(place.shading, direction) > R(0));
     const vec3 from_behind = normal_from_behind(place.shading, mapped, (map_flags & normal_map_is_outside) != 0u);
     mapped = v3_select(is_from_behind, from_behind, mapped);
 #endif
     surface[(size_t)textured_normal_x * traced_rows + row] = mapped.x;
     surface[(size_t)textured_normal_y * traced_rows + row] = mapped.y;
     surface[(size_t)textured_normal_z * traced_rows + row] = mapped.z;
-    surface[(size_t)textured_normal_flags * traced_rows + row] = (real)(int)(map_flags & normal_map_of_vertex);
+    surface[(size_t)textured_normal_flags * traced_rows + row] = (real)(int)vertex_flags;
 #elif TRAIT_TEXTURED_NORMALS
     surface[(size_t)textured_normal_x * traced_rows + row] = R(0);
     surface[(size_t)textured_normal_y * traced_rows + row] = R(0);

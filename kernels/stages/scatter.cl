@@ -122,7 +122,8 @@ STAGE scatter(uint count, uint unit, uint first, uint to, uint capacity, uint ma
     const bsdf_sample sampled = PASTE(BSDF, _sample)(m, wi, u.a, u.b, u.c, transport_importance);
     const vec3 next = v3_normalize(frame_to_world(axes, sampled.wo));
 #if TRAIT_TEXTURED_NORMALS
-    const int is_seen = mapped_normal_turns(map, point.shading, next) == is_turned;
+    const int is_seen = (mapped_normal_turns(map, point.shading, next) == is_turned) &
+                        mapped_normal_lets_leave(map, point.shading, next);
     const real chance = is_turned ? turned_chance : R(1) - turned_chance;
     const bsdf_sample s = mapped_sample(sampled, is_seen ? mapped_factor(place.flags, place.own, wi) / chance : R(0));
 #else

@@ -418,10 +418,6 @@ TEST(Textures, PhotonsMeetThem) {
     expect_photons_see_what_paths_see(maker.scene);
 }
 
-/// Their kernels take longer to compile than ./check can afford; tests/scene has what maps make of normals.
-class NormalMaps : public ::testing::TestWithParam<int> {};
-INSTANTIATE_TEST_SUITE_P(Full, NormalMaps, ::testing::Values(0));
-
 NormalTexture map_of(Scene &scene, const Texture &texture, NormalTexture::Kind kind) {
     NormalTexture map;
     map.kind = kind;
@@ -431,6 +427,31 @@ NormalTexture map_of(Scene &scene, const Texture &texture, NormalTexture::Kind k
     scene.textures.back().highest = 1e30f;
     return map;
 }
+
+/// A card under a map that leans towards the floor behind it. Who looks at a two-sided card from there sees its other
+/// side; a card with one side sends light past its own horizon, and paths find it there, too.
+TEST(Textures, PhotonsDoNotPassTwoSidedCardsUnderNormalMaps) {
+    for (const bool both : {true, false}) {
+        SceneMaker maker(16, 64);
+        maker.look({-2, 2, 0}, {-1, 0, 0}, 50, {0, 0, 1});
+        Texture leaning;
+        leaning.kind = Texture::Kind::checkerboard;
+        leaning.color_0 = leaning.color_1 = {0.9f, 0.5f, 0.8f};
+        Bsdf card = diffuse(0.9);
+        card.map = map_of(maker.scene, leaning, NormalTexture::Kind::normal);
+        maker.parallelogram({0, 2, 1}, {0, -2, 0}, {0, 0, -2},
+                            maker.material(both ? two_sided(card, card) : material_of(card)));
+        maker.floor(-2, 0, 2, maker.material(diffuse(0.5)));
+        maker.point_light({5, 5, 5}, {1, 1, 0});
+        maker.point_light({0.5f, 0.5f, 0.5f}, {-1, 1, 0});
+        maker.scene.settings.max_depth = 3;
+        expect_photons_see_what_paths_see(maker.scene);
+    }
+}
+
+/// Their kernels take longer to compile than ./check can afford; tests/scene has what maps make of normals.
+class NormalMaps : public ::testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Full, NormalMaps, ::testing::Values(0));
 
 double dot(const std::array<double, 3> &a, const std::array<double, 3> &b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
