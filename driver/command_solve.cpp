@@ -152,6 +152,7 @@ void add_problem_options(CLI::App &command, SolveRequest &request) {
     add_reconstruction_option(
         command, group, request.reconstruction, [&request, &options](Reconstruction reconstruction) {
             request.reconstruction = reconstruction;
+            request.reconstruction_is_given = true;
             options.norm = reconstruction == Reconstruction::l1 ? PoissonNorm::l1 : PoissonNorm::l2;
         });
     add_guide_option(command, group, [&request](Guide guide) { request.guide = guide; });

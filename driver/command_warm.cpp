@@ -9,8 +9,12 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <unistd.h>
+
 #include <chrono>
+#include <filesystem>
 #include <memory>
+#include <system_error>
 
 namespace gradus {
 namespace {
@@ -20,7 +24,21 @@ struct WarmRequest {
     MethodRequest method;
 };
 
+/// Renders do without a cache; to warm none is a mistake.
+void check_cache(const std::filesystem::path &folder) {
+    if (folder.empty())
+        throw Error(ExitCode::usage, "there is no cache to warm: GRADUS_CACHE_DIR is off, or there is no home (see "
+                                     "docs/command-line.md)");
+    std::error_code failure;
+    std::filesystem::create_directories(folder, failure);
+    if (access(folder.c_str(), W_OK | X_OK) != 0)
+        throw Error(ExitCode::output, fmt::format("cannot keep kernels in '{}': it cannot be written to; "
+                                                  "GRADUS_CACHE_DIR names another folder",
+                                                  folder.string()));
+}
+
 int run_warm(const WarmRequest &request, const Services &services) {
+    check_cache(services.cache_folder());
     const auto start = std::chrono::steady_clock::now();
     check_method_options(request.method);
     const auto warn = [](const std::string &warning) { print_message("gradus: warning: " + warning + "\n"); };

@@ -1,8 +1,11 @@
 #include "driver/interrupt.h"
 
+#include <unistd.h>
+
 #include <array>
 #include <csignal>
 #include <cstddef>
+#include <cstring>
 
 namespace gradus {
 namespace {
@@ -22,11 +25,15 @@ const std::array<bool, watched_count> was_ignored = [] {
 }();
 
 volatile std::sig_atomic_t interrupted = 0;
+const char *volatile answer_line = nullptr;
 struct sigaction before[watched_count];
 
 // Gives the default action back to every signal but those that were ignored, so that the next one ends the process.
 void on_signal(int) {
     interrupted = 1;
+    const char *const line = answer_line;
+    if (line && write(STDERR_FILENO, line, std::strlen(line)) < 0)
+        answer_line = nullptr; // nobody reads it
     struct sigaction standard = {};
     standard.sa_handler = SIG_DFL;
     for (std::size_t i = 0; i < watched_count; ++i)
@@ -46,6 +53,7 @@ void ignore_what_was_ignored() {
 
 InterruptWatch::InterruptWatch() {
     interrupted = 0;
+    answer_line = nullptr;
     struct sigaction action = {};
     action.sa_handler = on_signal;
     // Calls of the file system, of Embree and of OpenCL shall not see EINTR.
@@ -64,5 +72,7 @@ InterruptWatch::~InterruptWatch() {
 }
 
 bool InterruptWatch::requested() const { return interrupted != 0; }
+
+void InterruptWatch::answer(const char *line) { answer_line = line; }
 
 } // namespace gradus

@@ -18,6 +18,9 @@ class InterruptWatch {
     InterruptWatch &operator=(const InterruptWatch &) = delete;
 
     bool requested() const;
+    /// From now on the first signal writes this line to stderr at once: for work that does not look at requested().
+    /// The text must stay where it is.
+    void answer(const char *line);
 };
 
 } // namespace gradus

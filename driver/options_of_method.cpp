@@ -57,8 +57,10 @@ std::vector<std::string> unread_options(const MethodRequest &request, const std:
         if (!request.given.count(option) || may_be_read || is_among(method, methods) ||
             (is_of_reconstruction && reconstructs_as_pt))
             continue;
-        sentences.push_back(
-            fmt::format("{} changes nothing with {}: it is for {}", option, method, fmt::join(methods, " and ")));
+        const std::string exception =
+            method == "pt" && is_of_reconstruction ? "; of pt with --reconstruction guided alone" : "";
+        sentences.push_back(fmt::format("{} changes nothing with {}: it is for {}{}", option, method,
+                                        fmt::join(methods, " and "), exception));
     }
     return sentences;
 }

@@ -3,6 +3,7 @@
 #include "driver/commands.h"
 #include "driver/memory_check.h"
 #include "driver/standard_streams.h"
+#include "driver/usage_message.h"
 #include "runtime/error.h"
 #include "runtime/version.h"
 
@@ -12,6 +13,7 @@
 #include <csignal>
 #include <cstdio>
 #include <new>
+#include <sstream>
 #include <string_view>
 #include <system_error>
 
@@ -86,9 +88,7 @@ int run_program(int argc, const char *const *argv, const Services &services) {
         app.set_version_flag("--version", fmt::format("gradus {}", version()));
         app.require_subcommand(1);
         app.footer(examples);
-        app.failure_message([](const CLI::App *command, const CLI::Error &error) {
-            return "gradus: error: " + CLI::FailureMessage::simple(command, error);
-        });
+        app.failure_message(usage_message);
         add_render_command(app, services, chosen);
         add_inspect_command(app, services, chosen);
         add_plugins_command(app, chosen);
@@ -100,7 +100,13 @@ int run_program(int argc, const char *const *argv, const Services &services) {
         try {
             app.parse(argc, argv);
         } catch (const CLI::ParseError &error) {
-            return app.exit(error) == 0 ? static_cast<int>(ExitCode::success) : static_cast<int>(ExitCode::usage);
+            std::ostringstream help, complaint;
+            const bool is_help = app.exit(error, help, complaint) == 0;
+            print_message(complaint.str());
+            return run_chosen([&] {
+                print_result(help.str());
+                return static_cast<int>(is_help ? ExitCode::success : ExitCode::usage);
+            });
         }
         // Run after parsing, while the options that the command refers to are alive.
         return run_chosen(chosen);

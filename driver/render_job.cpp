@@ -49,7 +49,7 @@ class RenderJob {
         if (record_.interrupted) {
             record_.stopped_by = "interrupt";
             if (has_nothing_to_show()) {
-                print_message(fmt::format("gradus: interrupted before the first samples; {} is as it was\n",
+                print_message(fmt::format("gradus: interrupted before the first samples; nothing is written to {}\n",
                                           request_.outputs.image));
                 return static_cast<int>(ExitCode::interrupted);
             }
@@ -59,9 +59,17 @@ class RenderJob {
             throw Error(ExitCode::failure, fmt::format("no sample was done after {:.0f} s, so there is no image: give "
                                                        "more --time, or a smaller --size or --max-depth",
                                                        seconds_since(render_start_)));
+        if (!record_.interrupted && !request_.quiet)
+            watch_->answer("\ngradus: all samples are done, and the image is being made: a second time loses it\n");
         Image image;
-        saving([&] { image = described(prepared_.method->last_image(), record_.interrupted); },
-               [&] { return prepared_.method->mean_image(); });
+        saving(
+            [&] {
+                const PhaseWatch phase_watch(phases_, progress_);
+                const Phase phase(&phases_, phase_names::image);
+                image = described(prepared_.method->last_image(), record_.interrupted);
+            },
+            [&] { return prepared_.method->mean_image(); });
+        watch_->answer(nullptr);
         write_results(image);
         if (black_pixels_ > 0)
             return static_cast<int>(ExitCode::failure);

@@ -9,6 +9,7 @@
 #include "solver/poisson_solver.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -54,6 +55,8 @@ struct Services {
         prepare_solver;
     /// Opens the device and tunes it with the scene.
     std::function<TunedDevice(const std::string &device, int threads, const Scene &, const TuningOptions &)> tune;
+    /// Where compiled kernels are kept; empty where they are not.
+    std::function<std::filesystem::path()> cache_folder;
     /// The traits that specialise the kernels of a scene, by name.
     std::function<std::vector<std::pair<std::string, int>>(const Scene &)> traits;
 };

@@ -38,6 +38,12 @@ void check_inputs_are_kept(const SolveRequest &request) {
 void check_options(const SolveRequest &request) {
     if (request.options.weigh_by_variance && request.options.norm == PoissonNorm::l1)
         refuse("--weights variance is for l2: add --reconstruction l2");
+    const bool is_l1 = request.reconstruction == Reconstruction::l1,
+               is_l2 = request.reconstruction == Reconstruction::l2;
+    if (is_l2 && !request.options.joint_channels && !request.options.weigh_by_variance)
+        refuse("--per-channel changes nothing with l2 but where --weights variance gives weights");
+    if (!is_l1 && !request.options.keep_mean)
+        refuse("--no-mean-correction is for l1, the only one that has that correction");
     check_alpha(request.reconstruction, request.alpha_is_given, request.options.alpha);
     if (needs_halves(request.reconstruction) && !(request.options == PoissonOptions{.norm = PoissonNorm::l2}))
         refuse(fmt::format("--reconstruction {} chooses weights and method by itself: leave --weights, --method, "
@@ -66,6 +72,7 @@ class SolveJob {
                 if (is_variance(layer))
                     warn(fmt::format("'{}' is not read: only --alpha auto and --weights variance use variances", path));
         images_ = read_gradient_images(request_.sources);
+        warn_of_other_reconstruction();
         if (request_.options.alpha_from_variances && !varies(GradientLayer::primal_variance) &&
             !varies(GradientLayer::dx_variance) && !varies(GradientLayer::dy_variance))
             warn(fmt::format("all variances are 0, as of one sample a pixel: they tell no alpha, so it is {}",
@@ -80,6 +87,16 @@ class SolveJob {
     void warn(const std::string &text) const {
         if (!request_.quiet)
             print_message("gradus: warning: " + text + "\n");
+    }
+
+    /// A render's layers without a word on how to solve them give another image than the render's.
+    void warn_of_other_reconstruction() const {
+        const auto made = images_.metadata.find("reconstruction");
+        const std::string name = reconstruction_name(request_.reconstruction);
+        if (!request_.reconstruction_is_given && made != images_.metadata.end() && made->second != name)
+            warn(fmt::format("the render that wrote these layers has --reconstruction {0}, and this image is {1}: "
+                             "--reconstruction {0} makes its own",
+                             made->second, name));
     }
 
     bool varies(GradientLayer layer) const {

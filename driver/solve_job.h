@@ -16,6 +16,7 @@ struct SolveRequest {
     OutputFiles outputs;
     PoissonOptions options;
     Reconstruction reconstruction = Reconstruction::l1;
+    bool reconstruction_is_given = false;
     std::optional<Guide> guide; ///< of Reconstruction::guided; without one, the filter
     bool alpha_is_given = false;
     std::optional<double> damping;

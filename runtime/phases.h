@@ -1,4 +1,4 @@
-// What happens before a render's first sample: which phase is under way, and how long each took.
+// What happens before a render's first sample and after its last: which phase is under way, and how long each took.
 #pragma once
 
 #include "runtime/seconds_since.h"
@@ -25,6 +25,7 @@ constexpr PhaseName device{"device", "opening the device"};
 constexpr PhaseName tables{"tables", "laying out tables and lights"};
 constexpr PhaseName tree{"tree", "building the ray tracing tree"};
 constexpr PhaseName compile{"compile", "compiling kernels"};
+constexpr PhaseName image{"image", "making the image"};
 } // namespace phase_names
 
 /// Phases begin and end on one thread and may lie in each other: time counts for the innermost. Others may look on.

@@ -98,6 +98,12 @@ TEST_F(CommandLine, WarmNamesTheKernels) {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("0.250 s  fake_kernel (1 of 1)"));
     EXPECT_THAT(files(), ::testing::ElementsAre("scene.xml"));
+    // Renders do without a cache, but to warm none is no success.
+    for (const auto &[folder, exit_code] : {std::pair{"", 2}, {"/proc/no-such-folder", 5}}) {
+        setenv("FAKE_CACHE", folder, 1);
+        EXPECT_EQ(run({"warm", "scene.xml"}).exit_code, exit_code) << folder;
+    }
+    unsetenv("FAKE_CACHE");
     // What a render would refuse or warn of.
     EXPECT_EQ(run({"warm", "scene.xml", "--method", "pt", "--alpha", "0.5"}).exit_code, 2);
     EXPECT_EQ(run({"warm", "scene.xml", "--guide", "filter"}).exit_code, 2);

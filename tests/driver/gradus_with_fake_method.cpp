@@ -10,6 +10,7 @@
 //   nan=1        one value of the image is NaN
 //   warn=TEXT    the loader warns
 //   choice=NAME  what the method auto chooses (gpt)
+//   image_ms=N   what making an image takes (0)
 //   pilot_ms=N   what the pilot of method auto takes (0)
 //   error=X      with --error, the estimated error of the image of one sample a pixel; it falls as 1 over the samples
 // The image is R = seed, G = samples a pixel so far, B = 0.5; the film is 8x6 with 4 samples a pixel.
@@ -21,6 +22,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <limits>
@@ -98,6 +100,8 @@ class FakeMethod : public Method {
         return image_of(0.25f);
     }
     Image image() override {
+        if (!parameter("image_ms").empty())
+            std::this_thread::sleep_for(std::chrono::milliseconds(std::stoi(parameter("image_ms"))));
         if (parameter("fail") == "reconstruction")
             throw std::runtime_error("the fake guide is lost");
         if (parameter("fail") == "memory-image" || (parameter("fail") == "memory-partial" && done_ == 1))
@@ -183,6 +187,10 @@ int main(int argc, char **argv) {
     services.load_scene = gradus::load_fake_scene;
     services.list_devices = [] { return std::vector<gradus::DeviceDescription>(); };
     services.method_names = [] { return std::vector<std::string>{"pt", "gpt", "sppm", "gpm", "auto"}; };
+    services.cache_folder = [] {
+        const char *folder = std::getenv("FAKE_CACHE");
+        return folder ? std::filesystem::path(folder) : std::filesystem::temp_directory_path();
+    };
     services.traits = [](const gradus::Scene &) {
         return std::vector<std::pair<std::string, int>>{{"HAS_DIFFUSE", 1}, {"HAS_CONSTANT", 0}};
     };

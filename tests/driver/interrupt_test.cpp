@@ -90,6 +90,24 @@ TEST_F(Interrupt, ASecondSignalEndsAtOnce) {
     expect_valid_partial_image();
 }
 
+/// All samples are done: one signal loses nothing and is answered at once, a second one ends the program.
+TEST_F(Interrupt, ASignalWhileTheImageIsMadeIsAnswered) {
+    for (const int signals : {1, 2}) {
+        ChildProcess process({"render", "scene.xml", "-o", "out.exr", "--spp", "1", "-D", "image_ms=1500"}, folder);
+        process.wait_until_it_hears(SIGINT);
+        sleep_ms(500);
+        for (int i = 0; i < signals; ++i) {
+            process.send(SIGINT);
+            sleep_ms(100);
+        }
+        const Outcome outcome = process.wait();
+        EXPECT_THAT(outcome.err, ::testing::HasSubstr("the image is being made: a second time loses it"));
+        EXPECT_EQ(outcome.exit_code == 0, signals == 1) << outcome.err;
+        EXPECT_EQ(std::filesystem::exists(at("out.exr")), signals == 1);
+        std::filesystem::remove(at("out.exr"));
+    }
+}
+
 TEST_F(Interrupt, PartialImagesAreWholeWheneverTheyAreRead) {
     ChildProcess process(endless("1"), folder);
     ASSERT_TRUE(wait_for_file("out.exr"));

@@ -170,6 +170,29 @@ TEST_F(SolveOptions, EveryOptionReachesTheSolver) {
     EXPECT_FALSE(options_of({"--weights", "uniform"}).weigh_by_variance);
 }
 
+TEST_F(SolveOptions, WhatChangesNothingIsAnError) {
+    const std::string path = write_with_variances();
+    for (const std::string option : {"--per-channel", "--no-mean-correction"}) {
+        const auto outcome = run({path, "-o", at("out.exr"), "--reconstruction", "l2", option});
+        EXPECT_EQ(outcome.exit_code, 2) << option;
+        EXPECT_THAT(outcome.err, ::testing::HasSubstr(option));
+    }
+    EXPECT_EQ(
+        run({path, "-o", at("out.exr"), "--reconstruction", "l2", "--weights", "variance", "--per-channel"}).exit_code,
+        0);
+}
+
+TEST_F(SolveOptions, AnImageOfAnotherKindThanTheRendersIsTold) {
+    const std::string path = write_with_variances();
+    Image layers = read_image(path);
+    layers.metadata = {{"reconstruction", "weighted"}};
+    write_image(layers, at("of_render.exr"));
+    EXPECT_THAT(run({at("of_render.exr"), "-o", at("out.exr")}).err,
+                ::testing::HasSubstr("--reconstruction weighted makes its own"));
+    EXPECT_EQ(run({at("of_render.exr"), "-o", at("out.exr"), "--reconstruction", "l1"}).err, "");
+    EXPECT_EQ(run({path, "-o", at("out.exr")}).err, "");
+}
+
 TEST_F(SolveOptions, VariancesAreReadWhereTheyAreUsed) {
     const std::string path = write_with_variances();
     ASSERT_EQ(run({path, "-o", at("out.exr")}).exit_code, 0);

@@ -88,5 +88,24 @@ TEST(UsageErrors, HaveTheirExitCodeAndAMessage) {
     EXPECT_THAT(::testing::internal::GetCapturedStderr(), ::testing::HasSubstr("a render began"));
 }
 
+TEST(UsageErrors, NameWhatDoesNotExistAndWhatMayHaveBeenMeant) {
+    const struct {
+        std::vector<std::string> arguments;
+        const char *message;
+    } cases[] = {
+        {{"rendr", "scene.xml"}, "rendr is no command; did you mean render? The commands are render, inspect"},
+        {{"--spp", "4"}, "--spp comes before a command, which is one of render, inspect"},
+        {{"render", "scene.xml", "-o", "a.exr", "--sppp", "4", "--methd", "pt"},
+         "--sppp is not an option of render; did you mean --spp?"},
+        {{"render", "scene.xml", "-o", "a.exr", "--nothing-of-the-kind=3"},
+         "--nothing-of-the-kind is not an option of render\n"},
+        {{"render", "scene.xml", "second.xml", "-o", "a.exr"}, "render takes no more, but was given: second.xml"}};
+    for (const auto &[arguments, message] : cases) {
+        ::testing::internal::CaptureStderr();
+        EXPECT_EQ(run(arguments), 2);
+        EXPECT_THAT(::testing::internal::GetCapturedStderr(), ::testing::HasSubstr(message));
+    }
+}
+
 } // namespace
 } // namespace gradus
