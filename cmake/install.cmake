@@ -15,8 +15,8 @@ install(FILES tests/references/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/tes
 # find_package(gradus), gradus::solver. Only what the solver needs is exported: an export that a library of the renderer
 # got into would fail here, for it would name targets that are not in the set.
 set(solver_targets gradus_solver gradus_device gradus_kernels)
-set(solver_headers solver/poisson_solver.h runtime/device/buffer.h runtime/device/device.h runtime/device/precision.h
-                   runtime/error.h)
+set(solver_headers solver/poisson_solver.h solver/kernel_times.h runtime/device/buffer.h runtime/device/device.h
+                   runtime/device/precision.h runtime/error.h)
 
 # Users write <gradus/solver/poisson_solver.h>; the second folder is for the headers' own includes, which name files
 # from the project's root.

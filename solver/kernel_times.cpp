@@ -1,5 +1,7 @@
 #include "solver/kernel_times.h"
 
+#include "runtime/device/program.h"
+
 #include <algorithm>
 
 namespace gradus {

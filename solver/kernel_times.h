@@ -1,13 +1,13 @@
 // What kernels took, by name.
 #pragma once
 
-#include "runtime/device/program.h"
-
 #include <cstdint>
 #include <string>
 #include <vector>
 
 namespace gradus {
+
+class Kernel;
 
 struct KernelTime {
     std::string name;

@@ -1,5 +1,7 @@
 #include "bench/kernels/captured_launch.h"
 
+#include "kernels/shared/solver_shared.h"
+
 #include "runtime/wavefront/table_layout.h"
 
 #include <algorithm>
@@ -156,6 +158,14 @@ void CapturedLaunch::lay_out(CapturedBuffer &captured, const TableLayout &layout
     const std::string &name = captured.arguments.front();
     captured.line_rows =
         name == "link" || name == "offset_ray" ? uint_argument("stride") : captured.rows / captured.lines;
+}
+
+std::size_t CapturedLaunch::pixels_of_tiles() const {
+    const std::size_t columns = uint_argument("tile_columns"), width = uint_argument("width");
+    if (columns == 0)
+        return 0;
+    const std::size_t across = (width + columns - 1) / columns, planes = items_ / SOLVER_TILE / across;
+    return planes * width * uint_argument("height");
 }
 
 std::size_t CapturedLaunch::uint_argument(const std::string &name) const {

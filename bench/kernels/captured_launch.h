@@ -68,6 +68,8 @@ class CapturedLaunch {
     const std::string &file() const { return request_.file; }
     bool is_written(std::size_t buffer) const { return is_written_[buffer]; }
     std::size_t items() const { return items_ * std::max<std::size_t>(lines_, 1) * planes_; }
+    /// Pixels that a kernel does tile by tile (kernels/solver/cycle.cl); 0 of other kernels.
+    std::size_t pixels_of_tiles() const;
     Device &device() const { return device_; }
     const std::vector<CapturedBuffer> &buffers() const { return buffers_; }
 

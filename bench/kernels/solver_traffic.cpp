@@ -8,12 +8,13 @@ namespace gradus::bench {
 
 namespace {
 
-// From reading kernels/solver. An item is one pixel, but for the interpolation: 8 pixels of a coarse row.
+// From reading kernels/solver. An item is one pixel, but for the interpolation: 8 pixels of a coarse row. Of a grid's
+// tiles a pixel counts.
 const std::map<std::string, double> values_of_item = {
-    {"residual", 3}, // u, right side; residual
-    {"smooth", 4},   // u, right side, inverse diagonal; smoothed: a step of Chebyshev's
-    {"descend", 0},  // an item takes a part of a tile, large or small
-    {"ascend", 0},
+    {"residual", 3},                           // u, right side; residual
+    {"smooth", 4},                             // u, right side, inverse diagonal; smoothed: a step of Chebyshev's
+    {"descend", 3.25},                         // right side, inverse diagonal; smoothed, a quarter of a coarse pixel
+    {"ascend", 5},                             // u, right side, inverse diagonal; what it adds to, twice
     {"prolong", 8 / 2 + 16 + 16},              // coarse, each of its rows for two fine ones; u twice
     {"direction", 4},                          // z, old direction; direction, image
     {"advance", 6},                            // direction, image, u, residual; u, residual

@@ -193,7 +193,8 @@ class Throughput {
 
     static std::optional<double> bytes_an_item(CapturedLaunch &launch) {
         if (const auto traffic = solver_traffic(launch.name()); traffic && launch.file().starts_with("kernels/solver/"))
-            return *traffic > 0 ? std::optional<double>(sizeof(float) * *traffic) : std::nullopt;
+            return sizeof(float) * *traffic *
+                   (launch.pixels_of_tiles() > 0 ? double(launch.pixels_of_tiles()) / double(launch.items()) : 1);
         // An item of the partition takes a chunk of rows.
         if (launch.file() == "kernels/stages/partition.cl")
             return std::nullopt;

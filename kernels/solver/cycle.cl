@@ -35,34 +35,30 @@ GRADUS_FN void clear_outside(__local real *tile, uint line, uint local_row, int 
 
 #define STEP_DONE barrier(CLK_LOCAL_MEM_FENCE);
 
-/* The lines of a tile and its border. */
-#define FOR_LINES_WITH_BORDER                                                                                          \
-    FOR_LINES(rows + 2) {                                                                                              \
-        const uint y = first_y + line - 1; /* wraps around above the grid */                                           \
-        const int is_inside = y < height;                                                                              \
-        clear_outside(tile, line, local_row, is_inside, FIRST_INSIDE, END_INSIDE, lanes);                              \
-        if (is_inside) {                                                                                               \
-        ON_LINE
-#define END_OF_LINES                                                                                                   \
-    }                                                                                                                  \
-    }
-#define FOR_EIGHTS_WITH_BORDER FOR_EIGHTS(FIRST_INSIDE, END_INSIDE)
+/* A line of the tile or of its border. */
+#define LINE_WITH_BORDER                                                                                               \
+    const uint y = first_y + line - 1; /* wraps around above the grid */                                               \
+    const int is_inside = y < height;                                                                                  \
+    clear_outside(tile, line, local_row, is_inside, FIRST_INSIDE, END_INSIDE, lanes);                                  \
+    ON_LINE
+#define FOR_EIGHTS_WITH_BORDER FOR_EIGHTS(FIRST_INSIDE, is_inside ? END_INSIDE : 0)
 
 /* smoothed = two steps of smoothing from zero; coarse = the sum of right_side - A smoothed over 2 x 2 pixels. */
 SOLVE descend(TILED_GRID, uint coarse_row, uint coarse_plane, WEIGHTS, real step_0, real step_1,
               __global const real *right_side, __global real *smoothed, __global real *coarse) {
     __local real tile[LOCAL_REALS];
     TILE_PLACE
-    FOR_LINES_WITH_BORDER
-    FOR_EIGHTS_WITH_BORDER {
-        const size_t x = first_x + 8 * eight - 8;
-        const real8 value = smoothed_from_zero(CELLS(x, y), AROUND(right_side, line_at + x, row),
-                                               AROUND(inverse_diagonal, line_weight + x, row), step_0, step_1);
-        vstore8(value, 0, tile + LOCAL_LINE(line - 1) + 8 * eight - 8);
-        if (line - 1 < rows && eight - 1 < EIGHTS(columns))
-            vstore8(value, 0, smoothed + line_at + x);
+    FOR_LINES(rows + 2) {
+        LINE_WITH_BORDER
+        FOR_EIGHTS_WITH_BORDER {
+            const size_t x = first_x + 8 * eight - 8;
+            const real8 value = smoothed_from_zero(CELLS(x, y), AROUND(right_side, line_at + x, row),
+                                                   AROUND(inverse_diagonal, line_weight + x, row), step_0, step_1);
+            vstore8(value, 0, tile + LOCAL_LINE(line - 1) + 8 * eight - 8);
+            if (line - 1 < rows && eight - 1 < EIGHTS(columns))
+                vstore8(value, 0, smoothed + line_at + x);
+        }
     }
-    END_OF_LINES
     STEP_DONE
     FOR_LINES((rows + 1) / 2) {
         FOR_EIGHTS(0, EIGHTS((columns + 1) / 2)) {
@@ -86,14 +82,15 @@ SOLVE ascend(TILED_GRID, WEIGHTS, real step_0, real step_1, uint adds, __global 
              __global const real *u, __global real *smoothed) {
     __local real tile[LOCAL_REALS];
     TILE_PLACE
-    FOR_LINES_WITH_BORDER
-    FOR_EIGHTS_WITH_BORDER {
-        const size_t x = first_x + 8 * eight - 8, at = line_at + x;
-        const real8 residual = vload8(0, right_side + at) - image_of_8(CELLS(x, y), AROUND(u, at, row));
-        vstore8(vload8(0, u + at) + step_1 * vload8(0, inverse_diagonal + line_weight + x) * residual, 0,
-                tile + LOCAL_LINE(line - 1) + 8 * eight - 8);
+    FOR_LINES(rows + 2) {
+        LINE_WITH_BORDER
+        FOR_EIGHTS_WITH_BORDER {
+            const size_t x = first_x + 8 * eight - 8, at = line_at + x;
+            const real8 residual = vload8(0, right_side + at) - image_of_8(CELLS(x, y), AROUND(u, at, row));
+            vstore8(vload8(0, u + at) + step_1 * vload8(0, inverse_diagonal + line_weight + x) * residual, 0,
+                    tile + LOCAL_LINE(line - 1) + 8 * eight - 8);
+        }
     }
-    END_OF_LINES
     STEP_DONE
     FOR_LINES(rows) {
         const uint y = first_y + line;
