@@ -15,9 +15,10 @@ namespace {
 
 bool is_option(const std::string &word) { return word.size() > 1 && word.front() == '-'; }
 
-std::string guess(const std::string &word, const std::vector<std::string> &known) {
+/// What may have been meant; `otherwise` where nothing is near.
+std::string guess(const std::string &word, const std::vector<std::string> &known, const char *otherwise = "") {
     const std::optional<std::string> nearest = nearest_name(word, known);
-    return nearest ? fmt::format("; did you mean {}?", *nearest) : std::string();
+    return nearest ? fmt::format("; did you mean {}?", *nearest) : otherwise;
 }
 
 std::vector<std::string> commands_of(const CLI::App &app) {
@@ -57,11 +58,10 @@ std::string usage_message(const CLI::App *app, const CLI::Error &error) {
     if (chosen.empty() && !app->remaining().empty()) {
         const std::string word = app->remaining().front();
         const std::vector<std::string> commands = commands_of(*app);
-        text =
-            is_option(word)
-                ? fmt::format("{} comes before a command, which is one of {}\n", word, fmt::join(commands, ", "))
-                : fmt::format("{} is no command{} The commands are {}\n", word,
-                              guess(word, commands).empty() ? "." : guess(word, commands), fmt::join(commands, ", "));
+        text = is_option(word)
+                   ? fmt::format("{} comes before a command, which is one of {}\n", word, fmt::join(commands, ", "))
+                   : fmt::format("{} is no command{} The commands are {}\n", word, guess(word, commands, "."),
+                                 fmt::join(commands, ", "));
     } else if (dynamic_cast<const CLI::ExtrasError *>(&error) && !chosen.empty()) {
         text = of_unknown_words(*chosen.front(), app->remaining(true)) +
                fmt::format("\nRun gradus {} --help for more information.\n", chosen.front()->get_name());

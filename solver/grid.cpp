@@ -11,7 +11,7 @@ namespace gradus::solver {
 
 namespace {
 
-std::uint32_t tiles(std::uint32_t width) { return (width - 1) / SOLVER_TILE + 1; }
+std::uint32_t tiles(std::uint32_t width) { return quotient_up(width, SOLVER_TILE); }
 
 } // namespace
 
@@ -32,11 +32,15 @@ Grid::Grid(std::uint32_t width, std::uint32_t height) : width(width), height(hei
 
 std::uint32_t Grid::partials() const { return tiles(width) * SOLVER_TILE * height; }
 
-void Grid::launch(Kernel &kernel, Planes planes, std::uint32_t rows, std::uint32_t first_row) const {
+void Grid::bind(Kernel &kernel) const {
     kernel.set("width", width);
     kernel.set("height", height);
     kernel.set("row", row);
     kernel.set("plane", plane);
+}
+
+void Grid::launch(Kernel &kernel, Planes planes, std::uint32_t rows, std::uint32_t first_row) const {
+    bind(kernel);
     kernel.set("first_channel", planes.first);
     kernel.set("first_row", first_row);
     launch_groups(kernel, std::size_t(tiles(width)) * planes.count, rows > 0 ? rows : height);

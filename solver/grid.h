@@ -28,7 +28,9 @@ struct Grid {
 
     /// Parts of a sum that a kernel with a work-item for each pixel leaves for each plane.
     std::uint32_t partials() const;
-    /// Launches a kernel on all pixels of some planes, after setting width, height, row, plane and the planes. `rows`:
+    /// Sets width, height, row and plane.
+    void bind(Kernel &kernel) const;
+    /// Launches a kernel on all pixels of some planes, after setting the grid and the planes. `rows`:
     /// as many rows of work-items, from `first_row` on, instead of one for each row of pixels.
     void launch(Kernel &kernel, Planes planes, std::uint32_t rows = 0, std::uint32_t first_row = 0) const;
 };

@@ -14,8 +14,8 @@ namespace {
 /// With uniform weights, a grid whose data term outweighs its edges so far is solved by smoothing alone.
 constexpr double dominant_data_weight = 64;
 
-/// Grids of so few pixels are done in one launch, by a work-group for each channel: launches of their own take 15 us and
-/// more each on two cores, and this one 40 for all grids.
+/// Grids of so few pixels are done in one launch, by a work-group for each channel: launches of their own take 15 us
+/// and more each on two cores, and this one 40 for all grids.
 constexpr std::uint64_t most_of_coarsest = 4096;
 
 /// Two steps of smoothing that damp the upper three quarters of the spectrum most: the inverse roots of the Chebyshev
@@ -46,15 +46,12 @@ struct Line {
 
 /// A kernel of transfer.cl: an item for 8 coarse columns of each of `rows` rows.
 void launch_transfer(Kernel &kernel, const Grid &fine, const Grid &coarse, std::uint32_t rows, Planes planes) {
-    kernel.set("height", fine.height);
-    kernel.set("row", fine.row);
-    kernel.set("plane", fine.plane);
+    fine.bind(kernel);
     kernel.set("coarse_width", coarse.width);
     kernel.set("coarse_height", coarse.height);
     kernel.set("coarse_row", coarse.row);
     kernel.set("coarse_plane", coarse.plane);
-    const std::size_t tiles = (coarse.width - 1) / SOLVER_TILE + 1;
-    launch_groups(kernel, tiles * planes.count, (rows - 1) / 8 + 1);
+    launch_groups(kernel, std::size_t(quotient_up(coarse.width, SOLVER_TILE)) * planes.count, quotient_up(rows, 8));
 }
 
 } // namespace

@@ -36,10 +36,7 @@ Tiles::Shape Tiles::shape(const Grid &grid) const {
 
 void Tiles::launch(Kernel &kernel, const Grid &grid, Planes planes) const {
     const Shape tile = shape(grid);
-    kernel.set("width", grid.width);
-    kernel.set("height", grid.height);
-    kernel.set("row", grid.row);
-    kernel.set("plane", grid.plane);
+    grid.bind(kernel);
     kernel.set("first_channel", planes.first);
     kernel.set("tile_columns", tile.columns);
     kernel.set("tile_rows", tile.rows);

@@ -1,7 +1,6 @@
 #include "bench/kernels/captured_launch.h"
 
 #include "kernels/shared/solver_shared.h"
-
 #include "runtime/wavefront/table_layout.h"
 
 #include <algorithm>
