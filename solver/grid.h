@@ -11,7 +11,7 @@
 
 namespace gradus::solver {
 
-constexpr std::uint32_t quotient_up(std::uint32_t a, std::uint32_t b) { return (a + b - 1) / b; }
+constexpr std::uint32_t quotient_up(std::uint32_t a, std::uint32_t b) { return a / b + (a % b != 0); }
 
 /// The planes that a launch does: channels, or planes of weights.
 struct Planes {
