@@ -91,7 +91,7 @@ std::optional<std::string> find_layer(const Image &image, const Layers &layers, 
     if (const auto asked = sources.names.find(layer); asked != sources.names.end())
         return layers.count(asked->second) ? std::optional(asked->second) : std::nullopt;
     // The channels of a file's first part do not bear the part's name.
-    const auto part = image.metadata.find("oiio:subimagename");
+    const auto part = image.metadata.find("name");
     const std::string first_part = part == image.metadata.end() ? "" : simplified(part->second);
     for (const std::string &usual : all_names.at(layer).usual) {
         for (const auto &[name, channels] : layers)

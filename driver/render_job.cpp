@@ -79,8 +79,9 @@ class RenderJob {
   private:
     void prepare() {
         const PhaseWatch phase_watch(phases_, progress_);
-        // What will write the image, while there is memory for it and nothing to lose.
-        picture_library();
+        // What will write it, while there is memory for it and nothing to lose.
+        if (request_.outputs.png)
+            picture_library();
         Scene scene = load_requested_scene(
             for_method(request_.scene, request_.method.method), services_,
             [this](const std::string &warning) { progress_.message("gradus: warning: " + warning); }, &files_read_,

@@ -14,7 +14,7 @@ packages=(
     # kernels with the linker that comes with g++.
     ocl-icd-opencl-dev opencl-headers opencl-clhpp-headers pocl-opencl-icd
     # Ray tracing, images, scene files, command line, text.
-    libembree-dev libtbb-dev libopenimageio-dev libpugixml-dev zlib1g-dev
+    libembree-dev libtbb-dev libopenimageio-dev libopenexr-dev libpugixml-dev zlib1g-dev
     libcli11-dev nlohmann-json3-dev libfmt-dev
     # Tests; oclgrind checks every memory access of the kernels. FFTW is what the solver is measured against, Google Benchmark
     # times the kernels.

@@ -2,13 +2,30 @@
 
 #include "runtime/error.h"
 #include "runtime/io/atomic_file.h"
+#include "runtime/io/exr_file.h"
 #include "runtime/io/picture_library.h"
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <vector>
 
 namespace gradus {
+namespace {
+
+void check_channels(const Image &image, const std::string &path) {
+    const auto fail = [&](const std::string &reason) {
+        throw Error(ExitCode::output, fmt::format("cannot write '{}': {}", path, reason));
+    };
+    if (image.width == 0 || image.height == 0 || image.channels.empty())
+        fail("the image is empty");
+    for (const Channel &channel : image.channels)
+        if (channel.values.size() != std::size_t(image.width) * image.height)
+            fail(fmt::format("channel '{}' has {} values, not {} x {}", channel.name, channel.values.size(),
+                             image.width, image.height));
+}
+
+} // namespace
 
 Image read_image(const std::string &path, std::uint64_t limits) {
     const auto file = OpenFile::open(path);
@@ -19,14 +36,20 @@ Image read_image(const std::string &path, std::uint64_t limits) {
     return read_image(*file, limits);
 }
 
-Image read_image(const OpenFile &file, std::uint64_t limits) { return picture_library().read_image(file, limits); }
+Image read_image(const OpenFile &file, std::uint64_t limits) {
+    if (const std::optional<ExrSize> declared = exr_size(file.library_name()))
+        return read_exr(file, *declared, limits);
+    return picture_library().read_image(file, limits);
+}
 
 void write_image(const Image &image, const std::string &path) {
-    const std::vector<unsigned char> bytes = picture_library().exr_of(image, path);
+    check_channels(image, path);
+    const std::vector<unsigned char> bytes = encode_exr(image, path);
     write_file_atomically(path, bytes.data(), bytes.size());
 }
 
 void write_png(const Image &image, const std::string &path) {
+    check_channels(image, path);
     const std::vector<unsigned char> bytes = picture_library().png_of(image, path);
     write_file_atomically(path, bytes.data(), bytes.size());
 }

@@ -1,5 +1,5 @@
 // What is done by OpenImageIO. It brings 260 libraries, which take 0.2 s to load, so it is linked to a library of its
-// own (runtime/pictures) that is loaded where files are read or written.
+// own (runtime/pictures) that is loaded where such files are read or written: all but images of OpenEXR (exr_file.h).
 #pragma once
 
 #include "runtime/film/image.h"
@@ -15,9 +15,9 @@ namespace gradus {
 /// The files' names are for messages.
 struct PictureLibrary {
     const char *version; ///< the project's: what was built with another one does not know these functions
-    Image (*read_image)(const OpenFile &file, std::uint64_t limits);                   ///< as image_io.h has it
+    /// As image_io.h has it, of all but OpenEXR files.
+    Image (*read_image)(const OpenFile &file, std::uint64_t limits);
     ReadBitmap (*read_bitmap)(const OpenFile &file, const BitmapRequest &request);     ///< as bitmap_reader.h has it
-    std::vector<unsigned char> (*exr_of)(const Image &image, const std::string &path); ///< what write_image() writes
     std::vector<unsigned char> (*png_of)(const Image &image, const std::string &path); ///< what write_png() writes
 };
 

@@ -1,6 +1,7 @@
 // The part of the scene builder that reads textures, and keeps blends: each picture once, each texture once for each
 // range.
 #include "runtime/error.h"
+#include "runtime/io/absent_plugins.h"
 #include "runtime/io/bitmap_reader.h"
 #include "runtime/io/plugins/parameters_of_textures.h"
 #include "runtime/io/plugins/plugin.h"

@@ -2,6 +2,7 @@
 
 #include "runtime/error.h"
 #include "runtime/io/exr_header.h"
+#include "runtime/io/image_checks.h"
 #include "runtime/pictures/picture_input.h"
 
 #include <OpenImageIO/strutil.h>

@@ -1,4 +1,4 @@
-// Images to and from the bytes of files, by OpenImageIO.
+// Images from files, and to the bytes of files, by OpenImageIO.
 #pragma once
 
 #include "runtime/film/image.h"
@@ -10,11 +10,10 @@
 
 namespace gradus {
 
-/// read_image().
+/// read_image(), of all but OpenEXR files.
 Image decode_image(const OpenFile &file, std::uint64_t limits);
 
-/// The bytes that write_image() and write_png() write to `path`, which is for messages.
-std::vector<unsigned char> encode_exr(const Image &image, const std::string &path);
+/// The bytes that write_png() writes to `path`, which is for messages.
 std::vector<unsigned char> encode_png(const Image &image, const std::string &path);
 
 } // namespace gradus

@@ -1,5 +1,7 @@
 #include "runtime/pictures/picture_input.h"
 
+#include "runtime/io/image_checks.h"
+
 #include <OpenImageIO/strutil.h>
 
 #include <algorithm>
@@ -56,18 +58,6 @@ PictureInput open_picture(const OpenFile &file) {
     }
     opened.error += "; with --confined the formats are " + OIIO::Strutil::join(formats_of_one_file, ", ");
     return opened;
-}
-
-std::uint64_t most_pixel_bytes(const OpenFile &file, std::uint64_t limits) {
-    constexpr std::uint64_t always = 256u << 20, unfolding = 64;
-    return (always + file.bytes() * unfolding) * limits;
-}
-
-std::string named_in(std::string message, const OpenFile &file) {
-    const std::string &alias = file.library_name(), name = file.name().string();
-    for (std::size_t at = 0; alias != name && (at = message.find(alias, at)) != std::string::npos; at += name.size())
-        message.replace(at, alias.size(), name);
-    return message;
 }
 
 } // namespace gradus

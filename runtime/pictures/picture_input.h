@@ -23,10 +23,4 @@ struct PictureInput {
 /// films, say, name others. Colours are as they are stored, not times alpha.
 PictureInput open_picture(const OpenFile &file);
 
-/// Bytes of pixels that may be read of a file, as read_image() says it: a few kilobytes can declare any number.
-std::uint64_t most_pixel_bytes(const OpenFile &file, std::uint64_t limits);
-
-/// The library's words about a file, which call it by its name.
-std::string named_in(std::string message, const OpenFile &file);
-
 } // namespace gradus

@@ -5,5 +5,5 @@
 #include "runtime/pictures/image_codec.h"
 #include "runtime/version.h"
 
-extern "C" const gradus::PictureLibrary gradus_picture_library = {
-    GRADUS_VERSION, gradus::decode_image, gradus::decode_bitmap, gradus::encode_exr, gradus::encode_png};
+extern "C" const gradus::PictureLibrary gradus_picture_library = {GRADUS_VERSION, gradus::decode_image,
+                                                                  gradus::decode_bitmap, gradus::encode_png};

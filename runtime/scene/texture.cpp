@@ -86,12 +86,12 @@ void Bitmap::resize(std::uint32_t new_width, std::uint32_t new_height, Format ne
 
 namespace {
 
-struct Place {
+struct TexelPlace {
     std::size_t word;
     std::uint32_t shift, mask;
 };
 
-Place place_of(const Bitmap &bitmap, std::uint32_t x, std::uint32_t y, int channel) {
+TexelPlace place_of(const Bitmap &bitmap, std::uint32_t x, std::uint32_t y, int channel) {
     const std::uint64_t number = std::uint64_t(y) * bitmap.width + x;
     if (bitmap.format == Bitmap::Format::real)
         return {std::size_t(number * (bitmap.is_color ? 3 : 1) + std::uint64_t(channel)), 0, ~0u};
@@ -104,7 +104,7 @@ Place place_of(const Bitmap &bitmap, std::uint32_t x, std::uint32_t y, int chann
 } // namespace
 
 double Bitmap::channel(std::uint32_t x, std::uint32_t y, int channel) const {
-    const Place place = place_of(*this, x, y, channel);
+    const TexelPlace place = place_of(*this, x, y, channel);
     const std::uint32_t bits = words[place.word] >> place.shift & place.mask;
     switch (format) {
     case Format::byte:
@@ -120,7 +120,7 @@ double Bitmap::channel(std::uint32_t x, std::uint32_t y, int channel) const {
 }
 
 void Bitmap::set(std::uint32_t x, std::uint32_t y, int channel, std::uint32_t bits) {
-    const Place place = place_of(*this, x, y, channel);
+    const TexelPlace place = place_of(*this, x, y, channel);
     words[place.word] = (words[place.word] & ~(place.mask << place.shift)) | (bits & place.mask) << place.shift;
 }
 

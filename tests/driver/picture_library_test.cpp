@@ -1,4 +1,4 @@
-// What a render does without the library that writes images.
+// What a render does without the library that writes pictures.
 #include "tests/driver/child_process.h"
 
 #include <gmock/gmock.h>
@@ -22,7 +22,7 @@ class PictureLibrary : public ProgramTest {
     }
     Outcome render_with(const std::string &library) const {
         setenv("GRADUS_PICTURES", library.c_str(), 1);
-        return run({"render", "scene.xml", "-o", "out.exr"});
+        return run({"render", "scene.xml", "-o", "out.exr", "--png"});
     }
 };
 
@@ -32,6 +32,12 @@ TEST_F(PictureLibrary, WithoutItNothingIsBegun) {
     EXPECT_THAT(outcome.err,
                 AllOf(HasSubstr("nothing.so"), HasSubstr("install Gradus again"), Not(HasSubstr("rendering"))));
     EXPECT_THAT(files(), ElementsAre("scene.xml"));
+}
+
+TEST_F(PictureLibrary, ImagesOfOpenExrDoNotNeedIt) {
+    setenv("GRADUS_PICTURES", at("nothing.so").c_str(), 1);
+    EXPECT_EQ(run({"render", "scene.xml", "-o", "out.exr"}).exit_code, 0);
+    EXPECT_EQ(run({"compare", "out.exr", "out.exr"}).exit_code, 0);
 }
 
 TEST_F(PictureLibrary, WhatIsNoneIsRefused) {

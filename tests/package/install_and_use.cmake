@@ -14,7 +14,7 @@ file(RENAME ${WORK}/first ${WORK}/prefix)
 
 # What the renderer needs must not be asked for, nor found by a path of the build.
 set(not_needed)
-foreach(package IN ITEMS embree TBB OpenImageIO pugixml ZLIB CLI11 nlohmann_json GTest FFTW3)
+foreach(package IN ITEMS embree TBB OpenImageIO OpenEXR pugixml ZLIB CLI11 nlohmann_json GTest FFTW3)
   list(APPEND not_needed -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
 endforeach()
 run("configure" ${CMAKE_COMMAND} -S ${EXAMPLE} -B ${WORK}/build -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER}
