@@ -119,6 +119,8 @@ bool is_pocl_cpu(const DeviceDescription &d) {
 
 bool is_pocl_3_1_cpu(const DeviceDescription &d) { return is_pocl_cpu(d) && d.driver.starts_with("3.1"); }
 
+bool is_oclgrind(const DeviceDescription &d) { return d.platform == "Oclgrind"; }
+
 std::vector<DeviceDescription> list_devices() {
     std::vector<DeviceDescription> descriptions;
     for (const FoundDevice &found : find_devices())
@@ -136,8 +138,8 @@ Device::Device(const std::string &selector, int threads) : implementation_(std::
     implementation_->device = chosen.device;
     implementation_->store = ProgramStore(program_cache_folder());
     // The compiler of Oclgrind 21.10 is not safe for several threads.
-    implementation_->compile_threads = chosen.description.platform == "Oclgrind" ? 1u
-                                       : threads > 0                             ? static_cast<unsigned>(threads)
+    implementation_->compile_threads = is_oclgrind(chosen.description) ? 1u
+                                       : threads > 0                   ? static_cast<unsigned>(threads)
                                                      : std::max(1u, std::thread::hardware_concurrency());
     opencl_call("opening the device " + chosen.description.name, [&] {
         implementation_->context = cl::Context(chosen.device);

@@ -135,8 +135,8 @@ class Builder {
         if (take_entry(task))
             return true;
         task.source = source;
-        // Others may be given options of their own, which are not known here (oclgrind --build-options).
-        if (!is_pocl_cpu(device_.description))
+        // It may be given options of its own, which are not known here (--build-options).
+        if (is_oclgrind(device_.description))
             return false;
         std::optional<NeededSource> needed = needed_source(source.text, source.options);
         if (!needed)
