@@ -14,6 +14,8 @@
 namespace gradus {
 
 void check_outputs(const OutputFiles &files) {
+    if (std::filesystem::path(files.image).filename() == ".exr")
+        throw Error(ExitCode::usage, fmt::format("the output '{}' has no name before its ending", files.image));
     if (std::filesystem::path(files.image).extension() != ".exr")
         throw Error(ExitCode::usage,
                     fmt::format("the output '{}' must end in .exr; --png writes a PNG beside it", files.image));

@@ -51,7 +51,7 @@ void check_size(const Device::Implementation &device, const std::string &name, s
     if (bytes > d.allocation_bytes)
         throw Error(ExitCode::device,
                     fmt::format("{} needs {} MB, more than the {} MB that {} allocates at once; try a smaller "
-                                "--batch-size, --size or scene",
+                                "--batch-size, --photons, --size or scene",
                                 name, bytes >> 20, d.allocation_bytes >> 20, d.name));
 }
 } // namespace

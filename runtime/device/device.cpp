@@ -177,7 +177,7 @@ void throw_opencl_error(const std::string &doing, const cl::Error &error) {
                         error.err() == CL_OUT_OF_HOST_MEMORY || error.err() == CL_INVALID_BUFFER_SIZE;
     throw Error(ExitCode::device,
                 fmt::format("{}: OpenCL error {} in {}{}", doing, error.err(), error.what(),
-                            memory ? " (out of memory: try a smaller --batch-size, --size or scene)" : ""));
+                            memory ? " (out of memory: try a smaller --batch-size, --photons, --size or scene)" : ""));
 }
 
 } // namespace gradus

@@ -17,6 +17,12 @@ std::string located(const Location &location, const std::string &message) {
     return location.text() + ": " + shortened(message, longest_message);
 }
 
+SceneError SceneError::named_at(const Location &location) const {
+    SceneError error(std::string(what()) + "; the file is named at " + location.text());
+    error.cause = cause.empty() ? what() : cause;
+    return error;
+}
+
 bool Diagnostics::is_full() const { return warnings_.size() >= most_messages; }
 
 void Diagnostics::warn(const Location &location, const std::string &message) {

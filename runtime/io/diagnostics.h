@@ -20,8 +20,14 @@ std::string located(const Location &location, const std::string &message);
 class SceneError : public std::runtime_error {
   public:
     SceneError(const Location &location, const std::string &message) : std::runtime_error(located(location, message)) {}
+    /// Of a file that the scene names: the same error, which says where. Once for all places that name it.
+    SceneError named_at(const Location &location) const;
+
     /// What is at fault where many places may say so: nobody needs to hear of it again. Empty: the place itself.
     std::string cause = {};
+
+  private:
+    explicit SceneError(const std::string &text) : std::runtime_error(text) {}
 };
 
 class Diagnostics {

@@ -236,7 +236,7 @@ bool Reader::open_include(const File &file, const pugi::xml_node &node, int dept
     folders.insert(folders.end(), folders_.begin(), folders_.end());
     const std::optional<FoundFile> found = finder_.find(name, folders);
     if (!found) { // reported with all the others before anything else is read
-        diagnostics_.error(location, "cannot find the included file \"" + name + "\"" + finder_.hint());
+        diagnostics_.error(location, "cannot find the included file \"" + name + "\"" + finder_.why_not(name, folders));
         return true;
     }
     if (!found->exact)

@@ -8,6 +8,25 @@
 namespace gradus {
 namespace fs = std::filesystem;
 
+namespace {
+
+struct Places {
+    fs::path relative;
+    std::vector<fs::path> starts; ///< from which it leads to where a file may be; none: no file is called so
+};
+
+Places places_of(const std::string &name, const std::vector<fs::path> &folders) {
+    constexpr std::size_t longest = 4096; // no system opens longer ones
+    std::string slashed(trimmed(name));
+    std::replace(slashed.begin(), slashed.end(), '\\', '/');
+    if (slashed.empty() || slashed.size() > longest || slashed.find('\0') != std::string::npos)
+        return {};
+    const fs::path path(slashed);
+    return {path.relative_path(), path.is_absolute() ? std::vector<fs::path>{path.root_path()} : folders};
+}
+
+} // namespace
+
 void FileFinder::confine(const std::vector<fs::path> &folders) {
     for (const fs::path &folder : folders) {
         std::error_code error;
@@ -75,16 +94,20 @@ std::optional<FoundFile> FileFinder::find(const std::string &name, const std::ve
     return file;
 }
 
-std::optional<FoundFile> FileFinder::search(const std::string &name, const std::vector<fs::path> &folders) {
-    constexpr std::size_t longest = 4096; // no system opens longer ones
-    std::string slashed(trimmed(name));
-    std::replace(slashed.begin(), slashed.end(), '\\', '/');
-    if (slashed.empty() || slashed.size() > longest || slashed.find('\0') != std::string::npos)
-        return std::nullopt;
-    const fs::path path(slashed);
-    const std::vector<fs::path> starts = path.is_absolute() ? std::vector<fs::path>{path.root_path()} : folders;
-    const fs::path relative = path.relative_path();
+std::string FileFinder::why_not(const std::string &name, const std::vector<fs::path> &folders) const {
+    if (is_confined()) // of what is outside nothing is told
+        return " in the folders that --confined leaves";
     std::error_code error;
+    const auto [relative, starts] = places_of(name, folders);
+    for (const fs::path &start : starts)
+        if (const fs::path there = start / relative; fs::exists(there, error))
+            return fs::is_directory(there, error) ? ": it is a folder" : ": it is not a regular file";
+    return "";
+}
+
+std::optional<FoundFile> FileFinder::search(const std::string &name, const std::vector<fs::path> &folders) {
+    std::error_code error;
+    const auto [relative, starts] = places_of(name, folders);
     for (const fs::path &start : starts)
         if (fs::is_regular_file(start / relative, error) && is_allowed(Place(start / relative)))
             return FoundFile{start / relative, true};

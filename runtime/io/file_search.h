@@ -36,8 +36,8 @@ class FileFinder {
     /// All that were found so far, each once.
     const std::set<std::string> &found() const { return found_; }
 
-    /// Why there may be no such file, for messages.
-    const char *hint() const { return is_confined() ? " in the folders that --confined leaves" : ""; }
+    /// Why find() finds nothing, for messages: "", or what there is to add to "cannot find the file".
+    std::string why_not(const std::string &name, const std::vector<std::filesystem::path> &folders) const;
 
   private:
     std::optional<FoundFile> search(const std::string &name, const std::vector<std::filesystem::path> &folders);

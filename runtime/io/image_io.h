@@ -9,13 +9,13 @@
 
 namespace gradus {
 
-/// Reads an OpenEXR file, or an image of any other format that OpenImageIO knows, all channels as float, row by row from the top left.
-/// Channels keep their names ("R", "layer.R"); their order is the file's, so look them up by name. Colour channels of
-/// formats that hold sRGB values (PNG, JPEG) are decoded to linear. Parts of a file after the first have their channel
-/// names led by "NAME." with the part's name. Metadata that write_image() wrote is read back under the same keys;
-/// other attributes, of OpenEXR files texts and numbers, keep their names. What the file declares is checked before anything is allocated: at most
-/// `limits` times 1024 channels and 256 MiB of pixels as floats, to which 64 times the file's size comes.
-/// Throws Error(ExitCode::image).
+/// Reads an OpenEXR file, or an image of any other format that OpenImageIO knows, all channels as float, row by row
+/// from the top left. Channels keep their names ("R", "layer.R"); their order is the file's, so look them up by name.
+/// Colour channels of formats that hold sRGB values (PNG, JPEG) are decoded to linear. Parts of a file after the first
+/// have their channel names led by "NAME." with the part's name. Metadata that write_image() wrote is read back under
+/// the same keys; other attributes, of OpenEXR files texts and numbers, keep their names. What the file declares is
+/// checked before anything is allocated: at most `limits` times 1024 channels and 256 MiB of pixels as floats, to which
+/// 64 times the file's size comes. Throws Error(ExitCode::image).
 Image read_image(const std::string &path, std::uint64_t limits = 1);
 Image read_image(const OpenFile &file, std::uint64_t limits = 1);
 

@@ -4,6 +4,8 @@
 #include "runtime/io/text.h"
 #include "runtime/io/transform_reader.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -137,13 +139,7 @@ double Properties::number_of(const Parameter &parameter, const Element *property
 double Properties::within_bounds(const Parameter &parameter, double value, const std::string &text) {
     if (value < parameter.lowest || value > parameter.highest) {
         std::string range;
-        const auto show = [](double bound) {
-            std::string shown = std::to_string(bound);
-            shown.erase(shown.find_last_not_of('0') + 1);
-            if (shown.back() == '.')
-                shown.pop_back();
-            return shown;
-        };
+        const auto show = [](double bound) { return fmt::format("{:.10g}", bound); };
         if (std::isfinite(parameter.lowest))
             range += "at least " + show(parameter.lowest);
         if (std::isfinite(parameter.highest))
@@ -153,20 +149,27 @@ double Properties::within_bounds(const Parameter &parameter, double value, const
     return std::max(parameter.least, value);
 }
 
-Number Properties::textured_number(const std::string &name) {
+Number Properties::textured_number(const std::string &name, float *most) {
     const Parameter &parameter = declared(name, {Takes::textured_number});
     const Element *property = find(parameter);
     if (!property && parameter.like)
-        return textured_number(parameter.like);
+        return textured_number(parameter.like, most);
+    const auto constant = [&](double number) {
+        if (most)
+            *most = float(number);
+        return Number(float(number));
+    };
     const Element *texture = property ? texture_of(*property) : nullptr;
     if (!texture && property && (property->tag == "rgb" || property->tag == "srgb" || property->tag == "spectrum")) {
         const Rgb color = read_color(*property, parameter, ColorUse::index);
-        return float(within_bounds(parameter, (color.r + color.g + color.b) / 3, value_of(*property)));
+        return constant(within_bounds(parameter, (color.r + color.g + color.b) / 3, value_of(*property)));
     }
     if (!texture)
-        return float(number_of(parameter, property));
+        return constant(number_of(parameter, property));
     const FoundTexture found =
         (*read_texture_)(*texture, std::max(parameter.lowest, parameter.least), parameter.highest, StandsFor::number);
+    if (most)
+        *most = float(*std::max_element(found.range.most.begin(), found.range.most.end()));
     Number result(float(*std::min_element(found.range.least.begin(), found.range.least.end())));
     result.texture = found.index;
     return result;

@@ -73,8 +73,9 @@ class Properties {
     Matrix4 transform(const std::string &name);
     /// A colour, which may be a texture where the parameter takes one.
     Color color(const std::string &name);
-    /// A number, which may be a texture, or a colour, whose channels' mean it is then.
-    Number textured_number(const std::string &name);
+    /// A number, which may be a texture, or a colour, whose channels' mean it is then. Its value is a texture's least,
+    /// and `most` its largest.
+    Number textured_number(const std::string &name, float *most = nullptr);
     double refractive_index(const std::string &name);
     std::vector<NestedObject> objects(const std::string &tag);
 

@@ -166,7 +166,8 @@ std::filesystem::path SceneBuilder::find_file(Properties &properties) {
     const auto found = missing_files_.contains(name) ? std::nullopt : finder_.find(name, folders);
     if (!found) {
         missing_files_.insert(name);
-        SceneError error = properties.error("filename", "cannot find the file \"" + name + "\"" + finder_.hint());
+        SceneError error =
+            properties.error("filename", "cannot find the file \"" + name + "\"" + finder_.why_not(name, folders));
         error.cause = name;
         throw error;
     }

@@ -134,10 +134,17 @@ void SceneBuilder::build_shapes(const std::vector<const Element *> &elements, st
 
 void SceneBuilder::build_line(std::deque<ShapeInLine> &line, std::vector<Prototype> *group) {
     const Phase phase(phases_, phase_names::meshes);
-    const auto read = [](ShapeInLine &shape) {
+    const auto read_file = [](const ShapeInLine &shape) {
+        try {
+            return std::get<PendingMesh>(shape.geometry).read();
+        } catch (const SceneError &error) {
+            throw error.named_at(shape.element->location);
+        }
+    };
+    const auto read = [&](ShapeInLine &shape) {
         auto &pending = std::get<PendingMesh>(shape.geometry);
         try {
-            SerializedMesh mesh = pending.read();
+            SerializedMesh mesh = read_file(shape);
             shape.unfolded_bytes = mesh.unfolded_bytes;
             pending.options.face_normals |= mesh.face_normals;
             if (!mesh.warning.empty())

@@ -316,6 +316,7 @@ TEST_F(SolveOptions, MistakesOfTheFiles) {
         {{"-o", at("out.exr")}, 2, "there is no primal: give --primal FILE, or one file with layers"},
         {{"-o", at("out.exr"), "--primal", layers, "--dx", layers}, 2, "there is no dy: give --dy FILE"},
         {{layers, "-o", at("out.png")}, 2, "must end in .exr"},
+        {{layers, "-o", at(".exr")}, 2, "has no name before its ending"},
         {{layers, "-o", layers}, 2, "layers.exr' is a file to read"},
         {{layers, "-o", at("out.exr"), "--direct", write_colours("out.png.exr", 1), "--stats", at("out.png.exr")},
          2,

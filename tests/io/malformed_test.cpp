@@ -403,6 +403,29 @@ TEST(MalformedScenes, AllMissingFilesAreListedAtOnce) {
     EXPECT_THAT(message, testing::HasSubstr("scene.xml:5: cannot find the file \"c.serialized\""));
 }
 
+TEST(MalformedScenes, WhatIsNoFileIsTold) {
+    TemporaryFolder folder;
+    std::filesystem::create_directory(folder.path() / "meshes.ply");
+    const auto error_with = [&](const std::string &name) {
+        return error_of(folder.write(
+            "scene.xml", in_shape("<shape type=\"ply\"><string name=\"filename\" value=\"" + name + "\"/></shape>")));
+    };
+    EXPECT_THAT(error_with("meshes.ply"),
+                HasSubstr("scene.xml:3: cannot find the file \"meshes.ply\": it is a folder"));
+    EXPECT_THAT(error_with("/dev/zero"), HasSubstr("cannot find the file \"/dev/zero\": it is not a regular file"));
+}
+
+/// Once for all shapes that name it.
+TEST(MalformedScenes, ABrokenMeshIsToldWithWhoNamesIt) {
+    TemporaryFolder folder;
+    folder.write("broken.ply", "no ply");
+    const std::string shape = "<shape type=\"ply\"><string name=\"filename\" value=\"broken.ply\"/></shape>\n";
+    const std::string message = error_of(folder.write("scene.xml", in_shape("\n" + shape + shape)));
+    EXPECT_THAT(message, HasSubstr("broken.ply: not a PLY file"));
+    EXPECT_THAT(message, HasSubstr("the file is named at " + (folder.path() / "scene.xml:4").string()));
+    EXPECT_EQ(message.find("not a PLY file"), message.rfind("not a PLY file"));
+}
+
 /// A file that many shapes name is told of once, and what else is wrong with its shapes beside it.
 TEST(MalformedScenes, AMissingFileHidesNothing) {
     std::string body;

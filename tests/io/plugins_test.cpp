@@ -123,6 +123,30 @@ TEST(BsdfPlugin, Principled) {
     EXPECT_NEAR(thin.ior, 1.5, 1e-6);
 }
 
+/// Two alphas that differ are what asks for dp/du; the least is what tells rough surfaces from others. Of a texture
+/// both hold for whatever it holds.
+TEST(BsdfPlugin, PrincipledIsAnisotropicWhereATextureIs) {
+    const auto with = [](const std::string &parameters) {
+        return material_of("<bsdf type=\"principled\">" + parameters + "</bsdf>").front;
+    };
+    const auto number = [](const std::string &name, const std::string &value) {
+        return "<float name=\"" + name + "\" value=\"" + value + "\"/>";
+    };
+    const auto board = [&](const std::string &name, const std::string &low, const std::string &high) {
+        return "<texture name=\"" + name + "\" type=\"checkerboard\">" + number("color0", low) +
+               number("color1", high) + "</texture>";
+    };
+    const Bsdf turned = with(number("roughness", "0.4") + board("anisotropic", "0", "0.9"));
+    EXPECT_NEAR(turned.alpha_v, 0.16 * std::sqrt(0.19), 1e-6);
+    EXPECT_GT(turned.alpha_u, 0.16);
+    const Bsdf nearly_smooth = with(board("roughness", "0.01", "0.4") + number("anisotropic", "0.8"));
+    EXPECT_NEAR(nearly_smooth.alpha_v, 0.001, 1e-6);
+    EXPECT_GT(nearly_smooth.alpha_u, 0.1);
+    const Bsdf round = with(board("roughness", "0.1", "0.4"));
+    EXPECT_NEAR(round.alpha_u, 0.01, 1e-6);
+    EXPECT_EQ(round.alpha_u, round.alpha_v);
+}
+
 TEST(BsdfPlugin, TwoSidesOfOtherKinds) {
     const Material sides =
         material_of("<bsdf type=\"twosided\"><bsdf type=\"principled\"/><bsdf type=\"plastic\"/></bsdf>");

@@ -105,16 +105,19 @@ ParameterList parameters_of_principled() {
 
 void read_principled(Properties &properties, Bsdf &bsdf) {
     bsdf.reflectance = properties.color("base_color");
-    bsdf.roughness = properties.textured_number("roughness");
-    bsdf.anisotropic = properties.textured_number("anisotropic");
+    float most_roughness = 0, most_anisotropic = 0;
+    bsdf.roughness = properties.textured_number("roughness", &most_roughness);
+    bsdf.anisotropic = properties.textured_number("anisotropic", &most_anisotropic);
     bsdf.spec_trans = properties.textured_number("spec_trans");
     bsdf.spec_tint = properties.textured_number("spec_tint");
     bsdf.sheen = properties.textured_number("sheen");
     bsdf.sheen_tint = properties.textured_number("sheen_tint");
     bsdf.flatness = properties.textured_number("flatness");
-    const float squared = bsdf.roughness * bsdf.roughness, aspect = std::sqrt(1 - 0.9f * bsdf.anisotropic);
-    bsdf.alpha_u = std::max(squared / aspect, 0.001f);
-    bsdf.alpha_v = std::max(squared * aspect, 0.001f);
+    // The least there is, and one that differs from it where there may be a longer axis, which needs dp/du.
+    const float aspect = std::sqrt(1 - 0.9f * most_anisotropic);
+    const float longest = most_anisotropic > 0 ? most_roughness : float(bsdf.roughness);
+    bsdf.alpha_u = std::max(longest * longest / aspect, 0.001f);
+    bsdf.alpha_v = std::max(bsdf.roughness * bsdf.roughness * aspect, 0.001f);
 }
 
 // 0.x took copper in air where nothing is said, Mitsuba 3 takes a perfect mirror.
