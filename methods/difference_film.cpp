@@ -163,7 +163,7 @@ Image DifferenceFilm::image(std::uint64_t samples, bool layers, bool last, std::
 }
 
 GradientFilms DifferenceFilm::films(std::uint64_t samples) const {
-    GradientFilms films(keeps_halves(options_), has_replicates(session_.options));
+    GradientFilms films(session_.tracer, keeps_halves(options_), has_replicates(session_.options));
     const auto parts = std::uint32_t(film_names_.size());
     const std::uint64_t frames = samples / session_.pixels();
     for (std::uint32_t part = 0; part < parts; ++part) {

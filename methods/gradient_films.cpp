@@ -4,10 +4,15 @@
 #include "runtime/film/replicates.h"
 
 #include <algorithm>
+#include <array>
 
 namespace gradus {
 
 using namespace lib_float;
+
+namespace {
+using Values = std::array<double, GradientFilm::most_at_once>;
+}
 
 double GradientFilm::sum(Layer layer, std::uint32_t color, std::size_t pixel) const {
     const int number = 3 * layer + int(color);
@@ -15,8 +20,17 @@ double GradientFilm::sum(Layer layer, std::uint32_t color, std::size_t pixel) co
            table_.real(gradient_film_correction_first + number, pixel);
 }
 
-double GradientFilm::squares(Layer layer, std::uint32_t color, std::size_t pixel) const {
-    return table_.real(gradient_film_square_first + 3 * layer + int(color), pixel);
+void GradientFilm::add_sums(Layer layer, std::uint32_t color, std::size_t first, std::size_t end, double *to) const {
+    const int number = 3 * layer + int(color);
+    Values sums{};
+    table_.add_reals(gradient_film_primal_r + number, first, end, sums.data());
+    table_.add_reals(gradient_film_correction_first + number, first, end, sums.data());
+    for (std::size_t i = 0; i < end - first; ++i)
+        to[i] += sums[i];
+}
+
+void GradientFilm::add_squares(Layer layer, std::uint32_t color, std::size_t first, std::size_t end, double *to) const {
+    table_.add_reals(gradient_film_square_first + 3 * layer + int(color), first, end, to);
 }
 
 std::uint64_t GradientFilms::samples() const {
@@ -27,22 +41,37 @@ std::uint64_t GradientFilms::samples() const {
 }
 
 GradientFilms GradientFilms::half(int number) const {
-    GradientFilms half;
+    GradientFilms half(*tracer_);
     for (auto part = std::size_t(number); part < films_.size(); part += 2)
         half.films_.push_back(films_[part]);
     return half;
 }
 
+void GradientFilms::for_each_block(GradientFilm::Layer layer,
+                                   const std::function<void(std::size_t, std::size_t)> &work) const {
+    tracer_->in_parallel(pixels(), [&](std::size_t begin, std::size_t last) {
+        for (std::size_t first = begin, end; first < last; first = end) {
+            end = std::min(first + GradientFilm::most_at_once, last);
+            for (const auto &film : films_)
+                end = std::min(end, film->end_of_count(layer, first));
+            work(first, end);
+        }
+    });
+}
+
 PlaneSource GradientFilms::mean(GradientFilm::Layer layer) const {
     return [this, layer](std::uint32_t color, float *plane) {
-        for (std::size_t pixel = 0; pixel < pixels(); ++pixel) {
-            double sum = 0, weight = 0;
+        for_each_block(layer, [&](std::size_t first, std::size_t end) {
+            Values sums{};
+            double weight = 0;
             for (const auto &film : films_) {
-                sum += film->sum(layer, color, pixel);
-                weight += film->weight(layer, pixel);
+                film->add_sums(layer, color, first, end, sums.data());
+                weight += film->weight(layer, first);
             }
-            plane[pixel] = static_cast<float>(weight > 0 ? sum / weight : sum);
-        }
+            const double divisor = weight > 0 ? weight : 1;
+            for (std::size_t i = 0; i < end - first; ++i)
+                plane[first + i] = static_cast<float>(sums[i] / divisor);
+        });
     };
 }
 
@@ -50,34 +79,45 @@ PlaneSource GradientFilms::variance(GradientFilm::Layer layer) const {
     if (!has_replicates_)
         return variance_of_samples(layer);
     return [this, layer](std::uint32_t color, float *plane) {
-        std::vector<Replicate> replicates(films_.size());
-        for (std::size_t pixel = 0; pixel < pixels(); ++pixel) {
-            for (std::size_t part = 0; part < films_.size(); ++part)
-                replicates[part] = {films_[part]->sum(layer, color, pixel), films_[part]->weight(layer, pixel)};
-            plane[pixel] = static_cast<float>(variance_of_mean(replicates));
-        }
+        for_each_block(layer, [&](std::size_t first, std::size_t end) {
+            std::vector<Replicate> replicates(films_.size());
+            for (std::size_t pixel = first; pixel < end; ++pixel) {
+                for (std::size_t part = 0; part < films_.size(); ++part)
+                    replicates[part] = {films_[part]->sum(layer, color, pixel), films_[part]->weight(layer, pixel)};
+                plane[pixel] = static_cast<float>(variance_of_mean(replicates));
+            }
+        });
     };
 }
 
 PlaneSource GradientFilms::variance_of_samples(GradientFilm::Layer layer) const {
     return [this, layer](std::uint32_t color, float *plane) {
         const std::size_t halves = has_halves_ ? 2 : 1;
-        for (std::size_t pixel = 0; pixel < pixels(); ++pixel) {
-            double count = 0, variance = 0;
+        for_each_block(layer, [&](std::size_t first, std::size_t end) {
+            const std::size_t pixels = end - first;
+            double count = 0;
             for (const auto &film : films_)
-                count += film->count(layer, pixel);
+                count += film->count(layer, first);
+            Values variance{};
             for (std::size_t half = 0; half < halves; ++half) {
-                double n = 0, sum = 0, squares = 0;
+                double n = 0;
+                Values sum{}, squares{};
                 for (std::size_t part = half; part < films_.size(); part += halves) {
-                    n += films_[part]->count(layer, pixel);
-                    sum += films_[part]->sum(layer, color, pixel);
-                    squares += films_[part]->squares(layer, color, pixel);
+                    n += films_[part]->count(layer, first);
+                    films_[part]->add_sums(layer, color, first, end, sum.data());
+                    films_[part]->add_squares(layer, color, first, end, squares.data());
                 }
-                const double share = n / std::max(count, 1.0), mean = sum / std::max(n, 1.0);
-                variance += n > 1 ? share * share * std::max(0.0, squares / n - mean * mean) / (n - 1) : 0;
+                if (n < 2)
+                    continue;
+                const double share = n / count, of_mean = share * share / (n - 1);
+                for (std::size_t i = 0; i < pixels; ++i) {
+                    const double mean = sum[i] / n, spread = squares[i] / n - mean * mean;
+                    variance[i] += of_mean * (spread > 0 ? spread : 0);
+                }
             }
-            plane[pixel] = static_cast<float>(variance);
-        }
+            for (std::size_t i = 0; i < pixels; ++i)
+                plane[first + i] = static_cast<float>(variance[i]);
+        });
     };
 }
 

@@ -1,10 +1,12 @@
 // The sums that a gradient-domain method makes of its samples, as the reconstruction reads them.
 #pragma once
 
+#include "runtime/trace/tracer.h"
 #include "runtime/wavefront/host_table.h"
 #include "solver/poisson_solver.h"
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -29,13 +31,21 @@ class GradientFilm {
     /// The sum of a pixel's samples for one of R, G and B, and their number: of a difference to the pixel below, that
     /// of both pixels.
     double sum(Layer layer, std::uint32_t color, std::size_t pixel) const;
+    /// to[i] += the sum of pixel first + i, for pixels [first, end), at most most_at_once.
+    void add_sums(Layer layer, std::uint32_t color, std::size_t first, std::size_t end, double *to) const;
     double count(Layer layer, std::size_t pixel) const { return double(frames_) + (has_more(layer, pixel) ? 1 : 0); }
+    /// The first pixel after this one whose number, and weight, may be others.
+    std::size_t end_of_count(Layer layer, std::size_t pixel) const {
+        return has_more(layer, pixel) ? more_ - (layer == dy ? width_ : 0) : pixels_;
+    }
     /// What these samples weigh together (SharedWeights); a mean is the sum over this.
     double weight(Layer layer, std::size_t pixel) const {
         return has_more(layer, pixel) ? weights_.with_one_more : weights_.of_frames;
     }
-    /// The sum of their squares.
-    double squares(Layer layer, std::uint32_t color, std::size_t pixel) const;
+    /// As add_sums(), of their squares.
+    void add_squares(Layer layer, std::uint32_t color, std::size_t first, std::size_t end, double *to) const;
+
+    static constexpr std::size_t most_at_once = 512; ///< what stays in a first-level cache
 
   private:
     bool has_more(Layer layer, std::size_t pixel) const { return pixel + (layer == dy ? width_ : 0) < more_; }
@@ -50,16 +60,19 @@ class GradientFilm {
 /// The film of a render, or those of the parts of its samples: of part p modulo their number, in this order.
 class GradientFilms {
   public:
-    /// `halves`: the even parts and the odd ones are two halves, which may be known apart. `replicates`: the spread of
-    /// the parts, more than two, tells the variance; else that of the samples does.
-    explicit GradientFilms(bool halves = false, bool replicates = false)
-        : has_halves_(halves), has_replicates_(replicates) {}
+    /// `tracer`: whose threads read them. `halves`: the even parts and the odd ones are two halves, which may be known
+    /// apart. `replicates`: the spread of the parts, more than two, tells the variance; else that of the samples does.
+    explicit GradientFilms(Tracer &tracer, bool halves = false, bool replicates = false)
+        : tracer_(&tracer), has_halves_(halves), has_replicates_(replicates) {}
 
     /// As GradientFilm has it.
     void add(const Buffer &film, std::uint32_t width, std::uint32_t height, Precision precision, std::uint64_t samples,
              const GradientFilm::Weights &weights) {
         films_.push_back(std::make_shared<const GradientFilm>(film, width, height, precision, samples, weights));
     }
+
+    /// Lets go of them.
+    void release() { films_.clear(); }
 
     bool are_halves() const { return has_halves_; }
     /// One of them by itself, the same films. Its variances, of which weights are made, are those of
@@ -80,6 +93,12 @@ class GradientFilms {
     ImageSources images() const;
 
   private:
+    /// Calls work(first, end) for all pixels, at most GradientFilm::most_at_once a call, of which each film has as many
+    /// samples.
+    void for_each_block(GradientFilm::Layer layer,
+                        const std::function<void(std::size_t first, std::size_t end)> &work) const;
+
+    Tracer *tracer_;
     std::vector<std::shared_ptr<const GradientFilm>> films_;
     bool has_halves_, has_replicates_;
 };

@@ -76,7 +76,7 @@ double reconstruct_from_film(PoissonSolver &solver, Image &whole, GradientFilms 
     const PoissonReport report = solver.solve(
         images, poisson, [&](std::uint32_t c, const float *plane) { std::copy_n(plane, pixels, plane_of(c)); },
         [&] {
-            films = GradientFilms();
+            films.release();
             if (films_are_read)
                 films_are_read();
         });
@@ -103,7 +103,7 @@ void reconstruct_from_halves(Device &device, PoissonSolver &solver, Image &whole
                              const std::function<void()> &films_are_read) {
     const std::size_t pixels = films.pixels();
     const HalvedImages halves{uploaded_half(device, films.half(0)), uploaded_half(device, films.half(1))};
-    films = GradientFilms();
+    films.release();
     if (films_are_read)
         films_are_read();
     Buffer result(device, "result", 3 * pixels * sizeof(float));

@@ -8,6 +8,9 @@
 #include <algorithm>
 #include <cstring>
 #include <exception>
+#include <system_error>
+#include <thread>
+#include <vector>
 
 namespace gradus {
 
@@ -135,6 +138,26 @@ Buffer Buffer::part(std::size_t first, std::size_t bytes) const {
 
 const void *Buffer::argument() const { return &handle_->memory(); }
 
+namespace {
+
+/// By several threads: most of it is what the system does at the first touch of a page.
+void clear_memory(char *memory, std::size_t bytes, unsigned most_threads) {
+    constexpr std::size_t worth_a_thread = std::size_t(4) << 20, page = 4096;
+    const std::size_t threads = std::clamp<std::size_t>(bytes / worth_a_thread, 1, most_threads);
+    const std::size_t part = (bytes / threads + page - 1) / page * page;
+    std::vector<std::jthread> others;
+    std::size_t begin = 0; // of what is left
+    try {
+        for (; others.size() + 1 < threads && begin + part < bytes; begin += part)
+            others.emplace_back([memory, begin, part] { std::memset(memory + begin, 0, part); });
+    } catch (const std::system_error &) {
+        // Fewer do as well.
+    }
+    std::memset(memory + begin, 0, bytes - begin);
+}
+
+} // namespace
+
 void Buffer::clear() {
     const Device::Implementation &d = handle_->device;
     if (!d.description.shares_memory) {
@@ -142,7 +165,7 @@ void Buffer::clear() {
         return;
     }
     // Not so here: a checker of uninitialised memory (oclgrind) does not see what that writes.
-    std::memset(map(Access::write).as<char>(), 0, bytes_);
+    clear_memory(map(Access::write).as<char>(), bytes_, d.host_threads);
 }
 
 void Buffer::read(void *data, std::size_t bytes) const { start_read(data, bytes).wait(); }

@@ -138,9 +138,9 @@ Device::Device(const std::string &selector, int threads) : implementation_(std::
     implementation_->device = chosen.device;
     implementation_->store = ProgramStore(program_cache_folder());
     // The compiler of Oclgrind 21.10 is not safe for several threads.
-    implementation_->compile_threads = is_oclgrind(chosen.description) ? 1u
-                                       : threads > 0                   ? static_cast<unsigned>(threads)
-                                                     : std::max(1u, std::thread::hardware_concurrency());
+    implementation_->host_threads = is_oclgrind(chosen.description) ? 1u
+                                    : threads > 0                   ? static_cast<unsigned>(threads)
+                                                                    : std::max(1u, std::thread::hardware_concurrency());
     opencl_call("opening the device " + chosen.description.name, [&] {
         implementation_->context = cl::Context(chosen.device);
         implementation_->queue = cl::CommandQueue(implementation_->context, chosen.device, CL_QUEUE_PROFILING_ENABLE);
@@ -164,7 +164,7 @@ Device::Device(_cl_context *context, _cl_command_queue *queue) : implementation_
         i.device = i.queue.getInfo<CL_QUEUE_DEVICE>();
         i.description = describe(cl::Platform(i.device.getInfo<CL_DEVICE_PLATFORM>()), i.device);
         i.store = ProgramStore(program_cache_folder());
-        i.compile_threads = std::max(1u, std::thread::hardware_concurrency());
+        i.host_threads = std::max(1u, std::thread::hardware_concurrency());
     });
 }
 

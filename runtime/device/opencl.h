@@ -35,8 +35,8 @@ struct Device::Implementation {
     cl::Device device;
     cl::Context context;
     cl::CommandQueue queue;
-    bool profiles = true;         ///< the queue times what runs on it
-    unsigned compile_threads = 1; ///< programs that are compiled at a time
+    bool profiles = true;      ///< the queue times what runs on it
+    unsigned host_threads = 1; ///< that compile programs, and clear the host's memory
     std::uint64_t allocated_bytes = 0, peak_bytes = 0;
     BuiltPrograms built;
     std::weak_ptr<CompileWorkers> compile_workers; ///< while somebody keeps them; built.mutex is for them too

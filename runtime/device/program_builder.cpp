@@ -178,7 +178,7 @@ class Builder {
             jobs.push_back({device_.description, task.source});
         std::vector<Task> left;
         compile_workers(device_)->compile(
-            jobs, work_group_size_, device_.compile_threads, [&](std::size_t i, const CompileAnswer &answer) {
+            jobs, work_group_size_, device_.host_threads, [&](std::size_t i, const CompileAnswer &answer) {
                 if (answer.kind == CompileAnswer::Kind::does_not_compile)
                     throw Error(ExitCode::device, answer.content);
                 if (answer.kind == CompileAnswer::Kind::no_code || !take_answer(tasks[i], answer))
@@ -222,7 +222,7 @@ class Builder {
         };
         std::vector<std::thread> threads;
         try {
-            for (std::size_t i = 1; i < std::min<std::size_t>(device_.compile_threads, tasks.size()); ++i)
+            for (std::size_t i = 1; i < std::min<std::size_t>(device_.host_threads, tasks.size()); ++i)
                 threads.emplace_back(work);
         } catch (const std::system_error &) {
             // Fewer do as well.

@@ -19,9 +19,9 @@ namespace gradus {
 Image read_image(const std::string &path, std::uint64_t limits = 1);
 Image read_image(const OpenFile &file, std::uint64_t limits = 1);
 
-/// Writes all channels as 32-bit float to an OpenEXR file (zip), with the metadata as string attributes "gradus:KEY".
-/// Infinities and NaN are kept. The file is written in whole or not at all (write_file_atomically). Equal images give
-/// equal bytes. Throws Error(ExitCode::output).
+/// Writes all channels as 32-bit float to an OpenEXR file, zipped where that makes it smaller by a seventh, with the
+/// metadata as string attributes "gradus:KEY". Infinities and NaN are kept. The file is written in whole or not at all
+/// (write_file_atomically). Equal images give equal bytes. Throws Error(ExitCode::output).
 void write_image(const Image &image, const std::string &path);
 
 /// Writes R, G, B as an 8-bit PNG as tonemap.h says. Throws Error(ExitCode::output), or Error(ExitCode::image) where a

@@ -20,6 +20,13 @@ class HostTable {
         const char *place = place_of(column, row);
         return size_ == 8 ? load<double>(place) : load<float>(place);
     }
+    /// to[i] += that of row first + i, for rows [first, end).
+    void add_reals(int column, std::size_t first, std::size_t end, double *to) const {
+        if (size_ == 8)
+            add<double>(place_of(column, first), end - first, to);
+        else
+            add<float>(place_of(column, first), end - first, to);
+    }
     std::uint32_t uint(int column, std::size_t row) const { return load<std::uint32_t>(place_of(column, row)); }
 
   private:
@@ -31,6 +38,11 @@ class HostTable {
         T value;
         std::memcpy(&value, place, sizeof value);
         return value;
+    }
+    template <class T>
+    static void add(const char *from, std::size_t count, double *to) {
+        for (std::size_t i = 0; i < count; ++i)
+            to[i] += load<T>(from + i * sizeof(T));
     }
     std::size_t rows_;
     Buffer::Mapping mapping_;

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <random>
 #include <sstream>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -100,6 +101,26 @@ TEST_F(ImageFiles, RoundTripKeepsEveryBitOfEveryChannel) {
     }
     EXPECT_EQ(copy.metadata.at("spp"), "64");
     EXPECT_EQ(copy.metadata.at("scene"), "a folder/scène.xml");
+}
+
+// Zip takes as long as a reconstruction.
+TEST_F(ImageFiles, NoiseIsNotZipped) {
+    constexpr std::uint32_t width = 200, height = 100;
+    std::mt19937 random(1);
+    for (const float noise : {0.0f, 1.0f}) {
+        Image image = make_image(width, height, {});
+        for (const char *name : {"B", "G", "R"}) {
+            std::vector<float> values(width * height);
+            for (float &value : values)
+                value = 0.5f + noise * std::uniform_real_distribution<float>(0, 1)(random);
+            image.channels.push_back({name, values});
+        }
+        write_image(image, at("image.exr"));
+        EXPECT_EQ(fs::file_size(at("image.exr")) > 3 * width * height * sizeof(float), noise > 0);
+        const Image copy = read_image(at("image.exr"));
+        for (const Channel &channel : image.channels)
+            EXPECT_EQ(copy.find(channel.name)->values, channel.values);
+    }
 }
 
 TEST_F(ImageFiles, EqualImagesGiveEqualBytes) {
