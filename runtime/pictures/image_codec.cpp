@@ -69,7 +69,9 @@ void read_part(OIIO::ImageInput &input, int part, const OpenFile &file, PixelLim
     }
     if (part == 0)
         for (const OIIO::ParamValue &attribute : spec.extra_attribs)
-            image.metadata[attribute.name().string()] = attribute.get_string();
+            // A part's name, as OpenEXR calls it.
+            image.metadata[attribute.name() == "oiio:subimagename" ? "name" : attribute.name().string()] =
+                attribute.get_string();
 }
 
 /// Has OpenImageIO encode into memory, so that every error of the disk is met, and named, in one place. `fill` writes
