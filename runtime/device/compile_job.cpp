@@ -2,6 +2,7 @@
 
 #include "runtime/device/byte_text.h"
 #include "runtime/device/framed_socket.h"
+#include "runtime/device/pocl_bitcode.h"
 #include "runtime/device/pocl_compiler.h"
 #include "runtime/device/pocl_linker.h"
 #include "runtime/device/pocl_stub.h"
@@ -91,7 +92,8 @@ CompileAnswer compile(const CompileJob &job, std::optional<OpenDevice> &opened) 
         if (!opened)
             opened.emplace(open_device(job.device));
         const BuiltProgram program = build_source(opened->context, opened->device, job.source);
-        opened->stubs.put(program.kernels);
+        for (const std::filesystem::path &code : opened->stubs.put(program.kernels))
+            trim_pocl_bitcode(code);
         return {CompileAnswer::Kind::compiled, to_bytes(image_of(program)), 0};
     } catch (const Error &error) {
         return {CompileAnswer::Kind::does_not_compile, error.what(), 0};

@@ -72,9 +72,10 @@ std::string library_with_symbol(const std::string &symbol) {
 PoclStubs::PoclStubs(fs::path cache, const DeviceDescription &device)
     : cache_(device.driver.starts_with("3.1") ? std::move(cache) : fs::path()) {}
 
-void PoclStubs::put(const KernelArguments &kernels) {
+std::vector<fs::path> PoclStubs::put(const KernelArguments &kernels) {
+    std::vector<fs::path> found;
     if (cache_.empty())
-        return;
+        return found;
     // <cache>/<two letters>/<rest of a hash>/program.bc, and beside it <kernel>/<sizes>/<kernel>.so
     std::error_code failure;
     for (fs::recursive_directory_iterator file(cache_, failure), end; !failure && file != end;
@@ -83,6 +84,7 @@ void PoclStubs::put(const KernelArguments &kernels) {
             file.disable_recursion_pending();
         if (file->path().filename() != "program.bc" || !seen_.insert(file->path()).second)
             continue;
+        found.push_back(file->path());
         for (const auto &[kernel, arguments] : kernels) {
             const fs::path place = file->path().parent_path() / kernel / "0-0-0";
             const std::string content = library_with_symbol("_pocl_kernel_" + kernel + "_workgroup");
@@ -93,6 +95,7 @@ void PoclStubs::put(const KernelArguments &kernels) {
             }
         }
     }
+    return found;
 }
 
 } // namespace gradus

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace gradus {
 
@@ -19,8 +20,8 @@ class PoclStubs {
   public:
     /// `cache` is PoCL's folder.
     PoclStubs(std::filesystem::path cache, const DeviceDescription &device);
-    /// For the kernels of a program that was built since the last call.
-    void put(const KernelArguments &kernels);
+    /// For the kernels of a program that was built since the last call. Returns where its intermediate code is.
+    std::vector<std::filesystem::path> put(const KernelArguments &kernels);
 
   private:
     std::filesystem::path cache_;

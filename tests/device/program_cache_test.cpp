@@ -66,6 +66,20 @@ std::vector<std::uint32_t> run_scan(Device &device, Kernel kernel) {
     return result;
 }
 
+/// How many kernels PoCL has code of in its folder.
+std::size_t pocl_libraries() {
+    // A device with workers has named a folder where nobody else has; else PoCL takes its own.
+    const auto variable = [](const char *name) { return std::getenv(name) ? fs::path(std::getenv(name)) : fs::path(); };
+    const fs::path cache =
+        variable("XDG_CACHE_HOME").empty() ? variable("HOME") / ".cache" : variable("XDG_CACHE_HOME");
+    const fs::path folder = variable("POCL_CACHE_DIR").empty() ? cache / "pocl" : variable("POCL_CACHE_DIR");
+    std::size_t count = 0;
+    if (fs::exists(folder))
+        for (const auto &file : fs::recursive_directory_iterator(folder))
+            count += file.path().extension() == ".so";
+    return count;
+}
+
 class ProgramCache : public ::testing::Test {
   protected:
     void TearDown() override { fs::remove_all(folder); }
@@ -167,21 +181,37 @@ TEST_F(ProgramCache, NeedsNoCompilerAtTheFirstLaunch) {
     }
     Device device;
     const Kernel kernel = KernelLibrary(device, {}).build({request})[0];
-    // A device with workers has named a folder where nobody else has; else PoCL takes its own.
-    const auto variable = [](const char *name) { return std::getenv(name) ? fs::path(std::getenv(name)) : fs::path(); };
-    const fs::path cache =
-        variable("XDG_CACHE_HOME").empty() ? variable("HOME") / ".cache" : variable("XDG_CACHE_HOME");
-    const fs::path pocl_folder = variable("POCL_CACHE_DIR").empty() ? cache / "pocl" : variable("POCL_CACHE_DIR");
-    const auto files = [&] {
-        std::size_t count = 0;
-        if (fs::exists(pocl_folder))
-            for (const auto &file : fs::recursive_directory_iterator(pocl_folder))
-                count += file.path().extension() == ".so";
-        return count;
-    };
-    const std::size_t before = files();
+    const std::size_t before = pocl_libraries();
     EXPECT_THAT(run_scan(device, kernel), right);
-    EXPECT_EQ(files(), before) << "PoCL compiled at the launch";
+    EXPECT_EQ(pocl_libraries(), before) << "PoCL compiled at the launch";
+}
+
+/// Those are of a size that no render has, so the code is not kept; what it is made of is.
+TEST_F(ProgramCache, CompilesForOtherLaunchesFromWhatIsKept) {
+    if (!is_pocl_cpu(Device().description()))
+        GTEST_SKIP() << "other implementations have one code for all launches";
+    const KernelRequest request = {
+        "count", "kernels/stages/partition.cl", "partition_count", {{"PARTITION_CHUNK", std::to_string(4 + getpid())}}};
+    {
+        Device device;
+        KernelLibrary(device, {}).build({request});
+    }
+    Device device;
+    Kernel kernel = KernelLibrary(device, {}).build({request})[0];
+    ASSERT_EQ(device.implementation().compiled, 0u);
+    const std::vector<std::uint32_t> bins = {0, 1, 1, 0, 2, 1}, zeros(3);
+    const Buffer bin(device, "bin", bins.data(), 24), counts(device, "chunk_offset", zeros.data(), 12);
+    kernel.bind(bin);
+    kernel.bind(counts);
+    kernel.set("count", 1);
+    kernel.set("rows", 6);
+    kernel.set("bins", 3);
+    const std::size_t before = pocl_libraries();
+    kernel.launch(1, 70000); // more than the 16 bits that PoCL has code for
+    std::vector<std::uint32_t> found(3);
+    counts.read(found.data(), 12);
+    EXPECT_THAT(found, ::testing::ElementsAre(2, 3, 1));
+    EXPECT_GT(pocl_libraries(), before) << "the launch was like others";
 }
 
 TEST_F(ProgramCache, IsFilledBySeveralWorkers) {
