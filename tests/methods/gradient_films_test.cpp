@@ -14,24 +14,24 @@ namespace {
 
 using namespace lib_float;
 
-constexpr std::uint32_t width = 37, height = 41;
-constexpr std::size_t pixels = width * height;
+constexpr std::uint32_t film_width = 37, film_height = 41;
+constexpr std::size_t film_pixels = film_width * film_height;
 
 /// A film whose values are random, after so many samples.
-struct Film {
-    std::vector<float> values = std::vector<float>(gradient_film_columns * pixels);
+struct RandomFilm {
+    std::vector<float> values = std::vector<float>(gradient_film_columns * film_pixels);
     std::uint64_t samples;
 
-    Film(unsigned seed, std::uint64_t samples) : samples(samples) {
+    RandomFilm(unsigned seed, std::uint64_t samples) : samples(samples) {
         std::mt19937 random(seed);
         for (float &value : values)
             value = std::uniform_real_distribution<float>(0.5f, 9)(random);
     }
-    double at(int column, std::size_t pixel) const { return values[std::size_t(column) * pixels + pixel]; }
-    /// Of a difference to the pixel below there are as many as of both pixels.
+    double at(int column, std::size_t pixel) const { return values[std::size_t(column) * film_pixels + pixel]; }
+    /// Of a difference to the pixel below there are as many as of both film_pixels.
     double count(int layer, std::size_t pixel) const {
-        const std::size_t last = pixel + (layer == GradientFilm::dy ? width : 0);
-        return double(samples / pixels) + (last < samples % pixels ? 1 : 0);
+        const std::size_t last = pixel + (layer == GradientFilm::dy ? film_width : 0);
+        return double(samples / film_pixels) + (last < samples % film_pixels ? 1 : 0);
     }
     double sum(int layer, int color, std::size_t pixel) const {
         return at(gradient_film_primal_r + 3 * layer + color, pixel) +
@@ -43,34 +43,34 @@ struct Film {
 };
 
 TEST(GradientFilms, AreSummedPixelByPixel) {
-    SceneMaker maker(width, height);
+    SceneMaker maker(film_width, film_height);
     maker.floor(-1, 1, 1, maker.material(diffuse(0.5)), 0);
     Tracer tracer(maker.scene, 2);
     Device device;
     // Parts of the even and the odd half; of each the last frame is there in part.
-    const std::vector<Film> films = {Film(1, 3 * pixels + 700), Film(2, 3 * pixels + 20), Film(3, 2 * pixels + 1500),
-                                     Film(4, 2 * pixels)};
+    const std::vector<RandomFilm> films = {RandomFilm(1, 3 * film_pixels + 700), RandomFilm(2, 3 * film_pixels + 20),
+                                           RandomFilm(3, 2 * film_pixels + 1500), RandomFilm(4, 2 * film_pixels)};
     std::vector<Buffer> buffers;
-    for (const Film &film : films)
+    for (const RandomFilm &film : films)
         buffers.emplace_back(device, "gradient_film", film.values.data(), film.values.size() * sizeof(float));
     GradientFilms all(tracer, true);
     for (std::size_t i = 0; i < films.size(); ++i)
-        all.add(buffers[i], width, height, Precision::single, films[i].samples,
-                {double(films[i].samples / pixels), double(films[i].samples / pixels + 1)});
+        all.add(buffers[i], film_width, film_height, Precision::single, films[i].samples,
+                {double(films[i].samples / film_pixels), double(films[i].samples / film_pixels + 1)});
 
-    std::vector<float> mean(pixels), variance(pixels);
+    std::vector<float> mean(film_pixels), variance(film_pixels);
     for (const auto layer : {GradientFilm::primal, GradientFilm::dx, GradientFilm::dy})
         for (int color = 0; color < 3; ++color) {
             all.mean(layer)(std::uint32_t(color), mean.data());
             all.variance(layer)(std::uint32_t(color), variance.data());
-            for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
+            for (std::size_t pixel = 0; pixel < film_pixels; ++pixel) {
                 double n = 0, sum = 0, expected = 0;
-                for (const Film &film : films) {
+                for (const RandomFilm &film : films) {
                     n += film.count(layer, pixel);
                     sum += film.sum(layer, color, pixel);
                 }
                 for (const std::size_t half : {0u, 1u}) {
-                    const Film &a = films[half], &b = films[half + 2];
+                    const RandomFilm &a = films[half], &b = films[half + 2];
                     const double of_half = a.count(layer, pixel) + b.count(layer, pixel);
                     const double m = (a.sum(layer, color, pixel) + b.sum(layer, color, pixel)) / of_half;
                     const double square = (a.squares(layer, color, pixel) + b.squares(layer, color, pixel)) / of_half;
