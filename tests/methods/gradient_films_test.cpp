@@ -28,7 +28,7 @@ struct RandomFilm {
             value = std::uniform_real_distribution<float>(0.5f, 9)(random);
     }
     double at(int column, std::size_t pixel) const { return values[std::size_t(column) * film_pixels + pixel]; }
-    /// Of a difference to the pixel below there are as many as of both film_pixels.
+    /// Of a difference to the pixel below there are as many as of both pixels.
     double count(int layer, std::size_t pixel) const {
         const std::size_t last = pixel + (layer == GradientFilm::dy ? film_width : 0);
         return double(samples / film_pixels) + (last < samples % film_pixels ? 1 : 0);
