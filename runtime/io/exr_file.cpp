@@ -1,6 +1,5 @@
 #include "runtime/io/exr_file.h"
 
-#include "runtime/error.h"
 #include "runtime/io/image_checks.h"
 
 #include <OpenEXR/ImfChannelList.h>
@@ -81,24 +80,15 @@ void read_part(Imf::MultiPartInputFile &input, int number, const OpenFile &file,
     std::uint64_t count = 0;
     for (auto channel = channels.begin(); channel != channels.end(); ++channel)
         ++count;
-    if (wide <= 0 || high <= 0 || count == 0)
-        fail_to_read(file, "it is not a plane of pixels");
-    limit.count(std::uint64_t(wide), std::uint64_t(high), count);
-    const auto width = static_cast<std::uint32_t>(wide), height = static_cast<std::uint32_t>(high);
-    if (number == 0) {
-        image.width = width;
-        image.height = height;
+    limit.begin_part(number, wide, high, count, image);
+    if (number == 0)
         read_metadata(header, image);
-    } else if (image.width != width || image.height != height) {
-        fail_to_read(file, fmt::format("part {} is {}x{}, the first one {}x{}", number, width, height, image.width,
-                                       image.height));
-    }
     const std::string prefix = number == 0 ? "" : (header.hasName() ? header.name() : std::to_string(number)) + ".";
     Imf::FrameBuffer planes;
     for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
         if (channel.channel().xSampling != 1 || channel.channel().ySampling != 1)
             fail_to_read(file, fmt::format("its channel '{}' has not a value for each pixel", channel.name()));
-        std::vector<float> values(std::size_t(width) * height);
+        std::vector<float> values(std::size_t(image.width) * image.height);
         planes.insert(channel.name(), Imf::Slice::Make(Imf::FLOAT, values.data(), window));
         image.channels.push_back({prefix + channel.name(), std::move(values)});
     }
@@ -179,7 +169,7 @@ bool pays_to_compress(const Image &image, const std::string &path) {
 Image read_exr(const OpenFile &file, const ExrSize &declared, std::uint64_t limits) {
     PixelLimit limit(file, limits);
     limit.check_bytes(declared.bytes);
-    if (!declared.is_whole || declared.blocks > file.bytes() / 8)
+    if (!declared.fits(file.bytes()))
         fail_to_read(file, "it is truncated or damaged: its header and its size do not agree");
     Image image;
     try {
@@ -196,12 +186,7 @@ std::vector<unsigned char> encode_exr(const Image &image, const std::string &pat
     try {
         return encode(image, pays_to_compress(image, path) ? Imf::ZIP_COMPRESSION : Imf::NO_COMPRESSION, path);
     } catch (const std::exception &error) {
-        // Of other threads the library has the words alone.
-        if (std::strstr(error.what(), "bad_alloc"))
-            throw Error(ExitCode::device, fmt::format("cannot write '{}': there is not enough memory to encode it; try "
-                                                      "a smaller --size, or a --crop",
-                                                      path));
-        throw Error(ExitCode::output, fmt::format("cannot write '{}': {}", path, error.what()));
+        fail_to_write(path, error.what());
     }
 }
 

@@ -1,6 +1,7 @@
 // What is checked before the pixels of an image file are read, and how errors name it.
 #pragma once
 
+#include "runtime/film/image.h"
 #include "runtime/io/open_file.h"
 
 #include <cstdint>
@@ -17,6 +18,10 @@ std::string named_in(std::string message, const OpenFile &file);
 /// Throws Error(ExitCode::image).
 [[noreturn]] void fail_to_read(const OpenFile &file, const std::string &reason);
 
+/// Throws Error(ExitCode::output), or Error(ExitCode::device) where `reason` is a lack of memory: of that libraries
+/// have no words, or std::bad_alloc's.
+[[noreturn]] void fail_to_write(const std::string &path, const std::string &reason);
+
 /// What may be read of a file.
 class PixelLimit {
   public:
@@ -24,8 +29,9 @@ class PixelLimit {
 
     /// Before so many bytes of pixels are read.
     void check_bytes(std::uint64_t bytes) const;
-    /// Before a part's pixels are read. Throws where the parts so far have too many channels or pixels.
-    void count(std::uint64_t width, std::uint64_t height, std::uint64_t channels);
+    /// Before the pixels of part `number` are read. Gives the image the first one's size, and throws where another's
+    /// differs, where it has no pixels, or the parts so far have too many of them or of channels.
+    void begin_part(int number, std::int64_t width, std::int64_t height, std::uint64_t channels, Image &image);
 
   private:
     const OpenFile &file_;

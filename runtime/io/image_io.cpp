@@ -3,6 +3,7 @@
 #include "runtime/error.h"
 #include "runtime/io/atomic_file.h"
 #include "runtime/io/exr_file.h"
+#include "runtime/io/image_checks.h"
 #include "runtime/io/picture_library.h"
 
 #include <fmt/format.h>
@@ -14,15 +15,12 @@ namespace gradus {
 namespace {
 
 void check_channels(const Image &image, const std::string &path) {
-    const auto fail = [&](const std::string &reason) {
-        throw Error(ExitCode::output, fmt::format("cannot write '{}': {}", path, reason));
-    };
     if (image.width == 0 || image.height == 0 || image.channels.empty())
-        fail("the image is empty");
+        fail_to_write(path, "the image is empty");
     for (const Channel &channel : image.channels)
         if (channel.values.size() != std::size_t(image.width) * image.height)
-            fail(fmt::format("channel '{}' has {} values, not {} x {}", channel.name, channel.values.size(),
-                             image.width, image.height));
+            fail_to_write(path, fmt::format("channel '{}' has {} values, not {} x {}", channel.name,
+                                            channel.values.size(), image.width, image.height));
 }
 
 } // namespace

@@ -68,7 +68,7 @@ void check_exr(const OpenFile &file, std::uint64_t limits) {
     const std::optional<ExrSize> declared = exr_size(file.library_name());
     if (!declared)
         return;
-    if (!declared->is_whole || declared->blocks > file.bytes() / 8)
+    if (!declared->fits(file.bytes()))
         refuse(path, "it is truncated or damaged: its header and its size do not agree");
     if (declared->bytes > most_pixel_bytes(file, limits))
         refuse(path, "it declares far more pixels than a file of its size holds");

@@ -1,6 +1,5 @@
 #include "runtime/pictures/image_codec.h"
 
-#include "runtime/error.h"
 #include "runtime/film/tonemap.h"
 #include "runtime/io/image_checks.h"
 #include "runtime/pictures/picture_input.h"
@@ -13,15 +12,6 @@
 namespace gradus {
 namespace {
 
-[[noreturn]] void fail_write(const std::string &path, const std::string &reason) {
-    // Without memory the library has no words for its error either. Encoding meets no disk.
-    if (reason.empty())
-        throw Error(ExitCode::device, fmt::format("cannot write '{}': there is not enough memory to encode it; try a "
-                                                  "smaller --size, or a --crop",
-                                                  path));
-    throw Error(ExitCode::output, fmt::format("cannot write '{}': {}", path, reason));
-}
-
 bool holds_srgb(const OIIO::ImageSpec &spec) {
     return !spec.format.is_floating_point() && spec.get_string_attribute("oiio:ColorSpace") == "sRGB";
 }
@@ -29,17 +19,10 @@ bool holds_srgb(const OIIO::ImageSpec &spec) {
 /// Appends the channels of the part that `input` stands at.
 void read_part(OIIO::ImageInput &input, int part, const OpenFile &file, PixelLimit &limit, Image &image) {
     const OIIO::ImageSpec spec = input.spec();
-    if (spec.deep || spec.width <= 0 || spec.height <= 0 || spec.depth > 1)
+    if (spec.deep || spec.depth > 1)
         fail_to_read(file, "it is not a plane of pixels");
-    limit.count(std::uint64_t(spec.width), std::uint64_t(spec.height), std::uint64_t(spec.nchannels));
-    const auto width = static_cast<std::uint32_t>(spec.width), height = static_cast<std::uint32_t>(spec.height);
-    if (part == 0) {
-        image.width = width;
-        image.height = height;
-    } else if (image.width != width || image.height != height) {
-        fail_to_read(
-            file, fmt::format("part {} is {}x{}, the first one {}x{}", part, width, height, image.width, image.height));
-    }
+    limit.begin_part(part, spec.width, spec.height, std::uint64_t(spec.nchannels), image);
+    const std::uint32_t width = image.width, height = image.height;
     const std::size_t pixels = std::size_t(width) * height, count = static_cast<std::size_t>(spec.nchannels);
     const std::string part_name(spec.get_string_attribute("oiio:subimagename", std::to_string(part)));
     const std::string prefix = part == 0 ? "" : part_name + ".";
@@ -74,32 +57,6 @@ void read_part(OIIO::ImageInput &input, int part, const OpenFile &file, PixelLim
                 attribute.get_string();
 }
 
-/// Has OpenImageIO encode into memory, so that every error of the disk is met, and named, in one place. `fill` writes
-/// the values of rows [begin, end), interleaved.
-template <class Value, class Fill>
-std::vector<unsigned char> encode(const char *format, const OIIO::ImageSpec &spec, Fill fill, const std::string &path) {
-    std::vector<unsigned char> bytes;
-    // As much as there may be: growing would copy what is there, and memory that is not used is not taken.
-    bytes.reserve(std::size_t(spec.image_bytes(true)) + (std::size_t(1) << 16));
-    OIIO::Filesystem::IOVecOutput memory(bytes);
-    const auto output = OIIO::ImageOutput::create(format, &memory);
-    if (!output)
-        fail_write(path, OIIO::geterror());
-    if (!output->open(path, spec))
-        fail_write(path, output->geterror());
-    std::vector<Value> rows(std::size_t(std::min(rows_at_a_time, spec.height)) * std::size_t(spec.width) *
-                            std::size_t(spec.nchannels));
-    for (int begin = 0; begin < spec.height; begin += rows_at_a_time) {
-        const int end = std::min(begin + rows_at_a_time, spec.height);
-        fill(std::size_t(begin), std::size_t(end), rows.data());
-        if (!output->write_scanlines(begin, end, 0, OIIO::TypeDesc(OIIO::BaseTypeFromC<Value>::value), rows.data()))
-            fail_write(path, output->geterror());
-    }
-    if (!output->close())
-        fail_write(path, output->geterror());
-    return bytes;
-}
-
 } // namespace
 
 Image decode_image(const OpenFile &file, std::uint64_t limits) {
@@ -113,11 +70,29 @@ Image decode_image(const OpenFile &file, std::uint64_t limits) {
     return image;
 }
 
+// Into memory, so that every error of the disk is met, and named, in one place.
 std::vector<unsigned char> encode_png(const Image &image, const std::string &path) {
     OIIO::ImageSpec spec(static_cast<int>(image.width), static_cast<int>(image.height), 3, OIIO::TypeDesc::UINT8);
     spec.attribute("oiio:ColorSpace", "sRGB");
-    const auto fill = [&](std::size_t begin, std::size_t end, std::uint8_t *to) { tonemap(image, begin, end, to); };
-    return encode<std::uint8_t>("png", spec, fill, path);
+    std::vector<unsigned char> bytes;
+    // As much as there may be: growing would copy what is there, and memory that is not used is not taken.
+    bytes.reserve(std::size_t(spec.image_bytes()) + (std::size_t(1) << 16));
+    OIIO::Filesystem::IOVecOutput memory(bytes);
+    const auto output = OIIO::ImageOutput::create("png", &memory);
+    if (!output)
+        fail_to_write(path, OIIO::geterror());
+    if (!output->open(path, spec))
+        fail_to_write(path, output->geterror());
+    std::vector<std::uint8_t> rows(std::size_t(std::min(rows_at_a_time, spec.height)) * image.width * 3);
+    for (int begin = 0; begin < spec.height; begin += rows_at_a_time) {
+        const int end = std::min(begin + rows_at_a_time, spec.height);
+        tonemap(image, std::size_t(begin), std::size_t(end), rows.data());
+        if (!output->write_scanlines(begin, end, 0, OIIO::TypeDesc::UINT8, rows.data()))
+            fail_to_write(path, output->geterror());
+    }
+    if (!output->close())
+        fail_to_write(path, output->geterror());
+    return bytes;
 }
 
 } // namespace gradus
