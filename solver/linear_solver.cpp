@@ -33,7 +33,8 @@ constexpr int stagnating_cycles = 4;
 
 } // namespace
 
-/// Follows the residuals of a group, and says when to stop. Iteration k leaves its squared norm in slot(k).
+/// Follows the residuals of a group, and says when to stop. Iteration k leaves its squared norm in slot(k); where
+/// errors are compared with noise, the next step leaves what <z, r> says of the error.
 struct LinearSolver::Progress {
     Sums &sums;
     const Request &request;
@@ -45,12 +46,14 @@ struct LinearSolver::Progress {
     std::function<void(std::uint32_t, const Buffer &)> keep;
     int iterations = 0;
     struct Channel {
-        std::vector<double> norms; ///< residuals
+        std::vector<double> norms; ///< residuals, or the roots of the errors
         bool finished = false, converged = false, is_kept = false;
     };
     std::vector<Channel> of = std::vector<Channel>(channels.count);
 
     static std::uint32_t slot(int iteration) { return SOLVER_HISTORY + std::uint32_t(iteration) % history_slots; }
+
+    bool compares_with_noise() const { return request.noise > 0; }
 
     /// To be called after iteration `done` (0: the start) left its norm; true where no more is needed. `u`: the
     /// solution so far.
@@ -59,11 +62,12 @@ struct LinearSolver::Progress {
         const bool last = done >= request.iterations;
         if (!request.watch)
             return last;
-        if (!last && done % (looks_at_each ? 1 : iterations_between_looks) != 0)
+        const int known = compares_with_noise() ? done - 1 : done; // number of the last norm
+        if (known < 0 || (!last && done % (looks_at_each ? 1 : iterations_between_looks) != 0))
             return false;
         for (std::uint32_t c = 0; c < channels.count; ++c)
             if (!of[c].finished)
-                look(of[c], done, channels.first + c);
+                look(of[c], known, channels.first + c);
         const bool all =
             last || std::all_of(of.begin(), of.end(), [](const Channel &channel) { return channel.finished; });
         // The others go on, and take along what needs no more: it is to stay as it is now.
@@ -75,10 +79,10 @@ struct LinearSolver::Progress {
         return all;
     }
 
-    void look(Channel &channel, int done, std::uint32_t number) {
+    void look(Channel &channel, int known, std::uint32_t number) {
         std::vector<double> &norms = channel.norms;
-        while (int(norms.size()) <= done)
-            norms.push_back(std::sqrt(sums.read(slot(int(norms.size())), number)));
+        while (int(norms.size()) <= known) // <z, r> may be below 0 where rounding errors are all that is left
+            norms.push_back(std::sqrt(std::abs(sums.read(slot(int(norms.size())), number))));
         // From u = 0, the first residual is b itself.
         const double norm = reference_norm > 0 ? reference_norm : norms.front();
         channel.converged = norms.back() <= std::max(request.tolerance, least_tolerance) * norm;
@@ -128,15 +132,19 @@ LinearReport LinearSolver::solve(Kernels &kernels, const Request &request, const
             kept_ = make_.planes("u", grid, together_);
         copy(kernels, now, kept_, {channel, 1});
     };
+    if (request.noise > 0)
+        reference_norm = std::sqrt(request.noise);
     LinearReport report;
     report.converged = request.watch;
     std::vector<std::vector<double>> norms;
+    std::size_t count = 0; // of norms
     for (const Planes group : groups) {
         Progress progress{sums_, request, group, reference_norm, epsilon / 64, looks_at_each, keep};
         run(kernels, b(group), make_.some(u, grid, group), progress);
         report.iterations = std::max(report.iterations, progress.iterations);
         for (Progress::Channel &channel : progress.of) {
             report.converged = report.converged && channel.converged;
+            count = std::max(count, channel.norms.size());
             norms.push_back(std::move(channel.norms));
         }
     }
@@ -145,10 +153,10 @@ LinearReport LinearSolver::solve(Kernels &kernels, const Request &request, const
     double whole = 0;
     for (const std::vector<double> &of : norms)
         whole += reference_norm > 0 ? reference_norm * reference_norm : of.front() * of.front();
-    for (int i = 0; i <= report.iterations; ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
         double squares = 0;
         for (const std::vector<double> &of : norms) {
-            const double residual = of[std::min<std::size_t>(i, of.size() - 1)];
+            const double residual = of[std::min(i, of.size() - 1)];
             squares += residual * residual;
         }
         report.residuals.push_back(whole > 0 ? std::sqrt(squares / whole) : 0);
@@ -230,8 +238,9 @@ void LinearSolver::conjugate_gradients(Kernels &kernels, bool preconditioned, co
     }
     const Buffer &r = multigrid_.right_side(); // which is what a cycle is given
     const double bound = preconditioned ? largest_preconditioned_ratio : std::numeric_limits<float>::max();
+    const bool compares = progress.compares_with_noise();
     // Plain conjugate gradients need the norm for beta, too.
-    const bool norms = progress.request.watch || !preconditioned;
+    const bool norms = (progress.request.watch && !compares) || !preconditioned;
     for (int done = 0;; ++done) {
         if (done % steps_between_true_residuals == 0)
             residual(kernels, b, u, channels);
@@ -240,12 +249,12 @@ void LinearSolver::conjugate_gradients(Kernels &kernels, bool preconditioned, co
         if (progress.finished(done, u))
             return;
         std::uint32_t numerator = Progress::slot(done), divisor = Progress::slot(std::max(done - 1, 0));
+        std::uint32_t step = preconditioned && !compares ? std::uint32_t(slot_residual_product) : Progress::slot(done);
         if (preconditioned) {
             // The cycle is not symmetric, so beta is that of Polak and Ribiere: <z, r - r_old> / <z_old, r_old>, where
             // r - r_old = -alpha image, so beta = -<z, image> / <direction, image> (Notay 2000).
             multigrid_.cycle(kernels, channels, progress.request.smooths_after);
-            sums_.products(kernels, channels, multigrid_.solution(), r, image_, slot_residual_product,
-                           slot_image_product);
+            sums_.products(kernels, channels, multigrid_.solution(), r, image_, step, slot_image_product);
             numerator = slot_image_product;
             divisor = slot_direction_product;
         }
@@ -266,7 +275,7 @@ void LinearSolver::conjugate_gradients(Kernels &kernels, bool preconditioned, co
         Kernel &advance = kernels.advance;
         sums_.bind_scalars(advance);
         advance.set_real("bound", bound);
-        advance.set("numerator", preconditioned ? std::uint32_t(slot_residual_product) : Progress::slot(done));
+        advance.set("numerator", step);
         advance.set("divisor", slot_direction_product);
         advance.bind("direction", directions_[done % 2]);
         advance.bind("image", image_);

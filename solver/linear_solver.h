@@ -16,8 +16,8 @@ namespace gradus::solver {
 struct LinearReport {
     int iterations = 0;
     bool converged = false;
-    /// ||b - A u|| / ||b|| over all channels: at the start and after each iteration. A channel that needs fewer keeps
-    /// its last.
+    /// ||b - A u|| / ||b|| over all channels: at the start and after each iteration; or, where `noise` was asked for,
+    /// the root of the error over the noise before each. A channel that needs fewer keeps its last.
     std::vector<double> residuals;
 };
 
@@ -27,7 +27,13 @@ class LinearSolver {
 
     struct Request {
         LinearMethod method = LinearMethod::multigrid;
-        double tolerance = 0;       ///< on the relative residual of each channel
+        double tolerance = 0; ///< on the relative residual of each channel
+        /// Above 0, of preconditioned conjugate gradients: the expected <e, A e> of the solution's noise e, in each
+        /// channel. They end with the first step that begins where the same of the solver's own error is below
+        /// tolerance^2 of it. The error is taken to be <z, r>, z the preconditioned residual r, which every step needs
+        /// anyway. (It is up to four times that, before the step and after, where weights jump; to go by how fast <z,
+        /// r> falls is worse: the first step takes most of it off, later ones far less.)
+        double noise = 0;
         int iterations = 0;         ///< at most
         double damping = 1;         ///< Jacobi's step
         bool smooths_after = false; ///< cycles that precondition smooth on the way up, too

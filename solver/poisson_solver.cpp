@@ -128,6 +128,11 @@ void PoissonSolver::Implementation::least_squares(const Inputs &images, const Po
     request.iterations = options.iterations > 0 ? options.iterations : default_iterations(request.method);
     request.damping = options.damping;
     request.smooths_after = true;
+    if (options.noise_share > 0 && options.weigh_by_variance && options.alpha_from_variances &&
+        request.method == LinearMethod::pcg && problem.noise() > 0) {
+        request.tolerance = std::sqrt(options.noise_share);
+        request.noise = problem.noise();
+    }
     const double norm = images.start ? problem.norm_of_right_side(kernels) : 0;
     problem.start(images);
     if (uniform && images.start)

@@ -72,6 +72,11 @@ struct PoissonOptions {
     /// L2: the relative residual ||b - A u|| / ||b|| of the system for u = I - I0 at which to stop. L1: the relative
     /// decrease of the objective from one reweighting to the next. 0: 1e-5 and 1e-4. At least the rounding error.
     double tolerance = 0;
+    /// L2 weighted by variance, with alpha from variances and preconditioned conjugate gradients: stop where the error
+    /// is below so much of the solution's noise instead, both squared and in the norm of the equations, <e, A e>: with
+    /// weights by inverse variance, noise has as much of that as the image has pixels. 0, or where nothing is noisy: by
+    /// `tolerance`.
+    double noise_share = 0;
     /// At most so many: steps or cycles (L2), reweightings (L1). 0: enough to reach the tolerance where the method can.
     int iterations = 0;
     /// Steps of the inner solver for each reweighting (L1).
@@ -95,8 +100,10 @@ struct PoissonReport {
     double alpha = 0;   ///< as used
     int iterations = 0; ///< steps or cycles in all
     int reweightings = 0;
-    bool converged = false;         ///< the tolerance was reached
-    std::vector<double> residuals;  ///< relative, over all channels: at the start and after each step (L2)
+    bool converged = false; ///< the tolerance was reached
+    /// Relative, over all channels: at the start and after each step (L2); with noise_share, the root of the error
+    /// over the noise, before each step.
+    std::vector<double> residuals;
     std::vector<double> objectives; ///< of the L1 norm, before each reweighting and at the end, without the correction
     double objective = 0;           ///< of the norm that was asked for, at the end, without the correction
     /// Pixels of each input with a NaN or an infinity in any channel, which were treated as missing.

@@ -23,6 +23,9 @@ class Problem {
     void import_variances(const Inputs &images, bool keep);
     /// Kettunen et al. 2015, supplement, eq. 12; `otherwise` where all variances are 0.
     double alpha_from_variances(double otherwise) const;
+    /// With that alpha, and weights by variance: what the noise of a channel of the solution is expected to have of
+    /// <e, A e>. The weights are gradient_variance_ / variance, and the inverse of A times that is its covariance.
+    double noise() const { return gradient_variance_ * workspace_.grid().width * workspace_.grid().height; }
 
     bool anything_missing() const { return anything_missing_; }
     /// Weights of the equations before any norm: 0 for what is missing, else 1 or by inverse variance, at most

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <compare>
@@ -34,12 +35,12 @@ class ObjReader {
         const char *at = text_.data(), *const end = at + text_.size();
         while (at < end) {
             ++line_;
-            const char *line_end = at;
-            while (line_end < end && *line_end != '\n' && *line_end != '\r')
-                ++line_end;
-            read_line(at, line_end);
-            const bool ends_twice = line_end + 1 < end && line_end[0] == '\r' && line_end[1] == '\n';
-            at = line_end + (ends_twice ? 2 : 1);
+            const char *line_end = end_of_line(at, end);
+            if (goes_on(at, line_end))
+                line_end = read_joined_lines(at, line_end, end);
+            else
+                read_line(at, line_end);
+            at = after_line(line_end, end);
         }
         return assemble();
     }
@@ -52,6 +53,36 @@ class ObjReader {
     /// What stands there, for messages; or nothing of it where the file may be anybody's.
     std::string quoted(const char *at, const char *end) const {
         return quotes_ ? quoted_excerpt({at, std::size_t(end - at)}) : "what stands there";
+    }
+
+    static const char *end_of_line(const char *at, const char *end) {
+        while (at < end && *at != '\n' && *at != '\r')
+            ++at;
+        return at;
+    }
+    static const char *after_line(const char *line_end, const char *end) {
+        const bool ends_twice = line_end + 1 < end && line_end[0] == '\r' && line_end[1] == '\n';
+        return line_end + (ends_twice ? 2 : 1);
+    }
+
+    /// Whether a backslash ends a line of numbers, which has more on the next. Elsewhere it ends a path.
+    static bool goes_on(const char *at, const char *line_end) {
+        skip_blanks(at, line_end);
+        return line_end - at >= 2 && (*at == 'v' || *at == 'f') && line_end[-1] == '\\';
+    }
+    /// Returns the end of the last line.
+    const char *read_joined_lines(const char *at, const char *line_end, const char *end) {
+        std::string joined;
+        std::size_t more = 0;
+        for (; line_end > at && line_end[-1] == '\\'; ++more) {
+            joined.append(at, line_end - 1) += ' ';
+            at = std::min(after_line(line_end, end), end);
+            line_end = end_of_line(at, end);
+        }
+        joined.append(at, line_end);
+        read_line(joined.data(), joined.data() + joined.size());
+        line_ += more;
+        return line_end;
     }
 
     static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }

@@ -89,6 +89,25 @@ TEST(Obj, PolygonsAreFansAndCornersAreShared) {
                 ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}, Triangle{0, 3, 4}, Triangle{0, 2, 1}));
 }
 
+TEST(Obj, LinesGoOnAfterABackslash) {
+    for (const std::string end : {"\n", "\r\n", "\r"}) {
+        const auto lines = [&](std::initializer_list<const char *> all) {
+            std::string text;
+            for (const char *line : all)
+                text += line + end;
+            return text;
+        };
+        const Mesh mesh = parse_obj(
+            lines({"# C:\\", "v 0 \\", "0 0", "v 1 0 0", "v 1 1 0", "v 0 1 0", "mtllib D:\\", "f 1 2\\", "\\", "3 4"}),
+            "m.obj");
+        EXPECT_EQ(mesh.positions.size(), 4u);
+        EXPECT_THAT(mesh.triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
+        const std::string head = lines({"v 0 0 0", "v 1 0 0", "v 1 1 0"});
+        EXPECT_THAT(obj_error(head + lines({"f 1 \\", "2 3", "f 1 2 9"})), HasSubstr("m.obj:6: face index"));
+        EXPECT_THAT(obj_error(head + "f 1 2 \\"), HasSubstr("three corners")) << "where the file ends";
+    }
+}
+
 TEST(Obj, PositionsWithSeveralNormalsAreSplit) {
     const Mesh mesh = parse_obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 1\nvn 0 0 1\nvn 0 1 0\nf 1//1 2//1 3//1\n"
                                 "f 1//2 3//2 4//2\nf 1//1 3//1 4//2\n",

@@ -158,6 +158,12 @@ TEST(BsdfPlugin, TwoSidesOfOtherKinds) {
             << kind;
     EXPECT_THROW(material_of("<bsdf type=\"twosided\"><bsdf type=\"thindielectric\"/></bsdf>"), Error);
     EXPECT_THROW(material_of("<bsdf type=\"twosided\"><bsdf type=\"principledthin\"/></bsdf>"), Error);
+    const std::string inner = "<bsdf type=\"twosided\"><bsdf type=\"conductor\"/><bsdf type=\"diffuse\"/></bsdf>";
+    const Material wrapped = material_of("<bsdf type=\"twosided\">" + inner + "</bsdf>");
+    EXPECT_TRUE(wrapped.two_sided);
+    EXPECT_EQ(wrapped.front.kind, BsdfKind::conductor);
+    EXPECT_EQ(wrapped.back.kind, BsdfKind::conductor);
+    EXPECT_THROW(material_of("<bsdf type=\"twosided\">" + inner + "<bsdf type=\"diffuse\"/></bsdf>"), Error);
 }
 
 TEST(BsdfPlugin, DistributionsOf0xAreReadAsBeckmann) {

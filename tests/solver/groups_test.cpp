@@ -62,6 +62,9 @@ std::vector<PoissonOptions> all_options() {
         all.push_back(l2_options(method, 0.5));
     PoissonOptions &weighted = all.emplace_back(l2_options(LinearMethod::automatic));
     weighted.weigh_by_variance = weighted.alpha_from_variances = true;
+    PoissonOptions by_noise = weighted;
+    by_noise.noise_share = 1e-3;
+    all.push_back(by_noise);
     return all;
 }
 

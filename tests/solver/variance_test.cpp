@@ -134,6 +134,50 @@ TEST(VariancesWeights, ThatJumpTakeFewSteps) {
     EXPECT_LE(report.iterations, 17); // with one step of smoothing on the way up 19, without 30
 }
 
+/// <e, A e> of the error that is left is by how much the objective is above the least one.
+TEST(VariancesWeights, StopWhereTheErrorIsSmallBesideTheNoise) {
+    PoissonProblem problem = make_jumping_problem(513, 301, 3, 7);
+    PoissonOptions options = weighted_options(LinearMethod::automatic, 1e-6);
+    options.largest_weight = 1000;
+    options.alpha_from_variances = true;
+    const PoissonReport exact = solve_with_variances(problem, options).report;
+    const double noise = mean_of_gradients(problem) * double(problem.primal.size());
+    int before = 0;
+    for (const double share : {1e-1, 1e-2, 1e-3}) {
+        options.noise_share = share;
+        const PoissonReport report = solve_with_variances(problem, options).report;
+        const double left = (report.objective - exact.objective) / noise;
+        std::printf("%g of the noise: %d steps leave %.2g\n", share, report.iterations, left);
+        EXPECT_TRUE(report.converged);
+        EXPECT_LE(left, 4 * share) << "weights jump by a thousand";
+        EXPECT_GE(left, share / 50) << "so much was not asked for";
+        EXPECT_LE(report.residuals.back(), std::sqrt(share));
+        EXPECT_EQ(report.residuals.size(), std::size_t(report.iterations)) << "the error before each step";
+        EXPECT_GT(report.iterations, before);
+        EXPECT_LT(report.iterations, exact.iterations);
+        before = report.iterations;
+    }
+    for (std::vector<float> *plane : {&problem.primal, &problem.dx, &problem.dy})
+        for (float &value : *plane)
+            value *= 1024;
+    for (std::vector<float> *plane : {&problem.primal_variance, &problem.dx_variance, &problem.dy_variance})
+        for (float &value : *plane)
+            value *= 1024 * 1024;
+    EXPECT_EQ(solve_with_variances(problem, options).report.iterations, before) << "in another unit";
+}
+
+/// Without noise, the residual tells.
+TEST(VariancesWeights, StopByTheResidualWhereNothingIsNoisy) {
+    PoissonProblem problem = make_poisson_problem(75, 43, 3, 2);
+    for (std::vector<float> *plane : {&problem.primal_variance, &problem.dx_variance, &problem.dy_variance})
+        plane->assign(plane->size(), 0.0f);
+    PoissonOptions options = weighted_options(LinearMethod::automatic, 1e-5);
+    options.alpha_from_variances = true;
+    const Solution expected = solve_with_variances(problem, options);
+    options.noise_share = 1e-1;
+    EXPECT_EQ(solve_with_variances(problem, options).image, expected.image);
+}
+
 TEST(VariancesAlpha, IsTheirRatio) {
     const PoissonProblem problem = make_poisson_problem(75, 43, 3, 5);
     const double expected = std::sqrt(mean_of_gradients(problem) / mean_of_primal(problem));

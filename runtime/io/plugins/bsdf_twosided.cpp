@@ -1,5 +1,5 @@
 // <bsdf type="twosided">: gives a one-sided BSDF a back. One nested BSDF serves both sides; of two, the first is the
-// front and the second the back.
+// front and the second the back. Of one that has two sides itself, the front serves both.
 #include "runtime/io/plugins/plugin.h"
 
 namespace gradus {
@@ -19,8 +19,8 @@ Material bsdf_twosided(Properties &properties, SceneBuilder &builder) {
         sides[i] = builder.build_object<Material>(*nested[i].element);
         if (builder.transmits(sides[i].front))
             throw SceneError(nested[i].location, "twosided cannot hold a BSDF that lets light through");
-        if (sides[i].two_sided)
-            throw SceneError(nested[i].location, "twosided inside twosided");
+        if (sides[i].two_sided && nested.size() == 2)
+            throw SceneError(nested[i].location, "a side of a twosided has two sides itself; give it one of them");
     }
     if (nested.size() == 2 && sides[0].opacity != sides[1].opacity)
         throw SceneError(nested[1].location, "both sides of a surface have one opacity");

@@ -14,7 +14,7 @@ Declaration declare_integrator_path() {
                          .at_least(1)
                          .at_most(1000000),
                      hide_emitters_parameter()},
-                    meaningless({"strict_normals"})})};
+                    meaningless({"strict_normals", "samples_per_pass", "block_size", "timeout"})})};
 }
 
 RenderSettings integrator_path(Properties &properties, SceneBuilder &) {
