@@ -44,6 +44,7 @@ constexpr Entry entries[] = {
     {&Kernels::start, "input", "start"},
     {&Kernels::start_between_neighbours, "input", "start_between_neighbours", Only::weighted},
     {&Kernels::import_plane, "input", "import_plane"},
+    {&Kernels::import_variance, "input", "import_variance", Only::weighted},
     {&Kernels::gradient_residual, "input", "gradient_residual"},
     {&Kernels::right_side, "input", "right_side"},
     {&Kernels::compose, "output", "compose"},

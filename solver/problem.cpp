@@ -62,10 +62,21 @@ void Problem::import(const Inputs &images, PoissonReport &report) {
     grid.launch(kernel, {0, workspace_.channels});
 }
 
-double Problem::mean_variance(const Buffer &packed, const Buffer &variance, Buffer &valid, std::uint32_t columns,
-                              std::uint32_t rows) {
+double Problem::mean_variance(const Buffer &packed, bool one, const Buffer &variance, Buffer &valid,
+                              std::uint32_t columns, std::uint32_t rows) {
     if (columns == 0 || rows == 0)
         return 0;
+    if (one) {
+        Kernel &kernel = workspace_.any_kernels().import_variance;
+        workspace_.sums.bind_parts(kernel, 1);
+        kernel.set("edge_columns", columns);
+        kernel.set("edge_rows", rows);
+        kernel.bind("packed", packed);
+        kernel.bind("imported", variance);
+        workspace_.grid().launch(kernel, {0, 1});
+        workspace_.sums.sum(workspace_.any_kernels(), slot_sum, 1);
+        return workspace_.sums.read(slot_sum, 0) / (double(columns) * rows);
+    }
     import_plane(packed, variance, valid, columns, rows, -1);
     workspace_.sums.sum_of(workspace_.any_kernels(), variance, slot_sum, true);
     return workspace_.sums.read_total(slot_sum) / (double(columns) * rows * workspace_.channels);
@@ -73,16 +84,20 @@ double Problem::mean_variance(const Buffer &packed, const Buffer &variance, Buff
 
 void Problem::import_variances(const Inputs &images, bool keep) {
     const std::uint32_t w = workspace_.grid().width, h = workspace_.grid().height;
+    const bool one = images.one_variance;
+    const std::uint32_t planes = one ? 1 : workspace_.channels;
+    variance_plane_ = one ? 0 : workspace_.grid().plane;
+    const std::size_t bytes = std::size_t(workspace_.grid().plane) * planes * real_bytes(workspace_.make.precision());
     for (Buffer *variance : {&primal_variance_, &dx_variance_, &dy_variance_})
         if (!keep)
             *variance = u_; // which nothing is in yet
-        else if (!variance->valid())
-            *variance = workspace_.make.planes("variance", workspace_.grid(), workspace_.channels);
+        else if (!variance->valid() || variance->bytes() < bytes)
+            *variance = workspace_.make.planes("variance", workspace_.grid(), planes);
     // A missing variance reads as -1, which is all that needs to be known of it.
-    Buffer valid = workspace_.make.planes("valid", workspace_.grid(), 1);
-    const double x = mean_variance(images.dx_variance(), dx_variance_, valid, w - 1, h);
-    const double y = mean_variance(images.dy_variance(), dy_variance_, valid, w, h - 1);
-    mean_primal_variance_ = mean_variance(images.primal_variance(), primal_variance_, valid, w, h);
+    Buffer valid = one ? Buffer() : workspace_.make.planes("valid", workspace_.grid(), 1);
+    const double x = mean_variance(images.dx_variance(), one, dx_variance_, valid, w - 1, h);
+    const double y = mean_variance(images.dy_variance(), one, dy_variance_, valid, w, h - 1);
+    mean_primal_variance_ = mean_variance(images.primal_variance(), one, primal_variance_, valid, w, h);
     const double horizontal = double(w - 1) * h, vertical = double(w) * (h - 1);
     gradient_variance_ = (x * horizontal + y * vertical) / std::max(horizontal + vertical, 1.0);
     if (!keep)
@@ -115,6 +130,7 @@ void Problem::make_base_weights(Kernels &kernels, bool by_variance, double large
     make(base_data_, "base_data", valid_primal_);
     Kernel &kernel = kernels.base_weights;
     kernel.set("weight_plane", workspace_.system().weight_plane);
+    kernel.set("variance_plane", variance_plane_);
     kernel.set("by_variances", by_variance);
     kernel.set_real("largest_weight", largest_weight);
     kernel.set_real("mean_gradient_variance", gradient_variance_);

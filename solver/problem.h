@@ -71,7 +71,8 @@ class Problem {
   private:
     double import_plane(const Buffer &packed, const Buffer &imported, const Buffer &valid, std::uint32_t columns,
                         std::uint32_t rows, double missing_value = 0);
-    double mean_variance(const Buffer &packed, const Buffer &variance, Buffer &valid, std::uint32_t columns,
+    /// `one`: for all channels.
+    double mean_variance(const Buffer &packed, bool one, const Buffer &variance, Buffer &valid, std::uint32_t columns,
                          std::uint32_t rows);
     /// u += image - the sum in slot_mean times mean_factor.
     void add_to_u(Kernels &kernels, const Buffer &image, double mean_factor);
@@ -85,6 +86,7 @@ class Problem {
     Buffer right_side_;                                 ///< of a group
     Buffer valid_primal_, valid_dx_, valid_dy_;
     Buffer primal_variance_, dx_variance_, dy_variance_;
+    std::uint32_t variance_plane_ = 0;   ///< from a channel's variances to the next
     Buffer base_x_, base_y_, base_data_; ///< those of valid_dx_ and so on where these say it all
     Buffer zero_, held_;
     bool anything_missing_ = false, held_is_known_ = false;

@@ -51,7 +51,7 @@ std::vector<float> values_of(const Buffer &image) {
 } // namespace
 
 VarianceSmoother::VarianceSmoother(Device &device, std::uint32_t width, std::uint32_t height, std::uint32_t channels)
-    : device_(device), grid_(width, height), channels_(channels) {
+    : device_(device), grid_(width, height) {
     std::vector<Kernel> kernels = weighted_kernels(device, channels, smoothing_kernels);
     mean_ = std::move(kernels[0]);
     smooth_ = std::move(kernels[1]);
@@ -89,7 +89,7 @@ void VarianceSmoother::allocate() {
     for (Buffer *plane : {&image_, &other_, &brightness_})
         *plane = Buffer(device_, "image", nothing.data(), nothing.size() * sizeof(float));
     logarithms_ = solver::PlaneMaker(device_, Precision::single).planes("logarithms", grid_, 1);
-    smoothed_ = Buffer(device_, "smoothed", std::size_t(channels_) * grid_.width * grid_.height * sizeof(float));
+    smoothed_ = Buffer(device_, "smoothed", std::size_t(grid_.width) * grid_.height * sizeof(float));
 }
 
 void VarianceSmoother::begin(const HalfImages &judge) {
@@ -172,6 +172,7 @@ PoissonReport WeightedReconstruction::solve_half(const HalfImages &half, const H
     images.primal = image(half.primal);
     images.dx = image(half.dx);
     images.dy = image(half.dy);
+    images.one_variance = true;
     images.primal_variance = variance(judge.primal_variance, VarianceSmoother::Differences::none);
     images.dx_variance = variance(judge.dx_variance, VarianceSmoother::Differences::right);
     images.dy_variance = variance(judge.dy_variance, VarianceSmoother::Differences::down);

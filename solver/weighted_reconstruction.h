@@ -20,6 +20,7 @@ namespace gradus {
 /// Makes variances fit to be weights.
 class VarianceSmoother {
   public:
+    /// `channels`: of the images.
     VarianceSmoother(Device &device, std::uint32_t width, std::uint32_t height, std::uint32_t channels);
 
     /// Of pixels, or of differences, which the last column or row has not.
@@ -27,8 +28,8 @@ class VarianceSmoother {
     /// What follows is of this half.
     void begin(const HalfImages &judge);
     /// The variances of one of its images, smoothed over the neighbourhood (kernels/solver/smooth_variance.cl), at
-    /// least a share of the squared brightness there, and the same for all channels. -1 where there are none. The
-    /// buffer is used again by the next call.
+    /// least a share of the squared brightness there: one plane, for all channels. -1 where there are none. The buffer
+    /// is used again by the next call.
     const Buffer &smoothed(const Buffer &variance, Differences differences);
 
     std::vector<Kernel *> kernels() { return {&mean_, &smooth_, &smooth_and_add_, &finish_}; }
@@ -51,7 +52,6 @@ class VarianceSmoother {
 
     Device &device_;
     solver::Grid grid_;
-    std::uint32_t channels_;
     double samples_ = 0; ///< of a pixel
     Kernel mean_, smooth_, smooth_and_add_, finish_;
     Buffer image_, other_, brightness_, logarithms_, smoothed_;

@@ -24,6 +24,17 @@ SOLVE import_plane(GRID, uint edge_columns, uint edge_rows, real missing_value, 
     partial[tile * SOLVER_TILE + item] = missing;
 }
 
+/* A variance, one for all channels, -1 where it is missing; and the parts of its sum. */
+SOLVE import_variance(GRID, uint edge_columns, uint edge_rows, uint partials, __global const float *packed,
+                      __global real *imported, __global real *partial) {
+    SOLVER_PLACE_OF_ALL_CHANNELS
+    const bool inside = x < edge_columns && y < edge_rows;
+    const real value = inside ? packed[PACKED_AT(0)] : 0.0f;
+    const real variance = is_finite(value) ? value : R(-1);
+    imported[GRID_AT(0, x, y)] = variance;
+    partial[tile * SOLVER_TILE + item] = r_max(variance, R(0));
+}
+
 /* gradient_x = Gx - Dx I0 and gradient_y likewise, 0 where Gx or Gy is missing. */
 SOLVE gradient_residual(GRID, __global const real *base, __global const real *dx, __global const real *dy,
                         __global const real *valid_dx, __global const real *valid_dy, __global real *gradient_x,

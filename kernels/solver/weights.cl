@@ -9,10 +9,11 @@ GRADUS_FN real by_variance(real variance, real mean, real largest) {
 
 GRADUS_FN real together(real sum, real variance) { return sum < R(0) || variance < R(0) ? R(-1) : sum + variance; }
 
-/* The base weights: 0 for what is missing, else 1 or by inverse variance. */
-SOLVE base_weights(GRID, uint weight_plane, uint by_variances, real mean_gradient_variance, real mean_primal_variance,
-                   real largest_weight, __global const real *valid_primal, __global const real *valid_dx,
-                   __global const real *valid_dy, __global const real *primal_variance,
+/* The base weights: 0 for what is missing, else 1 or by inverse variance. `variance_plane`: from a channel's variances
+ * to the next; 0 where all share one. */
+SOLVE base_weights(GRID, uint weight_plane, uint variance_plane, uint by_variances, real mean_gradient_variance,
+                   real mean_primal_variance, real largest_weight, __global const real *valid_primal,
+                   __global const real *valid_dx, __global const real *valid_dy, __global const real *primal_variance,
                    __global const real *dx_variance, __global const real *dy_variance, __global real *base_x,
                    __global real *base_y, __global real *base_data) {
     SOLVER_PLACE
@@ -23,9 +24,9 @@ SOLVE base_weights(GRID, uint weight_plane, uint by_variances, real mean_gradien
         const size_t first = SOLVER_WEIGHT_PLANES > 1 ? channel : 0, count = SOLVER_CHANNELS / SOLVER_WEIGHT_PLANES;
         real vx = R(0), vy = R(0), vd = R(0);
         for (size_t c = first; c < first + count; ++c) {
-            vx = together(vx, dx_variance[c * plane + at] / count);
-            vy = together(vy, dy_variance[c * plane + at] / count);
-            vd = together(vd, primal_variance[c * plane + at] / count);
+            vx = together(vx, dx_variance[c * variance_plane + at] / count);
+            vy = together(vy, dy_variance[c * variance_plane + at] / count);
+            vd = together(vd, primal_variance[c * variance_plane + at] / count);
         }
         wx = by_variance(vx, mean_gradient_variance, largest_weight);
         wy = by_variance(vy, mean_gradient_variance, largest_weight);

@@ -49,6 +49,10 @@ TEST(Options, OutOfTheirRangeAreRefused) {
     expect_usage_error("no inner iterations", [](auto &, auto &options) { options.inner_iterations = 0; });
 }
 
+TEST(Options, OneVarianceIsForWeights) {
+    expect_usage_error("one variance", [](auto &images, auto &) { images.one_variance = true; });
+}
+
 TEST(Options, ImagesThatAreMissingAreNamed) {
     expect_usage_error("no primal", [](auto &images, auto &) { images.primal = nullptr; });
     expect_usage_error("no dx", [](auto &images, auto &) { images.dx = nullptr; });

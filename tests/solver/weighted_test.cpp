@@ -141,13 +141,13 @@ TEST(Weighted, VariancesAreSmoothedAsInTheReference) {
                 smoothed_on_host(problem, variance, problem.primal, samples, columns, rows);
             double worst = 0;
             int missing = 0;
-            for (std::uint32_t c = 0; c < 3; ++c)
-                for (std::uint32_t y = 0; y < rows; ++y)
-                    for (std::uint32_t x = 0; x < columns; ++x) {
-                        const double right_one = expected[problem.at(0, x, y)];
-                        worst = worse(worst, std::fabs(found[problem.at(c, x, y)] / right_one - 1));
-                        missing += right_one < 0;
-                    }
+            ASSERT_EQ(found.size(), std::max<std::size_t>(problem.pixels(), 4)) << "one plane";
+            for (std::uint32_t y = 0; y < rows; ++y)
+                for (std::uint32_t x = 0; x < columns; ++x) {
+                    const double right_one = expected[problem.at(0, x, y)];
+                    worst = worse(worst, std::fabs(found[problem.at(0, x, y)] / right_one - 1));
+                    missing += right_one < 0;
+                }
             EXPECT_EQ(missing > 0, holes);
             // -1 is -1. Logarithms of up to 30 in float, and what the sums before them lose: tens of roundings of 30.
             EXPECT_LE(worst, 40 * 30 * rounding) << width << " x " << height;
@@ -173,14 +173,15 @@ TEST(Weighted, AHalfIsSolvedAsByADenseSolver) {
                                VarianceSmoother::Differences differences) {
             const std::vector<float> smoothed = read(smoother.smoothed(variance, differences));
             for (std::size_t i = 0; i < weight.size(); ++i)
-                weight[i] *= smoothed[i] > 0 ? 1 / smoothed[i] : 0;
+                weight[i] *= smoothed[i % problem.pixels()] > 0 ? 1 / smoothed[i % problem.pixels()] : 0;
         };
         weigh(weights.primal, judge.primal_variance, VarianceSmoother::Differences::none);
         weigh(weights.dx, judge.dx_variance, VarianceSmoother::Differences::right);
         weigh(weights.dy, judge.dy_variance, VarianceSmoother::Differences::down);
         const std::vector<double> expected =
             solve_weighted(problem, 1, weights, to_double(problem.primal), 20000, 1e-13);
-        // The solver stops at 1e-4 of the right side, and bounds weights at a thousand times the mean's.
+        // The solver stops where its error is small beside the noise, and bounds weights at a thousand times the
+        // mean's.
         EXPECT_LE(relative_error(read(result), expected), 3e-3) << width << " x " << height;
     }
 }
