@@ -224,6 +224,9 @@ namespace {
 /// Images of one kind from those of another, image by image.
 template <class To, class From, class Convert>
 PoissonImages<To> converted(const PoissonImages<From> &images, Convert convert) {
+    if (images.one_variance)
+        throw Error(ExitCode::usage,
+                    "one variance for all channels is for buffers that are made when they are asked for");
     return {convert(images.primal),      convert(images.dx),         convert(images.dy),
             convert(images.direct),      convert(images.start),      convert(images.primal_variance),
             convert(images.dx_variance), convert(images.dy_variance)};
