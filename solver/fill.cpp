@@ -27,7 +27,7 @@ void Fill::run(Buffer &image, const Buffer &valid) {
         std::swap(image, other_image_);
         std::swap(valid_, other_valid_);
         from = &valid_;
-        const double now = sums.read(slot_sum)[0];
+        const double now = sums.read(slot_sum, 0);
         if (now == 0 || now == left)
             return;
         left = now;

@@ -58,8 +58,6 @@ void check(const PoissonImages<Planes> &images, const PoissonOptions &options) {
     const bool variances = images.primal_variance && images.dx_variance && images.dy_variance;
     if ((options.alpha_from_variances || options.weigh_by_variance) && !variances)
         usage("alpha or weights from variances need the variances of primal, dx and dy");
-    if (images.one_variance && !options.weigh_by_variance)
-        usage("one variance for all channels is for weights by variance");
     if (!(options.largest_weight >= 1))
         usage(fmt::format("the largest weight is {}; it must be 1 or larger", options.largest_weight));
     if (options.weigh_by_variance && options.norm == PoissonNorm::l1)

@@ -39,7 +39,7 @@ struct PoissonImages {
     Planes start{};  ///< where the iteration starts, else near I0; for L1 only where its norm is less than there
     /// Variances of primal, dx and dy, by pixel and channel: all three or none.
     Planes primal_variance{}, dx_variance{}, dy_variance{};
-    /// Of BufferSources with PoissonOptions::weigh_by_variance: the variances have one plane, for all channels.
+    /// Of BufferSources: the variances have one plane, for all channels.
     bool one_variance = false;
 };
 using HostImages = PoissonImages<const float *>;

@@ -21,29 +21,40 @@ void Problem::allocate() {
     valid_dy_ = make.planes("valid_dy", grid, 1);
 }
 
-double Problem::import_plane(const Buffer &packed, const Buffer &imported, const Buffer &valid, std::uint32_t columns,
-                             std::uint32_t rows, double missing_value) {
-    Kernels &kernels = workspace_.any_kernels();
-    Kernel &kernel = kernels.import_plane;
-    kernel.set_real("missing_value", missing_value);
+double Problem::import_planes(Kernel &kernel, const Buffer &packed, const Buffer &imported, std::uint32_t columns,
+                              std::uint32_t rows) {
     workspace_.sums.bind_parts(kernel, 1);
     kernel.set("edge_columns", columns);
     kernel.set("edge_rows", rows);
     kernel.bind("packed", packed);
     kernel.bind("imported", imported);
-    kernel.bind("valid", valid);
     workspace_.grid().launch(kernel, {0, 1});
-    workspace_.sums.sum(kernels, slot_sum, 1);
-    return workspace_.sums.read(slot_sum)[0];
+    workspace_.sums.sum(workspace_.any_kernels(), slot_sum, 1);
+    return workspace_.sums.read(slot_sum, 0);
+}
+
+double Problem::import_image(const Buffer &packed, const Buffer &imported, const Buffer &valid, std::uint32_t columns,
+                             std::uint32_t rows) {
+    Kernel &kernel = workspace_.any_kernels().import_image;
+    kernel.bind("valid", valid);
+    return import_planes(kernel, packed, imported, columns, rows);
+}
+
+double Problem::mean_variance(const Buffer &packed, std::uint32_t planes, const Buffer &variance, std::uint32_t columns,
+                              std::uint32_t rows) {
+    Kernel &kernel = workspace_.any_kernels().import_variance;
+    kernel.set("planes", planes);
+    const double sum = import_planes(kernel, packed, variance, columns, rows);
+    return sum / std::max(double(columns) * rows * planes, 1.0);
 }
 
 void Problem::import(const Inputs &images, PoissonReport &report) {
     allocate();
     const Grid &grid = workspace_.grid();
     const std::uint32_t w = grid.width, h = grid.height;
-    const double missing = import_plane(images.primal(), base_, valid_primal_, w, h);
-    const double missing_x = import_plane(images.dx(), gradient_x_, valid_dx_, w - 1, h);
-    const double missing_y = import_plane(images.dy(), gradient_y_, valid_dy_, w, h - 1);
+    const double missing = import_image(images.primal(), base_, valid_primal_, w, h);
+    const double missing_x = import_image(images.dx(), gradient_x_, valid_dx_, w - 1, h);
+    const double missing_y = import_image(images.dy(), gradient_y_, valid_dy_, w, h - 1);
     report.missing_primal = static_cast<std::uint64_t>(missing);
     report.missing_dx = static_cast<std::uint64_t>(missing_x);
     report.missing_dy = static_cast<std::uint64_t>(missing_y);
@@ -62,42 +73,19 @@ void Problem::import(const Inputs &images, PoissonReport &report) {
     grid.launch(kernel, {0, workspace_.channels});
 }
 
-double Problem::mean_variance(const Buffer &packed, bool one, const Buffer &variance, Buffer &valid,
-                              std::uint32_t columns, std::uint32_t rows) {
-    if (columns == 0 || rows == 0)
-        return 0;
-    if (one) {
-        Kernel &kernel = workspace_.any_kernels().import_variance;
-        workspace_.sums.bind_parts(kernel, 1);
-        kernel.set("edge_columns", columns);
-        kernel.set("edge_rows", rows);
-        kernel.bind("packed", packed);
-        kernel.bind("imported", variance);
-        workspace_.grid().launch(kernel, {0, 1});
-        workspace_.sums.sum(workspace_.any_kernels(), slot_sum, 1);
-        return workspace_.sums.read(slot_sum, 0) / (double(columns) * rows);
-    }
-    import_plane(packed, variance, valid, columns, rows, -1);
-    workspace_.sums.sum_of(workspace_.any_kernels(), variance, slot_sum, true);
-    return workspace_.sums.read_total(slot_sum) / (double(columns) * rows * workspace_.channels);
-}
-
 void Problem::import_variances(const Inputs &images, bool keep) {
     const std::uint32_t w = workspace_.grid().width, h = workspace_.grid().height;
-    const bool one = images.one_variance;
-    const std::uint32_t planes = one ? 1 : workspace_.channels;
-    variance_plane_ = one ? 0 : workspace_.grid().plane;
+    const std::uint32_t planes = images.one_variance ? 1 : workspace_.channels;
+    variance_plane_ = images.one_variance ? 0 : workspace_.grid().plane;
     const std::size_t bytes = std::size_t(workspace_.grid().plane) * planes * real_bytes(workspace_.make.precision());
     for (Buffer *variance : {&primal_variance_, &dx_variance_, &dy_variance_})
         if (!keep)
             *variance = u_; // which nothing is in yet
         else if (!variance->valid() || variance->bytes() < bytes)
             *variance = workspace_.make.planes("variance", workspace_.grid(), planes);
-    // A missing variance reads as -1, which is all that needs to be known of it.
-    Buffer valid = one ? Buffer() : workspace_.make.planes("valid", workspace_.grid(), 1);
-    const double x = mean_variance(images.dx_variance(), one, dx_variance_, valid, w - 1, h);
-    const double y = mean_variance(images.dy_variance(), one, dy_variance_, valid, w, h - 1);
-    mean_primal_variance_ = mean_variance(images.primal_variance(), one, primal_variance_, valid, w, h);
+    const double x = mean_variance(images.dx_variance(), planes, dx_variance_, w - 1, h);
+    const double y = mean_variance(images.dy_variance(), planes, dy_variance_, w, h - 1);
+    mean_primal_variance_ = mean_variance(images.primal_variance(), planes, primal_variance_, w, h);
     const double horizontal = double(w - 1) * h, vertical = double(w) * (h - 1);
     gradient_variance_ = (x * horizontal + y * vertical) / std::max(horizontal + vertical, 1.0);
     if (!keep)
@@ -253,7 +241,7 @@ void Problem::find_held(Kernels &kernels) {
     kernel.bind("valid", held_);
     grid.launch(kernel, {0, 1});
     workspace_.sums.sum(kernels, slot_sum, 1);
-    not_held_ = static_cast<std::uint64_t>(workspace_.sums.read(slot_sum)[0]);
+    not_held_ = static_cast<std::uint64_t>(workspace_.sums.read(slot_sum, 0));
 }
 
 double Problem::norm_of_right_side(Kernels &kernels) {

@@ -69,10 +69,13 @@ class Problem {
     const Buffer &right_side();
 
   private:
-    double import_plane(const Buffer &packed, const Buffer &imported, const Buffer &valid, std::uint32_t columns,
-                        std::uint32_t rows, double missing_value = 0);
-    /// `one`: for all channels.
-    double mean_variance(const Buffer &packed, bool one, const Buffer &variance, Buffer &valid, std::uint32_t columns,
+    /// With kernels import_image or import_variance; the sum that these leave.
+    double import_planes(Kernel &kernel, const Buffer &packed, const Buffer &imported, std::uint32_t columns,
+                         std::uint32_t rows);
+    /// Returns how many pixels or differences are missing.
+    double import_image(const Buffer &packed, const Buffer &imported, const Buffer &valid, std::uint32_t columns,
+                        std::uint32_t rows);
+    double mean_variance(const Buffer &packed, std::uint32_t planes, const Buffer &variance, std::uint32_t columns,
                          std::uint32_t rows);
     /// u += image - the sum in slot_mean times mean_factor.
     void add_to_u(Kernels &kernels, const Buffer &image, double mean_factor);

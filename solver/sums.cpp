@@ -53,9 +53,8 @@ void Sums::products(Kernels &kernels, Planes planes, const Buffer &a, const Buff
     run_products(kernels, kernels.reduce_two_products, planes, 2, slot, second);
 }
 
-void Sums::sum_of(Kernels &kernels, const Buffer &a, std::uint32_t slot, bool positive) {
+void Sums::sum_of(Kernels &kernels, const Buffer &a, std::uint32_t slot) {
     kernels.reduce_plane.bind("a", a);
-    kernels.reduce_plane.set("positive", positive);
     run_products(kernels, kernels.reduce_plane, {0, channels_}, 1, slot, slot);
 }
 

@@ -36,8 +36,8 @@ class Sums {
     void product(Kernels &kernels, Planes planes, const Buffer &a, const Buffer &b, std::uint32_t slot);
     void products(Kernels &kernels, Planes planes, const Buffer &a, const Buffer &b, const Buffer &c,
                   std::uint32_t slot, std::uint32_t second);
-    /// The sum of each channel of a, or of what of it is above zero.
-    void sum_of(Kernels &kernels, const Buffer &a, std::uint32_t slot, bool positive = false);
+    /// The sum of each channel of a.
+    void sum_of(Kernels &kernels, const Buffer &a, std::uint32_t slot);
 
     /// The scalar of each channel. Waits for the device.
     std::vector<double> read(std::uint32_t slot) const;

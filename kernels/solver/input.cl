@@ -3,11 +3,9 @@
 #include "kernels/lib/finite.h"
 #include "kernels/solver/grid.h"
 
-/* A plane of the caller's, `missing_value` where it is missing; `valid` is 1 where all channels are there; and the
- * number missing. */
-SOLVE import_plane(GRID, uint edge_columns, uint edge_rows, real missing_value, uint partials,
-                   __global const float *packed, __global real *imported, __global real *valid,
-                   __global real *partial) {
+/* An image of the caller's, 0 where it is missing; `valid` is 1 where all channels are there; and how many are not. */
+SOLVE import_image(GRID, uint edge_columns, uint edge_rows, uint partials, __global const float *packed,
+                   __global real *imported, __global real *valid, __global real *partial) {
     SOLVER_PLACE_OF_ALL_CHANNELS
     /* Differences have one column or row less than the image. */
     const bool inside = x < edge_columns && y < edge_rows;
@@ -18,21 +16,27 @@ SOLVE import_plane(GRID, uint edge_columns, uint edge_rows, real missing_value, 
 #pragma unroll
     for (uint channel = 0; channel < SOLVER_CHANNELS; ++channel) {
         const real value = inside ? packed[PACKED_AT(channel)] : 0.0f;
-        imported[GRID_AT(channel, x, y)] = missing ? missing_value : value;
+        imported[GRID_AT(channel, x, y)] = missing ? R(0) : value;
     }
     valid[GRID_AT(0, x, y)] = inside && missing == 0 ? R(1) : R(0);
     partial[tile * SOLVER_TILE + item] = missing;
 }
 
-/* A variance, one for all channels, -1 where it is missing; and the parts of its sum. */
-SOLVE import_variance(GRID, uint edge_columns, uint edge_rows, uint partials, __global const float *packed,
+/* The variances of an image, in `planes` planes, -1 where one is missing; and the parts of their sum. */
+SOLVE import_variance(GRID, uint edge_columns, uint edge_rows, uint planes, uint partials, __global const float *packed,
                       __global real *imported, __global real *partial) {
     SOLVER_PLACE_OF_ALL_CHANNELS
     const bool inside = x < edge_columns && y < edge_rows;
-    const real value = inside ? packed[PACKED_AT(0)] : 0.0f;
-    const real variance = is_finite(value) ? value : R(-1);
-    imported[GRID_AT(0, x, y)] = variance;
-    partial[tile * SOLVER_TILE + item] = r_max(variance, R(0));
+    uint missing = 0;
+    for (uint channel = 0; channel < planes; ++channel)
+        missing |= is_finite(inside ? packed[PACKED_AT(channel)] : 0.0f) ? 0 : 1;
+    real sum = R(0);
+    for (uint channel = 0; channel < planes; ++channel) {
+        const real value = inside ? packed[PACKED_AT(channel)] : 0.0f;
+        imported[GRID_AT(channel, x, y)] = missing ? R(-1) : value;
+        sum += missing ? R(0) : r_max(value, R(0));
+    }
+    partial[tile * SOLVER_TILE + item] = sum;
 }
 
 /* gradient_x = Gx - Dx I0 and gradient_y likewise, 0 where Gx or Gy is missing. */

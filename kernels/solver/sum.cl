@@ -32,8 +32,8 @@ SOLVE reduce_two_products(uint plane, uint channel_count, uint reduced_count, __
     add_products(1, plane, channel_count, reduced_count, a, b, c, reduced);
 }
 
-/* The same for the sum of a, or of what of it is above zero. */
-SOLVE reduce_plane(uint plane, uint reduced_count, uint positive, __global const real *a, __global real *reduced) {
+/* The same for the sum of a. */
+SOLVE reduce_plane(uint plane, uint reduced_count, __global const real *a, __global real *reduced) {
     const uint channel = (uint)get_group_id(1);
     const size_t i = get_global_id(0);
     const size_t first = (size_t)channel * plane;
@@ -41,8 +41,7 @@ SOLVE reduce_plane(uint plane, uint reduced_count, uint positive, __global const
 #pragma unroll
     for (uint k = 0; k < SOLVER_REDUCTION; ++k) {
         const size_t at = i + (size_t)k * reduced_count;
-        const real value = a[first + at];
-        sum += positive ? r_max(value, R(0)) : value;
+        sum += a[first + at];
     }
     reduced[(size_t)channel * reduced_count + i] = sum;
 }

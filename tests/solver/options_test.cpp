@@ -49,7 +49,7 @@ TEST(Options, OutOfTheirRangeAreRefused) {
     expect_usage_error("no inner iterations", [](auto &, auto &options) { options.inner_iterations = 0; });
 }
 
-TEST(Options, OneVarianceIsForWeights) {
+TEST(Options, OneVarianceIsForBuffers) {
     expect_usage_error("one variance", [](auto &images, auto &) { images.one_variance = true; });
 }
 
