@@ -23,7 +23,7 @@ void Fill::run(Buffer &image, const Buffer &valid) {
         ring.bind("filled_image", other_image_);
         ring.bind("filled_valid", other_valid_);
         grid.launch(ring, {0, 1});
-        sums.sum(kernels, slot_sum, 1);
+        sums.sum(kernels, slot_sum, {0, 1});
         std::swap(image, other_image_);
         std::swap(valid_, other_valid_);
         from = &valid_;

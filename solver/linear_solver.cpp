@@ -97,7 +97,8 @@ struct LinearSolver::Progress {
 };
 
 LinearSolver::LinearSolver(const PlaneMaker &make, Multigrid &multigrid, Sums &sums, std::uint32_t together)
-    : make_(make), multigrid_(multigrid), sums_(sums), together_(together) {}
+    : make_(make), multigrid_(multigrid), sums_(sums), together_(together),
+      tiles_(make.device().description(), make.precision()) {}
 
 void LinearSolver::run(Kernels &kernels, const Buffer &b, const Buffer &u, Progress &progress) {
     switch (progress.request.method) {
@@ -253,8 +254,8 @@ void LinearSolver::conjugate_gradients(Kernels &kernels, bool preconditioned, co
         if (preconditioned) {
             // The cycle is not symmetric, so beta is that of Polak and Ribiere: <z, r - r_old> / <z_old, r_old>, where
             // r - r_old = -alpha image, so beta = -<z, image> / <direction, image> (Notay 2000).
-            multigrid_.cycle(kernels, channels, progress.request.smooths_after);
-            sums_.products(kernels, channels, multigrid_.solution(), r, image_, step, slot_image_product);
+            multigrid_.cycle(kernels, channels, progress.request.smooths_after,
+                             {sums_, image_, step, slot_image_product});
             numerator = slot_image_product;
             divisor = slot_direction_product;
         }
@@ -269,8 +270,9 @@ void LinearSolver::conjugate_gradients(Kernels &kernels, bool preconditioned, co
         direction.bind("old_direction", directions_[(done + 1) % 2]);
         direction.bind("direction", directions_[done % 2]);
         direction.bind("image", image_);
-        grid.launch(direction, channels);
-        sums_.product(kernels, channels, directions_[done % 2], image_, slot_direction_product);
+        sums_.bind_parts(direction, channels.count, tiles_.items(grid));
+        tiles_.launch(direction, grid, channels);
+        sums_.sum(kernels, slot_direction_product, channels);
 
         Kernel &advance = kernels.advance;
         sums_.bind_scalars(advance);

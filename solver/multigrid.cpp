@@ -223,7 +223,7 @@ void Multigrid::cycle_coarsest(Kernels &kernels, Planes channels) {
     launch_groups(kernel, channels.count);
 }
 
-void Multigrid::run_cycle(Kernels &kernels, Planes channels, bool smooths_after, const Buffer *onto) {
+void Multigrid::go_down(Kernels &kernels, Planes channels) {
     const std::size_t fine = std::min(used_, first_coarsest_);
     for (std::size_t i = 0; i < fine; ++i) {
         const Level &level = levels_[i];
@@ -241,30 +241,64 @@ void Multigrid::run_cycle(Kernels &kernels, Planes channels, bool smooths_after,
     }
     if (used_ > fine)
         cycle_coarsest(kernels, channels);
-    for (std::size_t i = std::min(used_ - 1, fine); i-- > 0;) {
-        Level &level = levels_[i];
-        const Level &next = levels_[i + 1];
-        Kernel &prolong = kernels.prolong;
-        prolong.bind("coarse", next.smoothed);
-        prolong.bind("coarse_left", next.system.column_left);
-        prolong.bind("coarse_right", next.system.column_right);
-        prolong.bind(level.system.column_inside);
-        prolong.bind("u", level.smoothed);
-        launch_transfer(prolong, level.system.grid, next.system.grid, level.system.grid.height, channels);
-        if (!smooths_after)
-            continue;
-        const bool adds = i == 0 && onto;
-        Kernel &ascend = kernels.ascend;
-        level.system.bind(ascend);
-        set_steps(ascend);
-        ascend.set("adds", adds);
-        ascend.bind(level.right_side);
-        ascend.bind("u", level.smoothed);
-        ascend.bind("smoothed", adds ? *onto : level.other);
-        tiles_.launch(ascend, level.system.grid, channels);
-        if (!adds)
-            std::swap(level.smoothed, level.other);
+}
+
+void Multigrid::prolong(Kernels &kernels, std::size_t level, Planes channels) {
+    const Level &fine = levels_[level], &coarse = levels_[level + 1];
+    Kernel &kernel = kernels.prolong;
+    kernel.bind("coarse", coarse.smoothed);
+    kernel.bind("coarse_left", coarse.system.column_left);
+    kernel.bind("coarse_right", coarse.system.column_right);
+    kernel.bind(fine.system.column_inside);
+    kernel.bind("u", fine.smoothed);
+    launch_transfer(kernel, fine.system.grid, coarse.system.grid, fine.system.grid.height, channels);
+}
+
+void Multigrid::smooth_again(Kernels &kernels, std::size_t level, Planes channels, const Buffer *onto,
+                             const Products *products) {
+    Level &here = levels_[level];
+    Kernel &ascend = kernels.ascend;
+    here.system.bind(ascend);
+    set_steps(ascend);
+    ascend.bind(here.right_side);
+    ascend.bind("u", here.smoothed);
+    ascend.set("adds", bool(onto));
+    ascend.bind("smoothed", onto ? *onto : here.other);
+    ascend.set("multiplies", bool(products));
+    ascend.bind("image", products ? products->image : here.right_side);
+    if (products) {
+        products->sums.bind_parts(ascend, 2 * channels.count, tiles_.items(here.system.grid));
+    } else {
+        ascend.bind("partial", here.other);
+        ascend.set("partials", 0);
     }
+    tiles_.launch(ascend, here.system.grid, channels);
+    if (!onto)
+        std::swap(here.smoothed, here.other);
+}
+
+void Multigrid::go_up(Kernels &kernels, Planes channels, bool smooths_after, const Buffer *onto,
+                      const Products *products) {
+    for (std::size_t i = std::min(used_ - 1, first_coarsest_); i-- > 0;) {
+        prolong(kernels, i, channels);
+        if (smooths_after)
+            smooth_again(kernels, i, channels, i == 0 ? onto : nullptr, i == 0 ? products : nullptr);
+    }
+}
+
+void Multigrid::cycle(Kernels &kernels, Planes channels, bool smooths_after, const Products &products) {
+    go_down(kernels, channels);
+    go_up(kernels, channels, smooths_after, nullptr, &products);
+    const auto &[sums, image, with_right_side, with_image] = products;
+    if (smooths_after && used_ > 1)
+        sums.sum_two(kernels, with_right_side, with_image, channels);
+    else
+        sums.products(kernels, channels, solution(), right_side(), image, with_right_side, with_image);
+}
+
+void Multigrid::cycle_onto(Kernels &kernels, Planes channels, const Buffer &u) {
+    go_down(kernels, channels);
+    go_up(kernels, channels, true, &u, nullptr);
 }
 
 } // namespace gradus::solver

@@ -13,6 +13,7 @@
 
 #include "solver/grid.h"
 #include "solver/kernels.h"
+#include "solver/sums.h"
 #include "solver/tiles.h"
 
 #include <functional>
@@ -54,15 +55,19 @@ class Multigrid {
     /// Makes the inverse diagonal of the finest system alone, for methods that need no hierarchy.
     void invert_finest_diagonal(Kernels &kernels);
 
+    /// What conjugate gradients ask of a cycle's z: <z, right_side()> and <z, image>, each in a slot.
+    struct Products {
+        Sums &sums;
+        const Buffer &image;
+        std::uint32_t with_right_side, with_image;
+    };
     /// Writes an approximate solution of A z = right_side() to solution(), for a group of channels, which all buffers
     /// hold alone. `smooths_after`: on the way up, too: twice the work, which few cycles for each set of weights do not
     /// pay back.
-    void cycle(Kernels &kernels, Planes channels, bool smooths_after) {
-        run_cycle(kernels, channels, smooths_after, nullptr);
-    }
+    void cycle(Kernels &kernels, Planes channels, bool smooths_after, const Products &products);
     const Buffer &solution() const { return levels_.front().smoothed; }
-    /// Adds it to `u` instead.
-    void cycle_onto(Kernels &kernels, Planes channels, const Buffer &u) { run_cycle(kernels, channels, true, &u); }
+    /// Smooths on the way up, and adds z to `u` instead.
+    void cycle_onto(Kernels &kernels, Planes channels, const Buffer &u);
 
   private:
     struct Level {
@@ -84,7 +89,13 @@ class Multigrid {
     void allocate_weights_of_coarsest(std::uint32_t planes);
     void invert_diagonal(Kernels &kernels, System &system);
     void cycle_coarsest(Kernels &kernels, Planes channels);
-    void run_cycle(Kernels &kernels, Planes channels, bool smooths_after, const Buffer *onto);
+    void go_down(Kernels &kernels, Planes channels);
+    /// Interpolates the next coarser grid to this one.
+    void prolong(Kernels &kernels, std::size_t level, Planes channels);
+    /// `onto`, `products`: of the finest grid, or none.
+    void smooth_again(Kernels &kernels, std::size_t level, Planes channels, const Buffer *onto,
+                      const Products *products);
+    void go_up(Kernels &kernels, Planes channels, bool smooths_after, const Buffer *onto, const Products *products);
 
     void allocate();
 

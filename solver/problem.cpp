@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace gradus::solver {
 
@@ -21,31 +22,31 @@ void Problem::allocate() {
     valid_dy_ = make.planes("valid_dy", grid, 1);
 }
 
-double Problem::import_planes(Kernel &kernel, const Buffer &packed, const Buffer &imported, std::uint32_t columns,
-                              std::uint32_t rows) {
-    workspace_.sums.bind_parts(kernel, 1);
+double Problem::import_planes(Kernel &kernel, std::uint32_t planes, const Buffer &packed, const Buffer &imported,
+                              std::uint32_t columns, std::uint32_t rows) {
+    workspace_.sums.bind_parts(kernel, planes);
     kernel.set("edge_columns", columns);
     kernel.set("edge_rows", rows);
     kernel.bind("packed", packed);
     kernel.bind("imported", imported);
-    workspace_.grid().launch(kernel, {0, 1});
-    workspace_.sums.sum(workspace_.any_kernels(), slot_sum, 1);
-    return workspace_.sums.read(slot_sum, 0);
+    workspace_.grid().launch(kernel, {0, planes});
+    workspace_.sums.sum(workspace_.any_kernels(), slot_sum, {0, planes});
+    const std::vector<double> sums = workspace_.sums.read(slot_sum);
+    return std::accumulate(sums.begin(), sums.begin() + planes, 0.0);
 }
 
 double Problem::import_image(const Buffer &packed, const Buffer &imported, const Buffer &valid, std::uint32_t columns,
                              std::uint32_t rows) {
     Kernel &kernel = workspace_.any_kernels().import_image;
     kernel.bind("valid", valid);
-    return import_planes(kernel, packed, imported, columns, rows);
+    return import_planes(kernel, 1, packed, imported, columns, rows);
 }
 
 double Problem::mean_variance(const Buffer &packed, std::uint32_t planes, const Buffer &variance, std::uint32_t columns,
                               std::uint32_t rows) {
     Kernel &kernel = workspace_.any_kernels().import_variance;
-    kernel.set("planes", planes);
-    const double sum = import_planes(kernel, packed, variance, columns, rows);
-    return sum / std::max(double(columns) * rows * planes, 1.0);
+    return import_planes(kernel, planes, packed, variance, columns, rows) /
+           std::max(double(columns) * rows * planes, 1.0);
 }
 
 void Problem::import(const Inputs &images, PoissonReport &report) {
@@ -223,7 +224,7 @@ double Problem::squared_norm(Kernels &kernels) {
     bind(kernel);
     kernel.bind("u", u_);
     workspace_.grid().launch(kernel, {0, workspace_.channels});
-    workspace_.sums.sum(kernels, slot_sum, workspace_.channels);
+    workspace_.sums.sum(kernels, slot_sum, {0, workspace_.channels});
     return workspace_.sums.read_total(slot_sum);
 }
 
@@ -240,7 +241,7 @@ void Problem::find_held(Kernels &kernels) {
     workspace_.sums.bind_parts(kernel, 1);
     kernel.bind("valid", held_);
     grid.launch(kernel, {0, 1});
-    workspace_.sums.sum(kernels, slot_sum, 1);
+    workspace_.sums.sum(kernels, slot_sum, {0, 1});
     not_held_ = static_cast<std::uint64_t>(workspace_.sums.read(slot_sum, 0));
 }
 

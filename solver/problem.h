@@ -69,9 +69,9 @@ class Problem {
     const Buffer &right_side();
 
   private:
-    /// With kernels import_image or import_variance; the sum that these leave.
-    double import_planes(Kernel &kernel, const Buffer &packed, const Buffer &imported, std::uint32_t columns,
-                         std::uint32_t rows);
+    /// With kernel import_image or import_variance, which is launched on `planes` planes; the sum that it leaves.
+    double import_planes(Kernel &kernel, std::uint32_t planes, const Buffer &packed, const Buffer &imported,
+                         std::uint32_t columns, std::uint32_t rows);
     /// Returns how many pixels or differences are missing.
     double import_image(const Buffer &packed, const Buffer &imported, const Buffer &valid, std::uint32_t columns,
                         std::uint32_t rows);

@@ -32,7 +32,7 @@ double Reweighting::scale_of(Kernels &kernels, Problem &problem) {
     problem.bind(kernel);
     kernel.bind("u", problem.u());
     workspace_.grid().launch(kernel, {0, kernels.weight_planes});
-    workspace_.sums.sum_two(kernels, slot_sum, slot_second_sum, kernels.weight_planes);
+    workspace_.sums.sum_two(kernels, slot_sum, slot_second_sum, {0, kernels.weight_planes});
     const double edges = total(workspace_.sums.read(slot_second_sum), kernels.weight_planes);
     return edges > 0 ? std::pow(total(workspace_.sums.read(slot_sum), kernels.weight_planes) / edges, 4) : 0;
 }
@@ -49,7 +49,7 @@ Reweighting::Norm Reweighting::reweight(Kernels &kernels, Problem &problem, doub
     kernel.set_real("cut", cut);
     kernel.bind("u", problem.u());
     workspace_.grid().launch(kernel, {0, kernels.weight_planes});
-    workspace_.sums.sum_two(kernels, slot_sum, slot_second_sum, kernels.weight_planes);
+    workspace_.sums.sum_two(kernels, slot_sum, slot_second_sum, {0, kernels.weight_planes});
     return {total(workspace_.sums.read(slot_sum), kernels.weight_planes),
             total(workspace_.sums.read(slot_second_sum), kernels.weight_planes)};
 }

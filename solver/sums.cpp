@@ -14,7 +14,7 @@ constexpr std::uint32_t few = 1024;
 } // namespace
 
 Sums::Sums(const PlaneMaker &make, const Grid &grid, std::uint32_t channels)
-    : make_(make), channels_(channels), partials_(grid.partials()),
+    : make_(make), channels_(channels), partials_of_grid_(grid.partials()),
       plane_(grid.plane), reduced_{make.reals("reduced",
                                               std::size_t(quotient_up(plane_, SOLVER_REDUCTION)) * channels * 2),
                                    make.reals("reduced",
@@ -22,7 +22,8 @@ Sums::Sums(const PlaneMaker &make, const Grid &grid, std::uint32_t channels)
                                                   channels * 2)},
       scalars_(make.reals("scalars", std::size_t(channels) * SOLVER_SCALAR_SLOTS)) {}
 
-void Sums::bind_parts(Kernel &kernel, std::uint32_t planes) {
+void Sums::bind_parts(Kernel &kernel, std::uint32_t planes, std::uint32_t partials) {
+    partials_ = partials > 0 ? partials : partials_of_grid_;
     const std::size_t count = std::size_t(partials_) * planes;
     if (!partial_.valid() || partial_.bytes() < count * real_bytes(make_.precision()))
         partial_ = make_.reals("partial", count);
@@ -30,12 +31,12 @@ void Sums::bind_parts(Kernel &kernel, std::uint32_t planes) {
     kernel.set("partials", partials_);
 }
 
-void Sums::sum(Kernels &kernels, std::uint32_t slot, std::uint32_t planes) {
-    run(kernels, &partial_, partials_, 1, slot, slot, {0, planes});
+void Sums::sum(Kernels &kernels, std::uint32_t slot, Planes planes) {
+    run(kernels, &partial_, partials_, 1, slot, slot, planes);
 }
 
-void Sums::sum_two(Kernels &kernels, std::uint32_t slot, std::uint32_t second, std::uint32_t planes) {
-    run(kernels, &partial_, partials_, 2, slot, second, {0, planes});
+void Sums::sum_two(Kernels &kernels, std::uint32_t slot, std::uint32_t second, Planes planes) {
+    run(kernels, &partial_, partials_, 2, slot, second, planes);
 }
 
 void Sums::product(Kernels &kernels, Planes planes, const Buffer &a, const Buffer &b, std::uint32_t slot) {

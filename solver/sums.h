@@ -25,13 +25,14 @@ class Sums {
 
     /// Binds `scalars`.
     void bind_scalars(Kernel &kernel) const { kernel.bind(scalars_); }
-    /// Binds `partial`, with room for `planes` planes of parts, and `partials`.
-    void bind_parts(Kernel &kernel, std::uint32_t planes);
+    /// Binds `partial`, with room for `planes` planes of parts, and `partials`, how many a plane has: 0 for one of each
+    /// pixel of the grid.
+    void bind_parts(Kernel &kernel, std::uint32_t planes, std::uint32_t partials = 0);
 
-    /// Adds the parts that a kernel left. `planes`: how many planes each sum has (channels, or 1: then the result is
-    /// that of channel 0).
-    void sum(Kernels &kernels, std::uint32_t slot, std::uint32_t planes);
-    void sum_two(Kernels &kernels, std::uint32_t slot, std::uint32_t second, std::uint32_t planes);
+    /// Adds the parts that a kernel left, which bind_parts() was called for last. `planes`: those that each sum has, of
+    /// channels, or {0, 1}: then the result is that of channel 0.
+    void sum(Kernels &kernels, std::uint32_t slot, Planes planes);
+    void sum_two(Kernels &kernels, std::uint32_t slot, std::uint32_t second, Planes planes);
     /// <a, b> of planes whose borders are zero, which hold these channels alone; and <a, c>.
     void product(Kernels &kernels, Planes planes, const Buffer &a, const Buffer &b, std::uint32_t slot);
     void products(Kernels &kernels, Planes planes, const Buffer &a, const Buffer &b, const Buffer &c,
@@ -52,7 +53,8 @@ class Sums {
                       std::uint32_t second);
 
     const PlaneMaker make_;
-    std::uint32_t channels_, partials_, plane_;
+    std::uint32_t channels_, partials_of_grid_, plane_;
+    std::uint32_t partials_ = 0; ///< of a plane in partial_
     Buffer partial_, reduced_[2], scalars_;
 };
 

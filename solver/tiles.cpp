@@ -34,6 +34,11 @@ Tiles::Shape Tiles::shape(const Grid &grid) const {
     return {columns, std::min(rows, most) / 2 * 2};
 }
 
+std::uint32_t Tiles::items(const Grid &grid) const {
+    const Shape tile = shape(grid);
+    return quotient_up(grid.width, tile.columns) * quotient_up(grid.height, tile.rows) * SOLVER_TILE;
+}
+
 void Tiles::launch(Kernel &kernel, const Grid &grid, Planes planes) const {
     const Shape tile = shape(grid);
     grid.bind(kernel);

@@ -119,7 +119,7 @@ const Buffer &VarianceSmoother::smoothed(const Buffer &variance, Differences dif
         smooth(smooth_and_add_, smoothing, extent);
         shares += share;
     }
-    finish_.set_real("shares", shares);
+    finish_.set_real("share", 1 / shares);
     finish_.bind("smoothed", image_);
     finish_.bind("logarithms", logarithms_);
     finish_.bind("packed", smoothed_);

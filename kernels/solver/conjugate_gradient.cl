@@ -1,25 +1,31 @@
 /* Conjugate gradients, each channel on its own (Hestenes and Stiefel 1952). Scalars stay on the device. */
-#include "kernels/solver/grid.h"
+#include "kernels/solver/tiles.h"
 
-/* direction = z + beta old_direction, and image = A direction.
+#define DIRECTION(at) (vload8(0, z + (at)) + beta * vload8(0, old_direction + (at)))
+
+/* direction = z + beta old_direction, image = A direction, and the parts of <direction, image>.
  * beta = factor * SCALAR(numerator) / SCALAR(divisor), at most `bound` in size. */
-SOLVE direction(GRID, WEIGHTS_OF_DIAGONAL, real factor, real bound, uint numerator, uint divisor,
+SOLVE direction(TILED_GRID, WEIGHTS_OF_DIAGONAL, real factor, real bound, uint numerator, uint divisor, uint partials,
                 __global const real *scalars, __global const real *z, __global const real *old_direction,
-                __global real *direction, __global real *image) {
-    SOLVER_PLACE
-    const size_t at = OWN_AT(x, y);
+                __global real *direction, __global real *image, __global real *partial) {
+    TILE_PLACE
     const real ratio = SCALAR_RATIO(numerator, divisor);
     const real beta = factor * r_clamp(ratio, -bound, bound);
-    const cell_weights c = CELL(x, y);
-    const real here = z[at] + beta * old_direction[at];
-    const real left = z[at - 1] + beta * old_direction[at - 1];
-    const real right = z[at + 1] + beta * old_direction[at + 1];
-    const real up = z[at - row] + beta * old_direction[at - row];
-    const real down = z[at + row] + beta * old_direction[at + row];
-    const real a = c.data * here + (c.left * (here - left) + c.right * (here - right)) +
-                   (c.up * (here - up) + c.down * (here - down));
-    direction[at] = here;
-    image[at] = a;
+    real8 product = (real8)(R(0));
+    FOR_LINES(rows) {
+        const uint y = first_y + line;
+        ON_LINE
+        FOR_EIGHTS(0, EIGHTS(columns)) {
+            const size_t x = first_x + 8 * eight, at = line_at + x;
+            const real8 here = DIRECTION(at);
+            const real8 a = image_of_8(CELLS(x, y), here, DIRECTION(at - 1), DIRECTION(at + 1), DIRECTION(at - row),
+                                       DIRECTION(at + row));
+            vstore8(here, 0, direction + at);
+            vstore8(a, 0, image + at);
+            product += here * a;
+        }
+    }
+    partial[TILE_PARTIAL(0)] = SUM_OF_8(product);
 }
 
 /* u += alpha direction, residual -= alpha image, alpha = SCALAR(numerator) / SCALAR(divisor), at most `bound` in

@@ -1,24 +1,10 @@
 /* What a cycle (solver/multigrid.h) does on one grid, tile by tile, a work-group each: what the first step leaves for
  * the second stays in local memory, and goes to memory once or never. A tile's border, a row above and below and 8
  * columns on each side, is computed by its neighbours, too. LOCAL_REALS is what a tile has (solver/tiles.h). */
-#include "kernels/solver/vectors.h"
+#include "kernels/solver/tiles.h"
 
-#define TILED_GRID                                                                                                     \
-    uint width, uint height, uint row, uint plane, uint first_channel, uint tile_columns, uint tile_rows, uint lanes
-
-/* Defines the channel, the first pixel of the tile, its inner size, and how rows lie in local memory. */
-#define TILE_PLACE                                                                                                     \
-    const uint group = (uint)get_group_id(0), tiles = (width + tile_columns - 1) / tile_columns;                       \
-    const uint own = group / tiles, channel = first_channel + own;                                                     \
-    const uint first_x = group % tiles * tile_columns, first_y = (uint)get_group_id(1) * tile_rows;                    \
-    const uint columns = min(tile_columns, width - first_x), rows = min(tile_rows, height - first_y);                  \
-    const uint local_row = tile_columns + 16;
-
-/* Where the tile's own row y lies in local memory, -1 that of its border. */
+/* Where the tile's own row y lies in local memory, whose rows are local_row apart; -1 is that of its border. */
 #define LOCAL_LINE(y) (((y) + 1) * local_row + 8)
-
-/* Row y of the grid: where it begins in planes of values and of weights. */
-#define ON_LINE const size_t line_at = OWN_AT(0, y), line_weight = WEIGHT_AT(0, y);
 
 /* The eights of a line of the tile with its border, from the one left of it on, that have pixels in the grid. */
 #define FIRST_INSIDE (first_x > 0 ? 0 : 1)
@@ -48,6 +34,7 @@ SOLVE descend(TILED_GRID, uint coarse_row, uint coarse_plane, WEIGHTS, real step
               __global const real *right_side, __global real *smoothed, __global real *coarse) {
     __local real tile[LOCAL_REALS];
     TILE_PLACE
+    const uint local_row = tile_columns + 16;
     FOR_LINES(rows + 2) {
         LINE_WITH_BORDER
         FOR_EIGHTS_WITH_BORDER {
@@ -77,11 +64,14 @@ SOLVE descend(TILED_GRID, uint coarse_row, uint coarse_plane, WEIGHTS, real step
     }
 }
 
-/* smoothed = two steps of smoothing from u, in the other order than on the way down; or smoothed += these. */
-SOLVE ascend(TILED_GRID, WEIGHTS, real step_0, real step_1, uint adds, __global const real *right_side,
-             __global const real *u, __global real *smoothed) {
+/* smoothed = two steps of smoothing from u, in the other order than on the way down; or smoothed += these. With
+ * `multiplies`, also the parts of <smoothed, right_side> and of <smoothed, image>. */
+SOLVE ascend(TILED_GRID, WEIGHTS, real step_0, real step_1, uint adds, uint multiplies, uint partials,
+             __global const real *right_side, __global const real *u, __global const real *image,
+             __global real *smoothed, __global real *partial) {
     __local real tile[LOCAL_REALS];
     TILE_PLACE
+    const uint local_row = tile_columns + 16;
     FOR_LINES(rows + 2) {
         LINE_WITH_BORDER
         FOR_EIGHTS_WITH_BORDER {
@@ -92,16 +82,26 @@ SOLVE ascend(TILED_GRID, WEIGHTS, real step_0, real step_1, uint adds, __global 
         }
     }
     STEP_DONE
+    real8 with_right_side = (real8)(R(0)), with_image = (real8)(R(0));
     FOR_LINES(rows) {
         const uint y = first_y + line;
         ON_LINE
         FOR_EIGHTS(0, EIGHTS(columns)) {
             const size_t x = first_x + 8 * eight, at = line_at + x;
             const uint from = LOCAL_LINE(line) + 8 * eight;
-            const real8 residual = vload8(0, right_side + at) - image_of_8(CELLS(x, y), AROUND(tile, from, local_row));
+            const real8 b = vload8(0, right_side + at);
+            const real8 residual = b - image_of_8(CELLS(x, y), AROUND(tile, from, local_row));
             const real8 value =
                 vload8(0, tile + from) + step_0 * vload8(0, inverse_diagonal + line_weight + x) * residual;
             vstore8(adds ? vload8(0, smoothed + at) + value : value, 0, smoothed + at);
+            if (multiplies) {
+                with_right_side += value * b;
+                with_image += value * vload8(0, image + at);
+            }
         }
+    }
+    if (multiplies) {
+        partial[TILE_PARTIAL(0)] = SUM_OF_8(with_right_side);
+        partial[TILE_PARTIAL(1)] = SUM_OF_8(with_image);
     }
 }

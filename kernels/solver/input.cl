@@ -22,21 +22,15 @@ SOLVE import_image(GRID, uint edge_columns, uint edge_rows, uint partials, __glo
     partial[tile * SOLVER_TILE + item] = missing;
 }
 
-/* The variances of an image, in `planes` planes, -1 where one is missing; and the parts of their sum. */
-SOLVE import_variance(GRID, uint edge_columns, uint edge_rows, uint planes, uint partials, __global const float *packed,
+/* A plane of variances, -1 where one is missing; and the parts of its sum. */
+SOLVE import_variance(GRID, uint edge_columns, uint edge_rows, uint partials, __global const float *packed,
                       __global real *imported, __global real *partial) {
-    SOLVER_PLACE_OF_ALL_CHANNELS
+    SOLVER_PLACE
     const bool inside = x < edge_columns && y < edge_rows;
-    uint missing = 0;
-    for (uint channel = 0; channel < planes; ++channel)
-        missing |= is_finite(inside ? packed[PACKED_AT(channel)] : 0.0f) ? 0 : 1;
-    real sum = R(0);
-    for (uint channel = 0; channel < planes; ++channel) {
-        const real value = inside ? packed[PACKED_AT(channel)] : 0.0f;
-        imported[GRID_AT(channel, x, y)] = missing ? R(-1) : value;
-        sum += missing ? R(0) : r_max(value, R(0));
-    }
-    partial[tile * SOLVER_TILE + item] = sum;
+    const real value = inside ? packed[PACKED_AT(channel)] : 0.0f;
+    const real variance = is_finite(value) ? value : R(-1);
+    imported[GRID_AT(channel, x, y)] = variance;
+    partial[SOLVER_PARTIAL(0)] = r_max(variance, R(0));
 }
 
 /* gradient_x = Gx - Dx I0 and gradient_y likewise, 0 where Gx or Gy is missing. */

@@ -80,12 +80,12 @@ SOLVE smooth_and_add(GRID, NEIGHBOURS, real share, real before, real least, __gl
     logarithms[at] = is_first ? (before + share) * logarithm : logarithms[at] + share * logarithm;
 }
 
-/* The geometric mean, `shares` being those of all; -1 where nothing was there. */
-SOLVE geometric_mean(GRID, real shares, __global const real *smoothed, __global const real *logarithms,
+/* The geometric mean, `share` being one over the shares of all; -1 where nothing was there. */
+SOLVE geometric_mean(GRID, real share, __global const real *smoothed, __global const real *logarithms,
                      __global float *packed) {
     SOLVER_PLACE_OF_ALL_CHANNELS
     const size_t at = GRID_AT(0, x, y);
-    const float value = smoothed[at] >= R(0) ? (float)approx_exp(logarithms[at] / shares) : -1.0f;
+    const float value = smoothed[at] >= R(0) ? (float)approx_exp(share * logarithms[at]) : -1.0f;
     if (x < width)
         packed[PACKED_AT(0)] = value;
 }

@@ -12,6 +12,8 @@
 #define EVEN(a, b) ((real8)((a).s0, (a).s2, (a).s4, (a).s6, (b).s0, (b).s2, (b).s4, (b).s6))
 #define ODD(a, b) ((real8)((a).s1, (a).s3, (a).s5, (a).s7, (b).s1, (b).s3, (b).s5, (b).s7))
 
+#define SUM_OF_8(v) ((((v).s0 + (v).s4) + ((v).s2 + (v).s6)) + (((v).s1 + (v).s5) + ((v).s3 + (v).s7)))
+
 /* 16 elements, of which 8 are even and 8 odd. */
 GRADUS_FN real16 joined(real8 even, real8 odd) {
     return (real16)(even.s0, odd.s0, even.s1, odd.s1, even.s2, odd.s2, even.s3, odd.s3, even.s4, odd.s4, even.s5,

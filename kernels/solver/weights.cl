@@ -22,11 +22,12 @@ SOLVE base_weights(GRID, uint weight_plane, uint variance_plane, uint by_varianc
     if (by_variances) {
         /* One weight for all channels goes by the mean of their variances. */
         const size_t first = SOLVER_WEIGHT_PLANES > 1 ? channel : 0, count = SOLVER_CHANNELS / SOLVER_WEIGHT_PLANES;
+        const real share = R(1) / count;
         real vx = R(0), vy = R(0), vd = R(0);
         for (size_t c = first; c < first + count; ++c) {
-            vx = together(vx, dx_variance[c * variance_plane + at] / count);
-            vy = together(vy, dy_variance[c * variance_plane + at] / count);
-            vd = together(vd, primal_variance[c * variance_plane + at] / count);
+            vx = together(vx, share * dx_variance[c * variance_plane + at]);
+            vy = together(vy, share * dy_variance[c * variance_plane + at]);
+            vd = together(vd, share * primal_variance[c * variance_plane + at]);
         }
         wx = by_variance(vx, mean_gradient_variance, largest_weight);
         wy = by_variance(vy, mean_gradient_variance, largest_weight);

@@ -63,6 +63,7 @@ TEST_P(L2Accuracy, OfLines) {
 TEST_P(L2Accuracy, OfOddSizes) {
     check(129, 65, 3, alphas());
     check(333, 501, 3, {0.2});
+    check(1701, 20, 3, {0.2}); // several tiles wide
 }
 
 TEST_P(L2Accuracy, OfSmallRenders) {
