@@ -8,11 +8,8 @@
 #include <pugixml.hpp>
 
 #include <algorithm>
-#include <cerrno>
 #include <iterator>
 #include <string_view>
-#include <system_error>
-#include <unistd.h>
 
 namespace gradus {
 namespace fs = std::filesystem;
@@ -93,21 +90,6 @@ class Reader {
     std::map<const void *, std::unique_ptr<File>> included_;
     std::uint64_t xml_bytes_ = 0, includes_ = 0, elements_ = 0;
 };
-
-/// Why a file cannot be read, where that is known: ": ...".
-std::string why_not(const fs::path &path) {
-    std::error_code failure;
-    const fs::file_status status = fs::status(path, failure);
-    if (status.type() == fs::file_type::not_found)
-        return ": there is none of that name";
-    if (fs::is_directory(status))
-        return ": it is a folder";
-    if (failure)
-        return ": " + failure.message();
-    if (!fs::is_regular_file(status))
-        return ": it is no regular file";
-    return ::access(path.c_str(), R_OK) != 0 ? ": " + std::generic_category().message(errno) : "";
-}
 
 /// opened: nullptr where it cannot be read.
 std::unique_ptr<File> Reader::open(const std::shared_ptr<const OpenFile> &opened, const fs::path &path, int version) {

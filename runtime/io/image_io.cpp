@@ -28,9 +28,7 @@ void check_channels(const Image &image, const std::string &path) {
 Image read_image(const std::string &path, std::uint64_t limits) {
     const auto file = OpenFile::open(path);
     if (!file)
-        throw Error(ExitCode::image, fmt::format("cannot read the image '{}': there is no such file, or it is not for "
-                                                 "reading",
-                                                 path));
+        throw Error(ExitCode::image, fmt::format("cannot read the image '{}'{}", path, why_not(path)));
     return read_image(*file, limits);
 }
 

@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <fcntl.h>
 #include <sys/stat.h>
+#include <system_error>
 #include <unistd.h>
 
 namespace gradus {
@@ -79,6 +80,20 @@ std::optional<std::string> OpenFile::read() const {
         done += std::size_t(count);
     }
     return text;
+}
+
+std::string why_not(const std::filesystem::path &path) {
+    std::error_code failure;
+    const std::filesystem::file_status status = std::filesystem::status(path, failure);
+    if (status.type() == std::filesystem::file_type::not_found)
+        return ": there is none of that name";
+    if (std::filesystem::is_directory(status))
+        return ": it is a folder";
+    if (failure)
+        return ": " + failure.message();
+    if (!std::filesystem::is_regular_file(status))
+        return ": it is no regular file";
+    return ::access(path.c_str(), R_OK) != 0 ? ": " + std::generic_category().message(errno) : "";
 }
 
 } // namespace gradus

@@ -64,4 +64,7 @@ class OpenFile {
     std::uint64_t bytes_ = 0; ///< when it was opened
 };
 
+/// Why a file cannot be read, where that is known: ": ...".
+std::string why_not(const std::filesystem::path &path);
+
 } // namespace gradus

@@ -326,6 +326,7 @@ TEST_F(SolveOptions, MistakesOfTheFiles) {
         {{layers, "-o", at("out.exr"), "--stats", at("missing/out.json")}, 5, "cannot write"},
         {{at("none.exr"), "-o", at("out.exr")}, 6, "none.exr"},
         {{write_text("text.exr", "text"), "-o", at("out.exr")}, 6, "cannot read the image"},
+        {{"/dev/null", "-o", at("out.exr")}, 6, "cannot read the image '/dev/null': it is no regular file"},
         {{write_colours("plain.exr", 1), "-o", at("out.exr")}, 6, "has no layer for primal; it has:"},
         {{layers, "-o", at("out.exr"), "--dx", write("small.exr", counting_image(2, 2, colours("", 1)))},
          6,
