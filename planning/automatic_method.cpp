@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <utility>
 
 namespace gradus {
@@ -89,12 +90,18 @@ RowPilot assumed_pilot(const Scene &scene, const RenderOptions &options) {
         is_mixed = is_mixed || mixed;
         is_rough_everywhere = is_rough_everywhere && !mixed && is_rough(bsdf, options.shift_threshold);
     });
-    const bool is_indoors = std::none_of(scene.emitters.begin(), scene.emitters.end(), [](const Emitter &emitter) {
-        return emitter.kind == Emitter::Kind::constant || emitter.kind == Emitter::Kind::environment ||
-               emitter.kind == Emitter::Kind::directional;
-    });
+    using Kind = Emitter::Kind;
+    const auto has = [&](std::initializer_list<Kind> kinds) {
+        return std::any_of(scene.emitters.begin(), scene.emitters.end(), [&](const Emitter &emitter) {
+            return std::find(kinds.begin(), kinds.end(), emitter.kind) != kinds.end();
+        });
+    };
+    const bool is_outdoors = has({Kind::constant, Kind::environment, Kind::directional});
+    // Where none has a size, light that comes straight from them has no noise but at edges, which neighbours do not
+    // share.
+    const bool casts_soft_shadows = has({Kind::constant, Kind::environment, Kind::area});
     RowPilot pilot;
-    pilot.left = !is_rough_everywhere ? 0.2 : is_indoors ? 0.04 : 0.08;
+    pilot.left = !casts_soft_shadows ? 0.3 : !is_rough_everywhere ? 0.2 : is_outdoors ? 0.08 : 0.04;
     pilot.costs = {4.5, is_mixed ? 22.0 : 13.5};
     return pilot;
 }

@@ -449,5 +449,18 @@ TEST(Automatic, GoesByARuleWhereThereIsNoRoomForAPilot) {
     }
 }
 
+TEST(Automatic, TakesPtForAShortRenderOfSharpShadows) {
+    SceneMaker maker(48, 40);
+    maker.look({0, 3, 8}, {0, 0, 0}, 45);
+    maker.floor(-4, 4, 0, maker.material(diffuse(0.5)));
+    maker.sphere({0, 1, 0}, 1, maker.material(diffuse(0.5)));
+    maker.scene.settings.samples_per_pixel = 16;
+    SceneMaker of_lamp = maker;
+    maker.point_light({30, 30, 30}, {2, 5, 3});
+    of_lamp.lamp({2, 5, 3}, 1, 1, 30, of_lamp.material(diffuse(0)));
+    EXPECT_EQ(render(maker.scene, {}, "auto").statistics.choice->method, "pt");
+    EXPECT_EQ(render(of_lamp.scene, {}, "auto").statistics.choice->method, "gpt");
+}
+
 } // namespace
 } // namespace gradus::testing
