@@ -38,9 +38,18 @@ std::string mutated(std::string data, std::mt19937 &random) {
     return data;
 }
 
-/// Calls `load` with `count` mutations and returns how many were accepted.
+/// Its parameter: how many times as many mutations as a quick run takes.
+class Fuzz : public ::testing::TestWithParam<int> {
+  protected:
+    int count(int of_quick_run) const { return GetParam() * of_quick_run; }
+};
+
+INSTANTIATE_TEST_SUITE_P(Quick, Fuzz, ::testing::Values(1));
+INSTANTIATE_TEST_SUITE_P(Full, Fuzz, ::testing::Values(50));
+
+/// Calls `load` with `count` mutations, of which some must be accepted and some not.
 template <typename Load>
-int accepted_mutations(const std::string &valid, int count, Load &&load) {
+void load_mutations(const std::string &valid, int count, Load &&load) {
     std::mt19937 random(20240117);
     int accepted = 0;
     for (int i = 0; i < count; ++i) {
@@ -54,7 +63,8 @@ int accepted_mutations(const std::string &valid, int count, Load &&load) {
             EXPECT_EQ(error.code, ExitCode::scene);
         } // anything else ends the test
     }
-    return accepted;
+    EXPECT_GT(accepted, 0);
+    EXPECT_LT(accepted, count);
 }
 
 void check_indices(const Mesh &mesh) {
@@ -68,16 +78,13 @@ void check_indices(const Mesh &mesh) {
                   attribute.channels * (is_by_face(attribute.name) ? mesh.triangles.size() : mesh.positions.size()));
 }
 
-TEST(Fuzz, Obj) {
+TEST_P(Fuzz, Obj) {
     const std::string valid = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 1\nvt 0 0\nvt 1 1\nvn 0 0 1\nf 1/1/1 2/2/1 3/1/1\n"
                               "f -4//1 -2//-1 -1//1\nf 1 2 3 4\n";
-    const int accepted =
-        accepted_mutations(valid, 20000, [](const std::string &data) { check_indices(parse_obj(data, "m.obj")); });
-    EXPECT_GT(accepted, 0);
-    EXPECT_LT(accepted, 20000);
+    load_mutations(valid, count(20000), [](const std::string &data) { check_indices(parse_obj(data, "m.obj")); });
 }
 
-TEST(Fuzz, Ply) {
+TEST_P(Fuzz, Ply) {
     const std::string ascii =
         "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty "
         "float z\nproperty list uchar int extra\nelement face 2\nproperty list uchar int "
@@ -87,44 +94,38 @@ TEST(Fuzz, Ply) {
         "r\nproperty uchar g\nproperty uchar b\nelement face 2\nproperty float a_0\nproperty list uchar int "
         "vertex_indices\nend_header\n0 0 0 1 2 3\n1 0 0 4 5 6\n1 1 0 7 8 9\n0.5 3 0 1 2\n0.25 4 0 1 2 0\n";
     for (const std::string &valid :
-         {ascii, attributes, binary_ply(folded_square(), false), binary_ply(folded_square(), true)}) {
-        const int accepted = accepted_mutations(valid, 20000, [](const std::string &data) {
+         {ascii, attributes, binary_ply(folded_square(), false), binary_ply(folded_square(), true)})
+        load_mutations(valid, count(20000), [](const std::string &data) {
             check_indices(parse_ply(data, "m.ply", {"vertex_color", "face_a"}));
         });
-        EXPECT_GT(accepted, 0);
-        EXPECT_LT(accepted, 20000);
-    }
 }
 
-TEST(Fuzz, Serialized) {
+TEST_P(Fuzz, Serialized) {
     for (std::uint16_t version : {3, 4}) {
         SerializedOptions options;
         options.version = version;
         options.colors = true;
         const std::string valid = serialized_file({folded_square(), folded_square()}, options);
-        accepted_mutations(valid, 5000, [](const std::string &data) {
+        load_mutations(valid, count(5000), [](const std::string &data) {
             check_indices(parse_serialized(data, "m", 0, {}, {"vertex_color"}).mesh);
             check_indices(parse_serialized(data, "m", 1).mesh);
         });
         // What the zlib stream holds, too: wrong there and right in its checksum.
-        const int accepted =
-            accepted_mutations(serialized_payload(folded_square(), options), 5000, [&](const std::string &payload) {
-                std::string file("\x1c\x04", 2);
-                append_bytes(file, version);
-                file += deflated(payload);
-                if (version == 3)
-                    append_bytes<std::uint32_t>(file, 0);
-                else
-                    append_bytes<std::uint64_t>(file, 0);
-                append_bytes<std::uint32_t>(file, 1);
-                check_indices(parse_serialized(file, "m", 0, {}, {"vertex_color"}).mesh);
-            });
-        EXPECT_GT(accepted, 0);
-        EXPECT_LT(accepted, 5000);
+        load_mutations(serialized_payload(folded_square(), options), count(5000), [&](const std::string &payload) {
+            std::string file("\x1c\x04", 2);
+            append_bytes(file, version);
+            file += deflated(payload);
+            if (version == 3)
+                append_bytes<std::uint32_t>(file, 0);
+            else
+                append_bytes<std::uint64_t>(file, 0);
+            append_bytes<std::uint32_t>(file, 1);
+            check_indices(parse_serialized(file, "m", 0, {}, {"vertex_color"}).mesh);
+        });
     }
 }
 
-TEST(Fuzz, Scene) {
+TEST_P(Fuzz, Scene) {
     TemporaryFolder folder;
     folder.write("m.ply", binary_ply(folded_square(), false));
     const std::string valid =
@@ -143,12 +144,10 @@ TEST(Fuzz, Scene) {
         "id=\"b\"/><emitter type=\"area\"><rgb name=\"radiance\" value=\"1, 2, 3\"/></emitter></shape>\n"
         "<emitter type=\"directional\"><vector name=\"direction\" x=\"0\" y=\"-1\" z=\"0\"/></emitter>\n</scene>\n";
     ASSERT_EQ(error_of(folder.write("scene.xml", valid)), "");
-    const int accepted = accepted_mutations(valid, 3000, [&](const std::string &data) {
+    load_mutations(valid, count(3000), [&](const std::string &data) {
         for (const Mesh &mesh : load_scene(folder.write("scene.xml", data)).scene.meshes)
             check_indices(mesh);
     });
-    EXPECT_GT(accepted, 0);
-    EXPECT_LT(accepted, 3000);
 }
 
 } // namespace
