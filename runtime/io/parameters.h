@@ -13,6 +13,8 @@
 
 namespace gradus {
 
+class Diagnostics;
+
 class Parameters {
   public:
     /// `given` on the command line go before what files say.
