@@ -1,5 +1,7 @@
 #include "solver/tiles.h"
 
+#include "kernels/shared/solver_shared.h"
+
 #include <algorithm>
 
 namespace gradus::solver {
