@@ -97,8 +97,7 @@ struct LinearSolver::Progress {
 };
 
 LinearSolver::LinearSolver(const PlaneMaker &make, Multigrid &multigrid, Sums &sums, std::uint32_t together)
-    : make_(make), multigrid_(multigrid), sums_(sums), together_(together),
-      tiles_(make.device().description(), make.precision()) {}
+    : make_(make), multigrid_(multigrid), sums_(sums), together_(together) {}
 
 void LinearSolver::run(Kernels &kernels, const Buffer &b, const Buffer &u, Progress &progress) {
     switch (progress.request.method) {
@@ -270,8 +269,8 @@ void LinearSolver::conjugate_gradients(Kernels &kernels, bool preconditioned, co
         direction.bind("old_direction", directions_[(done + 1) % 2]);
         direction.bind("direction", directions_[done % 2]);
         direction.bind("image", image_);
-        sums_.bind_parts(direction, channels.count, tiles_.items(grid));
-        tiles_.launch(direction, grid, channels);
+        sums_.bind_parts_of_eights(direction, channels.count);
+        multigrid_.tiles().launch(direction, grid, channels);
         sums_.sum(kernels, slot_direction_product, channels);
 
         Kernel &advance = kernels.advance;

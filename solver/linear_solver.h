@@ -65,7 +65,6 @@ class LinearSolver {
     Multigrid &multigrid_;
     Sums &sums_;
     std::uint32_t together_;
-    const Tiles tiles_;
     /// Made when a method first asks for them, for one group. Conjugate gradients use the hierarchy's right side as
     /// their residual. `kept_`: channels that are finished before others of their group.
     Buffer directions_[2], image_, other_, kept_;

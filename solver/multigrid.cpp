@@ -267,7 +267,7 @@ void Multigrid::smooth_again(Kernels &kernels, std::size_t level, Planes channel
     ascend.set("multiplies", bool(products));
     ascend.bind("image", products ? products->image : here.right_side);
     if (products) {
-        products->sums.bind_parts(ascend, 2 * channels.count, tiles_.items(here.system.grid));
+        products->sums.bind_parts_of_eights(ascend, 2 * channels.count);
     } else {
         ascend.bind("partial", here.other);
         ascend.set("partials", 0);

@@ -43,6 +43,7 @@ class Multigrid {
     /// The finest system.
     System &system() { return levels_.front().system; }
     const System &system() const { return levels_.front().system; }
+    const Tiles &tiles() const { return tiles_; }
     /// Where cycle() expects the right side, which it keeps.
     const Buffer &right_side() const { return levels_.front().right_side; }
 

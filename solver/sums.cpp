@@ -14,16 +14,14 @@ constexpr std::uint32_t few = 1024;
 } // namespace
 
 Sums::Sums(const PlaneMaker &make, const Grid &grid, std::uint32_t channels)
-    : make_(make), channels_(channels), partials_of_grid_(grid.partials()),
-      plane_(grid.plane), reduced_{make.reals("reduced",
-                                              std::size_t(quotient_up(plane_, SOLVER_REDUCTION)) * channels * 2),
-                                   make.reals("reduced",
-                                              std::size_t(quotient_up(plane_, SOLVER_REDUCTION * SOLVER_REDUCTION)) *
-                                                  channels * 2)},
+    : make_(make), grid_(grid), channels_(channels),
+      reduced_{make.reals("reduced", std::size_t(quotient_up(grid_.plane, SOLVER_REDUCTION)) * channels * 2),
+               make.reals("reduced",
+                          std::size_t(quotient_up(grid_.plane, SOLVER_REDUCTION * SOLVER_REDUCTION)) * channels * 2)},
       scalars_(make.reals("scalars", std::size_t(channels) * SOLVER_SCALAR_SLOTS)) {}
 
-void Sums::bind_parts(Kernel &kernel, std::uint32_t planes, std::uint32_t partials) {
-    partials_ = partials > 0 ? partials : partials_of_grid_;
+void Sums::bind(Kernel &kernel, std::uint32_t planes, std::uint32_t partials) {
+    partials_ = partials;
     const std::size_t count = std::size_t(partials_) * planes;
     if (!partial_.valid() || partial_.bytes() < count * real_bytes(make_.precision()))
         partial_ = make_.reals("partial", count);
@@ -61,8 +59,9 @@ void Sums::sum_of(Kernels &kernels, const Buffer &a, std::uint32_t slot) {
 
 void Sums::run_products(Kernels &kernels, Kernel &kernel, Planes planes, std::uint32_t sums, std::uint32_t slot,
                         std::uint32_t second) {
-    const std::uint32_t reduced = quotient_up(plane_, SOLVER_REDUCTION), groups = quotient_up(reduced, SOLVER_TILE);
-    kernel.set("plane", plane_);
+    const std::uint32_t reduced = quotient_up(grid_.plane, SOLVER_REDUCTION),
+                        groups = quotient_up(reduced, SOLVER_TILE);
+    kernel.set("plane", grid_.plane);
     kernel.set("reduced_count", reduced);
     kernel.bind("reduced", reduced_[0]);
     kernel.set("channel_count", planes.count);

@@ -25,9 +25,12 @@ class Sums {
 
     /// Binds `scalars`.
     void bind_scalars(Kernel &kernel) const { kernel.bind(scalars_); }
-    /// Binds `partial`, with room for `planes` planes of parts, and `partials`, how many a plane has: 0 for one of each
-    /// pixel of the grid.
-    void bind_parts(Kernel &kernel, std::uint32_t planes, std::uint32_t partials = 0);
+    /// Binds `partial`, with room for `planes` planes of parts, and `partials`, how many a plane has: one for each
+    /// pixel of the grid, or for each eight of a line.
+    void bind_parts(Kernel &kernel, std::uint32_t planes) { bind(kernel, planes, grid_.partials()); }
+    void bind_parts_of_eights(Kernel &kernel, std::uint32_t planes) {
+        bind(kernel, planes, quotient_up(grid_.width, 8) * grid_.height);
+    }
 
     /// Adds the parts that a kernel left, which bind_parts() was called for last. `planes`: those that each sum has, of
     /// channels, or {0, 1}: then the result is that of channel 0.
@@ -46,6 +49,7 @@ class Sums {
     double read_total(std::uint32_t slot) const;
 
   private:
+    void bind(Kernel &kernel, std::uint32_t planes, std::uint32_t partials);
     /// Goes on from `count` parts for each sum and plane.
     void run(Kernels &kernels, const Buffer *from, std::uint32_t count, std::uint32_t sums, std::uint32_t slot,
              std::uint32_t second, Planes planes);
@@ -53,7 +57,8 @@ class Sums {
                       std::uint32_t second);
 
     const PlaneMaker make_;
-    std::uint32_t channels_, partials_of_grid_, plane_;
+    const Grid grid_;
+    std::uint32_t channels_;
     std::uint32_t partials_ = 0; ///< of a plane in partial_
     Buffer partial_, reduced_[2], scalars_;
 };

@@ -1,7 +1,5 @@
 #include "solver/tiles.h"
 
-#include "kernels/shared/solver_shared.h"
-
 #include <algorithm>
 
 namespace gradus::solver {
@@ -34,11 +32,6 @@ Tiles::Shape Tiles::shape(const Grid &grid) const {
     const std::uint32_t most = local_reals() / (columns + 2 * border_columns) - 2;
     const std::uint32_t rows = is_host_ ? std::max(grid.height * across / fewest_tiles, fewest_rows) : rows_elsewhere;
     return {columns, std::min(rows, most) / 2 * 2};
-}
-
-std::uint32_t Tiles::items(const Grid &grid) const {
-    const Shape tile = shape(grid);
-    return quotient_up(grid.width, tile.columns) * quotient_up(grid.height, tile.rows) * SOLVER_TILE;
 }
 
 void Tiles::launch(Kernel &kernel, const Grid &grid, Planes planes) const {

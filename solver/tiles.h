@@ -14,8 +14,6 @@ class Tiles {
     std::uint32_t local_reals() const { return local_reals_; }
     /// Items that share a line (kernels/solver/vectors.h).
     std::uint32_t lanes() const { return is_host_ ? 1 : 16; }
-    /// Items that all tiles of a grid have.
-    std::uint32_t items(const Grid &grid) const;
     /// Launches a kernel on all tiles of a grid, after setting its size and theirs.
     void launch(Kernel &kernel, const Grid &grid, Planes planes) const;
 

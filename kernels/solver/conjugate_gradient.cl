@@ -11,7 +11,6 @@ SOLVE direction(TILED_GRID, WEIGHTS_OF_DIAGONAL, real factor, real bound, uint n
     TILE_PLACE
     const real ratio = SCALAR_RATIO(numerator, divisor);
     const real beta = factor * r_clamp(ratio, -bound, bound);
-    real8 product = (real8)(R(0));
     FOR_LINES(rows) {
         const uint y = first_y + line;
         ON_LINE
@@ -22,10 +21,10 @@ SOLVE direction(TILED_GRID, WEIGHTS_OF_DIAGONAL, real factor, real bound, uint n
                                        DIRECTION(at + row));
             vstore8(here, 0, direction + at);
             vstore8(a, 0, image + at);
-            product += here * a;
+            const real8 product = here * a;
+            partial[TILE_PARTIAL(0, x, y)] = SUM_OF_8(product);
         }
     }
-    partial[TILE_PARTIAL(0)] = SUM_OF_8(product);
 }
 
 /* u += alpha direction, residual -= alpha image, alpha = SCALAR(numerator) / SCALAR(divisor), at most `bound` in

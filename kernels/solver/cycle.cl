@@ -82,7 +82,6 @@ SOLVE ascend(TILED_GRID, WEIGHTS, real step_0, real step_1, uint adds, uint mult
         }
     }
     STEP_DONE
-    real8 with_right_side = (real8)(R(0)), with_image = (real8)(R(0));
     FOR_LINES(rows) {
         const uint y = first_y + line;
         ON_LINE
@@ -95,13 +94,10 @@ SOLVE ascend(TILED_GRID, WEIGHTS, real step_0, real step_1, uint adds, uint mult
                 vload8(0, tile + from) + step_0 * vload8(0, inverse_diagonal + line_weight + x) * residual;
             vstore8(adds ? vload8(0, smoothed + at) + value : value, 0, smoothed + at);
             if (multiplies) {
-                with_right_side += value * b;
-                with_image += value * vload8(0, image + at);
+                const real8 with_right_side = value * b, with_image = value * vload8(0, image + at);
+                partial[TILE_PARTIAL(0, x, y)] = SUM_OF_8(with_right_side);
+                partial[TILE_PARTIAL(1, x, y)] = SUM_OF_8(with_image);
             }
         }
-    }
-    if (multiplies) {
-        partial[TILE_PARTIAL(0)] = SUM_OF_8(with_right_side);
-        partial[TILE_PARTIAL(1)] = SUM_OF_8(with_image);
     }
 }

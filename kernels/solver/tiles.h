@@ -16,10 +16,9 @@
 /* Row y of the grid: where it begins in planes of values and of weights. */
 #define ON_LINE const size_t line_at = OWN_AT(0, y), line_weight = WEIGHT_AT(0, y);
 
-/* Where the item's part of a sum goes: as many parts for each channel of the first sum as tiles have items, `partials`,
- * then those of the next. */
-#define TILE_PARTIAL(sum)                                                                                              \
-    (((sum) * (get_global_size(0) / WORK_GROUP_SIZE / tiles) + own) * partials +                                       \
-     (get_group_id(1) * tiles + group % tiles) * WORK_GROUP_SIZE + get_local_id(0))
+/* Where the part that an eight of a line has of a sum goes, so that sums do not depend on the shape of tiles:
+ * `partials`, one for each eight of the grid, for each channel of the first sum, then of the next. */
+#define TILE_PARTIAL(sum, x, y)                                                                                        \
+    (((sum) * (get_global_size(0) / WORK_GROUP_SIZE / tiles) + own) * partials + (y)*EIGHTS(width) + (x) / 8)
 
 #endif
