@@ -258,15 +258,17 @@ void LinearSolver::conjugate_gradients(Kernels &kernels, bool preconditioned, co
             numerator = slot_image_product;
             divisor = slot_direction_product;
         }
+        const bool is_fresh = done % steps_between_fresh_directions == 0;
+        const Buffer &z = preconditioned ? multigrid_.solution() : r;
         Kernel &direction = kernels.direction;
         multigrid_.system().bind(direction);
         sums_.bind_scalars(direction);
-        direction.set_real("factor", done % steps_between_fresh_directions == 0 ? 0 : preconditioned ? -1 : 1);
+        direction.set_real("factor", is_fresh ? 0 : preconditioned ? -1 : 1);
         direction.set_real("bound", bound);
         direction.set("numerator", numerator);
         direction.set("divisor", divisor);
-        direction.bind("z", preconditioned ? multigrid_.solution() : r);
-        direction.bind("old_direction", directions_[(done + 1) % 2]);
+        direction.bind("z", z);
+        direction.bind("old_direction", is_fresh ? z : directions_[(done + 1) % 2]); // times 0, and may be no number
         direction.bind("direction", directions_[done % 2]);
         direction.bind("image", image_);
         sums_.bind_parts_of_eights(direction, channels.count);

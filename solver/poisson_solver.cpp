@@ -24,6 +24,10 @@ namespace {
 constexpr double default_tolerance = 1e-5;
 constexpr std::uint32_t most_channels = 8;
 
+/// Beyond it, nothing is left of the differences in any precision. Squares, times the sizes of coarse pixels, are to
+/// be numbers.
+constexpr double largest_alpha = 1e12;
+
 /// The weights of a problem in which something may be missing.
 Weights weights_for(const PoissonOptions &options, bool missing) {
     const bool uniform = options.norm == PoissonNorm::l2 && !missing && !options.weigh_by_variance;
@@ -179,10 +183,11 @@ PoissonReport PoissonSolver::Implementation::solve(const Inputs &images, const P
     const bool l2 = options.norm == PoissonNorm::l2;
     if (!l2 && options.alpha_from_variances && report.alpha > 0)
         report.alpha = std::max(report.alpha, least_alpha_of_absolute_values);
+    const double alpha = std::min(report.alpha, largest_alpha);
     if (l2)
-        least_squares(images, options, report.alpha, report);
+        least_squares(images, options, alpha, report);
     else
-        absolute_values(images, options, report.alpha, report);
+        absolute_values(images, options, alpha, report);
     // Uniform weights keep the mean. So does L1 without a data term: no equation but this one tells it.
     const bool keep_mean = !problem.anything_missing() && (l2 ? !options.weigh_by_variance : report.alpha == 0);
     report.filled = problem.compose(kernels_for(options), images, keep_mean, result());

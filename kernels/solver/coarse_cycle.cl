@@ -56,7 +56,7 @@ GRADUS_FN void restrict_to(__global const solver_level *next, __global const sol
     }
 }
 
-/* smoothed += the interpolated next grid. */
+/* smoothed += the interpolated next grid; 0 beyond the grid. */
 GRADUS_FN void prolong_from(__global const solver_level *next, __global const solver_level *level, uint own, uint lanes,
                             __global real *smoothed) {
     const uint row = level->row, first = level->values + own * level->plane;
@@ -68,10 +68,11 @@ GRADUS_FN void prolong_from(__global const solver_level *next, __global const so
         const real8 right_inside = (real8)(R(last != 0), R(last != 1), R(last != 2), R(last != 3), R(last != 4),
                                            R(last != 5), R(last != 6), R(last != 7));
         const uint at = first + GRID_LINE(line) + 2 * x;
-        vstore16(vload16(0, smoothed + at) + interpolated(coarse + (line / 2 + 1) * next->row,
-                                                          coarse + (far_row_of(line, next->height) + 1) * next->row,
-                                                          left_inside, right_inside),
-                 0, smoothed + at);
+        const real16 added =
+            interpolated(coarse + (line / 2 + 1) * next->row, coarse + (far_row_of(line, next->height) + 1) * next->row,
+                         left_inside, right_inside);
+        const real16 column = (real16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15) + R(2 * x);
+        vstore16(column < R(level->width) ? vload16(0, smoothed + at) + added : (real16)(R(0)), 0, smoothed + at);
     }
 }
 

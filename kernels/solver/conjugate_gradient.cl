@@ -10,7 +10,7 @@ SOLVE direction(TILED_GRID, WEIGHTS_OF_DIAGONAL, real factor, real bound, uint n
                 __global real *direction, __global real *image, __global real *partial) {
     TILE_PLACE
     const real ratio = SCALAR_RATIO(numerator, divisor);
-    const real beta = factor * r_clamp(ratio, -bound, bound);
+    const real beta = TIMES_IF_ANY(factor, r_clamp(ratio, -bound, bound));
     FOR_LINES(rows) {
         const uint y = first_y + line;
         ON_LINE

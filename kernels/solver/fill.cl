@@ -38,5 +38,5 @@ SOLVE add_base(GRID, uint mean_slot, real mean_factor, __global const real *scal
                __global real *u) {
     SOLVER_PLACE
     const size_t at = GRID_AT(channel, x, y);
-    u[at] = x < width ? base[at] + (u[at] - mean_factor * SCALAR(mean_slot)) : R(0);
+    u[at] = x < width ? base[at] + (u[at] - TIMES_IF_ANY(mean_factor, SCALAR(mean_slot))) : R(0);
 }

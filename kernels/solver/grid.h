@@ -72,6 +72,9 @@
 #define SCALAR(slot) scalars[channel * SOLVER_SCALAR_SLOTS + (slot)]
 #define SCALAR_RATIO(a, b) (SCALAR(a) / (r_abs(SCALAR(b)) > R(1e-33) ? SCALAR(b) : R(1e38)))
 
+/* factor times a value; 0 where the factor is, which says that the value is none of this solve's. */
+#define TIMES_IF_ANY(factor, value) ((factor) == R(0) ? R(0) : (factor) * (value))
+
 /* The weights, as kernel arguments. */
 #if SOLVER_WEIGHTED
 #define WEIGHTS_OF_DIAGONAL                                                                                            \

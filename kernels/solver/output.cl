@@ -6,7 +6,7 @@ SOLVE compose(GRID, uint mean_slot, real mean_factor, uint has_direct, __global 
               __global const real *base, __global const real *u, __global const float *direct, __global float *packed) {
     SOLVER_PLACE
     const size_t at = GRID_AT(channel, x, y), packed_at = (channel * height + y) * width + x;
-    const real image = base[at] + (u[at] - mean_factor * SCALAR(mean_slot));
+    const real image = base[at] + (u[at] - TIMES_IF_ANY(mean_factor, SCALAR(mean_slot)));
     /* Here, not before: what follows a condition is done lane by lane where it holds a division, as that for y. */
     if (x < width)
         packed[packed_at] = (float)(has_direct ? image + direct[packed_at] : image);

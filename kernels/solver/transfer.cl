@@ -13,23 +13,16 @@
     if (coarse_x >= coarse_width || vector_row >= (rows))                                                              \
         return;
 
-/* The place of 16 fine pixels, and what 8 coarse ones give to them. */
-#define INTERPOLATE                                                                                                    \
-    const uint y = vector_row, at = OWN_AT(2 * coarse_x, y);                                                           \
-    const real16 correction =                                                                                          \
-        interpolated(coarse + COARSE_AT(coarse_x, y / 2), coarse + COARSE_AT(coarse_x, far_row_of(y, coarse_height)),  \
-                     vload8(0, coarse_left + coarse_x), vload8(0, coarse_right + coarse_x)) *                          \
-        vload16(0, column_inside + 2 * coarse_x);
-
-#define INTERPOLATION_ARGUMENTS                                                                                        \
-    uint height, uint row, uint plane, COARSE, __global const real *coarse, __global const real *coarse_left,          \
-        __global const real *coarse_right, __global const real *column_inside
-
-/* u += the interpolated coarse grid. */
-SOLVE prolong(INTERPOLATION_ARGUMENTS, __global real *u) {
+/* u += what 8 coarse pixels give to 16 fine ones; 0 beyond the grid. */
+SOLVE prolong(uint height, uint row, uint plane, COARSE, __global const real *coarse, __global const real *coarse_left,
+              __global const real *coarse_right, __global const real *column_inside, __global real *u) {
     SOLVER_VECTOR_PLACE(height)
-    INTERPOLATE
-    vstore16(vload16(0, u + at) + correction, 0, u + at);
+    const uint y = vector_row, at = OWN_AT(2 * coarse_x, y);
+    const real16 correction =
+        interpolated(coarse + COARSE_AT(coarse_x, y / 2), coarse + COARSE_AT(coarse_x, far_row_of(y, coarse_height)),
+                     vload8(0, coarse_left + coarse_x), vload8(0, coarse_right + coarse_x));
+    const real16 inside = vload16(0, column_inside + 2 * coarse_x);
+    vstore16(inside != R(0) ? vload16(0, u + at) + correction : (real16)(R(0)), 0, u + at);
 }
 
 #if SOLVER_WEIGHTED

@@ -52,6 +52,21 @@ TEST_P(Repeat, GivesTheSameBits) {
     EXPECT_EQ(first.image, solve(fresh, problem.images_with_variances(), options).image);
 }
 
+/// What is no number stays in no memory that a later solve reads.
+TEST_P(Repeat, AfterWhatOverflows) {
+    PoissonSolver solver(test_device(), problem.width, problem.height, problem.channels);
+    PoissonProblem huge = problem;
+    for (std::vector<float> *plane : {&huge.primal, &huge.dx, &huge.dy})
+        for (float &value : *plane)
+            value = value < 0 ? -3e38f : 3e38f;
+    for (const Case &c : cases())
+        solve(solver, huge.images_with_variances(), c.options);
+    for (const LinearMethod method : linear_methods)
+        solve(solver, problem.images(), l2_options(method, 1e30));
+    EXPECT_EQ(solve(solver, problem.images_with_variances(), options).image,
+              solve(solver_for(problem), problem.images_with_variances(), options).image);
+}
+
 TEST_P(Repeat, FromDeviceMemoryToo) {
     PoissonSolver &solver = solver_for(problem);
     std::vector<float> direct(problem.primal.size(), 0.5f);

@@ -268,6 +268,26 @@ TEST(Weighted, HalvesCountByTheirSamples) {
         ASSERT_NEAR(mean[i], 0.6 * a[i] + 0.4 * b[i], 1e-5 * (std::fabs(a[i]) + std::fabs(b[i])));
 }
 
+TEST(Weighted, IsTheSameAfterWhatOverflows) {
+    const PoissonProblem problem = make_poisson_problem(43, 17, 3, 3), other = make_poisson_problem(43, 17, 3, 4);
+    const HalvedImages halves = {half_of(problem).uploaded(2 * problem.pixels()),
+                                 half_of(other).uploaded(2 * problem.pixels())};
+    PoissonProblem huge = problem;
+    for (std::vector<float> *plane : {&huge.primal, &huge.dx, &huge.dy, &huge.primal_variance, &huge.dx_variance})
+        for (float &value : *plane)
+            value = value < 0 ? -3e38f : 3e38f;
+    const HalvedImages of_huge = {half_of(huge).uploaded(problem.pixels()), half_of(huge).uploaded(problem.pixels())};
+    WeightedReconstruction weighted(test_device(), solver_for(problem));
+    Buffer result(test_device(), "result", problem.primal.size() * sizeof(float));
+    const auto solved = [&](const HalvedImages &images) {
+        weighted.solve(images, result);
+        return read(result);
+    };
+    const std::vector<float> before = solved(halves);
+    EXPECT_GT(count_non_finite(solved(of_huge)), 0u) << "nothing overflows, and this test sees nothing";
+    EXPECT_EQ(before, solved(halves));
+}
+
 /// Pixels that happen to look sure, beside ones that do not, do not hold their neighbours down.
 TEST(Weighted, VariancesOfZeroBesideNoisyOnesAreNotTrusted) {
     const PoissonProblem problem = make_poisson_problem(64, 64, 3, 5), other = make_poisson_problem(64, 64, 3, 6);
