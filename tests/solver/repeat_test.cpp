@@ -14,9 +14,10 @@ struct Case {
 void PrintTo(const Case &c, std::ostream *out) { *out << c.name; }
 
 std::vector<Case> cases() {
-    PoissonOptions weighted = l2_options(LinearMethod::automatic), by_channel;
+    PoissonOptions weighted = l2_options(LinearMethod::automatic), by_channel, of_differences;
     weighted.weigh_by_variance = true;
     by_channel.joint_channels = false;
+    of_differences.alpha = 0;
     return {{"L2_jacobi", l2_options(LinearMethod::jacobi)},
             {"L2_cg", l2_options(LinearMethod::cg)},
             {"L2_pcg", l2_options(LinearMethod::pcg)},
@@ -24,7 +25,8 @@ std::vector<Case> cases() {
             {"L2_weighted", weighted},
             {"L1", PoissonOptions()},
             {"L1_plain", plain_l1_options()},
-            {"L1_by_channel", by_channel}};
+            {"L1_by_channel", by_channel},
+            {"L1_of_differences", of_differences}};
 }
 
 class Repeat : public ::testing::TestWithParam<Case> {
