@@ -11,6 +11,7 @@
 // PoCL has no settings for these. But it has LLVM list its passes by a function of LLVM's library, and the loader finds
 // the one here first, since the program exports it (runtime/CMakeLists.txt). It puts two passes in front, leaves the
 // first time out, and then does what LLVM's does. Where PoCL or LLVM are others, nobody calls it.
+#include "runtime/compiler/symbol_name.h"
 #include "runtime/device/loaded_library.h"
 
 #include <algorithm>
@@ -31,11 +32,6 @@ using SetLevel = void(void *builder, unsigned level);
 
 constexpr const char *library_of_pocl = "libpocl.so.2.10"; // of 3.1
 constexpr unsigned level_of_pocl = 3;
-
-template <class Function>
-Function *of_llvm(const char *name) {
-    return gradus::function_of<Function>(gradus::loaded_library("libLLVM"), name);
-}
 
 NameOf *name_of = nullptr;
 AddAttribute *add_attribute = nullptr;
@@ -69,18 +65,17 @@ int is_kept(void *value, void *) {
 } // namespace
 
 #define POPULATE _ZN4llvm18PassManagerBuilder25populateModulePassManagerERNS_6legacy15PassManagerBaseE
-#define TEXT_OF(name) #name
-#define NAME_OF(macro) TEXT_OF(macro)
 
 extern "C" void POPULATE(void *builder, void *passes);
 
 /// llvm::PassManagerBuilder::populateModulePassManager(llvm::legacy::PassManagerBase &)
 extern "C" void POPULATE(void *builder, void *passes) {
-    const auto populate = of_llvm<Populate>(NAME_OF(POPULATE));
-    const auto internalize = of_llvm<AddInternalize>("LLVMAddInternalizePassWithMustPreservePredicate");
-    const auto remove_unused = of_llvm<AddGlobalDce>("LLVMAddGlobalDCEPass");
-    name_of = of_llvm<NameOf>("LLVMGetValueName2");
-    add_attribute = of_llvm<AddAttribute>("LLVMAddTargetDependentFunctionAttr");
+    const auto populate = gradus::function_of_llvm<Populate>(SYMBOL_NAME(POPULATE));
+    const auto internalize =
+        gradus::function_of_llvm<AddInternalize>("LLVMAddInternalizePassWithMustPreservePredicate");
+    const auto remove_unused = gradus::function_of_llvm<AddGlobalDce>("LLVMAddGlobalDCEPass");
+    name_of = gradus::function_of_llvm<NameOf>("LLVMGetValueName2");
+    add_attribute = gradus::function_of_llvm<AddAttribute>("LLVMAddTargetDependentFunctionAttr");
     if (!populate)
         std::abort(); // who started this process compiles by himself then
     if (internalize && remove_unused && name_of) {
@@ -89,7 +84,7 @@ extern "C" void POPULATE(void *builder, void *passes) {
     }
     // PoCL 3.1 lists all passes for a kernel once, those of both times in one list.
     static void *listed = nullptr;
-    const auto set_level = of_llvm<SetLevel>("LLVMPassManagerBuilderSetOptLevel");
+    const auto set_level = gradus::function_of_llvm<SetLevel>("LLVMPassManagerBuilderSetOptLevel");
     const bool is_first_time = set_level && listed != passes && gradus::loaded_library(library_of_pocl);
     listed = is_first_time ? passes : nullptr; // another list may come to lie at the same place
     if (is_first_time)

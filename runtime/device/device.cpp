@@ -119,6 +119,10 @@ bool is_pocl_cpu(const DeviceDescription &d) {
 
 bool is_pocl_3_1_cpu(const DeviceDescription &d) { return is_pocl_cpu(d) && d.driver.starts_with("3.1"); }
 
+bool is_pocl_5_or_6_cpu(const DeviceDescription &d) {
+    return is_pocl_cpu(d) && (d.driver.starts_with("5.") || d.driver.starts_with("6."));
+}
+
 bool is_oclgrind(const DeviceDescription &d) { return d.platform == "Oclgrind"; }
 
 std::vector<DeviceDescription> list_devices() {

@@ -63,6 +63,8 @@ std::vector<FoundDevice> find_devices();
 bool is_pocl_cpu(const DeviceDescription &device);
 /// Of version 3.1, which is Debian 12's, and whose insides pocl_compiler.h and others know.
 bool is_pocl_3_1_cpu(const DeviceDescription &device);
+/// Of Ubuntu 24.04 and Debian 13, which vectorise nothing by themselves.
+bool is_pocl_5_or_6_cpu(const DeviceDescription &device);
 bool is_oclgrind(const DeviceDescription &device);
 
 /// Runs a function and turns an OpenCL error into an Error that says what was being done.

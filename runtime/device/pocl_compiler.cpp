@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdlib>
 #include <string>
 #include <string_view>
 
@@ -13,9 +14,9 @@ namespace gradus {
 
 namespace {
 
-void set_llvm_options() {
+void set_llvm_options(bool is_3_1) {
     using Parse = void(int, const char *const *, const char *);
-    const auto parse = function_of<Parse>(loaded_library("libLLVM"), "LLVMParseCommandLineOptions");
+    const auto parse = function_of_llvm<Parse>("LLVMParseCommandLineOptions");
     if (!parse)
         return;
     const std::array<const char *, 4> options = {
@@ -23,7 +24,7 @@ void set_llvm_options() {
         "-vectorize-num-stores-pred=1000000", // a limit that no kernel of ours reaches
         // Each of some ten passes goes through all expressions once, and not again for as long as any of them changes.
         "-instcombine-max-iterations=1"};
-    parse(int(options.size()), options.data(), nullptr);
+    parse(is_3_1 ? 4 : 3, options.data(), nullptr); // the last is unknown to LLVM 17, which ends the process then
 }
 
 /// The processor that PoCL compiles for: the very text that its record of the device points to. Or nullptr.
@@ -41,9 +42,13 @@ constexpr std::size_t words_of_device = 160;
 } // namespace
 
 void prepare_pocl_compiler(const cl::Context &context, const cl::Device &device, const DeviceDescription &description) {
-    if (!is_pocl_3_1_cpu(description))
+    const bool is_3_1 = is_pocl_3_1_cpu(description), is_5_or_6 = is_pocl_5_or_6_cpu(description);
+    if (is_5_or_6)
+        setenv("POCL_LLVM_ALWAYS_INLINE", "1", 0);
+    if (is_3_1 || is_5_or_6)
+        set_llvm_options(is_3_1);
+    if (!is_3_1)
         return;
-    set_llvm_options();
     const char *const processor = processor_of_pocl();
     if (!processor || std::string_view(processor) != "haswell")
         return;
