@@ -3,9 +3,9 @@
 #include "runtime/io/load_scene.h"
 #include "runtime/phases.h"
 #include "runtime/seconds_since.h"
+#include "runtime/trace/embree.h"
 
 #include <OpenImageIO/imageio.h>
-#include <embree3/rtcore.h>
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -3,10 +3,10 @@
 
 #include "runtime/scene/scene.h"
 #include "runtime/scene/scene_tables.h"
+#include "runtime/trace/embree.h"
 #include "runtime/trace/opacity.h"
 #include "runtime/trace/sphere_geometry.h"
 
-#include <embree3/rtcore.h>
 #include <tbb/task_arena.h>
 
 #include <array>

@@ -1,9 +1,8 @@
 // Rays of tables in Embree's packets.
 #pragma once
 
+#include "runtime/trace/embree.h"
 #include "runtime/trace/ray_order.h"
-
-#include <embree3/rtcore.h>
 
 #include <algorithm>
 #include <cmath>
@@ -55,14 +54,6 @@ void fill_packet(Ray &ray, const SegmentColumns &rays, const std::uint32_t *rows
         ray.tfar[lane] = far;
 }
 
-/// `beams`: packets of rays that go the same way are tested as one beam.
-inline RTCIntersectContext new_context(bool beams) {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = beams ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-    return context;
-}
-
 /// Of the first `lanes`, those whose rays are of numbers that Embree takes: not NaN, infinite or absurdly large, as an
 /// absurd camera makes them.
 template <class Ray>
@@ -78,13 +69,13 @@ ValidLanes sane_lanes(const Ray &ray, int lanes) {
 /// What is known to filters of hits. Within an instance Embree hands them the ray in the frame of its group; that of
 /// the world is ray `id` of these.
 struct TraceContext {
-    RTCIntersectContext embree; ///< first: filters are given its address
+    RayQuery embree; ///< first: filters are given its address
     const float *origin[3], *direction[3];
     const std::uint32_t *rows = nullptr; ///< of ray `id`; null: that number itself
     bool passes_emitters = false;        ///< rays of a camera that sees none
     bool without_chance = false;         ///< RayColumns::without_chance
 
-    TraceContext(bool beams, const SegmentColumns &rays) : embree(new_context(beams)) {
+    TraceContext(bool beams, const SegmentColumns &rays) : embree(beams) {
         std::copy_n(rays.origin, 3, origin);
         std::copy_n(rays.direction, 3, direction);
     }

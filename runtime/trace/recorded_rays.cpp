@@ -34,11 +34,11 @@ void trace_again(RTCScene scene, const RecordedRays &rays, bool extension_beams,
                 RTCRayHit ray;
                 ray.ray = ray_of(rays.extension[i].ray, lane);
                 ray.hit.geomID = ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-                rtcIntersect1(scene, &context.embree, &ray);
+                intersect(scene, context.embree, ray);
             }
         } else {
             alignas(64) RTCRayHit16 packet = rays.extension[i];
-            rtcIntersect16(first_lanes(lanes).lane, scene, &context.embree, &packet);
+            intersect(first_lanes(lanes).lane, scene, context.embree, packet);
         }
     }
     for (std::size_t i = 0; i < rays.shadow.size(); ++i) {
@@ -47,11 +47,11 @@ void trace_again(RTCScene scene, const RecordedRays &rays, bool extension_beams,
         if (single) {
             for (int lane = 0; lane < lanes; ++lane) {
                 RTCRay ray = ray_of(rays.shadow[i], lane);
-                rtcOccluded1(scene, &context.embree, &ray);
+                occlude(scene, context.embree, ray);
             }
         } else {
             alignas(64) RTCRay16 packet = rays.shadow[i];
-            rtcOccluded16(first_lanes(lanes).lane, scene, &context.embree, &packet);
+            occlude(first_lanes(lanes).lane, scene, context.embree, packet);
         }
     }
 }

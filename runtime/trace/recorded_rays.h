@@ -1,7 +1,7 @@
 // Packets of a render, kept as they were traced, so that tracing alone can be timed again.
 #pragma once
 
-#include <embree3/rtcore.h>
+#include "runtime/trace/embree.h"
 
 #include <cstdint>
 #include <vector>

@@ -2,7 +2,7 @@
 // packet after the other; here sixteen rays are tested at once.
 #pragma once
 
-#include <embree3/rtcore.h>
+#include "runtime/trace/embree.h"
 
 namespace gradus {
 

@@ -138,7 +138,7 @@ void Tracer::Implementation::trace_alone(RTCRayHit16 &packet, std::uint32_t lane
         alone.lane[lane] = -1;
         packet.ray.tfar[lane] = std::numeric_limits<float>::infinity();
         packet.hit.geomID[lane] = packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
-        rtcIntersect16(alone.lane, scene.handle(), &context.embree, &packet);
+        intersect(alone.lane, scene.handle(), context.embree, packet);
     }
 }
 
@@ -169,7 +169,7 @@ std::uint64_t Tracer::Implementation::trace_asked(const RayColumns &ray, std::ui
             record->extension_lanes.push_back(lanes);
         }
         const ValidLanes valid = sane_lanes(packet.ray, lanes);
-        rtcIntersect16(valid.lane, scene.handle(), &context.embree, &packet);
+        intersect(valid.lane, scene.handle(), context.embree, packet);
         if (const std::uint32_t near_edges = lanes_near_edges(packet, lanes))
             trace_alone(packet, near_edges, context);
         for (int lane = 0; lane < lanes; ++lane) {
@@ -205,7 +205,7 @@ std::uint64_t Tracer::Implementation::trace_shadow(const ShadowColumns &shadow, 
         }
         const ValidLanes valid = sane_lanes(packet, lanes);
         context.rows = row;
-        rtcOccluded16(valid.lane, scene.handle(), &context.embree, &packet);
+        occlude(valid.lane, scene.handle(), context.embree, packet);
         for (int lane = 0; lane < lanes; ++lane) // Embree writes -infinity
             shadow.open[row[lane]] = packet.tfar[lane] >= 0 && valid.lane[lane] != 0 ? 1u : 0u;
     });

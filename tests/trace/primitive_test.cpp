@@ -2,8 +2,6 @@
 // where Embree itself meets it; near and far, tiny, thin and grazed, from within and beside edges.
 #include <gtest/gtest.h>
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +11,7 @@
 #include <vector>
 
 #include "runtime/scene/transform.h"
+#include "runtime/trace/embree.h"
 #include "runtime/trace/ray_packets.h"
 #include "runtime/trace/sphere_geometry.h"
 
@@ -75,9 +74,8 @@ class Traced {
         RTCRayHit hit{};
         hit.ray = {origin.x, origin.y, origin.z, 0, direction.x, direction.y, direction.z, 0, INFINITY, ~0u, 0, 0};
         hit.hit.geomID = hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        rtcIntersect1(scene_, &context, &hit);
+        RayQuery query(false);
+        intersect(scene_, query, hit);
         return hit;
     }
     /// Of sixteen rays.
@@ -93,9 +91,8 @@ class Traced {
             hit.hit.geomID[i] = hit.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
         }
         const ValidLanes valid = first_lanes(int(rays.size()));
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        rtcIntersect16(valid.lane, scene_, &context, &hit);
+        RayQuery query(false);
+        intersect(valid.lane, scene_, query, hit);
         return hit;
     }
 
