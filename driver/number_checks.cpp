@@ -49,8 +49,9 @@ CLI::Validator whole_number_between(std::int64_t least, std::uint64_t most) {
         const bool is_negative = text.starts_with('-');
         const auto below = is_negative ? number_of<std::int64_t>(text) : std::nullopt;
         const auto above = is_negative ? std::nullopt : number_of<std::uint64_t>(text);
-        const bool is_enough = below ? *below >= least : least < 0 || (above && *above >= std::uint64_t(least));
-        if (!is_enough || !(below || (above && *above <= most)))
+        const std::uint64_t lowest = least < 0 ? 0 : std::uint64_t(least);
+        const bool is_allowed = (below && *below >= least) || (above && *above >= lowest && *above <= most);
+        if (!is_allowed)
             return fmt::format("'{}' is not a whole number from {} to {}", text, least, most);
         text = below ? fmt::format("{}", *below) : fmt::format("{}", *above);
         return std::string();

@@ -19,6 +19,7 @@ import argparse
 import fnmatch
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -59,6 +60,7 @@ FACTS = {
     "matplotlib": has_matplotlib,
     "second-opencl": has_second_opencl,
     "double": has_double,
+    "oclgrind": lambda: shutil.which("oclgrind") is not None,
 }
 GIVEN_FACTS = {"full"}  # by --fact alone
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that building, testing and running Gradus takes; only those that are missing.
+# Installs the packages of Debian 12 or 13 that building, testing and running Gradus takes; only those that are missing.
 #
 #   scripts/install_dependencies.sh [--bench] [--list]
 #
@@ -16,17 +16,18 @@ packages=(
     # Ray tracing, images, scene files, command line, text.
     libembree-dev libtbb-dev libopenimageio-dev libopenexr-dev libpugixml-dev zlib1g-dev
     libcli11-dev nlohmann-json3-dev libfmt-dev
-    # Tests; oclgrind checks every memory access of the kernels. FFTW is what the solver is measured against, Google Benchmark
-    # times the kernels.
-    libgtest-dev libgmock-dev oclgrind libfftw3-dev libbenchmark-dev
+    # Tests. FFTW is what the solver is measured against, Google Benchmark times the kernels.
+    libgtest-dev libgmock-dev libfftw3-dev libbenchmark-dev
 )
+# Checks every memory access of the kernels. Where there is none, as in Debian 13, the tests that take it are skipped.
+optional=(oclgrind)
 
 if [ "${1:-}" = --bench ]; then
     packages+=(python3-venv) # the virtual environment of the rivals
     shift
 fi
 if [ "${1:-}" = --list ]; then
-    printf '%s\n' "${packages[@]}"
+    printf '%s\n' "${packages[@]}" "${optional[@]}"
     exit 0
 fi
 
@@ -35,25 +36,42 @@ if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
     exit 0
 fi
 
-missing=()
-for package in "${packages[@]}"; do
-    status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
-    [ "$status" = installed ] || missing+=("$package")
-done
-[ ${#missing[@]} -gt 0 ] || exit 0
+# Those of the packages that are not installed.
+missing() {
+    local package status
+    for package in "$@"; do
+        status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
+        [ "$status" = installed ] || printf '%s\n' "$package"
+    done
+}
+# Those that are not installed and could be.
+available() {
+    local package
+    for package in $(missing "$@"); do
+        ! apt-cache show "$package" >/dev/null 2>&1 || printf '%s\n' "$package"
+    done
+}
 
-echo "Installing ${missing[*]}"
+mapfile -t needed < <(missing "${packages[@]}")
+mapfile -t wanted < <(available "${optional[@]}")
+[ $((${#needed[@]} + ${#wanted[@]})) -gt 0 ] || exit 0
+
+echo "Installing ${needed[*]} ${wanted[*]}"
 as_root=()
 if [ "$(id -u)" -ne 0 ]; then
     if ! command -v sudo >/dev/null; then
-        echo "Neither root nor sudo. As root: apt-get install --no-install-recommends ${missing[*]}" >&2
+        echo "Neither root nor sudo. As root: apt-get install --no-install-recommends ${needed[*]} ${wanted[*]}" >&2
         exit 1
     fi
     as_root=(sudo)
 fi
 run_apt() { "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get "$@" </dev/null; }
-install() { run_apt install -y -q --no-install-recommends "${missing[@]}"; }
+install() { run_apt install -y -q --no-install-recommends "$@"; }
 
 # Package lists are fetched where they are missing, do not name a package, or name one that the mirror has replaced.
-apt-get install --simulate "${missing[@]}" >/dev/null 2>&1 || run_apt update -q
-install || { run_apt update -q && install; }
+if [ ${#needed[@]} -gt 0 ]; then
+    apt-get install --simulate "${needed[@]}" >/dev/null 2>&1 || run_apt update -q
+    install "${needed[@]}" || { run_apt update -q && install "${needed[@]}"; }
+fi
+mapfile -t wanted < <(available "${optional[@]}") # by those lists
+[ ${#wanted[@]} -eq 0 ] || install "${wanted[@]}"

@@ -25,7 +25,7 @@ constexpr Elf64_Half machine = EM_NONE;
 /// All of a library but its names, which follow.
 struct Library {
     Elf64_Ehdr head;
-    Elf64_Phdr load, dynamic_segment;
+    Elf64_Phdr load, dynamic_segment, stack;
     Elf64_Dyn dynamic[6];
     Elf64_Sym symbols[2]; ///< the first is always none
     Elf64_Word hash[5];   ///< buckets, symbols, the bucket's first symbol, the next after each
@@ -50,11 +50,12 @@ std::string library_with_symbol(const std::string &symbol) {
     head.e_phoff = offsetof(Library, load);
     head.e_ehsize = sizeof(Elf64_Ehdr);
     head.e_phentsize = sizeof(Elf64_Phdr);
-    head.e_phnum = 2;
+    head.e_phnum = 3;
     // One page-aligned piece, which the loader may write to, for it turns the addresses below into its own.
     library.load = {PT_LOAD, PF_R | PF_W, 0, 0, 0, size, size, 0x10000};
     constexpr std::size_t place = offsetof(Library, dynamic), length = sizeof library.dynamic;
     library.dynamic_segment = {PT_DYNAMIC, PF_R | PF_W, place, place, place, length, length, 8};
+    library.stack = {PT_GNU_STACK, PF_R | PF_W, 0, 0, 0, 0, 0, 16}; // without it, code would run on the stack
     constexpr Elf64_Section any_section = 1; // the loader only sees that it is one
     const auto entry = [](Elf64_Sxword tag, Elf64_Xword value) { return Elf64_Dyn{tag, {value}}; };
     library.dynamic[0] = entry(DT_HASH, offsetof(Library, hash));

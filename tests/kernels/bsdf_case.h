@@ -8,6 +8,7 @@
 #include <random>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace gradus::testing {
@@ -46,11 +47,11 @@ struct Kind {
 inline const std::vector<Kind> kinds = {GRADUS_BSDF_KINDS(GRADUS_TEST_KIND)};
 #undef GRADUS_TEST_KIND
 
-inline const Kind &kind_named(const std::string &name) {
+inline const Kind &kind_named(std::string_view name) {
     for (const Kind &kind : kinds)
         if (name == kind.name)
             return kind;
-    throw std::runtime_error("no BSDF kind " + name);
+    throw std::runtime_error("no BSDF kind " + std::string(name));
 }
 
 inline bool has_parameter(const Kind &kind, const std::string &name) {
