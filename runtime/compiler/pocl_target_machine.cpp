@@ -1,7 +1,7 @@
 // In gradus-compile, the passes of PoCL 5 and 6 get to know the processor that they compile for.
 //
 // These versions set LLVM's passes up without one (pocl pull request 1535, which is in 7): for no processor do vectors
-// pay, so nothing is vectorised, and renders take more than twice as long (docs/design.md). They have LLVM set up its
+// pay, so nothing is vectorised, and renders take about twice as long (docs/design.md). They have LLVM set up its
 // passes by a constructor of LLVM's library, and the loader finds the one here first, since the program exports it
 // (runtime/CMakeLists.txt). It does what LLVM's does, with the processor of the call before where there is none. Where
 // PoCL or LLVM are others, nobody calls it, or always with a processor.

@@ -38,8 +38,8 @@ std::vector<std::string> compiler_variables() {
     return variables;
 }
 
-/// Changes with how programs are compiled (pocl_compiler.h, pocl_linker.h, compiler/pocl_passes.cpp).
-constexpr const char *way_of_compiling = "5";
+/// Changes with how programs are compiled (pocl_compiler.h, pocl_linker.h, compiler/).
+constexpr const char *way_of_compiling = "6";
 
 } // namespace
 
