@@ -54,8 +54,9 @@ extern "C" void PASS_BUILDER(void *builder, void *machine, Options options, void
 extern "C" void PASS_BUILDER(void *builder, void *machine, Options options, void *profile, void *callbacks) {
     const auto construct = gradus::function_of_llvm<Construct>(SYMBOL_NAME(PASS_BUILDER));
     if (!construct)
-        std::abort();             // who started this process compiles by himself then
-    static void *known = nullptr; // PoCL compiles under a lock
+        std::abort(); // who started this process compiles by himself then
+    // PoCL compiles under a lock.
+    static void *known = nullptr;
     if (machine && !known)
         known = copy_of(machine);
     construct(builder, machine ? machine : known, options, profile, callbacks);
