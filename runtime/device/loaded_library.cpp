@@ -25,9 +25,4 @@ void *loaded_library(std::string_view name) {
     return search.path.empty() ? nullptr : dlopen(search.path.c_str(), RTLD_NOLOAD | RTLD_LAZY);
 }
 
-void *loaded_llvm() {
-    void *const of_a_version = loaded_library("libLLVM-"); // the name up to 18; others begin with libLLVM, too
-    return of_a_version ? of_a_version : loaded_library("libLLVM.so");
-}
-
 } // namespace gradus
