@@ -47,11 +47,18 @@ def has_second_opencl():
         return second_device.environment(folder) is not None
 
 
-def has_double():
-    """Of the first OpenCL device, which the tests take."""
+def devices():
+    """What is said of the OpenCL devices; the tests take the first."""
     program = ROOT / "build" / "gradus"
-    printed = subprocess.run([program, "devices"], capture_output=True, text=True, check=True).stdout
-    return re.search(r"^ +double +(\w+)", printed, re.MULTILINE).group(1) == "yes"
+    return subprocess.run([program, "devices"], capture_output=True, text=True, check=True).stdout
+
+
+def has_double():
+    return re.search(r"^ +double +(\w+)", devices(), re.MULTILINE).group(1) == "yes"
+
+
+def has_pocl_3_1():
+    return re.search(r"PoCL.*driver 3\.1", devices()) is not None
 
 
 FACTS = {
@@ -60,6 +67,7 @@ FACTS = {
     "matplotlib": has_matplotlib,
     "second-opencl": has_second_opencl,
     "double": has_double,
+    "pocl-3.1": has_pocl_3_1,
     "oclgrind": lambda: shutil.which("oclgrind") is not None,
 }
 GIVEN_FACTS = {"full"}  # by --fact alone
