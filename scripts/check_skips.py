@@ -61,6 +61,14 @@ def has_pocl_3_1():
     return re.search(r"PoCL.*driver 3\.1", devices()) is not None
 
 
+def has_oclgrind():
+    """Or could have: it is to be installed where there is a package."""
+    return shutil.which("oclgrind") is not None or (
+        shutil.which("apt-cache") is not None
+        and subprocess.run(["apt-cache", "show", "oclgrind"], capture_output=True).returncode == 0
+    )
+
+
 FACTS = {
     "shared-scenes": lambda: (ROOT.parent / "shared" / "scenes").is_dir(),
     "shared-references": lambda: all((ROOT.parent / "shared" / name).is_dir() for name in ("scenes", "references")),
@@ -68,7 +76,7 @@ FACTS = {
     "second-opencl": has_second_opencl,
     "double": has_double,
     "pocl-3.1": has_pocl_3_1,
-    "oclgrind": lambda: shutil.which("oclgrind") is not None,
+    "oclgrind": has_oclgrind,
 }
 GIVEN_FACTS = {"full"}  # by --fact alone
 

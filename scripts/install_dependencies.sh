@@ -66,12 +66,14 @@ if [ "$(id -u)" -ne 0 ]; then
     as_root=(sudo)
 fi
 run_apt() { "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get "$@" </dev/null; }
-install() { run_apt install -y -q --no-install-recommends "$@"; }
-
 # Package lists are fetched where they are missing, do not name a package, or name one that the mirror has replaced.
-if [ ${#needed[@]} -gt 0 ]; then
-    apt-get install --simulate "${needed[@]}" >/dev/null 2>&1 || run_apt update -q
-    install "${needed[@]}" || { run_apt update -q && install "${needed[@]}"; }
-fi
+install() {
+    [ $# -gt 0 ] || return 0
+    apt-get install --simulate "$@" >/dev/null 2>&1 || run_apt update -q
+    run_apt install -y -q --no-install-recommends "$@" ||
+        { run_apt update -q && run_apt install -y -q --no-install-recommends "$@"; }
+}
+
+install "${needed[@]}"
 mapfile -t wanted < <(available "${optional[@]}") # by those lists
-[ ${#wanted[@]} -eq 0 ] || install "${wanted[@]}"
+install "${wanted[@]}"

@@ -30,16 +30,15 @@ void set_steps(Kernel &kernel) {
 
 /// The columns (or rows) of a grid, as kernels/solver/grid.h multiplies them.
 struct Line {
-    std::vector<double> before, after, size, inside;
+    std::vector<double> before, after, size;
 
     /// `covered`: columns of the finest grid that all of these stand for; `pitch`: that each but the last stands for.
     Line(std::uint32_t count, std::uint32_t covered, double pitch, std::size_t padded)
-        : before(padded), after(padded), size(padded), inside(padded) {
+        : before(padded), after(padded), size(padded) {
         for (std::uint32_t i = 0; i < count; ++i) {
             before[i] = i > 0;
             after[i] = i + 1 < count;
             size[i] = i + 1 < count ? 1 : (covered - (count - 1) * pitch) / pitch;
-            inside[i] = 1;
         }
     }
 };
@@ -81,7 +80,6 @@ Multigrid::Multigrid(const PlaneMaker &make, std::uint32_t width, std::uint32_t 
         system.column_left = make.reals("column_left", columns.before);
         system.column_right = make.reals("column_right", columns.after);
         system.column_size = make.reals("column_size", columns.size);
-        system.column_inside = make.reals("column_inside", columns.inside);
         system.row_up = make.reals("row_up", rows.before);
         system.row_down = make.reals("row_down", rows.after);
         system.row_size = make.reals("row_size", rows.size);
@@ -249,7 +247,6 @@ void Multigrid::prolong(Kernels &kernels, std::size_t level, Planes channels) {
     kernel.bind("coarse", coarse.smoothed);
     kernel.bind("coarse_left", coarse.system.column_left);
     kernel.bind("coarse_right", coarse.system.column_right);
-    kernel.bind(fine.system.column_inside);
     kernel.bind("u", fine.smoothed);
     launch_transfer(kernel, fine.system.grid, coarse.system.grid, fine.system.grid.height, channels);
 }

@@ -26,7 +26,7 @@ namespace gradus::solver {
 struct System {
     Grid grid;
     double data = 0; ///< uniform weights: that of the data term of a whole pixel
-    Buffer column_left, column_right, column_size, column_inside, row_up, row_down, row_size;
+    Buffer column_left, column_right, column_size, row_up, row_down, row_size;
     Buffer weight_x, weight_y, weight_data; ///< other weights
     std::uint32_t weight_plane = 0;         ///< elements from a channel's weights to the next; 0 where all share one
     Buffer inverse_diagonal;

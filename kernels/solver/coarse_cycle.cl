@@ -71,8 +71,7 @@ GRADUS_FN void prolong_from(__global const solver_level *next, __global const so
         const real16 added =
             interpolated(coarse + (line / 2 + 1) * next->row, coarse + (far_row_of(line, next->height) + 1) * next->row,
                          left_inside, right_inside);
-        const real16 column = (real16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15) + R(2 * x);
-        vstore16(column < R(level->width) ? vload16(0, smoothed + at) + added : (real16)(R(0)), 0, smoothed + at);
+        vstore16(within_grid(vload16(0, smoothed + at) + added, 2 * x, level->width), 0, smoothed + at);
     }
 }
 

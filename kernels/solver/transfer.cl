@@ -14,15 +14,14 @@
         return;
 
 /* u += what 8 coarse pixels give to 16 fine ones; 0 beyond the grid. */
-SOLVE prolong(uint height, uint row, uint plane, COARSE, __global const real *coarse, __global const real *coarse_left,
-              __global const real *coarse_right, __global const real *column_inside, __global real *u) {
+SOLVE prolong(uint width, uint height, uint row, uint plane, COARSE, __global const real *coarse,
+              __global const real *coarse_left, __global const real *coarse_right, __global real *u) {
     SOLVER_VECTOR_PLACE(height)
     const uint y = vector_row, at = OWN_AT(2 * coarse_x, y);
     const real16 correction =
         interpolated(coarse + COARSE_AT(coarse_x, y / 2), coarse + COARSE_AT(coarse_x, far_row_of(y, coarse_height)),
                      vload8(0, coarse_left + coarse_x), vload8(0, coarse_right + coarse_x));
-    const real16 inside = vload16(0, column_inside + 2 * coarse_x);
-    vstore16(inside != R(0) ? vload16(0, u + at) + correction : (real16)(R(0)), 0, u + at);
+    vstore16(within_grid(vload16(0, u + at) + correction, 2 * coarse_x, width), 0, u + at);
 }
 
 #if SOLVER_WEIGHTED

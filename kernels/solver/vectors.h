@@ -65,6 +65,12 @@ GRADUS_FN real16 interpolated(__global const real *near_row, __global const real
     return joined(here + R(0.25) * left_inside * (left - here), here + R(0.25) * right_inside * (right - here));
 }
 
+/* Values of 16 pixels from column x on; 0 beyond the grid. */
+GRADUS_FN real16 within_grid(real16 values, uint x, uint width) {
+    const real16 column = (real16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15) + R(x);
+    return column < R(width) ? values : (real16)(R(0));
+}
+
 /* The row of coarse pixels on the other side of fine row y from the one that holds it. */
 GRADUS_FN uint far_row_of(uint y, uint coarse_height) {
     const uint near_y = y / 2;

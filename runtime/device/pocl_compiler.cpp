@@ -4,11 +4,11 @@
 #include "runtime/device/opencl.h"
 #include "runtime/device/program_code.h"
 
-#include <array>
 #include <cstddef>
 #include <cstdlib>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace gradus {
 
@@ -19,12 +19,14 @@ void set_llvm_options(bool is_3_1) {
     const auto parse = function_of_llvm<Parse>("LLVMParseCommandLineOptions");
     if (!parse)
         return;
-    const std::array<const char *, 4> options = {
+    std::vector<const char *> options = {
         "gradus-compile", "-vectorize-slp=false",
-        "-vectorize-num-stores-pred=1000000", // a limit that no kernel of ours reaches
-        // Each of some ten passes goes through all expressions once, and not again for as long as any of them changes.
-        "-instcombine-max-iterations=1"};
-    parse(is_3_1 ? 4 : 3, options.data(), nullptr); // the last is unknown to LLVM 17, which ends the process then
+        "-vectorize-num-stores-pred=1000000"}; // a limit that no kernel of ours reaches
+    // Each of some ten passes goes through all expressions once, and not again for as long as any of them changes. LLVM
+    // 17 does not know it, and ends the process then.
+    if (is_3_1)
+        options.push_back("-instcombine-max-iterations=1");
+    parse(int(options.size()), options.data(), nullptr);
 }
 
 /// The processor that PoCL compiles for: the very text that its record of the device points to. Or nullptr.
@@ -42,11 +44,12 @@ constexpr std::size_t words_of_device = 160;
 } // namespace
 
 void prepare_pocl_compiler(const cl::Context &context, const cl::Device &device, const DeviceDescription &description) {
-    const bool is_3_1 = is_pocl_3_1_cpu(description), is_5_or_6 = is_pocl_5_or_6_cpu(description);
-    if (is_5_or_6)
+    const bool is_3_1 = is_pocl_3_1_cpu(description);
+    if (is_pocl_5_or_6_cpu(description))
         setenv("POCL_LLVM_ALWAYS_INLINE", "1", 0);
-    if (is_3_1 || is_5_or_6)
-        set_llvm_options(is_3_1);
+    else if (!is_3_1)
+        return;
+    set_llvm_options(is_3_1);
     if (!is_3_1)
         return;
     const char *const processor = processor_of_pocl();

@@ -130,6 +130,13 @@ std::vector<std::string> ProgramTest::files() const {
     return names;
 }
 
+bool ProgramTest::has_oclgrind() const {
+    const Outcome version = run({"oclgrind", "--version"});
+    constexpr int not_found = 127;
+    EXPECT_TRUE(version.exit_code == 0 || version.exit_code == not_found) << version.err;
+    return version.exit_code != not_found;
+}
+
 bool ProgramTest::wait_for_file(const std::string &name) const {
     for (int i = 0; i < 5000; ++i) {
         if (fs::exists(folder / name))

@@ -52,6 +52,8 @@ class ProgramTest : public ::testing::Test {
     std::vector<std::string> files() const;
     /// Waits until the file is there; false after ten seconds.
     bool wait_for_file(const std::string &name) const;
+    /// Whether there is an oclgrind; it is to run then. For tests whose program is `env`, which finds it on the path.
+    bool has_oclgrind() const;
 
     std::filesystem::path folder;  ///< where the program runs; holds scene.xml, of no content
     std::filesystem::path printed; ///< where its output goes
