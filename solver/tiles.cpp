@@ -13,13 +13,13 @@ constexpr std::uint32_t border_columns = 8;
 /// second-level cache. Elsewhere many small groups fill the device.
 constexpr std::uint32_t most_bytes_of_host = 65536, columns_elsewhere = 112, rows_elsewhere = 8;
 
-/// Of a small grid, so that each core has some.
+/// Of a small grid, so that each core has some; a core of many has one of each channel.
 constexpr std::uint32_t fewest_tiles = 16, fewest_rows = 8;
 
 } // namespace
 
 Tiles::Tiles(const DeviceDescription &device, Precision precision)
-    : is_host_(device.is_host),
+    : is_host_(device.is_host), fewest_tiles_(std::max(fewest_tiles, device.compute_units)),
       local_reals_(is_host_
                        ? static_cast<std::uint32_t>(std::min<std::uint64_t>(most_bytes_of_host, device.local_bytes) /
                                                     real_bytes(precision))
@@ -30,7 +30,7 @@ Tiles::Shape Tiles::shape(const Grid &grid) const {
     const std::uint32_t across = quotient_up(grid.width, widest_);
     const std::uint32_t columns = quotient_up(quotient_up(grid.width, across), 16) * 16;
     const std::uint32_t most = local_reals() / (columns + 2 * border_columns) - 2;
-    const std::uint32_t rows = is_host_ ? std::max(grid.height * across / fewest_tiles, fewest_rows) : rows_elsewhere;
+    const std::uint32_t rows = is_host_ ? std::max(grid.height * across / fewest_tiles_, fewest_rows) : rows_elsewhere;
     return {columns, std::min(rows, most) / 2 * 2};
 }
 

@@ -25,7 +25,7 @@ class Tiles {
     Shape shape(const Grid &grid) const;
 
     bool is_host_;
-    std::uint32_t local_reals_, widest_;
+    std::uint32_t fewest_tiles_, local_reals_, widest_;
 };
 
 } // namespace gradus::solver

@@ -91,13 +91,14 @@ GRADUS_FN light_choice light_from_sphere(rgb radiance, vec3 center, real radius,
     return light_from_surface(radiance, pdf, place, point, normal);
 }
 
-/* A point: its intensity over the squared distance arrives. */
+/* A point: its intensity over the squared distance arrives. It has no surface; its normal says to where connections end
+ * before it, should it lie in one. */
 GRADUS_FN light_choice light_from_point(rgb intensity, vec3 point, vec3 place) {
     light_choice s;
     s.connection = v3_sub(point, place);
     const real inverse_squared = R(1) / r_max(v3_dot(s.connection, s.connection), R(1e-36));
     s.direction = v3_scale(s.connection, r_sqrt(inverse_squared));
-    s.normal = v3(R(0), R(0), R(0));
+    s.normal = v3_neg(s.direction);
     s.value = rgb_scale(intensity, inverse_squared);
     s.pdf = R(0);
     return s;

@@ -55,10 +55,15 @@ GRADUS_FN light_emission emission_from_sphere(rgb radiance, vec3 center, real ra
                                  R(4) * GRADUS_PI * radius * radius, offset, leaving.x, leaving.y);
 }
 
-GRADUS_FN light_emission emission_from_point(rgb intensity, vec3 point, point2 leaving) {
+/* Where a ray from a point starts, which may lie in a surface: ahead of it. */
+GRADUS_FN vec3 origin_at_point(vec3 point, vec3 direction, real offset) {
+    return v3_mad(point, offset_at(point, direction, offset), direction);
+}
+
+GRADUS_FN light_emission emission_from_point(rgb intensity, vec3 point, real offset, point2 leaving) {
     light_emission e;
     e.direction = warp_uniform_sphere(leaving.x, leaving.y);
-    e.origin = point;
+    e.origin = origin_at_point(point, e.direction, offset);
     e.power = rgb_scale(intensity, R(4) * GRADUS_PI);
     e.normal = v3(R(0), R(0), R(0));
     e.starts = light_vertex_at_point;
@@ -93,11 +98,11 @@ GRADUS_FN light_emission emission_from_environment(rgb value, vec3 x, vec3 y, ve
 
 /* A spot, uniform over the cone that its cutoff bounds, `one_minus_cosine` deep. */
 GRADUS_FN light_emission emission_from_spot(rgb intensity, vec3 point, vec3 axis, real cutoff, real steepness,
-                                            real one_minus_cosine, point2 leaving) {
+                                            real one_minus_cosine, real offset, point2 leaving) {
     light_emission e;
     e.direction = v3_normalize(
         frame_to_world(frame_from_normal(axis), warp_uniform_cone(one_minus_cosine, leaving.x, leaving.y)));
-    e.origin = point;
+    e.origin = origin_at_point(point, e.direction, offset);
     e.power = rgb_scale(intensity,
                         R(2) * GRADUS_PI * one_minus_cosine * light_spot_falloff(axis, e.direction, cutoff, steepness));
     e.normal = v3(R(0), R(0), R(0));
@@ -109,7 +114,7 @@ GRADUS_FN light_emission emission_from_spot(rgb intensity, vec3 point, vec3 axis
 /* A projector, uniform over its picture: what arrives there on a plane at distance 1, which is what the value says,
  * times the picture's size. */
 GRADUS_FN light_emission emission_from_projector(rgb irradiance, vec3 point, vec3 axis, vec3 along_u, vec3 along_v,
-                                                 point2 place) {
+                                                 real offset, point2 place) {
     /* One axis after the other (kernels/lib/ordered.h). */
     const real u_squared = r_max(v3_dot(along_u, along_u), R(1e-30));
     const vec3 across = v3_mad(axis, (place.x - R(0.5)) / u_squared, along_u);
@@ -117,7 +122,7 @@ GRADUS_FN light_emission emission_from_projector(rgb irradiance, vec3 point, vec
     const real v_squared = r_max(v3_dot(v, v), R(1e-30));
     light_emission e;
     e.direction = v3_normalize(v3_mad(across, (place.y - R(0.5)) / v_squared, v));
-    e.origin = point;
+    e.origin = origin_at_point(point, e.direction, offset);
     e.power = rgb_scale(irradiance, R(1) / r_sqrt(r_max(u_squared * v_squared, R(1e-30))));
     e.normal = v3(R(0), R(0), R(0));
     e.starts = light_vertex_of_beam;
@@ -157,9 +162,8 @@ GRADUS_FN light_emission emission_sampling(GRADUS_GLOBAL const real *lights, GRA
 #if TRAIT_LIGHT_TRIANGLE || TRAIT_LIGHT_SPHERE || TRAIT_LIGHT_ENVIRONMENT || TRAIT_LIGHT_SPOT || LIGHTS_HAVE_PROJECTORS
     const vec3 e1 = LIGHT_V3(light, e1);
 #endif
-#if TRAIT_LIGHT_TRIANGLE || TRAIT_LIGHT_SPHERE
     const real offset = LIGHT_FIELD(light, offset);
-#endif
+    (void)offset;
     const uint kind = KIND_OF_LIGHT(light);
     (void)kind;
     point2 on_light, away;
@@ -181,7 +185,7 @@ GRADUS_FN light_emission emission_sampling(GRADUS_GLOBAL const real *lights, GRA
                               e);
 #endif
 #if TRAIT_LIGHT_POINT
-    e = light_emission_select(IS_LIGHT_KIND(point), emission_from_point(value, p, away), e);
+    e = light_emission_select(IS_LIGHT_KIND(point), emission_from_point(value, p, offset, away), e);
 #endif
 #if TRAIT_LIGHT_DIRECTIONAL
     e = light_emission_select(IS_LIGHT_KIND(directional), emission_from_direction(value, p, center, radius, on_light),
@@ -194,7 +198,7 @@ GRADUS_FN light_emission emission_sampling(GRADUS_GLOBAL const real *lights, GRA
 #if TRAIT_LIGHT_SPOT
     e = light_emission_select(IS_LIGHT_KIND(spot),
                               emission_from_spot(value, p, e1, LIGHT_FIELD(light, e2_x), LIGHT_FIELD(light, e2_y),
-                                                 LIGHT_FIELD(light, e2_z), away),
+                                                 LIGHT_FIELD(light, e2_z), offset, away),
                               e);
 #endif
 #if TRAIT_LIGHT_ENVIRONMENT
@@ -207,7 +211,8 @@ GRADUS_FN light_emission emission_sampling(GRADUS_GLOBAL const real *lights, GRA
 #if LIGHTS_HAVE_PROJECTORS
     e = light_emission_select(
         IS_LIGHT_KIND(projector),
-        emission_from_projector(value, p, e1, PICTURE_V3(light, along_u), PICTURE_V3(light, along_v), on_light), e);
+        emission_from_projector(value, p, e1, PICTURE_V3(light, along_u), PICTURE_V3(light, along_v), offset, on_light),
+        e);
 #endif
 #if TRAIT_TEXTURED_LIGHTS
     texture_point place = point_of_sphere(v3(R(0), R(0), R(1)));

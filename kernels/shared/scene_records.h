@@ -106,7 +106,7 @@
     FIELD(light, e2_y, "")                                                                                             \
     FIELD(light, e2_z, "")                                                                                             \
     FIELD(light, inverse_area, "triangles and spheres; for the density of hits; of a map, its scale (environment.h)")  \
-    FIELD(light, offset, "of the triangle or sphere")
+    FIELD(light, offset, "of the triangle or sphere; of a point, how far off it rays begin and end")
 
 /* How light paths choose among the lights. */
 #define GRADUS_EMISSION_FIELDS(FIELD)                                                                                  \

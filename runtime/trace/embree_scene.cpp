@@ -2,12 +2,11 @@
 
 #include "runtime/error.h"
 #include "runtime/scene/instances.h"
+#include "runtime/trace/flush_denormals.h"
 #include "runtime/trace/ray_packets.h"
 #include "runtime/trace/sphere_geometry.h"
 
 #include <fmt/format.h>
-#include <pmmintrin.h>
-#include <xmmintrin.h>
 
 #include <algorithm>
 #include <cstring>
@@ -60,13 +59,8 @@ void for_each_shape(const Scene &s, Shape::Kind kind, std::uint32_t first, bool 
 
 } // namespace
 
-void EmbreeScene::prepare_thread() {
-    _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
-    _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
-}
-
 EmbreeScene::EmbreeScene(const Scene &s, int threads, tbb::task_arena &arena, const SceneTables *tables) {
-    prepare_thread();
+    flush_denormals();
     device_.reset(rtcNewDevice(threads > 0 ? fmt::format("threads={},set_affinity=0", threads).c_str() : nullptr));
     if (!device_)
         throw rtcGetDeviceError(nullptr) == RTC_ERROR_UNSUPPORTED_CPU

@@ -28,10 +28,6 @@ class EmbreeScene {
     /// As Tracer's. Builds on the threads of `arena`.
     EmbreeScene(const Scene &scene, int threads, tbb::task_arena &arena, const SceneTables *tables = nullptr);
 
-    /// To be called on every thread that builds or traces, as Embree asks: denormals cost a hundred times a normal
-    /// number, and count as 0.
-    static void prepare_thread();
-
     RTCScene handle() const { return scene_.get(); }
     /// Which primitive of the scene was hit, by the geometry and the number that Embree knows it by.
     std::uint32_t primitive_of(unsigned instance, unsigned geometry, unsigned number) const {

@@ -1,6 +1,7 @@
 #include "runtime/trace/tracer.h"
 
 #include "runtime/trace/embree_scene.h"
+#include "runtime/trace/flush_denormals.h"
 #include "runtime/trace/ray_packets.h"
 #include "runtime/trace/recorded_rays.h"
 
@@ -103,7 +104,7 @@ struct Tracer::Implementation {
             tbb::parallel_for(
                 std::size_t(0), count,
                 [&](std::size_t number) {
-                    EmbreeScene::prepare_thread();
+                    flush_denormals();
                     task(number);
                 },
                 tbb::simple_partitioner());

@@ -12,11 +12,17 @@ namespace gradus {
 
 namespace {
 
-// On a CPU a batch should stay near the last-level cache; a GPU wants many rows to hide its latencies.
-constexpr std::uint32_t default_batch_cpu = 1u << 17, default_batch_other = 1u << 20;
-// Each launch costs some 25 us beside its rows. So where paths take few bytes there are twice as many of them.
-constexpr std::uint64_t twice_below_bytes = 96u << 20;
+// On a CPU each core's share of a batch should stay near its caches. But a launch costs some 25 us beside its rows on
+// two cores, and 150 us and more on sixteen, which PoCL wakes one by one; so cores have a share of the same size,
+// however many there are. A GPU wants many rows to hide its latencies.
+constexpr std::uint32_t batch_of_core = 1u << 16, fewest_cores = 2, default_batch_other = 1u << 20;
+// Where paths take few bytes there are twice as many of them.
+constexpr std::uint64_t twice_below_bytes_of_core = 48u << 20;
+// What cores beyond the fewest may add to, for machines that have many of them.
+constexpr std::uint64_t most_bytes_of_cores = 1u << 30;
 constexpr std::uint32_t least_batch = 64, largest_batch = 1u << 24;
+
+std::uint32_t cores_of(const DeviceDescription &device) { return std::max(device.compute_units, fewest_cores); }
 
 std::size_t element_bytes(const TableDeclaration &table, Precision precision) {
     return table.is_uint ? sizeof(std::uint32_t) : real_bytes(precision);
@@ -112,7 +118,8 @@ std::uint32_t odd_lines(std::uint32_t rows) {
 }
 
 std::uint32_t default_batch_size(const Device &device) {
-    return device.description().is_host ? default_batch_cpu : default_batch_other;
+    const DeviceDescription &d = device.description();
+    return d.is_host ? std::min(largest_batch / batch_of_core, cores_of(d)) * batch_of_core : default_batch_other;
 }
 
 std::uint32_t choose_batch_size(Device &device, std::uint32_t requested, std::uint64_t samples, const TableList &list,
@@ -132,8 +139,12 @@ std::uint32_t choose_batch_size(Device &device, std::uint32_t requested, std::ui
     if (fits < least_batch)
         throw Error(ExitCode::device, fmt::format("{} has not enough memory for {} paths", d.name, least_batch));
     std::uint64_t size = requested ? requested : default_batch_size(device);
-    if (!requested && d.is_host && 2 * size * of_path <= twice_below_bytes)
-        size *= 2;
+    if (!requested && d.is_host) {
+        if (2 * batch_of_core * of_path <= twice_below_bytes_of_core)
+            size *= 2;
+        size = std::max<std::uint64_t>(std::min(size, most_bytes_of_cores / std::max<std::uint64_t>(of_path, 1)),
+                                       fewest_cores * batch_of_core);
+    }
     size = std::min<std::uint64_t>({size, largest_batch, std::max<std::uint64_t>(samples, 1)});
     const std::uint64_t rounded_up = (size + least_batch - 1) / least_batch * least_batch;
     return static_cast<std::uint32_t>(std::min(rounded_up, fits / least_batch * least_batch));

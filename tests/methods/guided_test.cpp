@@ -87,7 +87,7 @@ TEST_P(GuidedImages, OfOneSampleSayThatTheyAreNone) {
     EXPECT_THAT(result.statistics.reconstruction.note, ::testing::HasSubstr("guided needs"));
     record_stability({"Reconstruction", "one sample to a guided image: there are no halves",
                       fmt::format("scenes/cornell-box.xml, {}, one sample a pixel", GetParam()),
-                      "says that it needs two and takes another reconstruction", "values that are not finite",
+                      "says how many it needs and takes another reconstruction", "values that are not finite",
                       double(count_non_finite(result.image)), 0});
 }
 

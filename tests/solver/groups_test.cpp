@@ -1,6 +1,8 @@
 // Channels that are solved one after the other, which takes a fraction of the memory, or together; and images that are
 // made under way.
+#include "runtime/device/opencl.h"
 #include "solver/grid.h"
+#include "solver/workspace.h"
 #include "tests/solver/solver_fixture.h"
 
 #include <functional>
@@ -45,9 +47,8 @@ void expect_equal_bits(const PoissonProblem &problem, const PoissonOptions &opti
 
 TEST_P(Groups, DoNotChangeABit) { expect_equal_bits(unequal_channels(129, 65), GetParam()); }
 
-/// Large grids are gone through in bands (solver/multigrid.cpp), which are the narrower the more channels go together:
-/// of 144, 64 and 48 rows here.
-TEST(Bands, DoNotChangeABit) {
+/// Of several tiles across.
+TEST(LargeGroups, DoNotChangeABit) {
     const PoissonProblem problem = unequal_channels(1000, 611);
     PoissonOptions l1;
     l1.iterations = 3;
@@ -69,6 +70,43 @@ std::vector<PoissonOptions> all_options() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Solver, Groups, ::testing::ValuesIn(all_options()));
+
+/// They have tiles of fewer lines, and all channels at once.
+TEST(ManyCores, DoNotChangeABit) {
+    const PoissonProblem problem = unequal_channels(1000, 611);
+    PoissonOptions l1;
+    l1.iterations = 3;
+    PoissonOptions weighted = l2_options(LinearMethod::automatic);
+    weighted.weigh_by_variance = weighted.alpha_from_variances = true;
+    Device few, many;
+    few.implementation().description.compute_units = 2;
+    many.implementation().description.compute_units = 64;
+    for (const PoissonOptions &options : {l1, weighted, l2_options(LinearMethod::multigrid)}) {
+        const auto image = [&](Device &device) {
+            PoissonSolver solver(device, problem.width, problem.height, 3);
+            return solve(solver, problem.images_with_variances(), options).image;
+        };
+        EXPECT_EQ(image(few), image(many));
+    }
+}
+
+TEST(ChannelsTogether, AreMoreWhereThereAreMoreCores) {
+    DeviceDescription device;
+    device.is_host = true;
+    device.memory_bytes = std::uint64_t(1) << 40;
+    const auto together = [&](unsigned cores, std::uint32_t width, std::uint32_t height) {
+        device.compute_units = cores;
+        return solver::channels_together(device, solver::Grid(width, height), 3, Precision::single);
+    };
+    EXPECT_EQ(together(2, 256, 256), 3u);
+    EXPECT_EQ(together(2, 512, 512), 1u);
+    EXPECT_EQ(together(1, 256, 256), 3u);
+    EXPECT_EQ(together(16, 1280, 720), 3u);
+    EXPECT_EQ(together(16, 3840, 2160), 1u);
+    // What takes half of the memory is never done together.
+    device.memory_bytes = std::uint64_t(256) << 20;
+    EXPECT_EQ(together(16, 1280, 720), 1u);
+}
 
 /// The buffers of a solve in planes of one channel, for a 512 x 512 image.
 double planes_of(const PoissonOptions &options, std::uint32_t together) {

@@ -144,6 +144,25 @@ TEST_F(BatchSize, IsLargerOnACpuWherePathsAreSmall) {
     EXPECT_EQ(choose(0, plenty, false), default_batch_size(device));
 }
 
+TEST_F(BatchSize, GrowsWithTheCoresOfACpu) {
+    description().memory_bytes = description().allocation_bytes = plenty;
+    description().is_host = true;
+    TableList wide = list(false);
+    wide.push_back({.name = "wide", .columns = 100});
+    const auto default_of = [&](unsigned cores, const TableList &tables) {
+        description().compute_units = cores;
+        return choose_batch_size(device, 0, plenty, tables, Precision::single);
+    };
+    EXPECT_EQ(default_of(1, wide), default_of(2, wide));
+    EXPECT_EQ(default_of(8, wide), 4 * default_of(2, wide));
+    EXPECT_EQ(default_of(8, list(false)), 4 * default_of(2, list(false)));
+    // But not memory without end; a path of `wide` takes more than its 400 bytes.
+    EXPECT_LE(400u * std::uint64_t(default_of(1000, wide)), std::uint64_t(1) << 30);
+    EXPECT_GT(default_of(1000, wide), default_of(8, wide));
+    wide.push_back({.name = "wider", .columns = 5000});
+    EXPECT_EQ(default_of(1000, wide), default_of(2, list(false)) / 2) << "not less than two cores have";
+}
+
 TEST_F(BatchSize, HasABoundWhateverIsAsked) {
     description().memory_bytes = description().allocation_bytes = plenty;
     EXPECT_LE(choose(0xFFFFFFFF, plenty, true), 1u << 24);

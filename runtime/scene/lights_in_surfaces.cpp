@@ -1,0 +1,138 @@
+#include "runtime/scene/lights_in_surfaces.h"
+
+#include "runtime/scene/bounds.h"
+#include "runtime/scene/instances.h"
+#include "runtime/scene/parallel.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <mutex>
+#include <utility>
+
+// After all others: their short macro names are not for library headers.
+#include "kernels/lib/ray_start.h"
+#include "kernels/lib/scene_triangle.h"
+
+namespace gradus {
+
+using namespace lib_float;
+
+namespace {
+
+constexpr double rounding = GRADUS_ROUNDING, tracer_error = GRADUS_TRACER_ERROR;
+
+/// A ray that grazes a surface passes near it over a way so many times longer than the tracer errs by across it.
+constexpr double longest_graze = 64;
+
+struct Place {
+    Double3 at;
+    std::size_t number;
+};
+
+bool holds(const Bounds &box, const Double3 &at, double reach) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (!(at[axis] >= box.lower[axis] - reach && at[axis] <= box.upper[axis] + reach))
+            return false;
+    return true;
+}
+
+/// By how much rounding moves a point so far from the origin, and the tracer a primitive of that size.
+double reach_of(const Bounds &box, double of_primitive) {
+    double farthest = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        farthest = std::max({farthest, std::fabs(box.lower[axis]), std::fabs(box.upper[axis])});
+    return of_primitive + rounding * farthest;
+}
+
+class Gaps {
+  public:
+    explicit Gaps(const std::vector<Vector3> &places) : gaps_(places.size()) {
+        for (const Vector3 &place : places)
+            places_.push_back({to_double(place), places_.size()});
+        std::ranges::sort(places_, {}, [](const Place &place) { return place.at[0]; });
+    }
+
+    bool has_some_in(const Bounds &box) const {
+        return std::ranges::any_of(places_, [&](const Place &place) { return holds(box, place.at, 0); });
+    }
+
+    void add_triangle(const std::array<Double3, 3> &corners) {
+        Bounds box;
+        for (const Double3 &corner : corners)
+            box.add(Bounds{corner, corner});
+        const Double3 e1 = subtract(corners[1], corners[0]), e2 = subtract(corners[2], corners[0]);
+        const Double3 across = cross(e1, e2);
+        const double area = length(across);
+        if (!(area > 0))
+            return;
+        const auto edge = [](const Double3 &e) { return v3(float(e[0]), float(e[1]), float(e[2])); };
+        add(box, reach_of(box, triangle_offset_of(edge(e1), edge(e2))),
+            [&](const Double3 &at) { return std::fabs(dot(across, subtract(at, corners[0]))) / area; });
+    }
+    void add_sphere(const Sphere &sphere) {
+        Bounds box;
+        box.add(sphere.center, sphere.radius);
+        add(box, reach_of(box, tracer_error * sphere.radius), [&](const Double3 &at) {
+            return std::fabs(length(subtract(at, to_double(sphere.center))) - sphere.radius);
+        });
+    }
+    std::vector<float> take() { return std::move(gaps_); }
+
+  private:
+    template <class Distance>
+    void add(const Bounds &box, double reach, const Distance &distance) {
+        const auto first =
+            std::ranges::lower_bound(places_, box.lower[0] - reach, {}, [](const Place &place) { return place.at[0]; });
+        for (auto place = first; place != places_.end() && place->at[0] <= box.upper[0] + reach; ++place)
+            if (holds(box, place->at, reach) && distance(place->at) <= reach) {
+                const std::lock_guard lock(mutex_);
+                float &gap = gaps_[place->number];
+                gap = std::max(gap, float(longest_graze * reach));
+            }
+    }
+
+    std::vector<Place> places_; ///< in the order of x
+    std::mutex mutex_;
+    std::vector<float> gaps_;
+};
+
+void add_mesh(const Mesh &mesh, const Matrix4 *to_world, Gaps &gaps) {
+    for_each_in_parallel(mesh.triangles.size(), [&](std::size_t number) {
+        std::array<Double3, 3> corners;
+        for (std::size_t i = 0; i < 3; ++i) {
+            corners[i] = to_double(mesh.positions[mesh.triangles[number][i]]);
+            if (to_world)
+                corners[i] = transform_point(*to_world, corners[i]);
+        }
+        gaps.add_triangle(corners);
+    });
+}
+
+} // namespace
+
+std::vector<float> gaps_in_surfaces(const Scene &scene, const std::vector<Vector3> &places) {
+    Gaps gaps(places);
+    if (places.empty())
+        return {};
+    for (const Shape &shape : scene.shapes) {
+        if (shape.group != no_group)
+            continue;
+        if (shape.kind == Shape::Kind::mesh)
+            add_mesh(scene.meshes[shape.geometry], nullptr, gaps);
+        else
+            gaps.add_sphere(scene.spheres[shape.geometry]);
+    }
+    const std::vector<Bounds> of_groups = group_bounds(scene);
+    for (const Instance &instance : scene.instances) {
+        const Matrix4 to_world = matrix_of(instance);
+        if (!gaps.has_some_in(placed_bounds(of_groups[instance.group], to_world)))
+            continue;
+        for (const Shape &shape : scene.shapes)
+            if (shape.group == std::int32_t(instance.group) && shape.kind == Shape::Kind::mesh)
+                add_mesh(scene.meshes[shape.geometry], &to_world, gaps);
+    }
+    return gaps.take();
+}
+
+} // namespace gradus

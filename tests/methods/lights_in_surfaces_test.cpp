@@ -1,0 +1,78 @@
+// Lights that shine from a point which lies in a surface: that surface never stands in their way, however it is turned
+// and whichever rays are traced together.
+#include "runtime/scene/transform.h"
+#include "tests/support/render.h"
+#include "tests/support/small_scenes.h"
+#include "tests/support/stability.h"
+
+#include <fmt/format.h>
+
+#include <ostream>
+
+namespace gradus::testing {
+namespace {
+
+struct LightCase {
+    const char *method;
+    Emitter::Kind kind;
+    double far;   ///< along each axis, from the origin
+    double width; ///< of the surface
+};
+
+std::ostream &operator<<(std::ostream &out, const LightCase &c) {
+    return out << c.method << (c.kind == Emitter::Kind::spot ? " spot " : " point ") << c.far << ' ' << c.width;
+}
+
+/// A light above a floor that is seen from the side, in the middle of a black plate where there is one.
+Scene scene_of(const LightCase &c, bool has_plate) {
+    SceneMaker maker(48, 8);
+    const auto place = [&](double x, double y, double z) {
+        return Vector3{float(c.far + x), float(c.far + y), float(c.far + z)};
+    };
+    const Vector3 at = place(0.1, 2, -0.2);
+    maker.parallelogram(place(-2, 0, -2), {0, 0, 4}, {4, 0, 0}, maker.material(diffuse(0.5)));
+    if (has_plate) {
+        // Across no axis, and no corner of a triangle at the light.
+        const float w = float(c.width);
+        const Vector3 u{0.8f * w, 0.02f * w, 0.6f * w}, v{-0.6f * w, 0.01f * w, 0.8f * w};
+        maker.parallelogram(
+            {at.x - 0.4f * u.x - 0.45f * v.x, at.y - 0.4f * u.y - 0.45f * v.y, at.z - 0.4f * u.z - 0.45f * v.z}, u, v,
+            maker.material(two_sided(diffuse(0))));
+    }
+    if (c.kind == Emitter::Kind::spot)
+        maker.spot({10, 10, 10}, at, {0, -1, 0}, 40, 60);
+    else
+        maker.point_light({10, 10, 10}, at);
+    maker.look({c.far + 3, c.far + 1, c.far + 2}, {c.far, c.far, c.far}, 40);
+    return maker.scene;
+}
+
+class LightsInSurfaces : public ::testing::TestWithParam<LightCase> {};
+
+TEST_P(LightsInSurfaces, ShineToBothSides) {
+    const LightCase &c = GetParam();
+    RenderOptions options;
+    options.direct_photons = true; // of sppm, and as many as without the plate
+    options.photons = 20'000;
+    const Image with = render(scene_of(c, true), options, c.method).image;
+    const Image without = render(scene_of(c, false), options, c.method).image;
+    const double lost = std::fabs(1 - spread_of(with).mean / spread_of(without).mean);
+    fmt::print("share of the light that the surface takes: {:.2e}\n", lost);
+    constexpr double limit = 1e-6; // of photons, which start elsewhere
+    EXPECT_LE(lost, limit);
+    record_stability({"Numbers", "whether a light that lies in a surface shines is left to rounding",
+                      fmt::format("{}, a {} in a plate {} wide, {} from the origin", c.method,
+                                  c.kind == Emitter::Kind::spot ? "spot" : "point light", c.width, c.far),
+                      "its rays begin and end off it, by what the tracer errs by in meeting that surface",
+                      "share of the light that is lost or won", lost, limit});
+}
+
+INSTANTIATE_TEST_SUITE_P(Numbers, LightsInSurfaces,
+                         ::testing::Values(LightCase{"pt", Emitter::Kind::point, 0, 1},
+                                           LightCase{"pt", Emitter::Kind::point, 100, 1},
+                                           LightCase{"pt", Emitter::Kind::spot, 7, 1000},
+                                           LightCase{"gpt", Emitter::Kind::point, 7, 10},
+                                           LightCase{"sppm", Emitter::Kind::point, 7, 1000}));
+
+} // namespace
+} // namespace gradus::testing
