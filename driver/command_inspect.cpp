@@ -1,10 +1,12 @@
 #include "driver/commands.h"
+#include "driver/memory_check.h"
 #include "driver/number_checks.h"
 #include "driver/output_files.h"
 #include "driver/phase_watch.h"
 #include "driver/scene_request.h"
 #include "driver/scene_summary.h"
 #include "driver/standard_streams.h"
+#include "methods/method.h"
 #include "runtime/error.h"
 #include "runtime/scene/roughness.h"
 
@@ -59,6 +61,12 @@ nlohmann::json camera_json(const Camera &camera) {
     return json;
 }
 
+/// What the method holds for all pixels, with its own reconstruction.
+std::uint64_t image_bytes(const Scene &scene, const std::string &method) {
+    const auto [width, height] = image_size(scene.film);
+    return std::uint64_t(width) * height * bytes_of_pixel(method, {});
+}
+
 std::string summary_text(const Scene &scene, const SceneSummary &summary, const Traits &traits, double roughness) {
     std::string text;
     const FilmSettings &film = scene.film;
@@ -96,8 +104,9 @@ std::string summary_text(const Scene &scene, const SceneSummary &summary, const 
         text += fmt::format("instances {}, ", mebibytes(summary.instance_bytes));
     if (summary.texture_bytes > 0)
         text += fmt::format("textures and maps {}, ", mebibytes(summary.texture_bytes));
-    text += fmt::format("ray tracing about {}, film {}; a render adds its batch\n", mebibytes(summary.tree_bytes),
-                        mebibytes(summary.film_bytes));
+    text +=
+        fmt::format("ray tracing about {}; an image by pt {}, by gpt {}, and a batch\n", mebibytes(summary.tree_bytes),
+                    mebibytes(image_bytes(scene, "pt")), mebibytes(image_bytes(scene, "gpt")));
     text += fmt::format("traits      (each kernel is compiled for those of them that it declares)\n");
     for (const auto &[name, value] : traits)
         text += fmt::format("  {} = {}\n", name, value);
@@ -144,7 +153,7 @@ std::string summary_json(const Scene &scene, const SceneSummary &summary, const 
           {"instance_bytes", summary.instance_bytes},
           {"texture_bytes", summary.texture_bytes},
           {"tree_bytes_estimated", summary.tree_bytes},
-          {"film_bytes", summary.film_bytes}}},
+          {"image_bytes", {{"pt", image_bytes(scene, "pt")}, {"gpt", image_bytes(scene, "gpt")}}}}},
         {"traits", trait_object}};
     return json_text(json);
 }

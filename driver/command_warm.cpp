@@ -45,7 +45,7 @@ int run_warm(const WarmRequest &request, const Services &services) {
     const Scene scene = load_requested_scene(for_method(request.scene, request.method.method), services, warn);
     for (const std::string &sentence : unread_options(request.method, request.method.method))
         warn(sentence);
-    check_memory(scene, request.method.options);
+    check_memory(scene, request.method.method, request.method.options);
     RenderOptions options = request.method.options;
     options.on_compiled = [](const std::string &kernel, std::size_t ready, std::size_t total, double seconds) {
         print_message(fmt::format("{:8.3f} s  {} ({} of {})\n", seconds, kernel, ready, total));

@@ -25,10 +25,17 @@ Image read_selected(const std::string &path, const CompareRequest &request) {
     }
 }
 
-/// A file that holds a variance, or our own image with its variance as a layer.
+/// A file that holds a variance, or our own image with its variance as a layer, which is that of its samples' mean.
 Image read_variance(const CompareRequest &request) {
     const Image image = read_selected(request.variance, request);
-    return request.layer.empty() && image.find("variance.R") ? select_layer(image, "variance") : image;
+    if (!request.layer.empty() || !image.find("variance.R"))
+        return image;
+    const auto made_by = image.metadata.find("reconstruction");
+    if (made_by != image.metadata.end() && made_by->second != "none")
+        throw Error(ExitCode::image, fmt::format("{}: its pixels are a reconstruction ({}), and its layer variance is "
+                                                 "that of the samples' mean; render the reference with --method pt",
+                                                 request.variance, made_by->second));
+    return select_layer(image, "variance");
 }
 
 /// Scores of what is no variance would tell nothing.

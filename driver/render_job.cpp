@@ -66,7 +66,7 @@ class RenderJob {
             [&] {
                 const PhaseWatch phase_watch(phases_, progress_);
                 const Phase phase(&phases_, phase_names::image);
-                image = described(prepared_.method->last_image(), record_.interrupted);
+                image = described(prepared_.method->last_image(), record_.interrupted || has_holes());
             },
             [&] { return prepared_.method->mean_image(); });
         watch_->answer(nullptr);
@@ -89,7 +89,7 @@ class RenderJob {
         check_distinct(output_list(request_.outputs), files_read_);
         check_counts(scene);
         warn_of_unread_options(request_.method.method);
-        check_memory(scene, request_.method.options);
+        check_memory(scene, request_.method.method, request_.method.options);
         if (!is_limited_by_samples())
             scene.settings.samples_per_pixel =
                 request_.until_error > 0 ? ErrorWatch::most_samples : endless_samples_per_pixel;
@@ -182,6 +182,11 @@ class RenderJob {
         return prepared_.method->done_samples() == 0 && prepared_.method->total_samples() > 0;
     }
 
+    /// Whether there are pixels without a sample.
+    bool has_holes() const {
+        return prepared_.method->done_samples() < std::min(pixels(), prepared_.method->total_samples());
+    }
+
     /// Whether the time is over. An image with holes, or none, is of no use, so a sample of each pixel is waited for,
     /// but not for ever.
     bool is_over(double patience) const {
@@ -245,7 +250,7 @@ class RenderJob {
                 last_partial = Clock::now();
             }
         }
-        if (record_.stopped_by == "time" && prepared_.method->done_samples() < pixels() && !has_nothing_to_show())
+        if (record_.stopped_by == "time" && has_holes() && !has_nothing_to_show())
             progress_.message(
                 "gradus: warning: the time was over before each pixel had a sample: the others are black");
         progress_.finish(state());

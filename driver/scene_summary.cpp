@@ -164,8 +164,6 @@ SceneSummary summarize(const Scene &scene) {
     summary.texture_bytes = picture_bytes(scene);
     for (const Emitter &emitter : scene.emitters)
         ++summary.emitters[name_of(emitter.kind)];
-    const auto [width, height] = image_size(scene.film);
-    summary.film_bytes = std::uint64_t(width) * height * 4 * sizeof(float);
     return summary;
 }
 

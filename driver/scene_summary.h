@@ -23,7 +23,6 @@ struct SceneSummary {
     std::uint64_t instance_bytes = 0;               ///< what instances take beside records among the tables
     std::uint64_t texture_bytes = 0;                ///< pictures, each once, and the environment's map
     std::uint64_t tree_bytes = 0;                   ///< the ray tracer's tree and vertices, estimated
-    std::uint64_t film_bytes = 0;                   ///< one sum and one count of each pixel
 };
 
 /// The names that Mitsuba files have for them.

@@ -53,6 +53,10 @@ void check(const PoissonImages<Planes> &images, const PoissonOptions &options) {
         usage("a reconstruction needs the primal image, dx and dy");
     if (!options.alpha_from_variances && !(options.alpha >= 0 && std::isfinite(options.alpha)))
         usage(fmt::format("alpha is {}; it must be a number, 0 or larger", options.alpha));
+    if (options.norm == PoissonNorm::l1 && !options.alpha_from_variances && options.alpha > 0 &&
+        options.alpha < least_alpha_of_absolute_values)
+        usage(fmt::format("alpha is {}; with the L1 norm it must be 0 or at least {:g}", options.alpha,
+                          least_alpha_of_absolute_values));
     if (!(options.damping > 0 && options.damping <= 1))
         usage(fmt::format("damping is {}; it must be above 0 and at most 1", options.damping));
     if (!(options.tolerance >= 0))

@@ -123,6 +123,22 @@ TEST_F(Compare, AVarianceMayBeALayerOfTheReference) {
     EXPECT_THAT(outcome.out, HasSubstr("its own relMSE 1.2497e-01"));
 }
 
+TEST_F(Compare, AVarianceOfSamplesIsNoneOfAReconstruction) {
+    write_image(make_gray(1, 1, {3}), at("image.exr"));
+    Image reference = make_gray(1, 1, {2});
+    for (const char *channel : {"variance.R", "variance.G", "variance.B"})
+        reference.channels.push_back({channel, {0.5f}});
+    const auto outcome_by = [&](const char *reconstruction) {
+        reference.metadata["reconstruction"] = reconstruction;
+        write_image(reference, at("reference.exr"));
+        return run({"compare", "image.exr", "reference.exr", "--variance", "reference.exr"});
+    };
+    const Outcome outcome = outcome_by("weighted");
+    EXPECT_EQ(outcome.exit_code, 6);
+    EXPECT_THAT(outcome.err, HasSubstr("reference.exr: its pixels are a reconstruction (weighted)"));
+    EXPECT_EQ(outcome_by("none").exit_code, 0);
+}
+
 TEST_F(Compare, AVarianceBelowZeroIsRefused) {
     write_set(0.05f); // not equal
     std::vector<float> values(side * side, 1.0f / 6400);

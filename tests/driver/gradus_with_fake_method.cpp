@@ -2,6 +2,7 @@
 //   batch_ms=N   what a batch of one sample a pixel takes (0)
 //   patient_ms=N the first batch takes so long, but for being told to stop
 //   endless=N    after N samples a pixel batches end only by being told to stop
+//   holes=N      so many pixels have a sample less than the others
 //   fail=memory  the render runs out of memory; fail=strange: throws what is no exception; memory-later, device-later:
 //                after three samples a pixel; memory-image: and in image(), too; memory-partial: in the first image();
 //                reconstruction: in all image() but not in mean_image(), whose B is 0.25
@@ -74,7 +75,9 @@ class FakeMethod : public Method {
             std::this_thread::sleep_for(std::chrono::milliseconds(std::stoi(parameter("pilot_ms"))));
     }
     std::uint64_t total_samples() const override { return pixels() * samples_per_pixel_; }
-    std::uint64_t done_samples() const override { return pixels() * done_; }
+    std::uint64_t done_samples() const override {
+        return pixels() * done_ - (parameter("holes").empty() || done_ == 0 ? 0 : std::stoull(parameter("holes")));
+    }
     bool render_batch() override {
         if (parameter("fail") == "memory")
             throw std::bad_alloc();

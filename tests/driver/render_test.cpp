@@ -145,6 +145,15 @@ TEST_F(Render, ASampleOfEachPixelIsWaitedForLongerThanTheTime) {
     EXPECT_EQ(text_of("out.exr"), before);
 }
 
+TEST_F(Render, AnImageWithHolesSaysThatItIsNotWhole) {
+    const Outcome outcome = render({"-o", "out.exr", "--time", "0.01", "-D", "endless=1", "-D", "holes=5"});
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_THAT(outcome.err, HasSubstr("warning: the time was over before each pixel had a sample"));
+    EXPECT_EQ(read_image(at("out.exr")).metadata.at("partial"), "true");
+    ASSERT_EQ(render({"-o", "out.exr", "--time", "0.01", "-D", "endless=2", "-D", "holes=5"}).exit_code, 0);
+    EXPECT_EQ(read_image(at("out.exr")).metadata.at("partial"), "false");
+}
+
 TEST_F(Render, ABatchThatTakesFarLongerThanTheTimeIsGivenUp) {
     ASSERT_EQ(render({"-o", "out.exr", "--time", "0.01", "-D", "endless=1"}).exit_code, 0);
     EXPECT_EQ(value(read_image(at("out.exr")), "G"), 1);

@@ -33,7 +33,6 @@ TEST(SceneSummary, CountsWhatTheSceneHolds) {
     EXPECT_EQ(summary.triangles, 2u);
     EXPECT_EQ(summary.vertices, 4u);
     EXPECT_EQ(summary.geometry_bytes, 4u * 12 + 4 * 12 + 2 * 12);
-    EXPECT_EQ(summary.film_bytes, 10u * 5 * 16);
     EXPECT_THAT(summary.lower, ::testing::ElementsAre(0, -2, -2));
     EXPECT_THAT(summary.upper, ::testing::ElementsAre(12, 5, 2));
     using ::testing::Pair;

@@ -35,6 +35,11 @@ constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 TEST(Options, OutOfTheirRangeAreRefused) {
     for (const double alpha : {-0.2, -1e-30, not_a_number, std::numeric_limits<double>::infinity()})
         expect_usage_error("alpha " + std::to_string(alpha), [&](auto &, auto &options) { options.alpha = alpha; });
+    for (const double alpha : {1e-30, 1e-6, 0.99e-4})
+        expect_usage_error("alpha of L1 " + std::to_string(alpha), [&](auto &, auto &options) {
+            options.norm = PoissonNorm::l1;
+            options.alpha = alpha;
+        });
     for (const double tolerance : {-1e-5, not_a_number})
         expect_usage_error("tolerance " + std::to_string(tolerance),
                            [&](auto &, auto &options) { options.tolerance = tolerance; });
