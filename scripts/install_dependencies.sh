@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs the packages of Debian 12 or 13 that building, testing and running Gradus takes; only those that are missing.
+# Installs the packages of Debian 12 or 13, or Ubuntu 24.04, that building, testing and running Gradus takes; only those
+# that are missing.
 #
 #   scripts/install_dependencies.sh [--bench] [--list]
 #
