@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <ostream>
 
 namespace gradus::testing {
@@ -23,21 +24,24 @@ std::ostream &operator<<(std::ostream &out, const LightCase &c) {
     return out << c.method << (c.kind == Emitter::Kind::spot ? " spot " : " point ") << c.far << ' ' << c.width;
 }
 
-/// A light above a floor that is seen from the side, in the middle of a black plate where there is one.
-Scene scene_of(const LightCase &c, bool has_plate) {
+constexpr int plates = 6;
+
+/// A light above a floor that is seen from the side, and in a black plate where there is one: plates of other numbers
+/// are rounded to lie a little over it or under it.
+Scene scene_of(const LightCase &c, std::optional<int> plate) {
     SceneMaker maker(48, 8);
     const auto place = [&](double x, double y, double z) {
         return Vector3{float(c.far + x), float(c.far + y), float(c.far + z)};
     };
     const Vector3 at = place(0.1, 2, -0.2);
     maker.parallelogram(place(-2, 0, -2), {0, 0, 4}, {4, 0, 0}, maker.material(diffuse(0.5)));
-    if (has_plate) {
+    if (plate) {
         // Across no axis, and no corner of a triangle at the light.
-        const float w = float(c.width);
+        const float w = float(c.width), along_u = 0.2f + 0.1f * float(*plate), along_v = 0.73f - 0.07f * float(*plate);
         const Vector3 u{0.8f * w, 0.02f * w, 0.6f * w}, v{-0.6f * w, 0.01f * w, 0.8f * w};
-        maker.parallelogram(
-            {at.x - 0.4f * u.x - 0.45f * v.x, at.y - 0.4f * u.y - 0.45f * v.y, at.z - 0.4f * u.z - 0.45f * v.z}, u, v,
-            maker.material(two_sided(diffuse(0))));
+        maker.parallelogram({at.x - along_u * u.x - along_v * v.x, at.y - along_u * u.y - along_v * v.y,
+                             at.z - along_u * u.z - along_v * v.z},
+                            u, v, maker.material(two_sided(diffuse(0))));
     }
     if (c.kind == Emitter::Kind::spot)
         maker.spot({10, 10, 10}, at, {0, -1, 0}, 40, 60);
@@ -54,17 +58,20 @@ TEST_P(LightsInSurfaces, ShineToBothSides) {
     RenderOptions options;
     options.direct_photons = true; // of sppm, and as many as without the plate
     options.photons = 20'000;
-    const Image with = render(scene_of(c, true), options, c.method).image;
-    const Image without = render(scene_of(c, false), options, c.method).image;
-    const double lost = std::fabs(1 - spread_of(with).mean / spread_of(without).mean);
-    fmt::print("share of the light that the surface takes: {:.2e}\n", lost);
-    constexpr double limit = 1e-6; // of photons, which start elsewhere
+    const double expected = spread_of(render(scene_of(c, std::nullopt), options, c.method).image).mean;
+    double lost = 0;
+    for (int plate = 0; plate < plates; ++plate) {
+        const double with = spread_of(render(scene_of(c, plate), options, c.method).image).mean;
+        lost = std::max(lost, std::fabs(1 - with / expected));
+    }
+    fmt::print("share of the light that a surface takes at most: {:.2e}\n", lost);
+    constexpr double limit = 1e-4; // a few photons come down elsewhere
     EXPECT_LE(lost, limit);
     record_stability({"Numbers", "whether a light that lies in a surface shines is left to rounding",
-                      fmt::format("{}, a {} in a plate {} wide, {} from the origin", c.method,
+                      fmt::format("{}, a {} in each of 6 plates {} wide, {} from the origin", c.method,
                                   c.kind == Emitter::Kind::spot ? "spot" : "point light", c.width, c.far),
                       "its rays begin and end off it, by what the tracer errs by in meeting that surface",
-                      "share of the light that is lost or won", lost, limit});
+                      "share of the light that is lost or won, at most", lost, limit});
 }
 
 INSTANTIATE_TEST_SUITE_P(Numbers, LightsInSurfaces,
