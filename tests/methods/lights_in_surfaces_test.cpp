@@ -18,6 +18,9 @@ struct LightCase {
     Emitter::Kind kind;
     double far;   ///< along each axis, from the origin
     double width; ///< of the surface
+    /// Of photons a few come down elsewhere; and shifts go by the size of the scene, and so does the noise that is
+    /// left.
+    double limit = 0;
 };
 
 std::ostream &operator<<(std::ostream &out, const LightCase &c) {
@@ -36,9 +39,9 @@ Scene scene_of(const LightCase &c, std::optional<int> plate) {
     const Vector3 at = place(0.1, 2, -0.2);
     maker.parallelogram(place(-2, 0, -2), {0, 0, 4}, {4, 0, 0}, maker.material(diffuse(0.5)));
     if (plate) {
-        // Across no axis, and no corner of a triangle at the light.
+        // Across no axis, no corner of a triangle at the light; higher where the camera is.
         const float w = float(c.width), along_u = 0.2f + 0.1f * float(*plate), along_v = 0.73f - 0.07f * float(*plate);
-        const Vector3 u{0.8f * w, 0.02f * w, 0.6f * w}, v{-0.6f * w, 0.01f * w, 0.8f * w};
+        const Vector3 u{0.8f * w, 0.5f * w, 0.6f * w}, v{-0.6f * w, 0.01f * w, 0.8f * w};
         maker.parallelogram({at.x - along_u * u.x - along_v * v.x, at.y - along_u * u.y - along_v * v.y,
                              at.z - along_u * u.z - along_v * v.z},
                             u, v, maker.material(two_sided(diffuse(0))));
@@ -65,21 +68,20 @@ TEST_P(LightsInSurfaces, ShineToBothSides) {
         lost = std::max(lost, std::fabs(1 - with / expected));
     }
     fmt::print("share of the light that a surface takes at most: {:.2e}\n", lost);
-    constexpr double limit = 1e-4; // a few photons come down elsewhere
-    EXPECT_LE(lost, limit);
+    EXPECT_LE(lost, c.limit);
     record_stability({"Numbers", "whether a light that lies in a surface shines is left to rounding",
                       fmt::format("{}, a {} in each of 6 plates {} wide, {} from the origin", c.method,
                                   c.kind == Emitter::Kind::spot ? "spot" : "point light", c.width, c.far),
                       "its rays begin and end off it, by what the tracer errs by in meeting that surface",
-                      "share of the light that is lost or won, at most", lost, limit});
+                      "share of the light that is lost or won, at most", lost, c.limit});
 }
 
 INSTANTIATE_TEST_SUITE_P(Numbers, LightsInSurfaces,
                          ::testing::Values(LightCase{"pt", Emitter::Kind::point, 0, 1},
                                            LightCase{"pt", Emitter::Kind::point, 100, 1},
                                            LightCase{"pt", Emitter::Kind::spot, 7, 1000},
-                                           LightCase{"gpt", Emitter::Kind::point, 7, 10},
-                                           LightCase{"sppm", Emitter::Kind::point, 7, 1000}));
+                                           LightCase{"gpt", Emitter::Kind::point, 7, 1000, 0.02},
+                                           LightCase{"sppm", Emitter::Kind::point, 7, 1000, 1e-4}));
 
 } // namespace
 } // namespace gradus::testing
