@@ -32,6 +32,9 @@ void add_plugins_command(CLI::App &app, std::function<int()> &chosen) {
     CLI::App &command = *app.add_subcommand("plugins", "List the plugins of scene files with their parameters");
     const auto names = std::make_shared<std::vector<std::string>>();
     command.add_option("NAME", *names, "Only plugins of these names");
+    command.footer("Examples:\n"
+                   "  gradus plugins                 all of them\n"
+                   "  gradus plugins dielectric obj  what these take, and in which dialects");
     command.callback([names, &chosen] { chosen = [names] { return run_plugins(*names); }; });
 }
 

@@ -80,14 +80,18 @@ std::uint64_t address_space_bytes(int threads) {
 
 } // namespace
 
-std::uint64_t bytes_of_pixel(const std::string &method, const RenderOptions &options) {
+std::uint64_t bytes_of_pixel(const std::string &method, const RenderOptions &options, std::uint64_t samples_per_pixel) {
     // As renders of growing size allocate (tests/driver/memory_check_test.cpp): films, or, where images are
     // reconstructed, rather the solver. Features and variances are most of --aov.
     const bool is_guided = options.reconstruction == Reconstruction::guided;
     if (method == "sppm")
         return options.aov ? 164 : 28;
     if (method == "gpt" || method == "gpm")
-        return options.aov ? 570 : is_guided ? 480 : keeps_halves(options) ? 330 : 185;
+        return options.aov                                  ? 570
+               : !keeps_halves(options)                     ? 185
+               : samples_per_pixel < 2 * least_half_samples ? 240 // the films: there is none but L1
+               : is_guided                                  ? 480
+                                                            : 330;
     return is_guided ? 300 : options.aov ? 140 : options.error ? 56 : 28;
 }
 
@@ -105,7 +109,8 @@ std::uint64_t least_render_bytes(const Scene &scene, const std::string &method, 
     const SceneSummary summary = summarize(scene);
     // An image is planes, and once more the bytes of its file; films may be gone by then. Pictures lie in the scene and
     // in the kernels' tables.
-    const std::uint64_t of_pixel = std::max(bytes_of_pixel(method, options), channels * 2 * sizeof(float));
+    const std::uint64_t of_pixel =
+        std::max(bytes_of_pixel(method, options, scene.settings.samples_per_pixel), channels * 2 * sizeof(float));
     return summary.geometry_bytes + summary.instance_bytes + 2 * summary.texture_bytes + summary.tree_bytes +
            std::uint64_t(width) * height * of_pixel;
 }

@@ -57,7 +57,7 @@ nlohmann::json read_entries(const std::string &path) {
             throw Error(ExitCode::failure, "it is not a list of devices");
         return entries;
     } catch (const nlohmann::json::exception &error) {
-        throw Error(ExitCode::failure, error.what());
+        throw Error(ExitCode::failure, fmt::format("it is not what `gradus tune` writes ({})", error.what()));
     }
 }
 

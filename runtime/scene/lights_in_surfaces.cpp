@@ -20,7 +20,10 @@ using namespace lib_float;
 
 namespace {
 
-constexpr double rounding = GRADUS_ROUNDING, tracer_error = GRADUS_TRACER_ERROR;
+/// What the tracer errs by, as a share of a primitive's size, and how many times that at triangles of the worst shape;
+/// and what rounding does, as a share of coordinates.
+constexpr double share_of_size = GRADUS_TRACER_ERROR, worst_shape = GRADUS_MOST_SLANT / GRADUS_LEAST_SLANT,
+                 share_of_place = GRADUS_ROUNDING;
 
 /// A ray that grazes a surface passes near it over a way so many times longer than the tracer errs by across it.
 constexpr double longest_graze = 64;
@@ -42,7 +45,7 @@ double reach_of(const Bounds &box, double of_primitive) {
     double farthest = 0;
     for (std::size_t axis = 0; axis < 3; ++axis)
         farthest = std::max({farthest, std::fabs(box.lower[axis]), std::fabs(box.upper[axis])});
-    return of_primitive + rounding * farthest;
+    return of_primitive + share_of_place * farthest;
 }
 
 class Gaps {
@@ -53,8 +56,10 @@ class Gaps {
         std::ranges::sort(places_, {}, [](const Place &place) { return place.at[0]; });
     }
 
-    bool has_some_in(const Bounds &box) const {
-        return std::ranges::any_of(places_, [&](const Place &place) { return holds(box, place.at, 0); });
+    /// Of triangles in the box, however they are shaped.
+    bool may_lie_in_some_of(const Bounds &box) const {
+        const double reach = reach_of(box, share_of_size * worst_shape * box.extent());
+        return std::ranges::any_of(places_, [&](const Place &place) { return holds(box, place.at, reach); });
     }
 
     void add_triangle(const std::array<Double3, 3> &corners) {
@@ -73,7 +78,7 @@ class Gaps {
     void add_sphere(const Sphere &sphere) {
         Bounds box;
         box.add(sphere.center, sphere.radius);
-        add(box, reach_of(box, tracer_error * sphere.radius), [&](const Double3 &at) {
+        add(box, reach_of(box, share_of_size * sphere.radius), [&](const Double3 &at) {
             return std::fabs(length(subtract(at, to_double(sphere.center))) - sphere.radius);
         });
     }
@@ -126,7 +131,7 @@ std::vector<float> gaps_in_surfaces(const Scene &scene, const std::vector<Vector
     const std::vector<Bounds> of_groups = group_bounds(scene);
     for (const Instance &instance : scene.instances) {
         const Matrix4 to_world = matrix_of(instance);
-        if (!gaps.has_some_in(placed_bounds(of_groups[instance.group], to_world)))
+        if (!gaps.may_lie_in_some_of(placed_bounds(of_groups[instance.group], to_world)))
             continue;
         for (const Shape &shape : scene.shapes)
             if (shape.group == std::int32_t(instance.group) && shape.kind == Shape::Kind::mesh)

@@ -17,11 +17,12 @@ struct MemoryCase {
     const char *method;
     Reconstruction reconstruction = Reconstruction::weighted;
     bool aov = false, error = false;
+    std::uint64_t samples = 4; ///< of each pixel
 };
 
 std::ostream &operator<<(std::ostream &out, const MemoryCase &c) {
     return out << c.method << '_' << reconstruction_name(c.reconstruction) << (c.aov ? "_aov" : "")
-               << (c.error ? "_error" : "");
+               << (c.error ? "_error" : "") << '_' << c.samples;
 }
 
 RenderOptions options_of(const MemoryCase &c) {
@@ -38,7 +39,7 @@ RenderOptions options_of(const MemoryCase &c) {
 double allocated(const MemoryCase &c, double side) {
     Scene scene = own_scene("cornell-box.xml", std::uint32_t(side), std::uint32_t(side));
     scene.settings.max_depth = 2;
-    scene.settings.samples_per_pixel = 4;
+    scene.settings.samples_per_pixel = c.samples;
     Device device;
     const std::unique_ptr<Method> method = make_method(c.method, device, scene, options_of(c));
     while (method->render_batch()) {
@@ -53,22 +54,25 @@ TEST_P(BytesOfPixel, AreWhatRendersAllocate) {
     constexpr double small = 400, large = 500;
     const double of_small = allocated(GetParam(), small), of_large = allocated(GetParam(), large);
     const double growth = (of_large - of_small) / (large * large - small * small);
-    const auto told = double(bytes_of_pixel(GetParam().method, options_of(GetParam())));
+    const auto told = double(bytes_of_pixel(GetParam().method, options_of(GetParam()), GetParam().samples));
     fmt::print("{:.1f} bytes a pixel, {:.1f} each more, told {}\n", of_large / (large * large), growth, told);
     EXPECT_LE(told, of_large / (large * large)) << "renders that fit would be refused";
     // Small images grow by more: by the borders of the solver's planes.
     EXPECT_GE(told, growth * 0.8) << "renders that do not fit would be begun";
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Methods, BytesOfPixel,
-    ::testing::Values(MemoryCase{"pt"}, MemoryCase{"pt", Reconstruction::weighted, true},
-                      MemoryCase{"pt", Reconstruction::weighted, false, true}, MemoryCase{"pt", Reconstruction::guided},
-                      MemoryCase{"gpt", Reconstruction::l1}, MemoryCase{"gpt"},
-                      MemoryCase{"gpt", Reconstruction::guided}, MemoryCase{"gpt", Reconstruction::weighted, true},
-                      MemoryCase{"sppm"}, MemoryCase{"sppm", Reconstruction::weighted, true},
-                      MemoryCase{"gpm", Reconstruction::l1}, MemoryCase{"gpm"},
-                      MemoryCase{"gpm", Reconstruction::guided}, MemoryCase{"gpm", Reconstruction::weighted, true}));
+INSTANTIATE_TEST_SUITE_P(Methods, BytesOfPixel,
+                         ::testing::Values(MemoryCase{"pt"}, MemoryCase{"pt", Reconstruction::weighted, true},
+                                           MemoryCase{"pt", Reconstruction::weighted, false, true},
+                                           MemoryCase{"pt", Reconstruction::guided},
+                                           MemoryCase{"gpt", Reconstruction::l1}, MemoryCase{"gpt"},
+                                           MemoryCase{"gpt", Reconstruction::guided},
+                                           MemoryCase{"gpt", Reconstruction::weighted, false, false, 1},
+                                           MemoryCase{"gpt", Reconstruction::weighted, true}, MemoryCase{"sppm"},
+                                           MemoryCase{"sppm", Reconstruction::weighted, true},
+                                           MemoryCase{"gpm", Reconstruction::l1}, MemoryCase{"gpm"},
+                                           MemoryCase{"gpm", Reconstruction::guided},
+                                           MemoryCase{"gpm", Reconstruction::weighted, true}));
 
 } // namespace
 } // namespace gradus::testing

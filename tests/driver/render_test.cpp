@@ -318,10 +318,10 @@ TEST_F(Render, TooManySamplesToCountAreRefused) {
 }
 
 TEST_F(Render, MemoryIsCheckedBeforeTheRender) {
-    // 2^32 pixels: 172 GB for the film and the image.
+    // 2^32 pixels of 240 bytes.
     const Outcome outcome = render({"-o", "out.exr", "--size", "65536x65536", "--spp", "1", "-D", "batch_ms=60000"});
     EXPECT_EQ(outcome.exit_code, 4);
-    EXPECT_THAT(outcome.err, HasSubstr("not enough memory: rendering 65536x65536 pixels takes 163840 MB"));
+    EXPECT_THAT(outcome.err, HasSubstr("not enough memory: rendering 65536x65536 pixels takes 983040 MB"));
     EXPECT_THAT(files(), ElementsAre("scene.xml"));
 }
 

@@ -53,6 +53,8 @@ TEST(GapsInSurfaces, KnowInstances) {
     const std::vector<float> gaps = gaps_of(maker, places);
     EXPECT_EQ(gaps[0], 0);
     EXPECT_GT(gaps[1], 1e-5);
+    // No thicker than rounding, and a little off.
+    EXPECT_GT(gaps_of(maker, {{5.25f, 3.0000005f, 0.5f}})[0], 1e-5);
 }
 
 TEST(GapsInSurfaces, AreNothingOfNothing) {
