@@ -48,6 +48,9 @@ double reach_of(const Bounds &box, double of_primitive) {
     return of_primitive + share_of_place * farthest;
 }
 
+/// Of triangles in the box, however they are shaped.
+double most_reach_of(const Bounds &box) { return reach_of(box, share_of_size * worst_shape * box.extent()); }
+
 class Gaps {
   public:
     explicit Gaps(const std::vector<Vector3> &places) : gaps_(places.size()) {
@@ -56,9 +59,8 @@ class Gaps {
         std::ranges::sort(places_, {}, [](const Place &place) { return place.at[0]; });
     }
 
-    /// Of triangles in the box, however they are shaped.
     bool may_lie_in_some_of(const Bounds &box) const {
-        const double reach = reach_of(box, share_of_size * worst_shape * box.extent());
+        const double reach = most_reach_of(box);
         return std::ranges::any_of(places_, [&](const Place &place) { return holds(box, place.at, reach); });
     }
 
@@ -66,6 +68,11 @@ class Gaps {
         Bounds box;
         for (const Double3 &corner : corners)
             box.add(Bounds{corner, corner});
+        // Of most, at once: nothing is near.
+        const double most = most_reach_of(box);
+        const auto first = first_from(box.lower[0] - most);
+        if (first == places_.end() || first->at[0] > box.upper[0] + most)
+            return;
         const Double3 e1 = subtract(corners[1], corners[0]), e2 = subtract(corners[2], corners[0]);
         const Double3 across = cross(e1, e2);
         const double area = length(across);
@@ -85,11 +92,13 @@ class Gaps {
     std::vector<float> take() { return std::move(gaps_); }
 
   private:
+    std::vector<Place>::const_iterator first_from(double x) const {
+        return std::ranges::lower_bound(places_, x, {}, [](const Place &place) { return place.at[0]; });
+    }
     template <class Distance>
     void add(const Bounds &box, double reach, const Distance &distance) {
-        const auto first =
-            std::ranges::lower_bound(places_, box.lower[0] - reach, {}, [](const Place &place) { return place.at[0]; });
-        for (auto place = first; place != places_.end() && place->at[0] <= box.upper[0] + reach; ++place)
+        for (auto place = first_from(box.lower[0] - reach);
+             place != places_.end() && place->at[0] <= box.upper[0] + reach; ++place)
             if (holds(box, place->at, reach) && distance(place->at) <= reach) {
                 const std::lock_guard lock(mutex_);
                 float &gap = gaps_[place->number];
