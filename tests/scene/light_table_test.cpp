@@ -1,9 +1,10 @@
 #define MANY_LIGHTS 1
+#include <gtest/gtest.h>
+
+// After GoogleTest, which has template parameters of the names of its macros.
 #include "kernels/lib/light_draw.h"
 #include "kernels/lib/random.h"
 #include "runtime/scene/light_table.h"
-
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdio>

@@ -1,10 +1,11 @@
 // The tree by which light samples choose among many lights: built by the host, walked by kernels/lib/light_tree.h.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+// After these, which have template parameters of the names of its macros.
 #include "kernels/lib/light_tree.h"
 #include "kernels/lib/random.h"
 #include "runtime/scene/light_tree.h"
-
-#include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <chrono>

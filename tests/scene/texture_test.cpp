@@ -1,5 +1,8 @@
 // Textures on the host, and the kernels' lookups against them.
 #define TRAIT_TEXTURED 1
+#include <gtest/gtest.h>
+
+// After GoogleTest, which has template parameters of the names of its macros.
 #include "kernels/lib/mapped_normal.h"
 #include "kernels/lib/normal_map.h"
 #include "kernels/lib/texture_gradient.h"
@@ -9,8 +12,6 @@
 #include "runtime/scene/texture_tables.h"
 #include "tests/support/textures.h"
 #include "tests/support/worse.h"
-
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
