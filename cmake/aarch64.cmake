@@ -1,5 +1,5 @@
-# Cross-compiles for ARM processors of 64 bits: cmake -D CMAKE_TOOLCHAIN_FILE=cmake/aarch64.cmake, with the system that
-# programs are to run on in the environment variable GRADUS_SYSTEM (scripts/on_arm.sh makes one).
+# The toolchain that cross-compiles for ARM processors of 64 bits. The system that programs are to run on is in the
+# environment variable GRADUS_SYSTEM (scripts/on_arm.sh makes one).
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)

@@ -87,11 +87,11 @@ std::uint64_t bytes_of_pixel(const std::string &method, const RenderOptions &opt
     if (method == "sppm")
         return options.aov ? 164 : 28;
     if (method == "gpt" || method == "gpm")
-        return options.aov                                  ? 570
-               : !keeps_halves(options)                     ? 185
-               : samples_per_pixel < 2 * least_half_samples ? 240 // the films: there is none but L1
-               : is_guided                                  ? 480
-                                                            : 330;
+        return options.aov                                    ? 570
+               : !keeps_halves(options)                       ? 185
+               : !halves_have_variances(samples_per_pixel, 1) ? 240 // the films: there is none but L1
+               : is_guided                                    ? 480
+                                                              : 330;
     return is_guided ? 300 : options.aov ? 140 : options.error ? 56 : 28;
 }
 

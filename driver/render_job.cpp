@@ -191,9 +191,8 @@ class RenderJob {
     /// but not for ever.
     bool is_over(double patience) const {
         constexpr double times_longer = 10, least_wait = 5;
-        const bool is_whole = prepared_.method->done_samples() >= pixels();
         const double limit =
-            is_whole ? request_.time_limit + patience : std::max(times_longer * request_.time_limit, least_wait);
+            has_holes() ? std::max(times_longer * request_.time_limit, least_wait) : request_.time_limit + patience;
         return request_.time_limit > 0 && seconds_since(render_start_) >= limit;
     }
 

@@ -5,8 +5,9 @@
 #   scripts/on_distribution.sh VERSION COMMAND [ARGUMENT ...]    for example: scripts/on_distribution.sh trixie ./check
 #
 # VERSION is a code name: trixie is Debian 13, noble is Ubuntu 24.04. The system lies in /var/tmp/gradus-VERSION, or
-# where GRADUS_SYSTEM says; what is not there is made by debootstrap. The clone, in it as /gradus/main, is of what is
-# committed, and its build folder stays from one call to the next. Needs root, debootstrap and the network.
+# where GRADUS_SYSTEM says; what is not there is made by debootstrap, for GRADUS_ARCHITECTURE if not this machine's. The
+# clone, in it as /gradus/main, is of what is committed, and its build folder stays from one call to the next. Needs root,
+# debootstrap and the network.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -20,7 +21,7 @@ system=${GRADUS_SYSTEM:-/var/tmp/gradus-$version}
 
 clone=$system/gradus/main
 if [ ! -e "$clone" ]; then
-    options=(--variant=minbase --include=ca-certificates)
+    options=(--arch="${GRADUS_ARCHITECTURE:-$(dpkg --print-architecture)}" --variant=minbase --include=ca-certificates)
     mirror=(http://deb.debian.org/debian)
     if [ "$version" = noble ]; then
         options+=(--components=main,universe --no-check-gpg) # Debian has no keys of Ubuntu to check with

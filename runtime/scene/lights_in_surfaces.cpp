@@ -30,7 +30,7 @@ constexpr double longest_graze = 64;
 
 struct Place {
     Double3 at;
-    std::size_t number;
+    std::size_t emitter;
 };
 
 bool holds(const Bounds &box, const Double3 &at, double reach) {
@@ -53,12 +53,14 @@ double most_reach_of(const Bounds &box) { return reach_of(box, share_of_size * w
 
 class Gaps {
   public:
-    explicit Gaps(const std::vector<Vector3> &places) : gaps_(places.size()) {
-        for (const Vector3 &place : places)
-            places_.push_back({to_double(place), places_.size()});
+    explicit Gaps(const std::vector<Emitter> &emitters) : gaps_(emitters.size()) {
+        for (std::size_t i = 0; i < emitters.size(); ++i)
+            if (emitters[i].shines_from_a_point())
+                places_.push_back({to_double(emitters[i].position), i});
         std::ranges::sort(places_, {}, [](const Place &place) { return place.at[0]; });
     }
 
+    bool has_places() const { return !places_.empty(); }
     bool may_lie_in_some_of(const Bounds &box) const {
         const double reach = most_reach_of(box);
         return std::ranges::any_of(places_, [&](const Place &place) { return holds(box, place.at, reach); });
@@ -101,14 +103,14 @@ class Gaps {
              place != places_.end() && place->at[0] <= box.upper[0] + reach; ++place)
             if (holds(box, place->at, reach) && distance(place->at) <= reach) {
                 const std::lock_guard lock(mutex_);
-                float &gap = gaps_[place->number];
+                float &gap = gaps_[place->emitter];
                 gap = std::max(gap, float(longest_graze * reach));
             }
     }
 
     std::vector<Place> places_; ///< in the order of x
     std::mutex mutex_;
-    std::vector<float> gaps_;
+    std::vector<float> gaps_; ///< by emitter
 };
 
 void add_mesh(const Mesh &mesh, const Matrix4 *to_world, Gaps &gaps) {
@@ -125,10 +127,10 @@ void add_mesh(const Mesh &mesh, const Matrix4 *to_world, Gaps &gaps) {
 
 } // namespace
 
-std::vector<float> gaps_in_surfaces(const Scene &scene, const std::vector<Vector3> &places) {
-    Gaps gaps(places);
-    if (places.empty())
-        return {};
+std::vector<float> gaps_in_surfaces(const Scene &scene) {
+    Gaps gaps(scene.emitters);
+    if (!gaps.has_places())
+        return gaps.take();
     for (const Shape &shape : scene.shapes) {
         if (shape.group != no_group)
             continue;

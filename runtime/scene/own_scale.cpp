@@ -87,8 +87,7 @@ double bring_to_own_scale(Scene &scene) {
         bsdf.map.scale *= float(factor);
     for (Emitter &emitter : scene.emitters) {
         multiply(emitter.position, float(factor));
-        if (emitter.kind == Emitter::Kind::point || emitter.kind == Emitter::Kind::spot ||
-            emitter.kind == Emitter::Kind::projector)
+        if (emitter.shines_from_a_point())
             for (float Rgb::*channel : {&Rgb::r, &Rgb::g, &Rgb::b})
                 emitter.value.*channel = float(emitter.value.*channel * factor * factor);
     }

@@ -209,6 +209,8 @@ struct Emitter {
     std::array<Vector3, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     std::array<float, 2> picture{1, 1};        ///< how wide and high the picture is at distance 1
     std::shared_ptr<const EnvironmentMap> map; ///< environment
+
+    bool shines_from_a_point() const { return kind == Kind::point || kind == Kind::spot || kind == Kind::projector; }
 };
 
 /// A camera that looks along its local +z with +y up and +x to the left of the image, as Mitsuba has it.

@@ -264,31 +264,10 @@ void add_sphere(const Scene &scene, const Shape &shape, const SurfaceOfShape &su
     primitives.add(surface, light);
 }
 
-bool is_at_a_point(const Emitter &emitter) {
-    using enum Emitter::Kind;
-    return emitter.kind == point || emitter.kind == spot || emitter.kind == projector;
-}
-
-/// By emitter, of those that shine from a point.
-std::vector<float> gaps_of_emitters(const Scene &scene) {
-    std::vector<std::size_t> numbers;
-    std::vector<Vector3> places;
-    for (std::size_t i = 0; i < scene.emitters.size(); ++i)
-        if (is_at_a_point(scene.emitters[i])) {
-            numbers.push_back(i);
-            places.push_back(scene.emitters[i].position);
-        }
-    const std::vector<float> of_places = gaps_in_surfaces(scene, places);
-    std::vector<float> gaps(scene.emitters.size());
-    for (std::size_t i = 0; i < numbers.size(); ++i)
-        gaps[numbers[i]] = of_places[i];
-    return gaps;
-}
-
 /// Lights without a surface. Those at infinity count with what crosses a disk as wide as the scene.
 void add_other_lights(const Scene &scene, double radius, SceneTables &tables, LightBuilder &lights) {
     const double disk = pi * radius * radius;
-    const std::vector<float> gaps = gaps_of_emitters(scene);
+    const std::vector<float> gaps = gaps_in_surfaces(scene);
     for (std::uint32_t number = 0; number < scene.emitters.size(); ++number) {
         const Emitter &emitter = scene.emitters[number];
         const double value = luminance(lights.mean_of(emitter));

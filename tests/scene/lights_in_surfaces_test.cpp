@@ -9,8 +9,11 @@
 namespace gradus::testing {
 namespace {
 
-std::vector<float> gaps_of(const SceneMaker &maker, const std::vector<Vector3> &places) {
-    return gaps_in_surfaces(maker.scene, places);
+/// Of lights at these places.
+std::vector<float> gaps_of(SceneMaker maker, const std::vector<Vector3> &places) {
+    for (const Vector3 &place : places)
+        maker.point_light({1, 1, 1}, place);
+    return gaps_in_surfaces(maker.scene);
 }
 
 TEST(GapsInSurfaces, AreWiderThanTheTracerErrsAndNoWiderThanTheyMustBe) {

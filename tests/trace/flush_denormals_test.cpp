@@ -15,16 +15,13 @@ TEST(FlushDenormals, MakesThemZeroFromThenOn) {
         return first * second;
     };
     constexpr float least = std::numeric_limits<float>::min(), denormal = std::numeric_limits<float>::denorm_min();
-    float result_before = 0, result_after = 1, input_before = 0, input_after = 1;
     // Threads begin as the one that starts them is, which may have traced.
     const auto as_usual = [] { std::fesetenv(FE_DFL_ENV); };
     std::thread([&] {
         as_usual();
-        result_before = product(least, 0.5f);
-        input_before = product(denormal, 0x1p60f);
+        const float result_before = product(least, 0.5f), input_before = product(denormal, 0x1p60f);
         flush_denormals();
-        result_after = product(least, 0.5f);
-        input_after = product(denormal, 0x1p60f);
+        const float result_after = product(least, 0.5f), input_after = product(denormal, 0x1p60f);
         as_usual(); // or comparisons would not know them
         EXPECT_GT(result_before, 0.0f);
         EXPECT_GT(input_before, 0.0f);
