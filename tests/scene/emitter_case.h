@@ -94,16 +94,22 @@ struct Emitters {
 #define LIGHT_TEXTURES_OF(t)
 #endif
 
-/// A texture of a lamp, bilinear between 3 x 2 texels from 0.5 to 1: the last of the scene's.
-inline std::int32_t lamp_texture(SceneMaker &maker, unsigned seed) {
+/// A texture of a lamp, bilinear between 3 x 2 texels from 0.5 to 1: the last of the scene's. As numbers, or as bytes
+/// that are sRGB.
+inline std::int32_t lamp_texture(SceneMaker &maker, unsigned seed, bool is_srgb = false) {
     const std::shared_ptr<const Bitmap> random = random_bitmap(3, 2, Bitmap::Format::real, true, seed);
-    auto bitmap = std::make_shared<Bitmap>(*random);
+    auto bitmap = std::make_shared<Bitmap>();
+    bitmap->resize(3, 2, is_srgb ? Bitmap::Format::byte : Bitmap::Format::real, true);
     for (std::uint32_t y = 0; y < 2; ++y)
         for (std::uint32_t x = 0; x < 3; ++x)
-            for (int c = 0; c < 3; ++c)
-                bitmap->set(x, y, c, std::bit_cast<std::uint32_t>(float(0.5 + 0.5 * random->channel(x, y, c))));
+            for (int c = 0; c < 3; ++c) {
+                const double share = random->channel(x, y, c);
+                const auto code = std::uint32_t(188 + 67 * share); // of 188 is 0.503
+                bitmap->set(x, y, c, is_srgb ? code : std::bit_cast<std::uint32_t>(float(0.5 + 0.5 * share)));
+            }
     Texture texture;
     texture.bitmap = bitmap;
+    texture.is_srgb = is_srgb;
     texture.highest = 1e30f;
     maker.scene.textures.push_back(texture);
     return std::int32_t(maker.scene.textures.size()) - 1;

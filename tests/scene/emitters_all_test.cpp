@@ -46,7 +46,7 @@ Emitters make_case() {
     maker.directional_light({1, 2, 3}, {0.6f, -0.8f, 0});
     maker.spot({5, 6, 7}, {0.5f, 1.5f, 0}, {0, -1, 0}, 20, 50);
     add_picture(maker, Emitter::Kind::spot, lamp_texture(maker, 5), {0.25f, 1.25f, 0.125f});
-    add_picture(maker, Emitter::Kind::projector, lamp_texture(maker, 6), {0.125f, 1.5f, 0.25f});
+    add_picture(maker, Emitter::Kind::projector, lamp_texture(maker, 6, true), {0.125f, 1.5f, 0.25f});
     maker.environment_map(16, 9, [](std::uint32_t x, std::uint32_t y) { return 1 + (5 * x + 3 * y) % 7 / 6.0; });
     return Emitters(maker.scene);
 }
