@@ -31,6 +31,9 @@ constexpr double largest_preconditioned_ratio = 8;
 
 constexpr int stagnating_cycles = 4;
 
+/// Of the right side: in single precision less is hardly reached.
+constexpr double small_residual = 1e-5;
+
 } // namespace
 
 /// Follows the residuals of a group, and says when to stop. Iteration k leaves its squared norm in slot(k); where
@@ -86,13 +89,20 @@ struct LinearSolver::Progress {
         // From u = 0, the first residual is b itself.
         const double norm = reference_norm > 0 ? reference_norm : norms.front();
         channel.converged = norms.back() <= std::max(request.tolerance, least_tolerance) * norm;
-        channel.finished = channel.converged || !std::isfinite(norms.back()) || stagnates(norms);
+        channel.finished = channel.converged || !std::isfinite(norms.back()) || stagnates(norms) || drifts(norms, norm);
     }
 
     /// Rounding errors are all that is left: a cycle that works divides the residual by ten.
     bool stagnates(const std::vector<double> &norms) const {
         return request.method == LinearMethod::multigrid && int(norms.size()) > stagnating_cycles &&
                norms.back() > 0.7 * norms[norms.size() - 1 - stagnating_cycles];
+    }
+
+    /// The same of preconditioned steps, where the mean of the solution is next to free.
+    bool drifts(const std::vector<double> &norms, double norm) const {
+        const double least = *std::min_element(norms.begin(), norms.end());
+        return request.may_drift && request.method == LinearMethod::pcg && least <= small_residual * norm &&
+               norms.back() > 2 * least;
     }
 };
 

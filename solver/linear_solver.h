@@ -37,7 +37,10 @@ class LinearSolver {
         int iterations = 0;         ///< at most
         double damping = 1;         ///< Jacobi's step
         bool smooths_after = false; ///< cycles that precondition smooth on the way up, too
-        bool watch = true;          ///< false: does all iterations, reads nothing back, and reports no residuals
+        /// The mean of the solution is next to free: once rounding errors are all that is left, preconditioned steps
+        /// would be long and along it. They end where small residuals grow.
+        bool may_drift = false;
+        bool watch = true; ///< false: does all iterations, reads nothing back, and reports no residuals
     };
 
     /// The right side of a group, in a buffer of its own.

@@ -2,6 +2,7 @@
 
 #include "runtime/error.h"
 #include "solver/mean_correction.h"
+#include "solver/pieces.h"
 #include "solver/problem.h"
 #include "solver/reweighting.h"
 #include "solver/workspace.h"
@@ -66,8 +67,8 @@ void check(const PoissonImages<Planes> &images, const PoissonOptions &options) {
     const bool variances = images.primal_variance && images.dx_variance && images.dy_variance;
     if ((options.alpha_from_variances || options.weigh_by_variance) && !variances)
         usage("alpha or weights from variances need the variances of primal, dx and dy");
-    if (!(options.largest_weight >= 1))
-        usage(fmt::format("the largest weight is {}; it must be 1 or larger", options.largest_weight));
+    if (!(options.largest_weight >= 1 && options.largest_weight <= 1e9))
+        usage(fmt::format("the largest weight is {}; it must be 1 to 1e9", options.largest_weight));
     if (options.weigh_by_variance && options.norm == PoissonNorm::l1)
         usage("weights by variance are for the L2 norm; the L1 norm has weights of its own");
 }
@@ -100,8 +101,9 @@ struct PoissonSolver::Implementation {
     /// Where the result goes is asked at the end: it may be memory that the solve needs until then.
     PoissonReport solve(const Inputs &images, const PoissonOptions &options, const std::function<Buffer &()> &result,
                         const Call &all_read);
-    void least_squares(const Inputs &images, const PoissonOptions &options, double alpha, PoissonReport &report);
-    void absolute_values(const Inputs &images, const PoissonOptions &options, double alpha, PoissonReport &report);
+    /// With the report's alpha.
+    void least_squares(const Inputs &images, const PoissonOptions &options, PoissonReport &report);
+    void absolute_values(const Inputs &images, const PoissonOptions &options, PoissonReport &report);
     /// Those for the weights that the problem and the options ask for.
     Kernels &kernels_for(const PoissonOptions &options) {
         return workspace.kernels(weights_for(options, problem.anything_missing()));
@@ -120,13 +122,16 @@ struct PoissonSolver::Implementation {
     std::unique_ptr<MeanCorrection> mean_correction;
 };
 
-void PoissonSolver::Implementation::least_squares(const Inputs &images, const PoissonOptions &options, double alpha,
+void PoissonSolver::Implementation::least_squares(const Inputs &images, const PoissonOptions &options,
                                                   PoissonReport &report) {
     Kernels &kernels = kernels_for(options);
     const bool uniform = kernels.weights == Weights::uniform;
     if (!uniform)
         problem.make_base_weights(kernels, options.weigh_by_variance, options.largest_weight);
-    problem.use_least_squares_weights(kernels, alpha);
+    const bool settles = !uniform && report.alpha < least_alpha_of_means;
+    if (settles && report.alpha > 0)
+        report.alpha = std::max(report.alpha, least_alpha_of_squares);
+    problem.use_least_squares_weights(kernels, report.alpha);
 
     LinearSolver::Request request;
     request.method = options.method != LinearMethod::automatic ? options.method
@@ -136,6 +141,7 @@ void PoissonSolver::Implementation::least_squares(const Inputs &images, const Po
     request.iterations = options.iterations > 0 ? options.iterations : default_iterations(request.method);
     request.damping = options.damping;
     request.smooths_after = true;
+    request.may_drift = settles;
     if (options.noise_share > 0 && options.weigh_by_variance && options.alpha_from_variances &&
         request.method == LinearMethod::pcg && problem.noise() > 0) {
         request.tolerance = std::sqrt(options.noise_share);
@@ -148,6 +154,8 @@ void PoissonSolver::Implementation::least_squares(const Inputs &images, const Po
     const auto right_side = [&](Planes group) -> const Buffer & { return problem.make_right_side(kernels, group); };
     const LinearReport linear =
         workspace.linear.solve(kernels, request, workspace.groups(), right_side, problem.u(), norm);
+    if (settles)
+        settle_means(kernels, problem, workspace, problem.base_data());
     report.method = method_name(request.method);
     report.iterations = linear.iterations;
     report.converged = linear.converged;
@@ -155,11 +163,11 @@ void PoissonSolver::Implementation::least_squares(const Inputs &images, const Po
     report.objective = problem.squared_norm(kernels);
 }
 
-void PoissonSolver::Implementation::absolute_values(const Inputs &images, const PoissonOptions &options, double alpha,
+void PoissonSolver::Implementation::absolute_values(const Inputs &images, const PoissonOptions &options,
                                                     PoissonReport &report) {
     Kernels &kernels = kernels_for(options);
     problem.make_base_weights(kernels, false);
-    reweighting.run(kernels, problem, alpha, images, options, report);
+    reweighting.run(kernels, problem, report.alpha, images, options, report);
     report.method = fmt::format(
         "irls, {}", method_name(options.method == LinearMethod::automatic ? LinearMethod::pcg : options.method));
     if (options.keep_mean) {
@@ -187,11 +195,12 @@ PoissonReport PoissonSolver::Implementation::solve(const Inputs &images, const P
     const bool l2 = options.norm == PoissonNorm::l2;
     if (!l2 && options.alpha_from_variances && report.alpha > 0)
         report.alpha = std::max(report.alpha, least_alpha_of_absolute_values);
-    const double alpha = std::min(report.alpha, largest_alpha);
+    report.alpha = std::min(report.alpha, largest_alpha);
     if (l2)
-        least_squares(images, options, alpha, report);
+        least_squares(images, options, report);
     else
-        absolute_values(images, options, alpha, report);
+        absolute_values(images, options, report);
+    report.converged = report.converged && std::isfinite(report.objective);
     // Uniform weights keep the mean. So does L1 without a data term: no equation but this one tells it.
     const bool keep_mean = !problem.anything_missing() && (l2 ? !options.weigh_by_variance : report.alpha == 0);
     report.filled = problem.compose(kernels_for(options), images, keep_mean, result());

@@ -69,6 +69,7 @@ struct PoissonOptions {
     /// equally (after Rousselle et al. 2016). Needs the variances. The mean of I0 is then not kept.
     bool weigh_by_variance = false;
     /// Then an equation with a variance far below the mean still counts no more than so many times the average.
+    /// 1 to 1e9.
     double largest_weight = 100;
     LinearMethod method = LinearMethod::automatic;
     /// L2: the relative residual ||b - A u|| / ||b|| of the system for u = I - I0 at which to stop. L1: the relative
@@ -99,7 +100,7 @@ constexpr const char *no_system = "none";
 
 struct PoissonReport {
     std::string method; ///< "multigrid", or "irls, pcg" and the like; or no_system
-    double alpha = 0;   ///< as used
+    double alpha = 0;   ///< as used: at most 1e12; of L2 where anything is missing or weighed, 0 or at least 1e-4
     int iterations = 0; ///< steps or cycles in all
     int reweightings = 0;
     bool converged = false; ///< the tolerance was reached

@@ -55,6 +55,8 @@ class Problem {
 
     const Buffer &valid_primal() const { return valid_primal_; }
     const Buffer &base() const { return base_; }
+    /// The base weights of the data terms, once they are made.
+    const Buffer &base_data() const { return base_data_; }
     Buffer &u() { return u_; }
     /// Binds gradient_x, gradient_y and the base weights.
     void bind(Kernel &kernel) const;

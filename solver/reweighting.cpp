@@ -1,5 +1,7 @@
 #include "solver/reweighting.h"
 
+#include "solver/pieces.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -74,6 +76,7 @@ void Reweighting::run(Kernels &kernels, Problem &problem, double alpha, const In
     request.method = options.method == LinearMethod::automatic ? LinearMethod::pcg : options.method;
     request.damping = options.damping;
 
+    const bool settles = alpha < least_alpha_of_means;
     start(kernels, problem, alpha, images);
     Buffer &previous = problem.spare();
     previous.clear();
@@ -103,6 +106,9 @@ void Reweighting::run(Kernels &kernels, Problem &problem, double alpha, const In
         const auto right_side = [&](Planes group) -> const Buffer & { return problem.make_right_side(kernels, group); };
         report.iterations +=
             workspace_.linear.solve(kernels, request, workspace_.groups(), right_side, problem.u()).iterations;
+        if (settles)
+            settle_means(kernels, problem, workspace_,
+                         alpha > 0 ? workspace_.system().weight_data : problem.base_data());
         ++report.reweightings;
         regularisation = std::max(regularisation * regularisation_factor, least_regularisation * scale);
     }

@@ -1,10 +1,13 @@
 #include "runtime/io/document.h"
 
 #include "runtime/error.h"
+#include "runtime/io/entities.h"
 #include "runtime/io/parameters.h"
 #include "runtime/io/properties.h"
+#include "runtime/io/spectrum_file.h"
 #include "runtime/io/text.h"
 
+#include <fmt/format.h>
 #include <pugixml.hpp>
 
 #include <algorithm>
@@ -19,6 +22,7 @@ namespace {
 constexpr int deepest_nesting = 100;
 constexpr int deepest_include = 16; // as Mitsuba has it: enough for people, an end for circles
 constexpr std::size_t most_folders = 32;
+constexpr std::uint64_t most_spectrum_bytes = 1u << 20; // of a file: thousands of wavelengths
 
 [[noreturn]] void fail(const Location &location, const std::string &message) {
     throw Error(ExitCode::scene, located(location, message));
@@ -49,7 +53,7 @@ class Reader {
           diagnostics_(diagnostics) {}
 
     Document read(const std::string &path) {
-        const auto main = open(OpenFile::open(path), path, 0);
+        const auto main = open(OpenFile::open(path), path, std::nullopt);
         folders_.insert(folders_.begin(), main->path.parent_path());
         collect_parameters(*main, main->xml.document_element(), 0);
         read_deferred_includes();
@@ -63,12 +67,19 @@ class Reader {
     }
 
   private:
-    std::unique_ptr<File> open(const std::shared_ptr<const OpenFile> &opened, const fs::path &path, int version);
+    /// `including`: the version of the file that includes it; none of the scene's own file.
+    /// `is_entity`: named by an entity.
+    std::unique_ptr<File> open(const std::shared_ptr<const OpenFile> &opened, const fs::path &path,
+                               std::optional<int> including, bool is_entity = false);
+    /// Puts what the file says in the place of its name.
+    void read_spectrum(const File &file, Element &spectrum);
     void check_root(const File &file, const pugi::xml_node &root, bool is_main) const;
     void collect_parameters(const File &file, const pugi::xml_node &node, int depth);
     void collect_nested_defaults(const File &file, const pugi::xml_node &object);
     void add_default(const File &file, const pugi::xml_node &node);
     bool open_include(const File &file, const pugi::xml_node &node, int depth, bool last_chance);
+    /// Beside `file`, or in the folders to search; an error where it is in none of them.
+    std::optional<fs::path> find(const File &file, const Location &location, const char *what, const std::string &name);
     void read_deferred_includes();
     Element convert(const File &file, const pugi::xml_node &node, int depth);
     void convert_children(const File &file, pugi::xml_node parent, Element &element, int depth);
@@ -92,7 +103,8 @@ class Reader {
 };
 
 /// opened: nullptr where it cannot be read.
-std::unique_ptr<File> Reader::open(const std::shared_ptr<const OpenFile> &opened, const fs::path &path, int version) {
+std::unique_ptr<File> Reader::open(const std::shared_ptr<const OpenFile> &opened, const fs::path &path,
+                                   std::optional<int> including, bool is_entity) {
     auto file = std::make_unique<File>();
     file->name = std::make_shared<const std::string>(path.string());
     file->path = path;
@@ -104,8 +116,12 @@ std::unique_ptr<File> Reader::open(const std::shared_ptr<const OpenFile> &opened
         fail(whole, "the scene's files have more than " + std::to_string(limits_.xml_bytes >> 20) + " MiB of XML" +
                         limits_hint);
     std::optional<std::string> text = opened ? opened->read() : std::nullopt;
+    if (text)
+        text = with_entities(*std::move(text), limits_.xml_bytes);
+    if (text && is_entity) // it may have any number of roots
+        text = "<scene>" + *text + "</scene>";
     if (!text) // of files that a stranger's scene names it stays untold whether they are there
-        fail(whole, "cannot read this scene file" + (version == 0 ? why_not(path) : ""));
+        fail(whole, "cannot read this scene file" + (including ? "" : why_not(path)));
     file->line_starts.push_back(0);
     for (std::size_t i = 0; i < text->size(); ++i)
         if ((*text)[i] == '\n')
@@ -117,8 +133,8 @@ std::unique_ptr<File> Reader::open(const std::shared_ptr<const OpenFile> &opened
     const pugi::xml_node root = file->xml.document_element();
     if (!root)
         fail(whole, "no XML element in this file");
-    check_root(*file, root, version == 0);
-    file->version = version == 0 ? 3 : version;
+    check_root(*file, root, !including);
+    file->version = including.value_or(3);
     const Location location = file->locate(root);
     if (const pugi::xml_attribute attribute = root.attribute("version")) {
         const std::string value = attribute.value();
@@ -131,7 +147,7 @@ std::unique_ptr<File> Reader::open(const std::shared_ptr<const OpenFile> &opened
                                             "; read as version 3 (of 0.6 and before it is 0.6.0)");
             file->version = 3;
         }
-    } else if (version == 0)
+    } else if (!including)
         diagnostics_.warn(location, "<scene> has no version; read as version 3");
     return file;
 }
@@ -214,20 +230,44 @@ bool Reader::open_include(const File &file, const pugi::xml_node &node, int dept
         name = parameters_.expand(written, location);
     else if (!parameters_.try_expand(written, location, name))
         return false;
-    std::vector<fs::path> folders{file.path.parent_path()};
-    folders.insert(folders.end(), folders_.begin(), folders_.end());
-    const std::optional<FoundFile> found = finder_.find(name, folders);
-    if (!found) { // reported with all the others before anything else is read
-        diagnostics_.error(location, "cannot find the included file \"" + name + "\"" + finder_.why_not(name, folders));
+    const std::optional<fs::path> found = find(file, location, "included file", name);
+    if (!found) // reported with all the others before anything else is read
         return true;
-    }
-    if (!found->exact)
-        diagnostics_.warn(location, "\"" + name + "\" differs in case from the file " + found->path.string());
-    auto included = open(finder_.open(found->path), found->path, file.version);
+    auto included = open(finder_.open(*found), *found, file.version, bool(node.attribute(entity_attribute)));
     const File &opened = *included;
     included_[node.internal_object()] = std::move(included);
     collect_parameters(opened, opened.xml.document_element(), depth + 1);
     return true;
+}
+
+std::optional<fs::path> Reader::find(const File &file, const Location &location, const char *what,
+                                     const std::string &name) {
+    std::vector<fs::path> folders{file.path.parent_path()};
+    folders.insert(folders.end(), folders_.begin(), folders_.end());
+    const std::optional<FoundFile> found = finder_.find(name, folders);
+    if (!found) {
+        diagnostics_.error(location,
+                           fmt::format("cannot find the {} \"{}\"{}", what, name, finder_.why_not(name, folders)));
+        return std::nullopt;
+    }
+    if (!found->exact)
+        diagnostics_.warn(location, "\"" + name + "\" differs in case from the file " + found->path.string());
+    return found->path;
+}
+
+void Reader::read_spectrum(const File &file, Element &spectrum) {
+    const std::string name = *spectrum.attribute("filename");
+    const std::optional<fs::path> found = find(file, spectrum.location, "file of a spectrum", name);
+    const auto opened = found ? finder_.open(*found) : nullptr;
+    const std::optional<std::string> text =
+        opened && opened->bytes() <= most_spectrum_bytes ? opened->read() : std::nullopt;
+    const std::optional<std::string> value = text ? spectrum_of_file(*text) : std::nullopt;
+    if (found && !value) // of files that a stranger's scene names no more is told
+        diagnostics_.error(spectrum.location, "\"" + name +
+                                                  "\" is no file of a spectrum: it needs a wavelength in nm " +
+                                                  "and a value on each line");
+    std::erase_if(spectrum.attributes, [](const auto &attribute) { return attribute.first == "filename"; });
+    spectrum.attributes.emplace_back("value", value.value_or("0"));
 }
 
 void Reader::read_deferred_includes() {
@@ -259,6 +299,11 @@ Element Reader::convert(const File &file, const pugi::xml_node &node, int depth)
     for (const pugi::xml_attribute &attribute : node.attributes())
         element.attributes.emplace_back(attribute.name(),
                                         parameters_.expand_or_tell(attribute.value(), location, diagnostics_));
+    if (element.tag == "spectrum" && element.attribute("filename") && !element.attribute("value"))
+        read_spectrum(file, element);
+    for (auto &[name, value] : element.attributes)
+        if (element.is_legacy() && element.tag == "bsdf" && name == "type" && value == "bump")
+            value = "bumpmap"; // as 0.4 has it
     convert_children(file, node, element, depth);
     return element;
 }

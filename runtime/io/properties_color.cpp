@@ -62,9 +62,6 @@ Rgb to_rgb(const Double3 &c) { return {float(c[0]), float(c[1]), float(c[2])}; }
 } // namespace
 
 Rgb Properties::read_spectrum(const Element &property, const std::string &name, ColorUse use) {
-    if (property.attribute("filename"))
-        throw SceneError(property.location, "\"" + name + "\": spectra in files of their own are not supported; " +
-                                                "write value=\"wavelength:value, ...\"");
     const std::string &text = value_of(property);
     if (text.find(':') != std::string::npos) {
         const SampledSpectrum samples = parse_samples(property, text);

@@ -4,6 +4,7 @@
 #include "runtime/io/file_search.h"
 #include "runtime/io/plugins/plugin.h"
 #include "runtime/io/text.h"
+#include "runtime/scene/instances.h"
 #include "runtime/scene/mesh_builder.h"
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
 #include <type_traits>
 
@@ -237,23 +239,37 @@ void SceneBuilder::warn_of_parts_of_no_sensor(const Element &root) {
                                                   (child.tag == "rfilter" ? "the sensor's <film>" : "the <sensor>"));
 }
 
-void SceneBuilder::tell_no_sensor(const Location &location) {
+bool SceneBuilder::tell_sensor_elsewhere() {
     for (const Element &child : document_.root.children)
         for (const Element &inside : child.children)
             if (inside.tag == "sensor") {
                 diagnostics_.error(inside.location, described(inside) + " inside " + described(child) +
                                                         ": only a camera that stands in <scene> itself is rendered");
-                return;
+                return true;
             }
-    diagnostics_.error(location, "the scene has no <sensor>; add one, for example <sensor type=\"perspective\"> with a "
-                                 "<transform name=\"to_world\"> that says where from");
+    return false;
+}
+
+/// As Mitsuba 0.6 has it: 45 degrees wide, looking along z from where all of the scene is seen.
+void SceneBuilder::see_all(const Location &location) {
+    const Bounds bounds = world_bounds(scene_);
+    const Double3 &lower = bounds.lower, &upper = bounds.upper;
+    const double largest = bounds.extent();
+    Camera camera;
+    camera.fov = 45;
+    const double distance = largest / (2 * std::tan(0.5 * camera.fov * std::numbers::pi / 180));
+    camera.near_clip = distance / 100;
+    camera.far_clip = 5 * largest + distance;
+    camera.to_world = translation({0.5 * (lower[0] + upper[0]), 0.5 * (lower[1] + upper[1]), lower[2] - distance});
+    scene_.camera = camera;
+    diagnostics_.warn(location, "the scene has no <sensor>; all of it is seen along z, as Mitsuba 0.6 has it; add one, "
+                                "for example <sensor type=\"perspective\"> with a <transform name=\"to_world\"> that "
+                                "says where from");
 }
 
 void SceneBuilder::check_whole() {
     const Location location{document_.root.location.file, 0};
-    if (!sensor_)
-        tell_no_sensor(location);
-    if (diagnostics_.has_errors())
+    if ((!sensor_ && tell_sensor_elsewhere()) || diagnostics_.has_errors())
         return;
     if (scene_.shapes.empty() && !environment_)
         diagnostics_.error(location,
@@ -261,7 +277,11 @@ void SceneBuilder::check_whole() {
                                        nested_objects(document_.root, "shape", resolve_).empty()
                                            ? ""
                                            : "; its file's shapes have no area or only bound a medium"));
-    else if (scene_.emitters.empty())
+    else if (!sensor_ && scene_.shapes.empty())
+        diagnostics_.error(location, "the scene has no <sensor> and no shapes that one could be directed at");
+    else if (!sensor_)
+        see_all(location);
+    if (!diagnostics_.has_errors() && scene_.emitters.empty())
         diagnostics_.warn(location,
                           std::string("nothing in the scene emits light: the image will be black; add an "
                                       "<emitter>, for example one of type \"constant\"") +

@@ -161,7 +161,10 @@ class SceneBuilder {
     void count_geometry(std::uint64_t bytes, const Location &location);
     void warn_of_parts_of_no_sensor(const Element &root);
     void check_whole();
-    void tell_no_sensor(const Location &location);
+    /// An error for a sensor that stands where none is looked for; whether there is one.
+    bool tell_sensor_elsewhere();
+    /// A camera for a scene without one, and a warning.
+    void see_all(const Location &location);
 
     const Document &document_;
     const LoadLimits limits_;

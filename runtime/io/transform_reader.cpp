@@ -80,9 +80,12 @@ Matrix4 read_rotation(const Element &step) {
     if (!step.attribute("angle"))
         fail(step, "needs angle (in degrees)");
     const Double3 axis = components(step, 0);
+    const double angle = number_attribute(step, "angle", 0);
+    if (length(axis) == 0 && angle == 0)
+        return Matrix4();
     if (length(axis) == 0)
         fail(step, "the axis is zero; give x, y or z");
-    return rotation(axis, number_attribute(step, "angle", 0));
+    return rotation(axis, angle);
 }
 
 /// Where a file says none, as its program has it: of 2.0 and later, Duff et al. 2017; of 0.x, Pharr and Humphreys 2004.
