@@ -57,6 +57,9 @@ int run_warm(const WarmRequest &request, const Services &services) {
     prepared.method->image(); // and what makes an image of it
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     print_message(fmt::format("{:8.3f} s  in all, on {}\n", seconds, prepared.description.name));
+    if (services.programs_not_kept() > 0)
+        throw Error(ExitCode::output, fmt::format("not all kernels could be kept in '{}': is the disk full?",
+                                                  services.cache_folder().string()));
     return static_cast<int>(ExitCode::success);
 }
 

@@ -5,6 +5,7 @@
 #include "driver/tuning_store.h"
 #include "planning/make_method.h"
 #include "runtime/device/cache_folder.h"
+#include "runtime/device/program_store.h"
 #include "runtime/phases.h"
 #include "runtime/scene/traits.h"
 #include "solver/weighted_reconstruction.h"
@@ -25,6 +26,7 @@ int main(int argc, char **argv) {
     services.list_devices = gradus::list_devices;
     services.method_names = gradus::method_names;
     services.cache_folder = gradus::program_cache_folder;
+    services.programs_not_kept = gradus::programs_not_kept;
     services.traits = gradus::trait_list;
     services.prepare = [](const std::string &method, const std::string &selector, const gradus::Scene &scene,
                           const gradus::RenderOptions &options) {

@@ -10,6 +10,9 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <csignal>
 #include <cstdio>
 #include <new>
@@ -72,6 +75,14 @@ int run_chosen(const std::function<int()> &chosen) {
     return static_cast<int>(ExitCode::failure);
 }
 
+/// Where the process was started without them, files that it opens would take the places of stdin, stdout and stderr,
+/// and other processes' output would go there. Reading finds an end; writing fails, as it does without them.
+void keep_standard_descriptors() {
+    for (int descriptor = 0; descriptor <= STDERR_FILENO; ++descriptor)
+        if (fcntl(descriptor, F_GETFD) == -1)
+            open("/dev/null", O_RDONLY); // takes the least number that is free
+}
+
 } // namespace
 
 const char *version() { return GRADUS_VERSION; }
@@ -81,6 +92,7 @@ int run_program(int argc, const char *const *argv, const Services &services) {
     std::signal(SIGXFSZ, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);
     spare_address_space();
+    keep_standard_descriptors();
 
     std::function<int()> chosen;
     try {

@@ -56,9 +56,11 @@ class RenderJob {
             progress_.message("interrupted; making the image of the samples so far: a second time ends at once");
         }
         if (has_nothing_to_show())
-            throw Error(ExitCode::failure, fmt::format("no sample was done after {:.0f} s, so there is no image: give "
-                                                       "more --time, or a smaller --size or --max-depth",
-                                                       seconds_since(render_start_)));
+            throw Error(ExitCode::failure,
+                        fmt::format("no sample was done after {:.0f} s, so there is no image: give "
+                                    "more --time, a smaller --size or --max-depth{}",
+                                    seconds_since(render_start_),
+                                    request_.method.options.photons > 0 ? ", or fewer --photons" : ""));
         if (!record_.interrupted && !request_.quiet)
             watch_->answer("\ngradus: all samples are done, and the image is being made: a second time loses it\n");
         Image image;

@@ -57,6 +57,8 @@ struct Services {
     std::function<TunedDevice(const std::string &device, int threads, const Scene &, const TuningOptions &)> tune;
     /// Where compiled kernels are kept; empty where they are not.
     std::function<std::filesystem::path()> cache_folder;
+    /// How many of them could not be kept there so far.
+    std::function<std::uint64_t()> programs_not_kept;
     /// The traits that specialise the kernels of a scene, by name.
     std::function<std::vector<std::pair<std::string, int>>(const Scene &)> traits;
 };

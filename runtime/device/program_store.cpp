@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -19,6 +20,8 @@ namespace gradus {
 namespace fs = std::filesystem;
 
 namespace {
+
+std::atomic<std::uint64_t> lost{0}; ///< files that could not be written
 
 /// Changes with the layout of the files.
 constexpr std::string_view magic = "gradus program 1\n";
@@ -60,6 +63,12 @@ std::string_view checked_payload(const std::string &key, std::string_view conten
 
 /// None where there is no such file. Throws as checked_payload() does.
 std::optional<std::string> payload_of(const fs::path &path, const std::string &key) {
+    std::error_code absent;
+    const fs::file_type type = fs::status(path, absent).type();
+    if (type == fs::file_type::not_found)
+        return std::nullopt;
+    if (type != fs::file_type::regular) // a device may have no end, and a pipe waits for a writer
+        throw std::runtime_error("no file");
     std::ifstream file(path, std::ios::binary);
     if (!file)
         return std::nullopt;
@@ -128,14 +137,20 @@ void ProgramStore::write(const fs::path &path, const std::string &content) const
     fs::create_directories(folder_, ignored);
     std::string temporary = path.string() + unfinished + "XXXXXX";
     const int file = mkostemp(temporary.data(), O_CLOEXEC);
-    if (file < 0)
+    if (file < 0) {
+        ++lost;
         return;
+    }
     // No fsync: after a crash the checksum tells.
     const bool written = write_all(file, content);
     const bool closed = close(file) == 0;
-    if (!written || !closed || std::rename(temporary.c_str(), path.c_str()) != 0)
+    if (!written || !closed || std::rename(temporary.c_str(), path.c_str()) != 0) {
         unlink(temporary.c_str());
+        ++lost;
+    }
 }
+
+std::uint64_t programs_not_kept() { return lost; }
 
 void ProgramStore::remove(const std::string &key) const {
     std::error_code ignored;

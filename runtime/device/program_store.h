@@ -42,4 +42,7 @@ class ProgramStore {
     std::uint64_t limit_;
 };
 
+/// How many files of this process's stores could not be written: the disk is full, or its folder is gone.
+std::uint64_t programs_not_kept();
+
 } // namespace gradus

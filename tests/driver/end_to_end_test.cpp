@@ -3,6 +3,7 @@
 #include "runtime/io/image_io.h"
 #include "tests/driver/child_process.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
@@ -444,6 +445,20 @@ TEST_F(EndToEnd, InspectDevicesAndWarm) {
     EXPECT_NE(devices.at(0).at("name"), "");
     const Outcome warm = run({"warm", scene, "--size", "32x32", "--spp", "1"});
     EXPECT_EQ(warm.exit_code, 0) << warm.err;
+}
+
+/// Files and sockets that it opens do not take their places: all kernels are kept, and none is compiled again.
+TEST_F(EndToEnd, DoesWithoutStandardStreams) {
+    const auto kernels_compiled = [&] {
+        const std::string command = fmt::format(
+            "cd '{}' && GRADUS_CACHE_DIR='{}' '{}' render '{}' --method pt --size 4x4 --spp 1 --stats s.json "
+            "-o out.exr <&- >&- 2>&-",
+            folder.string(), at("cache"), GRADUS_PROGRAM, scene);
+        EXPECT_EQ(std::system(command.c_str()), 0);
+        return nlohmann::json::parse(text_of("s.json")).at("compile_seconds").at("kernels").size();
+    };
+    EXPECT_GT(kernels_compiled(), 0u);
+    EXPECT_EQ(kernels_compiled(), 0u);
 }
 
 TEST_F(EndToEnd, MistakesHaveTheirExitCodes) {
