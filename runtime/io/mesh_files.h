@@ -8,16 +8,28 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
 namespace gradus {
 
+/// The faces of an OBJ file whose material, as the last `usemtl` before them names it, is one of these; or none of
+/// them.
+struct FacesOf {
+    std::set<std::string> materials = {};
+    bool others = true;
+    bool has(const std::string &material) const { return materials.contains(material) != others; }
+};
+
 /// Wavefront OBJ: v, vt, vn, f with any mix of v, v/t, v//n, v/t/n and negative indices. Polygons become fans.
-/// Everything else (groups, materials, lines, curves) is skipped: the whole file is one mesh. Messages quote a file
-/// only where it is called .obj, links resolved: the format has no mark, and a scene can name any file. place: where
-/// the text was read from; empty: where its name says.
-Mesh parse_obj(const std::string &text, const std::string &file_name, const std::filesystem::path &place = {});
+/// Everything else (groups, lines, curves) is skipped: the faces asked for are one mesh. Messages quote a file only
+/// where it is called .obj, links resolved: the format has no mark, and a scene can name any file. place: where the
+/// text was read from; empty: where its name says.
+Mesh parse_obj(const std::string &text, const std::string &file_name, const std::filesystem::path &place = {},
+               const FacesOf &faces = {});
+/// The materials that faces of an OBJ file have; "" of those without.
+std::set<std::string> materials_of_obj(const std::string &text);
 
 /// PLY, ASCII or binary of either byte order. Takes x y z, nx ny nz, u v (or s t) of "vertex" and the index list of
 /// "face", and what makes the attributes that are wanted (ply_attributes.h); skips every other element and property.

@@ -12,6 +12,8 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <optional>
+#include <string_view>
 
 namespace gradus {
 
@@ -26,10 +28,22 @@ struct Corner {
 
 constexpr int longest_list = 16; // of vertices that share a position
 
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+
+/// By a line without blanks before it.
+std::optional<std::string> material_named(std::string_view line) {
+    constexpr std::string_view word = "usemtl";
+    if (!line.starts_with(word) || line.size() == word.size() || !is_blank(line[word.size()]))
+        return std::nullopt;
+    return std::string(trimmed(line.substr(word.size())));
+}
+
 class ObjReader {
   public:
-    ObjReader(const std::string &text, const std::string &file_name, const std::filesystem::path &place)
-        : text_(text), file_name_(file_name), quotes_(lower_case(place.extension().string()) == ".obj") {}
+    ObjReader(const std::string &text, const std::string &file_name, const std::filesystem::path &place,
+              const FacesOf &faces)
+        : text_(text), file_name_(file_name), faces_(faces), takes_faces_(faces.has("")),
+          quotes_(lower_case(place.extension().string()) == ".obj") {}
 
     Mesh read() {
         const char *at = text_.data(), *const end = at + text_.size();
@@ -85,7 +99,6 @@ class ObjReader {
         return line_end;
     }
 
-    static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
     static void skip_blanks(const char *&at, const char *end) {
         while (at < end && is_blank(*at))
             ++at;
@@ -100,6 +113,8 @@ class ObjReader {
 
     const std::string &text_;
     const std::string &file_name_;
+    const FacesOf &faces_;
+    bool takes_faces_; ///< those that follow
     std::size_t line_ = 0;
     std::vector<Vector3> positions_, normals_;
     std::vector<std::array<float, 2>> texcoords_;
@@ -150,8 +165,12 @@ void ObjReader::read_line(const char *at, const char *end) {
                 fail("vn needs three numbers");
             normals_.push_back({values[0], values[1], values[2]});
         }
-    } else if (at[0] == 'f' && is_blank(at[1]))
-        read_face(at + 1, end);
+    } else if (at[0] == 'f' && is_blank(at[1])) {
+        if (takes_faces_)
+            read_face(at + 1, end);
+    } else if (const auto material = material_named({at, std::size_t(end - at)})) {
+        takes_faces_ = faces_.has(*material);
+    }
 }
 
 /// An index from 1, or from the end where negative, as one from 0.
@@ -242,8 +261,24 @@ Mesh ObjReader::assemble() {
 
 } // namespace
 
-Mesh parse_obj(const std::string &text, const std::string &file_name, const std::filesystem::path &place) {
-    return ObjReader(text, file_name, place.empty() ? std::filesystem::path(file_name) : place).read();
+Mesh parse_obj(const std::string &text, const std::string &file_name, const std::filesystem::path &place,
+               const FacesOf &faces) {
+    return ObjReader(text, file_name, place.empty() ? std::filesystem::path(file_name) : place, faces).read();
+}
+
+std::set<std::string> materials_of_obj(const std::string &text) {
+    std::set<std::string> found;
+    std::string material;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find_first_of("\r\n", at), text.size());
+        const std::string_view line = trimmed(std::string_view(text).substr(at, end - at));
+        if (line.size() > 1 && line[0] == 'f' && is_blank(line[1]))
+            found.insert(material);
+        else if (auto named = material_named(line))
+            material = *std::move(named);
+        at = end + 1;
+    }
+    return found;
 }
 
 } // namespace gradus

@@ -92,11 +92,16 @@ class SceneBuilder {
     /// Builds a nested object by its plugin. Throws SceneError where its type is not known.
     template <typename Result>
     Result build_object(const Element &element);
+    /// Whether it is a BSDF or a <ref> to one.
+    bool is_bsdf(const Element &child) const;
+    /// An element that a plugin has made, kept as long as those of the file.
+    const Element *keep(Element element) { return &made_.emplace_back(std::move(element)); }
     Diagnostics &diagnostics() { return diagnostics_; }
     /// May be nullptr.
     Phases *phases() const { return phases_; }
 
   private:
+    std::deque<Element> made_;
     Bsdf with_map(const Bsdf &bsdf, const NormalTexture &map, const Location &location);
     template <typename Result>
     Result read_as(const Element &element, const std::string &type);

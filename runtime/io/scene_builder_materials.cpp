@@ -16,13 +16,17 @@ void SceneBuilder::check_unused_bsdf(const Element &element) {
     }
 }
 
+bool SceneBuilder::is_bsdf(const Element &child) const {
+    return (child.tag == "ref" ? resolve_(child) : child).tag == "bsdf";
+}
+
 std::uint32_t SceneBuilder::material_of(const Element &shape) {
     const std::vector<NestedObject> bsdfs = nested_objects(shape, "bsdf", resolve_);
     if (bsdfs.size() > 1)
         throw SceneError(bsdfs[1].location,
                          std::string("a shape has one BSDF; this is its second") +
-                             (type_of(shape) == "obj" ? "; of the materials that an OBJ file names nothing is "
-                                                        "read: split it into a file for each"
+                             (type_of(shape) == "obj" ? "; only in files of 0.x is there one for each material that "
+                                                        "an OBJ file names"
                                                       : ""));
     if (bsdfs.empty()) {
         // Mitsuba 3's defaults: half of the light is reflected, but nothing by a shape that emits.

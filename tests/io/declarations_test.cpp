@@ -96,6 +96,8 @@ const std::map<std::string, std::string> values = {
     {"emitter projector focal_length", named("string", "focal_length", "80mm")},
     {"sensor perspective focal_length", named("string", "focal_length", "80mm")},
     {"sensor thinlens focal_length", named("string", "focal_length", "80mm")},
+    {"shape obj usemtl", named("string", "usemtl", "x")},
+    {"shape obj usemtl_other_than", named("string", "usemtl_other_than", "x")},
     {"texture bitmap channel", named("string", "channel", "g")},
     {"texture bitmap gamma", named("float", "gamma", "1")},
     {"texture mesh_attribute name", named("string", "name", "vertex_other")},
@@ -124,7 +126,7 @@ class Declarations : public testing::Test {
         for (const std::string name : {"a", "b"}) {
             const std::string corner = name == "a" ? "0 1 0.5" : "0 2 0";
             folder_.write(name + ".obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv " + corner +
-                                             "\nvt 0 0.25\nvt 1 0\nf 1/1 2/2 3/1\nf 1/1 3/2 4/1\n");
+                                             "\nvt 0 0.25\nvt 1 0\nf 1/1 2/2 3/1\nusemtl x\nf 1/1 3/2 4/1\n");
             folder_.write(
                 name + ".ply",
                 "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float "
