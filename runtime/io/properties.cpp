@@ -254,14 +254,40 @@ Double3 Properties::point(const std::string &name) {
     return result;
 }
 
+namespace {
+
+/// When a shutter opens, unless told otherwise: the last one until then, or the first of all.
+const Element &keyframe_at_start(const Element &animation) {
+    constexpr double start = 0;
+    const Element *found = nullptr;
+    double time_of_found = 0;
+    for (const Element &frame : animation.children) {
+        const std::optional<double> time = parse_number(frame.attribute_or("time", ""));
+        if (frame.tag != "transform" || !time)
+            throw SceneError(frame.location, "an <animation> consists of <transform>s with a time each");
+        const bool is_better = *time <= start ? time_of_found > start || *time > time_of_found : *time < time_of_found;
+        if (!found || is_better) {
+            found = &frame;
+            time_of_found = *time;
+        }
+    }
+    if (!found)
+        throw SceneError(animation.location, "an <animation> without a keyframe says nothing");
+    return *found;
+}
+
+} // namespace
+
 Matrix4 Properties::transform(const std::string &name) {
     const Element *property = find(declared(name, {Takes::transform}));
     if (!property)
         return {};
-    if (property->tag == "animation")
-        throw SceneError(property->location, "\"" + name +
-                                                 "\": motion is not supported; give one <transform>, such as " +
-                                                 "that of a keyframe of the <animation>");
+    if (property->tag == "animation") {
+        property = &keyframe_at_start(*property);
+        diagnostics_.warn(property->location, "\"" + name +
+                                                  "\": motion is not supported; all stands still as at this "
+                                                  "keyframe");
+    }
     if (property->tag != "transform")
         throw SceneError(property->location, "\"" + name + "\" needs a <transform>, not a <" + property->tag + ">");
     return read_transform(*property, diagnostics_);

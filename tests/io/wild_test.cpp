@@ -2,6 +2,8 @@
 #include "runtime/scene/transform.h"
 #include "tests/io/scene_text.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -171,6 +173,24 @@ TEST(Transform, ARotationByNothingNeedsNoAxis) {
     EXPECT_EQ(error_of_text(scene_around("<shape type=\"cube\"><transform name=\"to_world\"><rotate x=\"0\" y=\"0\" "
                                          "z=\"0\" angle=\"0\"/></transform></shape>")),
               "");
+}
+
+TEST(Animation, StandsStillAtItsStart) {
+    const auto place_of = [](const std::string &times) {
+        std::string frames;
+        for (const char time : times)
+            frames += fmt::format("<transform time=\"{0}\"><translate x=\"{0}\"/></transform>", time - '3');
+        const LoadedScene loaded = load_text(scene_around(
+            "<shape type=\"sphere\"><animation name=\"toWorld\">" + frames + "</animation></shape>", "0.6.0", lamp));
+        EXPECT_THAT(loaded.warnings, ElementsAre(HasSubstr("motion is not supported")));
+        return loaded.scene.spheres.at(0).center.x;
+    };
+    EXPECT_EQ(place_of("1345"), 0); // times from -2 to 2
+    EXPECT_EQ(place_of("5124"), -1);
+    EXPECT_EQ(place_of("654"), 1);
+    EXPECT_THAT(error_of_text(scene_around("<shape type=\"cube\"><animation name=\"to_world\"><transform/></animation>"
+                                           "</shape>")),
+                HasSubstr("with a time each"));
 }
 
 /// The corners of what is there lie within the view, and the nearest ones at its edge.
