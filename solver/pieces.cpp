@@ -3,7 +3,6 @@
 #include "kernels/shared/solver_shared.h"
 
 #include <numeric>
-#include <vector>
 
 namespace gradus::solver {
 
@@ -27,65 +26,88 @@ class DisjointSets {
 /// Calls visit(pixel, its place in a plane).
 template <class Visit>
 void for_each_pixel(const Grid &grid, const Visit &visit) {
-    for (std::uint32_t y = 0; y < grid.height; ++y)
+    std::uint32_t pixel = 0;
+    for (std::uint32_t y = 0; y < grid.height; ++y) {
+        const std::size_t line = (std::size_t(y) + 1) * grid.row + SOLVER_MARGIN;
         for (std::uint32_t x = 0; x < grid.width; ++x)
-            visit(y * grid.width + x, (std::size_t(y) + 1) * grid.row + SOLVER_MARGIN + x);
+            visit(pixel++, line + x);
+    }
 }
 
-struct Sum {
-    double values = 0, weights = 0;
-    double mean() const { return weights > 0 ? values / weights : 0; }
-};
-
-/// Of one plane of weights, for `channels` planes of u from `u` on.
+/// Beyond the last column and row weights are zero.
 template <class Real>
-void settle(const Grid &grid, const Real *weight_x, const Real *weight_y, const Real *weight_data, Real *u,
-            std::uint32_t channels) {
-    const std::size_t pixels = std::size_t(grid.width) * grid.height;
-    DisjointSets pieces(pixels);
-    for_each_pixel(grid, [&](std::uint32_t pixel, std::size_t at) { // beyond the last column and row weights are zero
+DisjointSets joined_pixels(const Grid &grid, const Real *weight_x, const Real *weight_y) {
+    DisjointSets sets(std::size_t(grid.width) * grid.height);
+    for_each_pixel(grid, [&](std::uint32_t pixel, std::size_t at) {
         if (weight_x[at] > 0)
-            pieces.join(pixel, pixel + 1);
+            sets.join(pixel, pixel + 1);
         if (weight_y[at] > 0)
-            pieces.join(pixel, pixel + grid.width);
+            sets.join(pixel, pixel + grid.width);
     });
-    for (std::uint32_t c = 0; c < channels; ++c, u += grid.plane) {
-        std::vector<Sum> weighted(pixels), all(pixels); // by root
-        for_each_pixel(grid, [&](std::uint32_t pixel, std::size_t at) {
-            Sum &told = weighted[pieces.root(pixel)], &any = all[pieces.root(pixel)];
-            told.values += double(weight_data[at]) * u[at];
-            told.weights += weight_data[at];
-            any.values += u[at];
-            any.weights += 1;
-        });
-        for_each_pixel(grid, [&](std::uint32_t pixel, std::size_t at) {
-            const std::uint32_t root = pieces.root(pixel);
-            u[at] -= Real((weighted[root].weights > 0 ? weighted : all)[root].mean());
-        });
-    }
+    return sets;
 }
 
+/// Of one channel.
 template <class Real>
-void settle_all(const Kernels &kernels, Problem &problem, Workspace &workspace, const Buffer &data) {
-    const Grid &grid = workspace.grid();
-    const System &system = workspace.system();
-    const Buffer::Mapping weight_x = system.weight_x.map(Access::read), weight_y = system.weight_y.map(Access::read);
-    const Buffer::Mapping weight_data = data.map(Access::read), u = problem.u().map(Access::read_write);
-    const std::uint32_t channels = workspace.channels / kernels.weight_planes; // that share a plane of weights
-    for (std::uint32_t plane = 0; plane < kernels.weight_planes; ++plane) {
-        const std::size_t first = std::size_t(plane) * grid.plane;
-        settle(grid, weight_x.as<const Real>() + first, weight_y.as<const Real>() + first,
-               weight_data.as<const Real>() + first, u.as<Real>() + first * channels, channels);
-    }
+void settle(const Grid &grid, const std::vector<std::uint32_t> &piece, std::size_t count, const Real *data, Real *u) {
+    struct Sums {
+        double told = 0, weights = 0, all = 0, pixels = 0;
+        double mean() const { return weights > 0 ? told / weights : all / pixels; }
+    };
+    std::vector<Sums> of(count);
+    for_each_pixel(grid, [&](std::uint32_t pixel, std::size_t at) {
+        Sums &sums = of[piece[pixel]];
+        sums.told += double(data[at]) * u[at];
+        sums.weights += data[at];
+        sums.all += u[at];
+        ++sums.pixels;
+    });
+    for_each_pixel(grid, [&](std::uint32_t pixel, std::size_t at) { u[at] -= Real(of[piece[pixel]].mean()); });
+}
+
+/// Calls visit(a number of the solver's precision, zero).
+template <class Visit>
+void in_precision(Precision precision, const Visit &visit) {
+    precision == Precision::double_ ? visit(double()) : visit(float());
 }
 
 } // namespace
 
-void settle_means(const Kernels &kernels, Problem &problem, Workspace &workspace, const Buffer &data) {
-    if (workspace.make.precision() == Precision::double_)
-        settle_all<double>(kernels, problem, workspace, data);
-    else
-        settle_all<float>(kernels, problem, workspace, data);
+Pieces::Pieces(Workspace &workspace) : workspace_(workspace) {
+    const Grid &grid = workspace.grid();
+    const System &system = workspace.system();
+    const std::size_t planes = system.weight_plane > 0 ? workspace.channels : 1;
+    in_precision(workspace.make.precision(), [&](auto real) {
+        using Real = const decltype(real);
+        const Buffer::Mapping weight_x = system.weight_x.map(Access::read),
+                              weight_y = system.weight_y.map(Access::read);
+        for (std::size_t i = 0; i < planes; ++i) {
+            const std::size_t first = i * grid.plane;
+            DisjointSets sets = joined_pixels(grid, weight_x.as<Real>() + first, weight_y.as<Real>() + first);
+            Plane &plane = planes_.emplace_back();
+            plane.piece.resize(std::size_t(grid.width) * grid.height);
+            std::vector<std::uint32_t> number(plane.piece.size());
+            for (std::uint32_t pixel = 0; pixel < number.size(); ++pixel)
+                if (sets.root(pixel) == pixel)
+                    number[pixel] = std::uint32_t(plane.count++);
+            for (std::uint32_t pixel = 0; pixel < number.size(); ++pixel)
+                plane.piece[pixel] = number[sets.root(pixel)];
+        }
+    });
+}
+
+void Pieces::settle_means(Problem &problem, const Buffer &data) const {
+    const Grid &grid = workspace_.grid();
+    const std::size_t channels = workspace_.channels / planes_.size(); // that share a plane of weights
+    in_precision(workspace_.make.precision(), [&](auto real) {
+        using Real = decltype(real);
+        const Buffer::Mapping weights = data.map(Access::read), u = problem.u().map(Access::read_write);
+        for (std::size_t c = 0; c < workspace_.channels; ++c) {
+            const Plane &plane = planes_[c / channels];
+            settle(grid, plane.piece, plane.count, weights.as<const Real>() + c / channels * grid.plane,
+                   u.as<Real>() + c * grid.plane);
+        }
+    });
 }
 
 } // namespace gradus::solver

@@ -3,6 +3,8 @@
 
 #include "solver/problem.h"
 
+#include <vector>
+
 namespace gradus::solver {
 
 /// With a smaller alpha the data terms hardly tell the mean of a solution from rounding errors.
@@ -12,10 +14,25 @@ inline constexpr double least_alpha_of_means = 1e-2;
 /// would take rounding errors for means so large that its digits are lost to them.
 inline constexpr double least_alpha_of_squares = 1e-4;
 
-/// Sets the mean of u to zero in each piece of the image, pixels that differences join, as the equations have it: those
-/// of a piece add up to sum w u = 0, w being the weights of its data terms. `data`: these weights, or what they are the
-/// same share of everywhere. Of a piece whose data are all missing, the mean over its pixels. `kernels`: whose weights
-/// the finest system has. On the host: such settings are rare, and pieces have any shape.
-void settle_means(const Kernels &kernels, Problem &problem, Workspace &workspace, const Buffer &data);
+/// The pieces of an image: pixels that differences join. On the host: such settings are rare, and pieces have any
+/// shape.
+class Pieces {
+  public:
+    /// Those that the weights of the finest system make.
+    explicit Pieces(Workspace &workspace);
+
+    /// Sets the mean of u to zero in each piece, as the equations have it: those of a piece add up to sum w u = 0, w
+    /// being the weights of its data terms. `data`: these weights, or what they are the same share of everywhere. Of a
+    /// piece whose data are all missing, the mean over its pixels.
+    void settle_means(Problem &problem, const Buffer &data) const;
+
+  private:
+    struct Plane {
+        std::vector<std::uint32_t> piece; ///< by pixel
+        std::size_t count = 0;
+    };
+    Workspace &workspace_;
+    std::vector<Plane> planes_; ///< by plane of weights
+};
 
 } // namespace gradus::solver

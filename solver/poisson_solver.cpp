@@ -155,7 +155,7 @@ void PoissonSolver::Implementation::least_squares(const Inputs &images, const Po
     const LinearReport linear =
         workspace.linear.solve(kernels, request, workspace.groups(), right_side, problem.u(), norm);
     if (settles)
-        settle_means(kernels, problem, workspace, problem.base_data());
+        Pieces(workspace).settle_means(problem, problem.base_data());
     report.method = method_name(request.method);
     report.iterations = linear.iterations;
     report.converged = linear.converged;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 namespace gradus::solver {
@@ -77,6 +78,7 @@ void Reweighting::run(Kernels &kernels, Problem &problem, double alpha, const In
     request.damping = options.damping;
 
     const bool settles = alpha < least_alpha_of_means;
+    std::optional<Pieces> pieces;
     start(kernels, problem, alpha, images);
     Buffer &previous = problem.spare();
     previous.clear();
@@ -106,9 +108,11 @@ void Reweighting::run(Kernels &kernels, Problem &problem, double alpha, const In
         const auto right_side = [&](Planes group) -> const Buffer & { return problem.make_right_side(kernels, group); };
         report.iterations +=
             workspace_.linear.solve(kernels, request, workspace_.groups(), right_side, problem.u()).iterations;
-        if (settles)
-            settle_means(kernels, problem, workspace_,
-                         alpha > 0 ? workspace_.system().weight_data : problem.base_data());
+        if (settles) {
+            if (!pieces) // which weights that differ from 0 make, whatever they are
+                pieces.emplace(workspace_);
+            pieces->settle_means(problem, alpha > 0 ? workspace_.system().weight_data : problem.base_data());
+        }
         ++report.reweightings;
         regularisation = std::max(regularisation * regularisation_factor, least_regularisation * scale);
     }
