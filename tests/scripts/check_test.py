@@ -82,6 +82,7 @@ class Check(unittest.TestCase):
             "the demo with empty caches": "passed",
             "a second OpenCL implementation": "SKIPPED: no second OpenCL implementation",
             "Mitsuba 3": "passed",
+            "random scenes beside Mitsuba 3": "passed",
             "error against time, with rivals": "SKIPPED: no Mitsuba"})
         self.assertEqual(list(self.folder.glob("build/empty-caches*")), [])
 
