@@ -74,6 +74,7 @@ class Reader {
     /// Puts what the file says in the place of its name.
     void read_spectrum(const File &file, Element &spectrum);
     void check_root(const File &file, const pugi::xml_node &root, bool is_main) const;
+    void check_entity(const File &file, const pugi::xml_node &root) const;
     void collect_parameters(const File &file, const pugi::xml_node &node, int depth);
     void collect_nested_defaults(const File &file, const pugi::xml_node &object);
     void add_default(const File &file, const pugi::xml_node &node);
@@ -133,6 +134,8 @@ std::unique_ptr<File> Reader::open(const std::shared_ptr<const OpenFile> &opened
     const pugi::xml_node root = file->xml.document_element();
     if (!root)
         fail(whole, "no XML element in this file");
+    if (is_entity)
+        check_entity(*file, root);
     check_root(*file, root, !including);
     file->version = including.value_or(3);
     const Location location = file->locate(root);
@@ -166,6 +169,16 @@ void Reader::check_root(const File &file, const pugi::xml_node &root, bool is_ma
                                            ? std::string(" <") + second.name() + ">"
                                            : std::string()) +
                                       "; a scene file has one");
+}
+
+/// The same of a file without a root of its own: it holds nothing but what may stand in a <scene>.
+void Reader::check_entity(const File &file, const pugi::xml_node &root) const {
+    for (const pugi::xml_node &child : root.children()) {
+        const std::string tag = child.name();
+        if (!is_object_tag(tag) && tag != "scene" && tag != "default" && tag != "include" && tag != "path" &&
+            tag != "alias" && tag != "ref")
+            fail(file.locate(root), "not a part of a scene: something in it is no object");
+    }
 }
 
 void Reader::add_folder(const File &file, const pugi::xml_node &node, const std::string &value) {
@@ -301,9 +314,10 @@ Element Reader::convert(const File &file, const pugi::xml_node &node, int depth)
                                         parameters_.expand_or_tell(attribute.value(), location, diagnostics_));
     if (element.tag == "spectrum" && element.attribute("filename") && !element.attribute("value"))
         read_spectrum(file, element);
-    for (auto &[name, value] : element.attributes)
-        if (element.is_legacy() && element.tag == "bsdf" && name == "type" && value == "bump")
-            value = "bumpmap"; // as 0.4 has it
+    if (element.is_legacy() && element.tag == "bsdf")
+        for (auto &[name, value] : element.attributes)
+            if (name == "type" && value == "bump")
+                value = "bumpmap"; // as 0.4 has it
     convert_children(file, node, element, depth);
     return element;
 }

@@ -101,7 +101,6 @@ class SceneBuilder {
     Phases *phases() const { return phases_; }
 
   private:
-    std::deque<Element> made_;
     Bsdf with_map(const Bsdf &bsdf, const NormalTexture &map, const Location &location);
     template <typename Result>
     Result read_as(const Element &element, const std::string &type);
@@ -204,6 +203,7 @@ class SceneBuilder {
     std::int64_t default_material_ = -1, default_emitter_material_ = -1, boundary_material_ = -1;
     const Element *sensor_ = nullptr, *integrator_ = nullptr, *environment_ = nullptr;
     std::vector<const Element *> open_; ///< objects that are being built, outermost first
+    std::deque<Element> made_;          ///< by plugins
     std::shared_ptr<MeshFile> shared_file_;
     std::uint64_t mesh_bytes_ = 0, geometry_bytes_ = 0, shapes_in_line_ = 0, texture_bytes_ = 0;
     const InstanceChoice instance_choice_;

@@ -58,13 +58,20 @@ TEST(Entities, StandForText) {
 
 TEST(Entities, StandForFiles) {
     TemporaryFolder folder;
-    folder.write("header.xml", "<integrator type=\"path\"><integer name=\"maxDepth\" value=\"3\"/></integrator>\n" +
+    folder.write("header.xml", "<?xml version='1.0'?>\n<!-- depth --><integrator type=\"path\"><integer "
+                               "name=\"maxDepth\" value=\"3\"/></integrator>\n" +
                                    std::string("<shape type=\"cube\"/>"));
     const LoadedScene loaded =
         load_scene(folder.write("scene.xml", with_type("<!ENTITY header SYSTEM \"header.xml\">", "&header;")));
     EXPECT_THAT(loaded.warnings, IsEmpty());
     EXPECT_EQ(loaded.scene.settings.max_depth, 3);
     EXPECT_EQ(loaded.scene.meshes.size(), 1u);
+    // A scene may name any file.
+    folder.write("secret.txt", "<?xml version='1.0'?>\nuser: 1000 <b/>");
+    const std::string message = error_of(
+        folder.write("spy.xml", with_type("<!ENTITY spy SYSTEM \"secret.txt\">", "&spy;<shape type=\"cube\"/>")));
+    EXPECT_THAT(message, HasSubstr("not a part of a scene"));
+    EXPECT_THAT(message, Not(HasSubstr("1000")));
     EXPECT_THAT(error_of_text(with_type("<!ENTITY header SYSTEM \"absent.xml\">", "&header;<shape type=\"cube\"/>")),
                 HasSubstr("cannot find the included file \"absent.xml\""));
 }

@@ -3,7 +3,6 @@
 #include "runtime/io/plugins/plugin.h"
 #include "runtime/io/text.h"
 
-#include <algorithm>
 #include <set>
 
 namespace gradus {
@@ -48,8 +47,7 @@ std::string name_of(const Element &child) {
 /// that of all others: shapes like this one, with some of the faces each.
 ShapeGroup shapes_by_material(Properties &properties, SceneBuilder &builder, MeshFile &file) {
     const Element &shape = properties.element();
-    const std::set<std::string> materials = materials_of_obj(file.bytes());
-    std::set<std::string> others = materials;
+    std::set<std::string> others = materials_of_obj(file.bytes());
     Element rest = shape;
     std::erase_if(rest.children, [&](const Element &child) { return builder.is_bsdf(child); });
     const auto with = [&rest](const Element *bsdf, const char *parameter, const std::string &value) {
@@ -96,12 +94,16 @@ Declaration declare_shape_obj() {
 }
 
 ShapeGeometry shape_obj(Properties &properties, SceneBuilder &builder) {
-    const std::shared_ptr<MeshFile> file = builder.mesh_file(builder.find_file(properties), properties.location());
     const std::size_t bsdfs = properties.objects("bsdf").size();
-    if (properties.element().is_legacy() && bsdfs > 1)
+    const bool is_by_material = properties.element().is_legacy() && bsdfs > 1;
+    const FacesOf faces = faces_of(properties);
+    const std::filesystem::path path = builder.find_file(properties);
+    const std::shared_ptr<MeshFile> file = is_by_material || !faces.materials.empty()
+                                               ? builder.shared_mesh_file(path, properties.location())
+                                               : builder.mesh_file(path, properties.location());
+    if (is_by_material)
         return shapes_by_material(properties, builder, *file);
     const bool flip = properties.boolean("flip_tex_coords"); // most files count v from the image's bottom
-    const FacesOf faces = faces_of(properties);
     // In 0.x the file's own materials count where the shape has none and nobody says otherwise.
     const bool is_missing_materials =
         properties.element().is_legacy() && !properties.has("load_materials") && bsdfs == 0 && faces.materials.empty();
