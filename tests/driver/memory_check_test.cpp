@@ -51,7 +51,7 @@ double allocated(const MemoryCase &c, double side) {
 class BytesOfPixel : public ::testing::TestWithParam<MemoryCase> {};
 
 TEST_P(BytesOfPixel, AreWhatRendersAllocate) {
-    constexpr double small = 400, large = 500;
+    constexpr double small = 320, large = 384; // of whole tiles of the solver
     const double of_small = allocated(GetParam(), small), of_large = allocated(GetParam(), large);
     const double growth = (of_large - of_small) / (large * large - small * small);
     const auto told = double(bytes_of_pixel(GetParam().method, options_of(GetParam()), GetParam().samples));

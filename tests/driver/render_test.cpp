@@ -10,6 +10,7 @@
 #include <chrono>
 #include <fcntl.h>
 #include <fstream>
+#include <memory>
 #include <sys/file.h>
 #include <unistd.h>
 
@@ -136,20 +137,33 @@ TEST_F(Render, TimeEndsTheRender) {
 TEST_F(Render, ASampleOfEachPixelIsWaitedForLongerThanTheTime) {
     ASSERT_EQ(render({"-o", "out.exr", "--time", "0.01", "-D", "patient_ms=1500"}).exit_code, 0);
     EXPECT_EQ(value(read_image(at("out.exr")), "G"), 1);
-    const std::string before = text_of("out.exr");
-    const auto start = std::chrono::steady_clock::now();
-    const Outcome outcome = render({"-o", "out.exr", "--time", "0.01", "--seed", "3", "-D", "endless=0"});
-    EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 20);
-    EXPECT_EQ(outcome.exit_code, 1);
-    EXPECT_THAT(outcome.err, HasSubstr("gradus: error: no sample was done"));
-    EXPECT_EQ(text_of("out.exr"), before);
 }
 
-TEST_F(Render, AnImageWithHolesSaysThatItIsNotWhole) {
-    const Outcome outcome = render({"-o", "out.exr", "--time", "0.01", "-D", "endless=1", "-D", "holes=5"});
-    EXPECT_EQ(outcome.exit_code, 0);
-    EXPECT_THAT(outcome.err, HasSubstr("warning: the time was over before each pixel had a sample"));
-    EXPECT_EQ(read_image(at("out.exr")).metadata.at("partial"), "true");
+// Both are waited for, for some seconds: at the same time.
+TEST_F(Render, ASampleOfEachPixelIsNotWaitedForWithoutEnd) {
+    ASSERT_EQ(render({"-o", "none.exr", "--time", "0.01"}).exit_code, 0);
+    const std::string before = text_of("none.exr");
+    const auto start = std::chrono::steady_clock::now();
+    const auto begun = [&](const char *image, const std::vector<std::string> &definitions) {
+        std::vector<std::string> arguments = {"render", "scene.xml", "-o", image, "--time", "0.01", "--seed", "3"};
+        arguments.insert(arguments.end(), definitions.begin(), definitions.end());
+        return std::make_unique<ChildProcess>(arguments, folder);
+    };
+    const auto without_samples = begun("none.exr", {"-D", "endless=0"});
+    const auto with_holes = begun("holes.exr", {"-D", "endless=1", "-D", "holes=5"});
+
+    const Outcome none = without_samples->wait(), holes = with_holes->wait();
+    EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 20);
+    EXPECT_EQ(none.exit_code, 1);
+    EXPECT_THAT(none.err, HasSubstr("gradus: error: no sample was done"));
+    EXPECT_EQ(text_of("none.exr"), before);
+
+    EXPECT_EQ(holes.exit_code, 0);
+    EXPECT_THAT(holes.err, HasSubstr("warning: the time was over before each pixel had a sample"));
+    EXPECT_EQ(read_image(at("holes.exr")).metadata.at("partial"), "true");
+}
+
+TEST_F(Render, AnImageWithoutHolesIsWholeWhereTheTimeEndsIt) {
     ASSERT_EQ(render({"-o", "out.exr", "--time", "0.01", "-D", "endless=2", "-D", "holes=5"}).exit_code, 0);
     EXPECT_EQ(read_image(at("out.exr")).metadata.at("partial"), "false");
 }
