@@ -6,8 +6,10 @@
 #include "runtime/io/limits.h"
 #include "runtime/scene/scene.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -23,13 +25,37 @@ struct FacesOf {
 };
 
 /// Wavefront OBJ: v, vt, vn, f with any mix of v, v/t, v//n, v/t/n and negative indices. Polygons become fans.
-/// Everything else (groups, lines, curves) is skipped: the faces asked for are one mesh. Messages quote a file only
-/// where it is called .obj, links resolved: the format has no mark, and a scene can name any file. place: where the
-/// text was read from; empty: where its name says.
-Mesh parse_obj(const std::string &text, const std::string &file_name, const std::filesystem::path &place = {},
-               const FacesOf &faces = {});
-/// The materials that faces of an OBJ file have; "" of those without.
-std::set<std::string> materials_of_obj(const std::string &text);
+/// Everything else (groups, lines, curves) is skipped: all faces are one mesh. Messages quote a file only where it is
+/// called .obj, links resolved: the format has no mark, and a scene can name any file. place: where the text was read
+/// from; empty: where its name says.
+Mesh parse_obj(const std::string &text, const std::string &file_name, const std::filesystem::path &place = {});
+
+/// Such a file, read once for several meshes of some of its faces each.
+class ObjFile {
+  public:
+    ObjFile(const std::string &text, const std::string &file_name, const std::filesystem::path &place = {});
+    ObjFile(ObjFile &&) noexcept;
+    ObjFile &operator=(ObjFile &&) noexcept;
+    ~ObjFile();
+    Mesh mesh(const FacesOf &faces) const;
+    /// Whether a face has it.
+    bool has_material(const std::string &material) const;
+
+  private:
+    struct Content;
+    std::unique_ptr<Content> content_;
+};
+
+/// What the lines of an OBJ file name.
+struct ObjNames {
+    std::set<std::string> materials; ///< that faces have; "" of those without
+    struct Library {
+        std::string name;
+        std::size_t line; ///< from 1
+    };
+    std::vector<Library> libraries; ///< of `mtllib`: whatever follows is one name
+};
+ObjNames names_in_obj(const std::string &text);
 
 /// PLY, ASCII or binary of either byte order. Takes x y z, nx ny nz, u v (or s t) of "vertex" and the index list of
 /// "face", and what makes the attributes that are wanted (ply_attributes.h); skips every other element and property.

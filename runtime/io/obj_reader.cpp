@@ -12,40 +12,80 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string_view>
 
 namespace gradus {
+
+/// A corner of a face: indices from 0, `none` where the file gives none.
+struct ObjCorner {
+    std::uint32_t position, texcoord, normal;
+    auto operator<=>(const ObjCorner &) const = default;
+};
+
+/// Positions, texcoords and normals of a file, which faces share.
+struct ObjLists {
+    std::vector<Vector3> positions, normals;
+    std::vector<std::array<float, 2>> texcoords;
+};
 
 namespace {
 
 constexpr std::uint32_t none = 0xffffffffu;
 
-struct Corner {
-    std::uint32_t position, texcoord, normal; // none where the file gives none
-    auto operator<=>(const Corner &) const = default;
-};
-
 constexpr int longest_list = 16; // of vertices that share a position
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
-/// By a line without blanks before it.
-std::optional<std::string> material_named(std::string_view line) {
-    constexpr std::string_view word = "usemtl";
+/// What a line that begins with the word names; it has no blanks before it.
+std::optional<std::string> named_after(std::string_view word, std::string_view line) {
     if (!line.starts_with(word) || line.size() == word.size() || !is_blank(line[word.size()]))
         return std::nullopt;
     return std::string(trimmed(line.substr(word.size())));
 }
+std::optional<std::string> material_named(std::string_view line) { return named_after("usemtl", line); }
 
+/// A mesh of some of the faces: corners that are alike become one vertex, and polygons fans.
+class MeshOfFaces {
+  public:
+    MeshOfFaces(const ObjLists &lists, const std::string &file_name) : lists_(lists), file_name_(file_name) {}
+
+    void begin_material(const std::string &) {}
+    void add_face(std::span<const ObjCorner> face) {
+        polygon_.clear();
+        for (const ObjCorner &corner : face)
+            polygon_.push_back(vertex_of(corner));
+        for (std::size_t i = 2; i < polygon_.size(); ++i)
+            triangles_.push_back({polygon_[0], polygon_[i - 1], polygon_[i]});
+    }
+    Mesh assemble();
+
+  private:
+    std::uint32_t vertex_of(const ObjCorner &corner);
+
+    const ObjLists &lists_;
+    const std::string &file_name_;
+    std::vector<ObjCorner> corners_;             // by vertex of the mesh
+    std::vector<std::uint32_t> first_, next_;    // the first few vertices that share a position, as lists
+    std::map<ObjCorner, std::uint32_t> crowded_; // the others: a list of all would be searched for each corner
+    std::vector<std::uint32_t> polygon_;
+    std::vector<std::array<std::uint32_t, 3>> triangles_;
+};
+
+/// `Faces`: takes the faces one after the other, and the name of their material before each that has another.
+template <class Faces>
 class ObjReader {
   public:
+    /// The lists are filled while the file is read.
     ObjReader(const std::string &text, const std::string &file_name, const std::filesystem::path &place,
-              const FacesOf &faces)
-        : text_(text), file_name_(file_name), faces_(faces), takes_faces_(faces.has("")),
-          quotes_(lower_case(place.extension().string()) == ".obj") {}
+              ObjLists &lists, Faces &faces)
+        : text_(text), file_name_(file_name), lists_(lists), faces_(faces),
+          quotes_(lower_case((place.empty() ? std::filesystem::path(file_name) : place).extension().string()) ==
+                  ".obj") {}
 
-    Mesh read() {
+    void read() {
         const char *at = text_.data(), *const end = at + text_.size();
         while (at < end) {
             ++line_;
@@ -56,7 +96,6 @@ class ObjReader {
                 read_line(at, line_end);
             at = after_line(line_end, end);
         }
-        return assemble();
     }
 
   private:
@@ -108,25 +147,18 @@ class ObjReader {
     int read_floats(const char *&at, const char *end, float *values, int count) const;
     void read_face(const char *at, const char *end);
     std::uint32_t read_index(const char *&at, const char *end, std::size_t count, const char *kind) const;
-    std::uint32_t vertex_of(const Corner &corner);
-    Mesh assemble();
 
     const std::string &text_;
     const std::string &file_name_;
-    const FacesOf &faces_;
-    bool takes_faces_; ///< those that follow
-    std::size_t line_ = 0;
-    std::vector<Vector3> positions_, normals_;
-    std::vector<std::array<float, 2>> texcoords_;
-    std::vector<Corner> corners_;             // by vertex of the mesh
-    std::vector<std::uint32_t> first_, next_; // the first few vertices that share a position, as lists
-    std::map<Corner, std::uint32_t> crowded_; // the others: a list of all would be searched for each corner
+    ObjLists &lists_;
+    Faces &faces_;
     bool quotes_;
-    std::vector<std::uint32_t> polygon_;
-    std::vector<std::array<std::uint32_t, 3>> triangles_;
+    std::size_t line_ = 0;
+    std::vector<ObjCorner> face_;
 };
 
-int ObjReader::read_floats(const char *&at, const char *end, float *values, int count) const {
+template <class Faces>
+int ObjReader<Faces>::read_floats(const char *&at, const char *end, float *values, int count) const {
     for (int i = 0; i < count; ++i) {
         skip_blanks(at, end);
         if (at == end || *at == '#')
@@ -143,7 +175,8 @@ int ObjReader::read_floats(const char *&at, const char *end, float *values, int 
     return count;
 }
 
-void ObjReader::read_line(const char *at, const char *end) {
+template <class Faces>
+void ObjReader<Faces>::read_line(const char *at, const char *end) {
     skip_blanks(at, end);
     if (end - at < 2)
         return;
@@ -153,28 +186,29 @@ void ObjReader::read_line(const char *at, const char *end) {
             at += 1;
             if (read_floats(at, end, values, 3) != 3)
                 fail("v needs three numbers");
-            positions_.push_back({values[0], values[1], values[2]});
+            lists_.positions.push_back({values[0], values[1], values[2]});
         } else if (at[1] == 't') {
             at += 2;
             if (read_floats(at, end, values, 2) < 1)
                 fail("vt needs two numbers");
-            texcoords_.push_back({values[0], values[1]});
+            lists_.texcoords.push_back({values[0], values[1]});
         } else if (at[1] == 'n') {
             at += 2;
             if (read_floats(at, end, values, 3) != 3)
                 fail("vn needs three numbers");
-            normals_.push_back({values[0], values[1], values[2]});
+            lists_.normals.push_back({values[0], values[1], values[2]});
         }
     } else if (at[0] == 'f' && is_blank(at[1])) {
-        if (takes_faces_)
-            read_face(at + 1, end);
+        read_face(at + 1, end);
     } else if (const auto material = material_named({at, std::size_t(end - at)})) {
-        takes_faces_ = faces_.has(*material);
+        faces_.begin_material(*material);
     }
 }
 
 /// An index from 1, or from the end where negative, as one from 0.
-std::uint32_t ObjReader::read_index(const char *&at, const char *end, std::size_t count, const char *kind) const {
+template <class Faces>
+std::uint32_t ObjReader<Faces>::read_index(const char *&at, const char *end, std::size_t count,
+                                           const char *kind) const {
     long long index = 0;
     const auto [stop, error] = std::from_chars(at, end, index);
     if (error == std::errc::invalid_argument)
@@ -186,37 +220,37 @@ std::uint32_t ObjReader::read_index(const char *&at, const char *end, std::size_
     return std::uint32_t(from_zero);
 }
 
-void ObjReader::read_face(const char *at, const char *end) {
-    polygon_.clear();
+template <class Faces>
+void ObjReader<Faces>::read_face(const char *at, const char *end) {
+    face_.clear();
     for (;;) {
         skip_blanks(at, end);
         if (at == end || *at == '#')
             break;
-        Corner corner{none, none, none};
-        corner.position = read_index(at, end, positions_.size(), "v");
+        ObjCorner corner{none, none, none};
+        corner.position = read_index(at, end, lists_.positions.size(), "v");
         if (at < end && *at == '/') {
             ++at;
             if (at < end && *at != '/' && !is_blank(*at))
-                corner.texcoord = read_index(at, end, texcoords_.size(), "vt");
+                corner.texcoord = read_index(at, end, lists_.texcoords.size(), "vt");
             if (at < end && *at == '/') {
                 ++at;
                 if (at < end && !is_blank(*at))
-                    corner.normal = read_index(at, end, normals_.size(), "vn");
+                    corner.normal = read_index(at, end, lists_.normals.size(), "vn");
             }
         }
         if (at < end && !is_blank(*at))
             fail("a face corner is v, v/vt, v//vn or v/vt/vn; cannot read " + quoted(at, end));
-        polygon_.push_back(vertex_of(corner));
+        face_.push_back(corner);
     }
-    if (polygon_.size() < 3)
+    if (face_.size() < 3)
         fail("a face needs three corners or more");
-    for (std::size_t i = 2; i < polygon_.size(); ++i)
-        triangles_.push_back({polygon_[0], polygon_[i - 1], polygon_[i]});
+    faces_.add_face(face_);
 }
 
-std::uint32_t ObjReader::vertex_of(const Corner &corner) {
-    if (first_.size() < positions_.size())
-        first_.resize(positions_.size(), none);
+std::uint32_t MeshOfFaces::vertex_of(const ObjCorner &corner) {
+    if (first_.size() < lists_.positions.size())
+        first_.resize(lists_.positions.size(), none);
     int length = 0;
     for (std::uint32_t vertex = first_[corner.position]; vertex != none; vertex = next_[vertex], ++length)
         if (corners_[vertex] == corner)
@@ -225,7 +259,7 @@ std::uint32_t ObjReader::vertex_of(const Corner &corner) {
         if (const auto known = crowded_.find(corner); known != crowded_.end())
             return known->second;
     if (corners_.size() >= std::numeric_limits<std::int32_t>::max())
-        fail("more vertices than 32-bit indices hold");
+        throw SceneError({std::make_shared<const std::string>(file_name_)}, "more vertices than 32-bit indices hold");
     const auto vertex = std::uint32_t(corners_.size());
     corners_.push_back(corner);
     next_.push_back(none);
@@ -238,45 +272,103 @@ std::uint32_t ObjReader::vertex_of(const Corner &corner) {
     return vertex;
 }
 
-Mesh ObjReader::assemble() {
+Mesh MeshOfFaces::assemble() {
     Mesh mesh;
     mesh.triangles = std::move(triangles_);
     mesh.positions.reserve(corners_.size());
     bool any_normal = false, any_texcoord = false;
-    for (const Corner &corner : corners_) {
-        mesh.positions.push_back(positions_[corner.position]);
+    for (const ObjCorner &corner : corners_) {
+        mesh.positions.push_back(lists_.positions[corner.position]);
         any_normal |= corner.normal != none;
         any_texcoord |= corner.texcoord != none;
     }
     // A zero normal marks a vertex without one; build_mesh() computes it.
     if (any_normal)
-        for (const Corner &corner : corners_)
-            mesh.normals.push_back(corner.normal == none ? Vector3{} : normals_[corner.normal]);
+        for (const ObjCorner &corner : corners_)
+            mesh.normals.push_back(corner.normal == none ? Vector3{} : lists_.normals[corner.normal]);
     if (any_texcoord)
-        for (const Corner &corner : corners_)
+        for (const ObjCorner &corner : corners_)
             mesh.texcoords.push_back(corner.texcoord == none ? std::array<float, 2>{0, 0}
-                                                             : texcoords_[corner.texcoord]);
+                                                             : lists_.texcoords[corner.texcoord]);
     return mesh;
 }
 
 } // namespace
 
-Mesh parse_obj(const std::string &text, const std::string &file_name, const std::filesystem::path &place,
-               const FacesOf &faces) {
-    return ObjReader(text, file_name, place.empty() ? std::filesystem::path(file_name) : place, faces).read();
+/// The faces of a file as they stand in it.
+struct ObjFile::Content {
+    std::string file_name;
+    ObjLists lists;
+    std::vector<ObjCorner> corners;
+    std::vector<std::uint32_t> corners_of_face;
+    struct Run {
+        std::string material;
+        std::size_t first_face, first_corner;
+    };
+    std::vector<Run> runs = {{"", 0, 0}}; ///< of faces one after the other that have the same material
+    std::set<std::string> materials;      ///< of faces
+
+    void begin_material(const std::string &material) {
+        runs.push_back({material, corners_of_face.size(), corners.size()});
+    }
+    void add_face(std::span<const ObjCorner> face) {
+        if (runs.back().first_face == corners_of_face.size())
+            materials.insert(runs.back().material);
+        corners.insert(corners.end(), face.begin(), face.end());
+        corners_of_face.push_back(std::uint32_t(face.size()));
+    }
+};
+
+ObjFile::ObjFile(const std::string &text, const std::string &file_name, const std::filesystem::path &place)
+    : content_(std::make_unique<Content>()) {
+    content_->file_name = file_name;
+    ObjReader(text, file_name, place, content_->lists, *content_).read();
 }
 
-std::set<std::string> materials_of_obj(const std::string &text) {
-    std::set<std::string> found;
+ObjFile::ObjFile(ObjFile &&) noexcept = default;
+ObjFile &ObjFile::operator=(ObjFile &&) noexcept = default;
+ObjFile::~ObjFile() = default;
+
+Mesh ObjFile::mesh(const FacesOf &faces) const {
+    const std::vector<Content::Run> &runs = content_->runs;
+    MeshOfFaces mesh(content_->lists, content_->file_name);
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+        if (!faces.has(runs[i].material))
+            continue;
+        const std::size_t end = i + 1 < runs.size() ? runs[i + 1].first_face : content_->corners_of_face.size();
+        const ObjCorner *corner = content_->corners.data() + runs[i].first_corner;
+        for (std::size_t face = runs[i].first_face; face < end; ++face) {
+            mesh.add_face({corner, content_->corners_of_face[face]});
+            corner += content_->corners_of_face[face];
+        }
+    }
+    return mesh.assemble();
+}
+
+bool ObjFile::has_material(const std::string &material) const { return content_->materials.contains(material); }
+
+Mesh parse_obj(const std::string &text, const std::string &file_name, const std::filesystem::path &place) {
+    ObjLists lists;
+    MeshOfFaces mesh(lists, file_name);
+    ObjReader(text, file_name, place, lists, mesh).read();
+    return mesh.assemble();
+}
+
+ObjNames names_in_obj(const std::string &text) {
+    ObjNames found;
     std::string material;
+    std::size_t line_number = 0;
     for (std::size_t at = 0; at < text.size();) {
+        ++line_number;
         const std::size_t end = std::min(text.find_first_of("\r\n", at), text.size());
         const std::string_view line = trimmed(std::string_view(text).substr(at, end - at));
         if (line.size() > 1 && line[0] == 'f' && is_blank(line[1]))
-            found.insert(material);
+            found.materials.insert(material);
         else if (auto named = material_named(line))
             material = *std::move(named);
-        at = end + 1;
+        else if (auto library = named_after("mtllib", line))
+            found.libraries.push_back({*std::move(library), line_number});
+        at = end + (text.compare(end, 2, "\r\n") == 0 ? 2 : 1);
     }
     return found;
 }

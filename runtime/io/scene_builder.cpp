@@ -160,6 +160,12 @@ template Camera SceneBuilder::build_object(const Element &);
 template ShapeGeometry SceneBuilder::build_object(const Element &);
 template Texture SceneBuilder::build_object(const Element &);
 
+std::optional<FoundFile> SceneBuilder::look_for(const std::string &name, const std::filesystem::path &beside) const {
+    std::vector<std::filesystem::path> folders = {beside.parent_path()};
+    folders.insert(folders.end(), document_.search_folders.begin(), document_.search_folders.end());
+    return finder_.find(name, folders);
+}
+
 std::filesystem::path SceneBuilder::find_file(Properties &properties) {
     const std::string name = properties.string("filename");
     std::vector<std::filesystem::path> folders = document_.search_folders;

@@ -5,6 +5,7 @@
 #include "runtime/io/document.h"
 #include "runtime/io/file_search.h"
 #include "runtime/io/load_options.h"
+#include "runtime/io/mesh_files.h"
 #include "runtime/io/pictures_ahead.h"
 #include "runtime/io/properties.h"
 #include "runtime/scene/mesh_builder.h"
@@ -38,6 +39,8 @@ class MeshFile {
     const std::string &bytes();
     /// Where they were read from, links resolved; once they have been.
     const std::filesystem::path &place() const { return place_; }
+    /// Of an OBJ file what it says, for shapes of some of its faces. Throws SceneError.
+    const ObjFile &obj();
 
   private:
     const FileFinder &finder_;
@@ -46,6 +49,8 @@ class MeshFile {
     Location location_;
     std::mutex mutex_;
     std::optional<std::string> bytes_;
+    std::mutex obj_mutex_;
+    std::optional<std::variant<ObjFile, SceneError>> obj_;
 };
 
 class SceneBuilder {
@@ -59,6 +64,8 @@ class SceneBuilder {
 
     /// The file that the string parameter "filename" names. A missing one is a SceneError.
     std::filesystem::path find_file(Properties &properties);
+    /// The file of that name beside another one, or where find_file() looks.
+    std::optional<FoundFile> look_for(const std::string &name, const std::filesystem::path &beside) const;
     /// What find_file() has found. Throws SceneError where it cannot be read.
     std::shared_ptr<const OpenFile> open_file(const std::filesystem::path &path, const Location &location) const;
     /// A file that a shape takes as a whole; it counts as read. Throws SceneError where that is too much.

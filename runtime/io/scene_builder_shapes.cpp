@@ -45,6 +45,21 @@ const std::string &MeshFile::bytes() {
     return *bytes_;
 }
 
+const ObjFile &MeshFile::obj() {
+    const std::string &text = bytes();
+    const std::lock_guard lock(obj_mutex_);
+    if (!obj_) {
+        try {
+            obj_ = ObjFile(text, path_.string(), place_);
+        } catch (const SceneError &error) {
+            obj_ = error;
+        }
+    }
+    if (const auto *error = std::get_if<SceneError>(&*obj_))
+        throw *error;
+    return std::get<ObjFile>(*obj_);
+}
+
 std::shared_ptr<MeshFile> SceneBuilder::mesh_file(const std::filesystem::path &path, const Location &location) {
     const std::uint64_t size = open_file(path, location)->bytes();
     count_mesh_bytes(size, location);

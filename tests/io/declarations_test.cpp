@@ -125,7 +125,8 @@ class Declarations : public testing::Test {
         folder_.write("b.serialized", serialized_file({Mesh{mesh.positions, {}, {}, {{0, 1, 2}}, {}}}, {}));
         for (const std::string name : {"a", "b"}) {
             const std::string corner = name == "a" ? "0 1 0.5" : "0 2 0";
-            folder_.write(name + ".obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv " + corner +
+            folder_.write(name + ".mtl", "newmtl x\nKd 1 0 0\n");
+            folder_.write(name + ".obj", "mtllib " + name + ".mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv " + corner +
                                              "\nvt 0 0.25\nvt 1 0\nf 1/1 2/2 3/1\nusemtl x\nf 1/1 3/2 4/1\n");
             folder_.write(
                 name + ".ply",

@@ -246,30 +246,6 @@ TEST(ObjShape, TexcoordsCountFromTheTopUnlessTold) {
         0.25f);
 }
 
-TEST(ObjShape, MaterialsOfItsOwnThatWouldCountAreWarnedOf) {
-    TemporaryFolder folder;
-    folder.write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n");
-    const auto warnings = [&](const std::string &inside, const std::string &version) {
-        return load_scene(folder.write("scene.xml", scene_around("<shape type=\"obj\"><string name=\"filename\" "
-                                                                 "value=\"a.obj\"/>" +
-                                                                     inside + "</shape><emitter type=\"constant\"/>",
-                                                                 version)))
-            .warnings;
-    };
-    EXPECT_THAT(warnings("", "0.6.0"), testing::ElementsAre(testing::HasSubstr("scene.xml:3: ")));
-    EXPECT_THAT(warnings("", "0.6.0").at(0), testing::HasSubstr("MTL"));
-    EXPECT_THAT(warnings("", "3.0.0"), testing::IsEmpty()); // which does not read them either
-    EXPECT_THAT(warnings("<bsdf type=\"diffuse\"/>", "0.6.0"), testing::IsEmpty());
-    EXPECT_THAT(warnings("<boolean name=\"loadMaterials\" value=\"false\"/>", "0.6.0"), testing::IsEmpty());
-    EXPECT_THAT(
-        error_of(folder.write("two.xml", scene_around("<shape type=\"obj\"><string name=\"filename\" value=\"a.obj\"/>"
-                                                      "<bsdf type=\"diffuse\" name=\"red\"/>\n<bsdf "
-                                                      "type=\"diffuse\" name=\"blue\"/></shape>"))),
-        testing::AllOf(testing::HasSubstr("two.xml:4"), testing::HasSubstr("second; only in files of 0.x")));
-    EXPECT_THAT(warnings("<bsdf type=\"diffuse\"/><float name=\"maxSmoothAngle\" value=\"30\"/>", "0.6.0"),
-                testing::ElementsAre(testing::HasSubstr("not supported: normals stay")));
-}
-
 TEST(PlyShape, TransformedWithItsNormals) {
     const Mesh mesh = load_mesh("ply", binary_ply(folded_square(), false),
                                 "<transform name=\"to_world\"><rotate z=\"1\" angle=\"90\"/><translate z=\"2\"/>"

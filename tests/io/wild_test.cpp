@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <map>
 #include <numbers>
 
 namespace gradus {
@@ -127,45 +126,6 @@ TEST(Textures0x, HaveOneScaleForBothCoordinates) {
     EXPECT_THAT(loaded.warnings, IsEmpty());
     EXPECT_FLOAT_EQ(loaded.scene.textures.at(0).to_uv[0], 5);
     EXPECT_FLOAT_EQ(loaded.scene.textures.at(0).to_uv[4], 2);
-}
-
-TEST(ObjMaterials, HaveBsdfsOfTheirOwnIn0x) {
-    TemporaryFolder folder;
-    folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\n  usemtl red one \nf 2 4 3\nf 1 2 4\n"
-                          "usemtl none\nusemtl blue\r\nf 1 2 3\nusemtl red one\nf 1 4 3\n");
-    const auto load = [&](const std::string &bsdfs) {
-        return load_scene(folder.write(
-            "scene.xml",
-            scene_around("<bsdf type=\"diffuse\" id=\"b\"><rgb name=\"reflectance\" value=\"0.2 0.2 0.2\"/>"
-                         "</bsdf><shape type=\"obj\"><string name=\"filename\" value=\"a.obj\"/>" +
-                             bsdfs + "</shape>",
-                         "0.6.0", lamp)));
-    };
-    /// Triangles by the red of what they reflect.
-    const auto triangles = [](const Scene &scene) {
-        std::map<float, std::size_t> found;
-        for (const Shape &shape : scene.shapes)
-            found[scene.materials.at(shape.material).front.reflectance.r] +=
-                scene.meshes.at(shape.geometry).triangles.size();
-        return found;
-    };
-    using Found = std::map<float, std::size_t>;
-    const std::string red = red_diffuse.substr(0, 5) + " name=\"red one\"" + red_diffuse.substr(5);
-    const std::string blue = "<ref name=\"blue\" id=\"b\"/>";
-    const LoadedScene two = load(red + blue);
-    EXPECT_THAT(two.warnings, IsEmpty());
-    EXPECT_EQ(triangles(two.scene), (Found{{0.5f, 4}, {0.2f, 1}})) << "the first is diffuse 0.5";
-    EXPECT_EQ(two.scene.shapes.size(), 3u);
-    EXPECT_EQ(triangles(load(red + "<ref id=\"b\"/>").scene), (Found{{0.5f, 3}, {0.2f, 2}}));
-    EXPECT_EQ(
-        triangles(load("<bsdf type=\"diffuse\" name=\"bsdf\"><rgb name=\"reflectance\" value=\"0.9 0 0\"/></bsdf>" +
-                       red + blue)
-                      .scene),
-        (Found{{0.9f, 1}, {0.5f, 3}, {0.2f, 1}}));
-    EXPECT_EQ(triangles(load("<ref id=\"b\"/><ref name=\"none\" id=\"b\"/>").scene), (Found{{0.2f, 5}}));
-    const LoadedScene other = load(red + blue + "<bsdf type=\"diffuse\" name=\"none\"/>");
-    EXPECT_THAT(other.warnings, ElementsAre(HasSubstr("no face of the file has the material \"none\"")));
-    EXPECT_EQ(triangles(other.scene), triangles(two.scene));
 }
 
 TEST(BumpMaps, AreCalledBumpIn0x4) {

@@ -1,9 +1,14 @@
 // <shape type="obj">: a Wavefront OBJ file as one mesh, or as one for each of its materials.
+#include "runtime/io/material_library.h"
 #include "runtime/io/plugins/parameters_of_shapes.h"
 #include "runtime/io/plugins/plugin.h"
 #include "runtime/io/text.h"
 
+#include <algorithm>
+#include <map>
+#include <memory>
 #include <set>
+#include <vector>
 
 namespace gradus {
 
@@ -26,15 +31,12 @@ FacesOf faces_of(Properties &properties) {
     return faces;
 }
 
-void check(const FacesOf &faces, MeshFile &file, const Location &location) {
-    if (faces.materials.empty())
-        return;
-    const std::set<std::string> known = materials_of_obj(file.bytes());
+void check(const FacesOf &faces, const ObjFile &obj, const std::string &path, const Location &location) {
     for (const std::string &material : faces.materials)
-        if (!known.contains(material))
+        if (!obj.has_material(material))
             throw SceneError(location, std::string("\"") + (faces.others ? "usemtl_other_than" : "usemtl") +
-                                           "\": no face of " + file.path().string() + " has the material \"" +
-                                           shortened(material, 40) + "\"");
+                                           "\": no face of " + path + " has the material \"" + shortened(material, 40) +
+                                           "\"");
 }
 
 /// The name under which an object is nested; empty where that says nothing.
@@ -43,41 +45,102 @@ std::string name_of(const Element &child) {
     return name == "bsdf" ? "" : name;
 }
 
-/// In 0.x each BSDF is that of the faces whose material has the name under which it is nested, and one without a name
-/// that of all others: shapes like this one, with some of the faces each.
-ShapeGroup shapes_by_material(Properties &properties, SceneBuilder &builder, MeshFile &file) {
-    const Element &shape = properties.element();
-    std::set<std::string> others = materials_of_obj(file.bytes());
+/// BSDFs of the material libraries that a file names, by material.
+std::map<std::string, Element> read_libraries(const ObjNames &names, MeshFile &file, const Location &shape,
+                                              SceneBuilder &builder) {
+    std::map<std::string, Element> bsdfs;
+    std::set<std::string> read;
+    const auto obj = std::make_shared<const std::string>(file.path().string());
+    for (const auto &[name, line] : names.libraries) {
+        const Location location{obj, line};
+        if (!read.insert(name).second)
+            continue;
+        const auto found = builder.look_for(name, file.path());
+        if (!found) {
+            builder.diagnostics().warn(location, "cannot find the material library \"" + shortened(name, 100) +
+                                                     "\": its materials are gray");
+            continue;
+        }
+        const auto open = builder.open_file(found->path, location);
+        // Messages quote it, and a scene can name any file.
+        if (lower_case(open->place().extension().string()) != ".mtl") {
+            builder.diagnostics().warn(location, "a material library is called .mtl: this one is not read");
+            continue;
+        }
+        builder.count_mesh_bytes(open->bytes(), shape);
+        const auto text = open->read();
+        if (!text)
+            throw SceneError(location, "cannot read " + found->path.string());
+        const Location library{std::make_shared<const std::string>(found->path.string())};
+        MaterialLibrary materials = parse_mtl(*text, *library.file, [&](const std::string &texture) {
+            return builder.look_for(texture, found->path).has_value();
+        });
+        for (const std::string &option : materials.texture_options)
+            builder.diagnostics().warn(library, "the option " + shortened(option, 20) + " of textures is not read");
+        for (auto &[material, bsdf] : materials.bsdfs)
+            bsdfs.insert_or_assign(material, std::move(bsdf));
+    }
+    return bsdfs;
+}
+
+/// Shapes like this one, with some of the faces each. In 0.x each BSDF is that of the faces whose material has the name
+/// under which it is nested, and one without a name that of all others. `loads`: there is none such, and those of the
+/// file's material libraries count. No shapes where all faces are to have the same.
+ShapeGroup shapes_by_material(const Element &shape, bool loads, MeshFile &file, SceneBuilder &builder) {
+    const ObjNames names = names_in_obj(file.bytes());
+    std::map<std::string, const Element *> named;
+    const Element *of_others = nullptr;
     Element rest = shape;
     std::erase_if(rest.children, [&](const Element &child) { return builder.is_bsdf(child); });
-    const auto with = [&rest](const Element *bsdf, const char *parameter, const std::string &value) {
+    const std::size_t bsdfs = shape.children.size() - rest.children.size();
+    for (const Element &child : shape.children) {
+        if (!builder.is_bsdf(child))
+            continue;
+        const std::string name = name_of(child);
+        if (name.empty())
+            of_others = &child;
+        else if (names.materials.contains(name))
+            named[name] = &child;
+        else if (bsdfs == 1) // whatever its name is to say
+            return {};
+        else
+            builder.diagnostics().warn(child.location,
+                                       "no face of the file has the material \"" + name + "\": this BSDF is not used");
+    }
+    std::map<std::string, Element> libraries;
+    if (loads)
+        libraries = read_libraries(names, file, shape.location, builder);
+    std::vector<std::string> others;
+    for (const std::string &material : names.materials) {
+        if (const auto found = libraries.find(material); found != libraries.end())
+            named.insert({material, &found->second});
+        if (!named.contains(material))
+            others.push_back(material);
+    }
+    if (loads && others != std::vector<std::string>{""} && !others.empty())
+        builder.diagnostics().warn(shape.location, "no material library of " + file.path().string() + " has " +
+                                                       shortened(join(others), 200) +
+                                                       ": give those faces a BSDF; they are gray");
+    if (named.empty() && bsdfs < 2)
+        return {};
+
+    ShapeGroup group;
+    const auto add = [&](const Element *bsdf, const char *parameter, const std::string &value) {
         Element part = rest;
         if (!value.empty())
             part.children.push_back(
                 {"string", {{"name", parameter}, {"value", value}}, {}, part.location, part.version});
         if (bsdf)
             part.children.push_back(*bsdf);
-        return part;
+        group.shapes.push_back(builder.keep(std::move(part)));
     };
-    ShapeGroup group;
-    const Element *of_others = nullptr;
-    std::string named;
-    for (const Element &child : shape.children) {
-        if (!builder.is_bsdf(child))
-            continue;
-        const std::string name = name_of(child);
-        if (name.empty()) {
-            of_others = &child;
-        } else if (others.erase(name) > 0) {
-            group.shapes.push_back(builder.keep(with(&child, "usemtl", name)));
-            named += (named.empty() ? "" : std::string(1, between)) + name;
-        } else {
-            builder.diagnostics().warn(child.location,
-                                       "no face of the file has the material \"" + name + "\": this BSDF is not used");
-        }
+    std::string all_named;
+    for (const auto &[material, bsdf] : named) {
+        add(bsdf, "usemtl", material);
+        all_named += (all_named.empty() ? "" : std::string(1, between)) + material;
     }
     if (!others.empty())
-        group.shapes.push_back(builder.keep(with(of_others, "usemtl_other_than", named)));
+        add(of_others, "usemtl_other_than", all_named);
     return group;
 }
 
@@ -87,39 +150,44 @@ Declaration declare_shape_obj() {
     return {"a Wavefront OBJ file as one mesh; of 0.x with a BSDF for each name that its `usemtl` lines have",
             joined({{Parameter{"filename", Takes::filename, nullptr, "the file"}.required(),
                      {"flip_tex_coords", Takes::boolean, "true", "v becomes 1 − v"},
+                     Parameter{"load_materials", Takes::boolean, "false",
+                               "from its MTL files, for faces that have no BSDF otherwise"}
+                         .before_2("true"),
                      Parameter{"usemtl", Takes::string, nullptr, "the faces of this material alone"}.or_else("all"),
                      Parameter{"usemtl_other_than", Takes::string, nullptr, "the faces of all others"}.or_else("all")},
                     parameters_of_meshes(),
-                    meaningless({"load_materials", "collapse", "shape_index"})})};
+                    meaningless({"collapse", "shape_index"})})};
 }
 
 ShapeGeometry shape_obj(Properties &properties, SceneBuilder &builder) {
+    const Element &shape = properties.element();
     const std::size_t bsdfs = properties.objects("bsdf").size();
-    const bool is_by_material = properties.element().is_legacy() && bsdfs > 1;
+    const bool is_for_all = std::any_of(shape.children.begin(), shape.children.end(), [&](const Element &child) {
+        return builder.is_bsdf(child) && name_of(child).empty();
+    });
+    const bool loads = properties.boolean("load_materials") && !is_for_all;
     const FacesOf faces = faces_of(properties);
+    const bool is_part = !faces.materials.empty();
+    // In later versions names of BSDFs say nothing, and a second one is an error, which the scene builder tells.
+    const bool is_by_material = !is_part && (shape.is_legacy() ? bsdfs > 1 || loads : bsdfs == 0 && loads);
     const std::filesystem::path path = builder.find_file(properties);
-    const std::shared_ptr<MeshFile> file = is_by_material || !faces.materials.empty()
+    const std::shared_ptr<MeshFile> file = is_part || is_by_material
                                                ? builder.shared_mesh_file(path, properties.location())
                                                : builder.mesh_file(path, properties.location());
     if (is_by_material)
-        return shapes_by_material(properties, builder, *file);
+        if (ShapeGroup parts = shapes_by_material(shape, loads, *file, builder); !parts.shapes.empty())
+            return parts;
     const bool flip = properties.boolean("flip_tex_coords"); // most files count v from the image's bottom
-    // In 0.x the file's own materials count where the shape has none and nobody says otherwise.
-    const bool is_missing_materials =
-        properties.element().is_legacy() && !properties.has("load_materials") && bsdfs == 0 && faces.materials.empty();
     const Location location = properties.location_of(faces.others ? "usemtl_other_than" : "usemtl");
-    return pending_shape_mesh(properties, [file, flip, faces, is_missing_materials, location] {
-        const std::string &text = file->bytes();
-        check(faces, *file, location);
-        Mesh mesh = parse_obj(text, file->path().string(), file->place(), faces);
+    return pending_shape_mesh(properties, [file, flip, faces, is_part, location] {
+        const std::string path = file->path().string();
+        if (is_part)
+            check(faces, file->obj(), path, location);
+        Mesh mesh = is_part ? file->obj().mesh(faces) : parse_obj(file->bytes(), path, file->place());
         if (flip)
             for (auto &[u, v] : mesh.texcoords)
                 v = 1 - v;
-        SerializedMesh read{std::move(mesh)};
-        if (is_missing_materials && text.find("\nusemtl") != std::string::npos)
-            read.warning = file->path().string() + " names materials of an MTL file, which is not read: the shape is " +
-                           "gray; give it a BSDF";
-        return read;
+        return SerializedMesh{std::move(mesh)};
     });
 }
 
