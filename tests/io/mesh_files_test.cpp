@@ -89,6 +89,31 @@ TEST(Obj, PolygonsAreFansAndCornersAreShared) {
                 ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}, Triangle{0, 3, 4}, Triangle{0, 2, 1}));
 }
 
+// Parts are the meshes of files that have their faces alone.
+TEST(Obj, MeshesOfSomeMaterials) {
+    const std::string lists = "v 0 0 0\nv 1 0 0\nv 2 1 0\nv 1 2 0\nv 0 2 0\nvt 0 0\nvt 1 0\n";
+    const std::string first = "f 1 2 3\n", pentagon = "f 1 2 3 4 5\n", textured = "f 3/1 4/2 5/1\nf 5/1 4/2 2/2\n";
+    const std::string text =
+        lists + first + "usemtl none\nusemtl a\n" + pentagon + textured + "usemtl b b\n" + first + "usemtl a\n" + first;
+    const ObjFile file(text, "m.obj");
+    const auto expect = [&](const FacesOf &faces, const std::string &alone) {
+        const Mesh part = file.mesh(faces), whole = parse_obj(lists + alone, "m.obj");
+        EXPECT_EQ(part.positions, whole.positions) << alone;
+        EXPECT_EQ(part.texcoords, whole.texcoords) << alone;
+        EXPECT_EQ(part.triangles, whole.triangles) << alone;
+    };
+    expect({{"a"}, false}, pentagon + textured + first);
+    expect({{"b b"}, false}, first);
+    expect({{""}, false}, first);
+    expect({{"a"}, true}, first + first);
+    expect({{"a", ""}, false}, first + pentagon + textured + first);
+    expect({{"none"}, false}, "");
+    expect({}, first + pentagon + textured + first + first);
+    EXPECT_TRUE(file.has_material("b b"));
+    EXPECT_FALSE(file.has_material("none"));
+    EXPECT_THAT(names_in_obj(text).materials, ElementsAre("", "a", "b b"));
+}
+
 TEST(Obj, LinesGoOnAfterABackslash) {
     for (const std::string end : {"\n", "\r\n", "\r"}) {
         const auto lines = [&](std::initializer_list<const char *> all) {
