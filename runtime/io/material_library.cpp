@@ -162,6 +162,8 @@ class MtlReader {
         } else if (word == "illum") {
             material.model = int(std::clamp(number(line, word), 0.0, 100.0));
         } else if (word == "d") {
+            if (std::string_view after = line; next_word(after) == "-halo") // fainter where it is seen from the side
+                line = after;
             const double opacity = std::clamp(number(line, word), 0.0, 1.0);
             material.mask.reset();
             if (opacity < 1)
