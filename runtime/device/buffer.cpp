@@ -6,11 +6,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
 #include <exception>
 #include <system_error>
 #include <thread>
 #include <vector>
+
+#include <sys/mman.h>
 
 namespace gradus {
 
@@ -57,6 +60,21 @@ void check_size(const Device::Implementation &device, const std::string &name, s
                                 "--batch-size, --photons, --size or scene",
                                 name, bytes >> 20, d.allocation_bytes >> 20, d.name));
 }
+
+/// Asks the system for large pages, which it may refuse. Rows of tables are read here and there, and where pages are
+/// small the processor looks for each; and a short render spends much of its time on being given them.
+void ask_for_large_pages(Device::Implementation &device, const cl::Buffer &memory, std::size_t bytes) {
+    constexpr std::uintptr_t large_page = 2u << 20;
+    if (!device.description.is_host || bytes < large_page)
+        return;
+    void *const data = device.queue.enqueueMapBuffer(memory, CL_TRUE, CL_MAP_WRITE_INVALIDATE_REGION, 0, bytes);
+    const auto begin = reinterpret_cast<std::uintptr_t>(data);
+    const std::uintptr_t first = (begin + large_page - 1) / large_page * large_page;
+    const std::uintptr_t end = (begin + bytes) / large_page * large_page;
+    if (first < end)
+        madvise(reinterpret_cast<void *>(first), end - first, MADV_HUGEPAGE);
+    device.queue.enqueueUnmapMemObject(memory, data);
+}
 } // namespace
 
 Buffer::Buffer(Device &device, const std::string &name, std::size_t bytes)
@@ -67,6 +85,7 @@ Buffer::Buffer(Device &device, const std::string &name, std::size_t bytes)
         // Elsewhere the host's memory would be a second copy.
         const cl_mem_flags place = d.description.shares_memory ? CL_MEM_ALLOC_HOST_PTR : 0;
         handle_ = std::make_shared<Handle>(d, cl::Buffer(d.context, CL_MEM_READ_WRITE | place, bytes_), bytes_);
+        ask_for_large_pages(d, handle_->memory, bytes_);
     });
 }
 
