@@ -4,8 +4,12 @@
 
 #include <gmock/gmock.h>
 
+#include <cinttypes>
 #include <cstdint>
+#include <cstdio>
+#include <fstream>
 #include <numeric>
+#include <string>
 #include <vector>
 
 namespace gradus {
@@ -85,6 +89,29 @@ TEST(Buffer, IsSeenThroughAMapping) {
     EXPECT_EQ(content(buffer)[98], values[98]);
     const auto view = buffer.map(Access::read);
     EXPECT_EQ(view.as<std::uint32_t>()[99], 7u);
+}
+
+/// What the system was told of the pages at an address, as /proc/self/smaps lists it: "hg" is MADV_HUGEPAGE.
+std::string advice_at(const void *address) {
+    std::ifstream smaps("/proc/self/smaps");
+    bool is_there = false;
+    for (std::string line; std::getline(smaps, line);) {
+        std::uintptr_t first = 0, end = 0;
+        if (std::sscanf(line.c_str(), "%" SCNxPTR "-%" SCNxPTR " ", &first, &end) == 2)
+            is_there = reinterpret_cast<std::uintptr_t>(address) - first < end - first;
+        else if (is_there && line.starts_with("VmFlags:"))
+            return line;
+    }
+    return {};
+}
+
+TEST(Buffer, OfATableIsToHaveLargePagesOnACpu) {
+    Device device;
+    if (!device.description().is_host || !std::ifstream("/sys/kernel/mm/transparent_hugepage/enabled"))
+        return; // there are none to ask for
+    const Buffer buffer(device, "table", 16u << 20);
+    const auto view = buffer.map(Access::write);
+    EXPECT_THAT(advice_at(view.as<char>() + (8u << 20)), HasSubstr(" hg"));
 }
 
 TEST(Buffer, SharesItsMemoryWithItsCopies) {
