@@ -9,6 +9,7 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "bench" / "render"))
 import curves  # noqa: E402
+import ratios  # noqa: E402
 
 TIMES = [0.5, 1, 2, 4, 8]
 
@@ -125,6 +126,15 @@ class Summaries(unittest.TestCase):
         found = {entry["method"]: entry for entry in curves.summaries(measured)}
         self.assertAlmostEqual(found["gpt"]["crosses_denoised"]["seconds"], 4)
         self.assertNotIn("against_denoised", found["denoised"])
+
+    def test_ratios_leave_out_the_references_own_error(self):
+        truth = {"pt": power_law(1, -1), "gpt": power_law(0.1, -1)}
+        measured = [point for method, curve in truth.items()
+                    for point in points(method, [(t, e + 0.05) for t, e in curve], floor=0.05)]
+        methods = curves.curves(ratios.without_reference_error(measured), "relmse")["box"]
+        for found in ratios.ratios(methods, "pt", "time").values():
+            self.assertAlmostEqual(found["gpt"], 0.1)
+        self.assertEqual(ratios.without_reference_error(points("gpt", [(1, 0.04)], floor=0.05)), [])
 
 
 if __name__ == "__main__":
