@@ -34,6 +34,17 @@ std::size_t arguments_of(std::string_view option) {
     return option == "-mm" ? 2 : 1;
 }
 
+/// A material of which all lines so far have been read.
+struct LinesOfMaterial {
+    std::string name;
+    Location location;
+    Element diffuse, specular; ///< colours or textures, without a name
+    double exponent = 0;
+    std::optional<Element> bump, mask;
+    int model = 0;
+    bool is_specular = false; ///< not black
+};
+
 class MtlReader {
   public:
     MtlReader(const std::string &text, const std::string &file_name,
@@ -52,16 +63,6 @@ class MtlReader {
     }
 
   private:
-    struct Material {
-        std::string name;
-        Location location;
-        Element diffuse, specular; ///< colours or textures, without a name
-        double exponent = 0;
-        std::optional<Element> bump, mask;
-        int model = 0;
-        bool is_specular = false; ///< not black
-    };
-
     Location here() const { return {file_, line_}; }
     [[noreturn]] void fail(const std::string &message) const { throw SceneError(here(), message); }
 
@@ -145,7 +146,7 @@ class MtlReader {
             return begin_material(line);
         if (!now_)
             return;
-        Material &material = *now_;
+        LinesOfMaterial &material = *now_;
         bool is_black = false;
         if (word == "Kd") {
             material.diffuse = color(line, word);
@@ -180,7 +181,7 @@ class MtlReader {
     void add_material() {
         if (!now_)
             return;
-        const Material &material = *now_;
+        const LinesOfMaterial &material = *now_;
         const auto bsdf = [&](const char *type, std::vector<Element> children) {
             Element made = object("bsdf", type, std::move(children));
             made.location = material.location;
@@ -209,7 +210,7 @@ class MtlReader {
     const std::shared_ptr<const std::string> file_;
     const std::function<bool(const std::string &)> &is_there_;
     std::size_t line_ = 0;
-    std::optional<Material> now_;
+    std::optional<LinesOfMaterial> now_;
     MaterialLibrary library_;
 };
 

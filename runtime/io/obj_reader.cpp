@@ -39,6 +39,70 @@ constexpr int longest_list = 16; // of vertices that share a position
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
+void skip_blanks(const char *&at, const char *end) {
+    while (at < end && is_blank(*at))
+        ++at;
+}
+
+/// The lines of a file one after the other, without blanks before them.
+class ObjLines {
+  public:
+    explicit ObjLines(const std::string &text) : next_(text.data()), end_of_text_(text.data() + text.size()) {}
+
+    /// False after the last.
+    bool next() {
+        if (next_ >= end_of_text_)
+            return false;
+        number_ += 1 + more_;
+        more_ = 0;
+        begin_ = next_;
+        end_ = end_of_line(begin_);
+        next_ = after_line(end_);
+        if (goes_on())
+            join();
+        skip_blanks(begin_, end_);
+        return true;
+    }
+    const char *begin() const { return begin_; }
+    const char *end() const { return end_; }
+    std::string_view text() const { return {begin_, std::size_t(end_ - begin_)}; }
+    std::size_t number() const { return number_; } ///< from 1; of several that are joined the first
+
+  private:
+    const char *end_of_line(const char *at) const {
+        while (at < end_of_text_ && *at != '\n' && *at != '\r')
+            ++at;
+        return at;
+    }
+    const char *after_line(const char *line_end) const {
+        const bool ends_twice = line_end + 1 < end_of_text_ && line_end[0] == '\r' && line_end[1] == '\n';
+        return std::min(line_end + (ends_twice ? 2 : 1), end_of_text_);
+    }
+    /// Whether a backslash ends a line of numbers, which has more on the next. Elsewhere it ends a path.
+    bool goes_on() const {
+        const char *at = begin_;
+        skip_blanks(at, end_);
+        return end_ - at >= 2 && (*at == 'v' || *at == 'f') && end_[-1] == '\\';
+    }
+    void join() {
+        joined_.clear();
+        for (; end_ > begin_ && end_[-1] == '\\'; ++more_) {
+            joined_.append(begin_, end_ - 1) += ' ';
+            begin_ = next_;
+            end_ = end_of_line(begin_);
+            next_ = after_line(end_);
+        }
+        joined_.append(begin_, end_);
+        begin_ = joined_.data();
+        end_ = joined_.data() + joined_.size();
+    }
+
+    const char *next_, *const end_of_text_;
+    const char *begin_ = nullptr, *end_ = nullptr;
+    std::size_t number_ = 0, more_ = 0; ///< lines that were joined to this one
+    std::string joined_;
+};
+
 /// What a line that begins with the word names; it has no blanks before it.
 std::optional<std::string> named_after(std::string_view word, std::string_view line) {
     if (!line.starts_with(word) || line.size() == word.size() || !is_blank(line[word.size()]))
@@ -81,26 +145,18 @@ class ObjReader {
     /// The lists are filled while the file is read.
     ObjReader(const std::string &text, const std::string &file_name, const std::filesystem::path &place,
               ObjLists &lists, Faces &faces)
-        : text_(text), file_name_(file_name), lists_(lists), faces_(faces),
+        : lines_(text), file_name_(file_name), lists_(lists), faces_(faces),
           quotes_(lower_case((place.empty() ? std::filesystem::path(file_name) : place).extension().string()) ==
                   ".obj") {}
 
     void read() {
-        const char *at = text_.data(), *const end = at + text_.size();
-        while (at < end) {
-            ++line_;
-            const char *line_end = end_of_line(at, end);
-            if (goes_on(at, line_end))
-                line_end = read_joined_lines(at, line_end, end);
-            else
-                read_line(at, line_end);
-            at = after_line(line_end, end);
-        }
+        while (lines_.next())
+            read_line(lines_.begin(), lines_.end());
     }
 
   private:
     [[noreturn]] void fail(const std::string &message) const {
-        throw SceneError({std::make_shared<const std::string>(file_name_), line_}, message);
+        throw SceneError({std::make_shared<const std::string>(file_name_), lines_.number()}, message);
     }
 
     /// What stands there, for messages; or nothing of it where the file may be anybody's.
@@ -108,52 +164,16 @@ class ObjReader {
         return quotes_ ? quoted_excerpt({at, std::size_t(end - at)}) : "what stands there";
     }
 
-    static const char *end_of_line(const char *at, const char *end) {
-        while (at < end && *at != '\n' && *at != '\r')
-            ++at;
-        return at;
-    }
-    static const char *after_line(const char *line_end, const char *end) {
-        const bool ends_twice = line_end + 1 < end && line_end[0] == '\r' && line_end[1] == '\n';
-        return line_end + (ends_twice ? 2 : 1);
-    }
-
-    /// Whether a backslash ends a line of numbers, which has more on the next. Elsewhere it ends a path.
-    static bool goes_on(const char *at, const char *line_end) {
-        skip_blanks(at, line_end);
-        return line_end - at >= 2 && (*at == 'v' || *at == 'f') && line_end[-1] == '\\';
-    }
-    /// Returns the end of the last line.
-    const char *read_joined_lines(const char *at, const char *line_end, const char *end) {
-        std::string joined;
-        std::size_t more = 0;
-        for (; line_end > at && line_end[-1] == '\\'; ++more) {
-            joined.append(at, line_end - 1) += ' ';
-            at = std::min(after_line(line_end, end), end);
-            line_end = end_of_line(at, end);
-        }
-        joined.append(at, line_end);
-        read_line(joined.data(), joined.data() + joined.size());
-        line_ += more;
-        return line_end;
-    }
-
-    static void skip_blanks(const char *&at, const char *end) {
-        while (at < end && is_blank(*at))
-            ++at;
-    }
-
     void read_line(const char *at, const char *end);
     int read_floats(const char *&at, const char *end, float *values, int count) const;
     void read_face(const char *at, const char *end);
     std::uint32_t read_index(const char *&at, const char *end, std::size_t count, const char *kind) const;
 
-    const std::string &text_;
+    ObjLines lines_;
     const std::string &file_name_;
     ObjLists &lists_;
     Faces &faces_;
     bool quotes_;
-    std::size_t line_ = 0;
     std::vector<ObjCorner> face_;
 };
 
@@ -177,7 +197,6 @@ int ObjReader<Faces>::read_floats(const char *&at, const char *end, float *value
 
 template <class Faces>
 void ObjReader<Faces>::read_line(const char *at, const char *end) {
-    skip_blanks(at, end);
     if (end - at < 2)
         return;
     if (at[0] == 'v') {
@@ -357,18 +376,14 @@ Mesh parse_obj(const std::string &text, const std::string &file_name, const std:
 ObjNames names_in_obj(const std::string &text) {
     ObjNames found;
     std::string material;
-    std::size_t line_number = 0;
-    for (std::size_t at = 0; at < text.size();) {
-        ++line_number;
-        const std::size_t end = std::min(text.find_first_of("\r\n", at), text.size());
-        const std::string_view line = trimmed(std::string_view(text).substr(at, end - at));
+    for (ObjLines lines(text); lines.next();) {
+        const std::string_view line = lines.text();
         if (line.size() > 1 && line[0] == 'f' && is_blank(line[1]))
             found.materials.insert(material);
         else if (auto named = material_named(line))
             material = *std::move(named);
         else if (auto library = named_after("mtllib", line))
-            found.libraries.push_back({*std::move(library), line_number});
-        at = end + (text.compare(end, 2, "\r\n") == 0 ? 2 : 1);
+            found.libraries.push_back({*std::move(library), lines.number()});
     }
     return found;
 }

@@ -112,6 +112,12 @@ TEST(Obj, MeshesOfSomeMaterials) {
     EXPECT_TRUE(file.has_material("b b"));
     EXPECT_FALSE(file.has_material("none"));
     EXPECT_THAT(names_in_obj(text).materials, ElementsAre("", "a", "b b"));
+    // What the reader takes for no face is none, and lines that go on are one.
+    EXPECT_THAT(names_in_obj(lists + "\vf 1 2 3\nv 0 0 \\\n0\nusemtl a\n f 1 2 3\nmtllib a b.mtl\nf 1 2 \\\nusemtl b\n")
+                    .materials,
+                ElementsAre("a"));
+    EXPECT_EQ(names_in_obj("v 0 0 \\\r\n0\r\nmtllib a b.mtl \r\n").libraries.at(0).name, "a b.mtl");
+    EXPECT_EQ(names_in_obj("v 0 0 \\\r\n0\r\nmtllib a b.mtl \r\n").libraries.at(0).line, 3u);
 }
 
 TEST(Obj, LinesGoOnAfterABackslash) {
