@@ -34,6 +34,8 @@ std::size_t arguments_of(std::string_view option) {
     return option == "-mm" ? 2 : 1;
 }
 
+using Channels = std::array<double, 3>; ///< red, green and blue, from 0 to 1
+
 /// A material of which all lines so far have been read.
 struct LinesOfMaterial {
     std::string name;
@@ -91,21 +93,22 @@ class MtlReader {
     }
 
     /// Three channels, or one for all of them.
-    Element color(std::string_view rest, std::string_view word, bool *is_black = nullptr) const {
-        std::array<double, 3> rgb{};
+    Channels channels(std::string_view rest, std::string_view word) const {
+        Channels rgb{};
         std::size_t count = 0;
         for (std::string_view text; count < 3 && !(text = next_word(rest)).empty(); ++count) {
             const auto value = parse_number(text);
-            if (!value)
-                fail(std::string(word) + " needs three numbers: red, green and blue");
+            if (!value) {
+                count = 0;
+                break;
+            }
             rgb[count] = std::clamp(*value, 0.0, 1.0);
         }
-        if (count == 1)
-            rgb[1] = rgb[2] = rgb[0];
-        else if (count != 3)
+        if (count != 1 && count != 3)
             fail(std::string(word) + " needs three numbers: red, green and blue");
-        if (is_black)
-            *is_black = rgb == std::array<double, 3>{};
+        return count == 3 ? rgb : Channels{rgb[0], rgb[0], rgb[0]};
+    }
+    Element color(const Channels &rgb) const {
         return element("srgb", {{"value", fmt::format("{}, {}, {}", rgb[0], rgb[1], rgb[2])}});
     }
 
@@ -137,7 +140,7 @@ class MtlReader {
         now_.emplace();
         now_->name = trimmed(name);
         now_->location = here();
-        now_->diffuse = now_->specular = element("srgb", {{"value", "0"}});
+        now_->diffuse = now_->specular = color({});
     }
 
     void read_line(std::string_view line) {
@@ -147,14 +150,14 @@ class MtlReader {
         if (!now_)
             return;
         LinesOfMaterial &material = *now_;
-        bool is_black = false;
         if (word == "Kd") {
-            material.diffuse = color(line, word);
+            material.diffuse = color(channels(line, word));
         } else if (word == "map_Kd") {
             material.diffuse = texture(line, word);
         } else if (word == "Ks") {
-            material.specular = color(line, word, &is_black);
-            material.is_specular = !is_black;
+            const Channels rgb = channels(line, word);
+            material.specular = color(rgb);
+            material.is_specular = rgb != Channels{};
         } else if (word == "map_Ks") {
             material.specular = texture(line, word);
             material.is_specular = true;

@@ -30,7 +30,7 @@ RenderOptions options_of(const MemoryCase &c) {
     options.reconstruction = c.reconstruction;
     options.aov = c.aov;
     options.error = c.error;
-    options.batch_size = 4096;
+    options.batch_size = 2048;
     options.photons = 1000;
     return options;
 }

@@ -13,9 +13,6 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-const std::string lamp = "<emitter type=\"constant\"/>";
-const std::string red_diffuse = "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.5 0.1 0.1\"/></bsdf>";
-
 class ObjMaterials : public testing::Test {
   protected:
     LoadedScene load(const std::string &inside, const std::string &version = "0.6.0") const {
@@ -28,7 +25,7 @@ class ObjMaterials : public testing::Test {
             scene_around("<bsdf type=\"diffuse\" id=\"b\"><rgb name=\"reflectance\" value=\"0.2 0.2 0.2\"/>"
                          "</bsdf>\n<shape type=\"obj\"><string name=\"filename\" value=\"meshes/a.obj\"/>" +
                              inside + "</shape>",
-                         version, lamp));
+                         version, constant_light));
     }
     void write_mtl(const std::string &text) const { folder_.write("meshes/a.mtl", text); }
 
@@ -203,7 +200,7 @@ TEST_F(ObjMaterials, LibrariesAreNoWayToOtherFiles) {
     folder_.write("meshes/a.obj", own.replace(own.find("a.mtl"), 5, "b.mtl"));
     folder_.write("meshes/scene.xml", scene_around("<shape type=\"obj\"><string name=\"filename\" value=\"a.obj\"/>"
                                                    "</shape>",
-                                                   "0.6.0", lamp));
+                                                   "0.6.0", constant_light));
     options_.confined = true;
     EXPECT_THAT(load_scene((folder_.path() / "meshes/scene.xml").string(), options_).warnings,
                 ElementsAre(HasSubstr("cannot find the material library \"b.mtl\""), Not(HasSubstr("hunter2"))));

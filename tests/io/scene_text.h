@@ -50,6 +50,11 @@ inline std::string scene_around(const std::string &body, const std::string &vers
            "\n</scene>\n";
 }
 
+/// Parts of such scenes.
+inline const std::string constant_light = "<emitter type=\"constant\"/>";
+inline const std::string red_diffuse =
+    "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.5 0.1 0.1\"/></bsdf>";
+
 inline LoadedScene load_text(const std::string &text, const LoadOptions &options = {}) {
     TemporaryFolder folder;
     return load_scene(folder.write("scene.xml", text), options);

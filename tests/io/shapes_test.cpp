@@ -246,6 +246,17 @@ TEST(ObjShape, TexcoordsCountFromTheTopUnlessTold) {
         0.25f);
 }
 
+TEST(ObjShape, SmoothingByAnglesIsWarnedOf) {
+    TemporaryFolder folder;
+    folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const LoadedScene loaded = load_scene(folder.write(
+        "scene.xml", scene_around("<shape type=\"obj\"><string name=\"filename\" value=\"a.obj\"/><bsdf "
+                                  "type=\"diffuse\"/><float name=\"maxSmoothAngle\" value=\"30\"/></shape><emitter "
+                                  "type=\"constant\"/>",
+                                  "0.6.0")));
+    EXPECT_THAT(loaded.warnings, testing::ElementsAre(testing::HasSubstr("not supported: normals stay")));
+}
+
 TEST(PlyShape, TransformedWithItsNormals) {
     const Mesh mesh = load_mesh("ply", binary_ply(folded_square(), false),
                                 "<transform name=\"to_world\"><rotate z=\"1\" angle=\"90\"/><translate z=\"2\"/>"

@@ -14,16 +14,13 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-const std::string lamp = "<emitter type=\"constant\"/>";
-const std::string red_diffuse = "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0.5 0.1 0.1\"/></bsdf>";
-
 TEST(Includes, OneObjectInAFileOfItsOwnIn0x) {
     TemporaryFolder folder;
     folder.write("red.xml", red_diffuse.substr(0, 5) + " id=\"red\"" + red_diffuse.substr(5));
     const LoadedScene loaded = load_scene(
         folder.write("scene.xml", scene_around("<include filename=\"red.xml\"/><shape type=\"cube\"><ref id=\"red\"/>"
                                                "</shape>",
-                                               "0.5.0", lamp)));
+                                               "0.5.0", constant_light)));
     EXPECT_THAT(loaded.warnings, IsEmpty());
     EXPECT_FLOAT_EQ(loaded.scene.materials.at(loaded.scene.shapes.at(0).material).front.reflectance.r, 0.5f);
 }
@@ -32,14 +29,14 @@ TEST(Includes, OfNoVersionHaveThatOfTheFileThatIncludesThem) {
     TemporaryFolder folder;
     folder.write("part.xml",
                  "<scene><integrator type=\"path\"><integer name=\"maxDepth\" value=\"3\"/></integrator></scene>");
-    const LoadedScene loaded =
-        load_scene(folder.write("scene.xml", scene_around("<include filename=\"part.xml\"/>" + lamp, "0.6.0")));
+    const LoadedScene loaded = load_scene(
+        folder.write("scene.xml", scene_around("<include filename=\"part.xml\"/>" + constant_light, "0.6.0")));
     EXPECT_THAT(loaded.warnings, IsEmpty());
     EXPECT_EQ(loaded.scene.settings.max_depth, 3);
 }
 
 std::string with_type(const std::string &declarations, const std::string &body) {
-    return "<!DOCTYPE scene [" + declarations + "]>\n" + scene_around(body, "0.6.0", lamp);
+    return "<!DOCTYPE scene [" + declarations + "]>\n" + scene_around(body, "0.6.0", constant_light);
 }
 
 TEST(Entities, StandForText) {
@@ -122,7 +119,7 @@ TEST(Textures0x, HaveOneScaleForBothCoordinates) {
     const LoadedScene loaded = load_text(scene_around(
         "<shape type=\"cube\"><bsdf type=\"diffuse\"><texture name=\"reflectance\" type=\"checkerboard\"><float "
         "name=\"uvscale\" value=\"5\"/><float name=\"vscale\" value=\"2\"/></texture></bsdf></shape>",
-        "0.6.0", lamp));
+        "0.6.0", constant_light));
     EXPECT_THAT(loaded.warnings, IsEmpty());
     EXPECT_FLOAT_EQ(loaded.scene.textures.at(0).to_uv[0], 5);
     EXPECT_FLOAT_EQ(loaded.scene.textures.at(0).to_uv[4], 2);
@@ -147,8 +144,9 @@ TEST(Animation, StandsStillAtItsStart) {
         std::string frames;
         for (const char time : times)
             frames += fmt::format("<transform time=\"{0}\"><translate x=\"{0}\"/></transform>", time - '3');
-        const LoadedScene loaded = load_text(scene_around(
-            "<shape type=\"sphere\"><animation name=\"toWorld\">" + frames + "</animation></shape>", "0.6.0", lamp));
+        const LoadedScene loaded = load_text(
+            scene_around("<shape type=\"sphere\"><animation name=\"toWorld\">" + frames + "</animation></shape>",
+                         "0.6.0", constant_light));
         EXPECT_THAT(loaded.warnings, ElementsAre(HasSubstr("motion is not supported")));
         return loaded.scene.spheres.at(0).center.x;
     };

@@ -61,18 +61,15 @@ std::map<std::string, Element> read_libraries(const ObjNames &names, MeshFile &f
                                                      "\": its materials are gray");
             continue;
         }
-        const auto open = builder.open_file(found->path, location);
+        const auto opened = builder.mesh_file(found->path, shape);
+        const std::string &text = opened->bytes();
         // Messages quote it, and a scene can name any file.
-        if (lower_case(open->place().extension().string()) != ".mtl") {
+        if (lower_case(opened->place().extension().string()) != ".mtl") {
             builder.diagnostics().warn(location, "a material library is called .mtl: this one is not read");
             continue;
         }
-        builder.count_mesh_bytes(open->bytes(), shape);
-        const auto text = open->read();
-        if (!text)
-            throw SceneError(location, "cannot read " + found->path.string());
         const Location library{std::make_shared<const std::string>(found->path.string())};
-        MaterialLibrary materials = parse_mtl(*text, *library.file, [&](const std::string &texture) {
+        MaterialLibrary materials = parse_mtl(text, *library.file, [&](const std::string &texture) {
             return builder.look_for(texture, found->path).has_value();
         });
         for (const std::string &option : materials.texture_options)
