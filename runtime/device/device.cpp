@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <mutex>
 #include <thread>
 
 namespace gradus {
@@ -90,9 +91,14 @@ void give_pocl_a_private_folder() {
 
 } // namespace
 
-std::vector<FoundDevice> find_devices() {
+std::vector<FoundDevice> find_devices(int threads) {
+    // Neither variables nor PoCL 3.1, which begins at the first call, are safe for several threads.
+    static std::mutex mutex;
+    const std::lock_guard lock(mutex);
     // PoCL reads its variables once, when the platform is first asked for.
     give_pocl_a_private_folder();
+    if (threads > 0)
+        setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(threads).c_str(), 1);
     std::vector<FoundDevice> found;
     std::vector<cl::Platform> platforms;
     try {
@@ -133,10 +139,7 @@ std::vector<DeviceDescription> list_devices() {
 }
 
 Device::Device(const std::string &selector, int threads) : implementation_(std::make_unique<Implementation>()) {
-    // Read once too.
-    if (threads > 0)
-        setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(threads).c_str(), 1);
-    const std::vector<FoundDevice> found = find_devices();
+    const std::vector<FoundDevice> found = find_devices(threads);
     const FoundDevice &chosen = found[choose(found, selector)];
     implementation_->description = chosen.description;
     implementation_->device = chosen.device;

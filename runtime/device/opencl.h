@@ -57,8 +57,8 @@ struct FoundDevice {
     DeviceDescription description;
 };
 
-/// Every device of every platform, as list_devices() has them.
-std::vector<FoundDevice> find_devices();
+/// Every device of every platform, as list_devices() has them. `threads` is Device's. Several threads may ask at once.
+std::vector<FoundDevice> find_devices(int threads = 0);
 
 bool is_pocl_cpu(const DeviceDescription &device);
 /// Of version 3.1, which is Debian 12's, and whose insides pocl_compiler.h and others know.

@@ -4,6 +4,10 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
+#include <string>
+#include <thread>
+
 namespace gradus {
 namespace {
 
@@ -44,6 +48,24 @@ TEST(Device, IsAProcessorUnlessToldOtherwise) {
     EXPECT_GE(device.description().local_bytes, 16384u);
     EXPECT_GT(device.description().allocation_bytes, 0u);
     EXPECT_LE(device.description().allocation_bytes, device.description().memory_bytes);
+}
+
+// A process of its own: only the first call of all can go wrong.
+TEST(DevicesOfThreads, AreOpenedAtOnce) {
+    std::array<std::string, 8> names;
+    {
+        std::array<std::jthread, names.size()> threads;
+        for (std::size_t i = 0; i < names.size(); ++i)
+            threads[i] = std::jthread([&name = names[i]] {
+                try {
+                    name = Device().description().name;
+                } catch (const Error &error) {
+                    name = error.what();
+                }
+            });
+    }
+    for (const std::string &name : names)
+        EXPECT_EQ(name, Device().description().name);
 }
 
 } // namespace
