@@ -11,7 +11,8 @@ the scene is kept in the folder, whose files both renderers read.
 
 Left out is what Mitsuba is known to do in another way (docs/scene-format.md): axes of rotation that are no unit
 vectors, blends with smooth parts or rough glass, masks within blends and maps, checkerboards as numbers, short paths
-through masks, lights without an area behind them. Nor are there environments beside instances, which end the process of
+through masks, lights without an area behind them, textured lamps other than rectangles, closed lamps that shine inwards
+(a little of its light gets out). Nor are there environments beside instances, which end the process of
 its scalar variants.
 """
 
@@ -32,6 +33,7 @@ from pythons import find_python  # noqa: E402
 WIDTH, HEIGHT, BLOCK = 24, 18, 6
 SEEDS, SPP = 8, 128
 SUSPECTED, CONFIRMED = 5, 4.5  # standard errors
+FLIP = '<boolean name="flip_normals" value="true"/>'
 LEAST_DIFFERENCE = 0.003  # of the brighter mean: less is what float and its limits may make
 
 
@@ -133,22 +135,25 @@ class Maker:
                 f'z="{self.number(-1, 1)}"/>'
                 '</transform>')
 
-    def shape(self, inside):
-        kind = self.random.choice(["rectangle", "cube", "sphere", "sphere", "disk", "cylinder"])
+    def shape_kind(self):
+        return self.random.choice(["rectangle", "cube", "sphere", "sphere", "disk", "cylinder"])
+
+    def shape(self, inside, kind=None, may_flip=True):
+        kind = kind or self.shape_kind()
         if kind == "sphere":
             place = self.transform(uniform=True)
-            flip = '<boolean name="flip_normals" value="true"/>' if self.random.random() < 0.2 else ""
+            flip = FLIP if may_flip and self.random.random() < 0.2 else ""
             radius = self.number(0.3, 0.8)
             return f'<shape type="sphere"><float name="radius" value="{radius}"/>{place}{flip}{inside}</shape>'
         if kind == "cylinder":
             return (f'<shape type="cylinder"><float name="radius" value="{self.number(0.1, 0.5)}"/>'
                     f'<point name="p0" x="0" y="0" z="-0.5"/><point name="p1" x="0" y="0" z="{self.number(0, 1)}"/>'
                     f'{self.transform(scales=False)}{inside}</shape>')
-        flip = '<boolean name="flip_normals" value="true"/>' if self.random.random() < 0.3 else ""
+        flip = FLIP if may_flip and self.random.random() < 0.3 else ""
         return f'<shape type="{kind}">{self.transform()}{flip}{inside}</shape>'
 
-    def radiance(self, low, high):
-        if self.has_textures and self.random.random() < 0.3:
+    def radiance(self, low, high, may_vary):
+        if may_vary and self.has_textures and self.random.random() < 0.3:
             path = self.bitmap("exr", 4, 3, low, high)
             return (f'<texture type="bitmap" name="radiance"><string name="filename" value="{path.name}"/>'
                     '<boolean name="raw" value="true"/></texture>')
@@ -164,8 +169,10 @@ class Maker:
             kinds += ["point", "spot", "directional", "projector"]
         kind = self.random.choice(kinds)
         if kind == "area":
-            return self.shape(f'<bsdf type="diffuse"><rgb name="reflectance" value="{self.color()}"/></bsdf>'
-                              f'<emitter type="area">{self.radiance(2, 12)}</emitter>')
+            shape = self.shape_kind()
+            inside = (f'<bsdf type="diffuse"><rgb name="reflectance" value="{self.color()}"/></bsdf>'
+                      f'<emitter type="area">{self.radiance(2, 12, shape == "rectangle")}</emitter>')
+            return self.shape(inside, shape, shape in ("rectangle", "disk"))
         if kind == "constant":
             return f'<emitter type="constant">{self.plain("radiance", 0.2, 1)}</emitter>'
         if kind == "envmap":
