@@ -68,7 +68,8 @@ int run_warm(const WarmRequest &request, const Services &services) {
 void add_warm_command(CLI::App &app, const Services &services, std::function<int()> &chosen) {
     CLI::App &command = *app.add_subcommand("warm", "Compile and cache the kernels of a scene ahead of its renders");
     const auto request = std::make_shared<WarmRequest>();
-    command.footer("Give the options that the render will have: a kernel is compiled for what they ask for. A first\n"
+    command.footer("Give the scene and method options that the render will have, for which kernels are compiled, but\n"
+                   "none for how long it takes or what it writes (-o, --layers, --seed, --time, --stats...). A first\n"
                    "batch is rendered and thrown away. Kernels that come from the cache print no line.");
     add_scene_options(command, request->scene);
     add_method_options(command, services, request->method);

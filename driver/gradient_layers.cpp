@@ -196,13 +196,18 @@ GradientLayer main_layer(const GradientSources &sources) {
     return sources.halves ? GradientLayer::primal_even : GradientLayer::primal;
 }
 
+/// The name that the user gave a layer, if any, in quotes and with a blank behind it.
+std::string named(GradientLayer layer, const GradientSources &sources) {
+    const auto name = sources.names.find(layer);
+    return name == sources.names.end() ? "" : fmt::format("\"{}\" ", name->second);
+}
+
 /// What to do where a file has not the layer that is asked for.
 std::string remedy(GradientLayer layer, const GradientSources &sources) {
     const std::string writer = sources.halves       ? layers_with(sources)
                                : is_variance(layer) ? "`gradus render --layers --aov`"
-                                                    : "";
-    return fmt::format("{}{}Name it with --layer {}=NAME", writer, writer.empty() ? "" : " writes it. ",
-                       layer_name(layer));
+                                                    : "`gradus render --layers`";
+    return fmt::format("{} writes it. Name it with --layer {}=NAME", writer, layer_name(layer));
 }
 
 /// Adds what one file holds to `found`, and the metadata of the primal's file to `images`.
@@ -216,8 +221,8 @@ void read_file(const std::string &path, const std::vector<GradientLayer> &wanted
         if (!name && may_be_missing(layer, sources) && !alone && !sources.names.count(layer))
             continue;
         if (!name)
-            fail_to_read(fmt::format("'{}' has no layer for {}; it has: {}. {}", path, layer_name(layer),
-                                     list_of(layers), remedy(layer, sources)));
+            fail_to_read(fmt::format("'{}' has no layer {}for {}; it has: {}. {}", path, named(layer, sources),
+                                     layer_name(layer), list_of(layers), remedy(layer, sources)));
         const std::string where = name->empty() ? fmt::format("'{}'", path) : fmt::format("{} of '{}'", *name, path);
         found[layer] = take_channels(layer, image, layers.at(*name), where);
         if (layer == main_layer(sources))

@@ -59,7 +59,7 @@ inline constexpr double least_alpha_of_absolute_values = 1e-4;
 
 struct PoissonOptions {
     PoissonNorm norm = PoissonNorm::l1;
-    /// 0, or at least least_alpha_of_absolute_values with L1, above 0 with L2. With 0, I0 decides the mean of each
+    /// 0 or above; with L1 0, or at least least_alpha_of_absolute_values. With 0, I0 decides the mean of each
     /// channel and nothing else.
     double alpha = 0.2;
     /// alpha^2 = (mean variance of dx and dy) / (mean variance of primal) instead (Kettunen et al. 2015, supplement,

@@ -129,6 +129,8 @@ std::unique_ptr<File> Reader::open(const std::shared_ptr<const OpenFile> &opened
             file->line_starts.push_back(i + 1);
     file->text = std::move(*text);
     const pugi::xml_parse_result result = file->xml.load_buffer_inplace(file->text.data(), file->text.size());
+    if (result.status == pugi::status_no_document_element)
+        fail(whole, "not well-formed XML: there is no element in it; a scene is an XML file");
     if (!result)
         fail(file->locate(result.offset), std::string("not well-formed XML: ") + result.description());
     const pugi::xml_node root = file->xml.document_element();

@@ -125,7 +125,10 @@ bool Properties::has(const std::string &name) { return find(declared(name, {})) 
 
 double Properties::number(const std::string &name) {
     const Parameter &parameter = declared(name, {Takes::number});
-    return number_of(parameter, find(parameter));
+    const Element *property = find(parameter);
+    if (!property && parameter.like)
+        return number(parameter.like);
+    return number_of(parameter, property);
 }
 
 double Properties::number_of(const Parameter &parameter, const Element *property) {
@@ -329,10 +332,12 @@ void Properties::report_unknown() {
         const std::string name = snake_case(trimmed(written ? *written : ""));
         const bool is_reference = child.tag == "ref", is_parameter = std::ranges::count(names, name) > 0;
         const std::string tag = is_reference ? referenced_tag(child) : child.tag;
+        if (element_.tag == "bsdf" && element_.is_legacy() && name == "ensure_energy_conservation")
+            continue; // of all BSDFs of 0.x; what it asks for is done
         if (declaration_.find_objects(tag) || (is_parameter && (is_property_tag(tag) || tag == "texture")))
             continue;
         if (is_property_tag(child.tag) || (child.tag == "texture" && written)) {
-            std::string message = "unknown parameter \"" + (written ? *written : "") + "\" of " + owner + " is ignored";
+            std::string message = "unknown parameter \"" + (written ? *written : "") + "\" of " + owner;
             if (const auto nearest = diagnostics_.is_full() ? std::nullopt : nearest_name(name, names))
                 message += "; did you mean \"" + *nearest + "\"?";
             diagnostics_.unknown(child.location, message);

@@ -71,8 +71,11 @@ class Properties {
     Double3 point(const std::string &name);
     /// The identity where the file has none.
     Matrix4 transform(const std::string &name);
-    /// A colour, which may be a texture where the parameter takes one.
+    /// A colour, which may be a texture where the parameter takes one. Reflectances are at most 1, or made so with a
+    /// warning.
     Color color(const std::string &name);
+    /// The same, but a reflectance that is no texture may be above 1.
+    Color color_as_written(const std::string &name);
     /// A number, which may be a texture, or a colour, whose channels' mean it is then. Its value is a texture's least,
     /// and `most` its largest.
     Number textured_number(const std::string &name, float *most = nullptr);

@@ -148,6 +148,19 @@ Color Properties::color_of_texture(const Element &texture, double highest) {
 }
 
 Color Properties::color(const std::string &name) {
+    const Color color = color_as_written(name);
+    const float most = std::max({color.r, color.g, color.b});
+    if (declared(name, {}).takes != Takes::reflectance || most <= 1)
+        return color;
+    const bool keeps_hue = element_.is_legacy(); // as Mitsuba 0.6 does it
+    diagnostics_.warn(location_of(name), "\"" + name + "\" is above 1, which would create energy; " +
+                                             (keeps_hue ? "scaled to 0.99" : "clamped to 1"));
+    if (keeps_hue)
+        return {0.99f * (color.r / most), 0.99f * (color.g / most), 0.99f * (color.b / most)};
+    return {std::min(color.r, 1.0f), std::min(color.g, 1.0f), std::min(color.b, 1.0f)};
+}
+
+Color Properties::color_as_written(const std::string &name) {
     const Parameter &parameter =
         declared(name, {Takes::reflectance, Takes::emission, Takes::textured_emission, Takes::color});
     const bool reflects = parameter.takes == Takes::reflectance;
@@ -160,16 +173,12 @@ Color Properties::color(const std::string &name) {
     const ColorUse use = reflects                          ? ColorUse::reflectance
                          : parameter.takes == Takes::color ? ColorUse::index
                                                            : ColorUse::emission;
-    Color color = read_color(*property, parameter, use);
+    const Color color = read_color(*property, parameter, use);
     for (float value : {color.r, color.g, color.b}) {
         if (value < 0)
             throw SceneError(property->location, "\"" + name + "\" must not be negative");
         if (!std::isfinite(value))
             throw SceneError(property->location, "\"" + name + "\" is too large for single precision");
-    }
-    if (reflects && (color.r > 1 || color.g > 1 || color.b > 1)) {
-        diagnostics_.warn(property->location, "\"" + name + "\" is above 1, which would create energy; clamped to 1");
-        color = {std::min(color.r, 1.0f), std::min(color.g, 1.0f), std::min(color.b, 1.0f)};
     }
     return color;
 }

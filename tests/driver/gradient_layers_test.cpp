@@ -159,7 +159,7 @@ TEST_F(GradientLayers, NamesThatAreGivenGoBeforeAll) {
     expect_colours(images, GradientLayer::dy, 300);
     expect_colours(images, GradientLayer::direct, 400);
     sources.names[GradientLayer::direct] = "lamps";
-    expect_error(sources, ExitCode::image, HasSubstr("no layer for direct"));
+    expect_error(sources, ExitCode::image, HasSubstr("no layer \"lamps\" for direct"));
 }
 
 TEST_F(GradientLayers, FilesOfTheirOwnGoBeforeLayers) {
@@ -249,8 +249,12 @@ TEST_F(GradientLayers, AMissingLayerListsThoseThatAreThere) {
                  ExitCode::image,
                  AllOf(HasSubstr("few.exr' has no layer for dy"), HasSubstr("dx (R, G, B)"), HasSubstr("primal ("),
                        HasSubstr("channels without a layer (R, G, B)"), HasSubstr("--layer dy=NAME")));
-    expect_error(layered(write_colours("plain.exr", 1)), ExitCode::image, HasSubstr("no layer for primal"));
-    GradientSources sources = layered(write_layers("all.exr"));
+    expect_error(layered(write_colours("plain.exr", 1)), ExitCode::image,
+                 AllOf(HasSubstr("no layer for primal"), HasSubstr("`gradus render --layers` writes it")));
+    GradientSources sources = layered(write_layers("named.exr"));
+    sources.names[GradientLayer::primal] = "foo";
+    expect_error(sources, ExitCode::image, HasSubstr("no layer \"foo\" for primal"));
+    sources = layered(write_layers("all.exr"));
     sources.variances = true;
     expect_error(sources, ExitCode::image, HasSubstr("no layer for primal_variance"));
 }

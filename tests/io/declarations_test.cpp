@@ -238,8 +238,7 @@ class Declarations : public testing::Test {
             double value = parse_number(normal).value_or(1) * 0.75 + 0.1;
             value = std::clamp(value, least, most);
             std::vector<std::string> list = {named("float", name, std::to_string(value))};
-            const bool is_plain = plugin.name == "roughplastic"; // its roughness can't be one
-            if (parameter.takes == Takes::textured_number && !is_plain)
+            if (parameter.takes == Takes::textured_number)
                 list.push_back("<texture name=\"" + name + "\" type=\"checkerboard\"/>");
             return list;
         }

@@ -217,7 +217,7 @@ TEST(UnknownParameters, WarnWithTheNearestName) {
                                           "3.0.0", "");
     const LoadedScene loaded = load_text(text);
     EXPECT_THAT(loaded.warnings,
-                ElementsAre(HasSubstr("scene.xml:4: unknown parameter \"raduis\" of shape \"sphere\" is ignored; did "
+                ElementsAre(HasSubstr("scene.xml:4: unknown parameter \"raduis\" of shape \"sphere\"; did "
                                       "you mean \"radius\"?")));
     EXPECT_FLOAT_EQ(loaded.scene.spheres[0].radius, 1);
     EXPECT_THAT(error_of_text(text, {{}, true}), HasSubstr("scene.xml:4: unknown parameter \"raduis\""));

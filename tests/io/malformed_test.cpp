@@ -34,7 +34,7 @@ std::string in_transform(const std::string &step) {
 const std::vector<Case> cases{
     // The file as XML.
     {"empty_file", "", "scene.xml", {"not well-formed XML"}},
-    {"no_xml", "this is no scene", "scene.xml", {"not well-formed XML"}},
+    {"no_xml", "this is no scene", "scene.xml", {"not well-formed XML", "a scene is an XML file"}},
     {"unclosed_tag", "<scene version=\"3.0.0\">\n<sensor type=\"perspective\">\n</scene>", "scene.xml:3", {"XML"}},
     {"unclosed_attribute", "<scene version=\"3.0.0\">\n<sensor type=\"perspective/>\n</scene>", "scene.xml", {"XML"}},
     {"two_roots", "<scene version=\"3.0.0\"/>\n<scene version=\"3.0.0\"/>", "scene.xml:2", {"second root", "scene"}},

@@ -74,6 +74,34 @@ TEST(BsdfPlugin, ThinDielectric) {
     EXPECT_NEAR(pane.pane_ior, 1.6, 1e-6);
 }
 
+// 0.6 keeps their hue, and takes the two of a phong together.
+TEST(BsdfPlugin, ReflectancesAboveOneInOldFiles) {
+    const auto loaded_as = [](const std::string &bsdf, const char *version) {
+        return load_text(
+            scene_around("<shape type=\"sphere\">\n" + bsdf + "</shape><emitter type=\"constant\"/>", version, ""));
+    };
+    const std::string bright = "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"2 1 0.5\"/></bsdf>";
+    LoadedScene loaded = loaded_as(bright, "0.6.0");
+    expect_rgb(loaded.scene.materials[0].front.reflectance, 0.99, 0.495, 0.2475);
+    EXPECT_THAT(loaded.warnings, ElementsAre(HasSubstr("energy; scaled to 0.99")));
+    loaded = loaded_as(bright, "3.0.0");
+    expect_rgb(loaded.scene.materials[0].front.reflectance, 1, 1, 0.5);
+    EXPECT_THAT(loaded.warnings, ElementsAre(HasSubstr("energy; clamped to 1")));
+    const std::string colors = "<rgb name=\"diffuseReflectance\" value=\"0.2\"/><rgb name=\"specularReflectance\" "
+                               "value=\"9.8 4 1\"/>";
+    loaded = loaded_as("<bsdf type=\"phong\">" + colors + "</bsdf>", "0.6.0");
+    expect_rgb(loaded.scene.materials[0].front.reflectance, 0.0198, 0.0198, 0.0198);
+    expect_rgb(loaded.scene.materials[0].front.specular_reflectance, 0.9702, 0.396, 0.099);
+    EXPECT_TRUE(loaded.warnings.empty());
+    const std::string each = "<boolean name=\"ensureEnergyConservation\" value=\"false\"/>";
+    loaded = loaded_as("<bsdf type=\"phong\">" + each + colors + "</bsdf>", "0.6.0");
+    expect_rgb(loaded.scene.materials[0].front.reflectance, 0.2, 0.2, 0.2);
+    EXPECT_NEAR(loaded.scene.materials[0].front.specular_reflectance.r, 0.99, 1e-6);
+    EXPECT_TRUE(loaded_as("<bsdf type=\"plastic\">" + each + "</bsdf>", "0.6.0").warnings.empty());
+    EXPECT_THAT(loaded_as("<bsdf type=\"plastic\">" + each + "</bsdf>", "3.0.0").warnings,
+                ElementsAre(HasSubstr("unknown parameter \"ensureEnergyConservation\"")));
+}
+
 TEST(BsdfPlugin, KindsOfOldFiles) {
     const Bsdf facets = material_of("<bsdf type=\"roughdiffuse\"><float name=\"alpha\" value=\"0.4\"/><boolean "
                                     "name=\"useFastApprox\" value=\"true\"/></bsdf>",

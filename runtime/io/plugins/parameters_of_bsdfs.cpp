@@ -9,15 +9,12 @@
 
 namespace gradus {
 
-ParameterList parameters_of_roughness() {
+ParameterList parameters_of_roughness(Takes takes) {
     // Below this, single precision cannot hold the distribution's peak.
     constexpr double least_alpha = 1e-4;
     constexpr double most_alpha = 1e30;
-    const auto roughness = [](const char *name, const char *otherwise, const char *about) {
-        return Parameter{name, Takes::textured_number, otherwise, about}
-            .at_least(0)
-            .at_most(most_alpha)
-            .raised_to(least_alpha);
+    const auto roughness = [&](const char *name, const char *otherwise, const char *about) {
+        return Parameter{name, takes, otherwise, about}.at_least(0).at_most(most_alpha).raised_to(least_alpha);
     };
     return joined({{Parameter{"distribution", Takes::choice, "beckmann",
                               "of the microfacets; phong and as, of 0.x, are read as beckmann of the same alpha"}
@@ -33,6 +30,10 @@ ParameterList roughness_left_over() { return meaningless({"alpha", "distribution
 Microfacet read_roughness(Properties &properties, Bsdf &bsdf) {
     bsdf.alpha_u = properties.textured_number("alpha_u");
     bsdf.alpha_v = properties.textured_number("alpha_v");
+    return read_distribution(properties);
+}
+
+Microfacet read_distribution(Properties &properties) {
     const std::string distribution = properties.choice("distribution");
     if (distribution == "phong" || distribution == "as")
         properties.diagnostics().warn(properties.location_of("distribution"),
@@ -77,13 +78,17 @@ ParameterList parameters_of_two_lobes() {
 }
 
 void read_two_lobes(Properties &properties, Bsdf &bsdf) {
-    bsdf.reflectance = properties.color("diffuse_reflectance");
-    bsdf.specular_reflectance = properties.color("specular_reflectance");
+    const bool together = properties.boolean("ensure_energy_conservation");
+    const auto read = [&](const char *name) { // each alone counts once the sum is right
+        return together ? properties.color_as_written(name) : properties.color(name);
+    };
+    bsdf.reflectance = read("diffuse_reflectance");
+    bsdf.specular_reflectance = read("specular_reflectance");
     const auto scale = [](Rgb &color, float by) { color = {color.r * by, color.g * by, color.b * by}; };
     const float most =
         std::max({bsdf.reflectance.r + bsdf.specular_reflectance.r, bsdf.reflectance.g + bsdf.specular_reflectance.g,
                   bsdf.reflectance.b + bsdf.specular_reflectance.b});
-    if (properties.boolean("ensure_energy_conservation") && most > 1) {
+    if (together && most > 1) {
         scale(bsdf.reflectance, 0.99f / most);
         scale(bsdf.specular_reflectance, 0.99f / most);
     }
