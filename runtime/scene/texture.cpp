@@ -103,20 +103,24 @@ TexelPlace place_of(const Bitmap &bitmap, std::uint32_t x, std::uint32_t y, int 
 
 } // namespace
 
-double Bitmap::channel(std::uint32_t x, std::uint32_t y, int channel) const {
+std::uint32_t Bitmap::bits(std::uint32_t x, std::uint32_t y, int channel) const {
     const TexelPlace place = place_of(*this, x, y, channel);
-    const std::uint32_t bits = words[place.word] >> place.shift & place.mask;
+    return words[place.word] >> place.shift & place.mask;
+}
+
+double Bitmap::channel(std::uint32_t x, std::uint32_t y, int channel) const {
+    const std::uint32_t stored = bits(x, y, channel);
     switch (format) {
     case Format::byte:
-        return bits / 255.0;
+        return stored / 255.0;
     case Format::word:
-        return bits / 65535.0;
+        return stored / 65535.0;
     case Format::half:
-        return half_value(bits);
+        return half_value(stored);
     case Format::real:
         break;
     }
-    return std::bit_cast<float>(bits);
+    return std::bit_cast<float>(stored);
 }
 
 void Bitmap::set(std::uint32_t x, std::uint32_t y, int channel, std::uint32_t bits) {

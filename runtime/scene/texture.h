@@ -24,6 +24,8 @@ struct Bitmap {
 
     /// A stored channel as it stands: no transfer function is undone. (x, y) must be within the picture.
     double channel(std::uint32_t x, std::uint32_t y, int channel) const;
+    /// Its bits.
+    std::uint32_t bits(std::uint32_t x, std::uint32_t y, int channel) const;
     /// Words for so many texels.
     static std::uint64_t words_for(std::uint64_t texels, Format format, bool is_color);
     void resize(std::uint32_t new_width, std::uint32_t new_height, Format new_format, bool color);

@@ -306,8 +306,8 @@ TEST_F(TexturePlugin, Errors) {
     EXPECT_THAT(error(bitmap_text("bad.png")), HasSubstr("cannot read the texture"));
     EXPECT_THAT(error(bitmap_text("a.png", "<string name=\"filter_type\" value=\"cubic\"/>")),
                 HasSubstr("unknown filter_type \"cubic\" (known: bilinear, nearest, trilinear, ewa, anisotropic)"));
-    EXPECT_THAT(error(bitmap_text("a.png", "<string name=\"wrap_mode\" value=\"zero\"/>")),
-                HasSubstr("unknown wrap_mode \"zero\" (known: repeat, mirror, clamp)"));
+    EXPECT_THAT(error(bitmap_text("a.png", "<string name=\"wrap_mode\" value=\"two\"/>")),
+                HasSubstr("unknown wrap_mode \"two\" (known: repeat, mirror, clamp, zero, one, black, white)"));
     EXPECT_THAT(error("<texture type=\"bitmep\"/>"), HasSubstr("did you mean \"bitmap\"?"));
     EXPECT_THAT(error("<texture type=\"scale\"/>"), HasSubstr("scale needs one nested texture, not 0"));
     EXPECT_THAT(error(bitmap_text("a.png"), "eta", "conductor"), HasSubstr("conductor needs both eta and k"));
@@ -340,8 +340,61 @@ TEST_F(TexturePlugin, WrapsOtherwiseAlongV) {
     EXPECT_EQ(found.wrap_along_v(), Texture::Wrap::mirror);
     const Texture alike = texture(bitmap_text("a.png", "<string name=\"wrapMode\" value=\"clamp\"/>"), "0.6.0");
     EXPECT_EQ(alike.wrap_along_v(), Texture::Wrap::clamp);
-    EXPECT_THAT(error(bitmap_text("a.png", "<string name=\"wrapModeV\" value=\"zero\"/>")),
-                HasSubstr("unknown wrap_mode_v \"zero\""));
+    EXPECT_THAT(error(bitmap_text("a.png", "<string name=\"wrapModeV\" value=\"two\"/>")),
+                HasSubstr("unknown wrap_mode_v \"two\""));
+}
+
+// Against texels taken one by one, each from the picture or from what is around it.
+TEST_F(TexturePlugin, HasZeroOrOneAround) {
+    const std::uint8_t bytes[] = {10, 200, 60, 90, 250, 130};
+    write_values("bytes.png", 3, 2, 1, OIIO::TypeDesc::UINT8, bytes);
+    const std::uint16_t halves[] = {0x3800, 0x3400, 0x3a00, 0x2c00, 0x3c00, 0x3000};
+    write_values("halves.exr", 3, 2, 1, OIIO::TypeDesc::HALF, halves);
+    const float reals[] = {0.1f, 0.9f, 0.3f, 0.7f, 0.2f, 0.6f};
+    write_values("reals.exr", 3, 2, 1, OIIO::TypeDesc::FLOAT, reals);
+    struct Around {
+        const char *along_u, *along_v;
+        std::optional<double> u, v; ///< nothing: repeated
+    };
+    const std::string turned = "<float name=\"uscale\" value=\"2\"/><float name=\"uoffset\" value=\"-0.5\"/>"
+                               "<float name=\"vscale\" value=\"-1.5\"/>";
+    for (const char *file : {"bytes.png", "halves.exr", "reals.exr"})
+        for (const Around &around : {Around{"zero", "zero", 0.0, 0.0}, Around{"one", "black", 1.0, 0.0},
+                                     Around{"repeat", "white", {}, 1.0}, Around{"zero", "repeat", 0.0, {}}})
+            for (const char *filter : {"nearest", "bilinear"}) {
+                const std::string plain = fmt::format("<string name=\"filterType\" value=\"{}\"/>", filter);
+                const Texture inner = texture(bitmap_text(file, plain), "0.6.0");
+                const Texture found =
+                    texture(bitmap_text(file, plain + turned +
+                                                  fmt::format("<string name=\"wrapModeU\" value=\"{}\"/>"
+                                                              "<string name=\"wrapModeV\" value=\"{}\"/>",
+                                                              around.along_u, around.along_v)),
+                            "0.6.0");
+                const auto texel_at = [&](int x, int y) {
+                    const bool is_beside = x < 0 || x > 2, is_beyond = y < 0 || y > 1;
+                    if (is_beside && around.u)
+                        return *around.u;
+                    if (is_beyond && around.v)
+                        return *around.v;
+                    return texture_value(inner, ((x % 3 + 3) % 3 + 0.5) / 3, ((y % 2 + 2) % 2 + 0.5) / 2)[0];
+                };
+                for (double u = -1.03; u < 2; u += 0.11)
+                    for (double v = -1.01; v < 2; v += 0.13) {
+                        const double x = (2 * u - 0.5) * 3, y = -1.5 * v * 2;
+                        double expected = texel_at(int(std::floor(x)), int(std::floor(y)));
+                        if (!found.is_nearest) {
+                            const double left = std::floor(x - 0.5), top = std::floor(y - 0.5);
+                            const double right = x - 0.5 - left, down = y - 0.5 - top;
+                            const auto row = [&](int at) {
+                                return (1 - right) * texel_at(int(left), at) + right * texel_at(int(left) + 1, at);
+                            };
+                            expected = (1 - down) * row(int(top)) + down * row(int(top) + 1);
+                        }
+                        ASSERT_NEAR(texture_value(found, u, v)[0], expected, 1e-5)
+                            << file << " " << around.along_u << " " << around.along_v << " " << filter << " at " << u
+                            << ", " << v;
+                    }
+            }
 }
 
 class MapPlugin : public TexturePlugin {

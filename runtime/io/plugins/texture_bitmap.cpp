@@ -1,4 +1,5 @@
 // <texture type="bitmap">: a picture from a file.
+#include "runtime/io/picture_border.h"
 #include "runtime/io/plugins/parameters_of_textures.h"
 #include "runtime/io/plugins/plugin.h"
 
@@ -6,9 +7,20 @@ namespace gradus {
 
 namespace {
 
-Texture::Wrap read_wrap(Properties &properties, const char *parameter) {
+const std::vector<std::string> wraps = {"repeat", "mirror", "clamp", "zero", "one", "black", "white"};
+
+struct FoundWrap {
+    Texture::Wrap wrap;
+    std::optional<std::uint32_t> border; ///< what is there instead
+};
+
+FoundWrap read_wrap(Properties &properties, const char *parameter) {
     const std::string name = properties.choice(parameter);
-    return name == "repeat" ? Texture::Wrap::repeat : name == "mirror" ? Texture::Wrap::mirror : Texture::Wrap::clamp;
+    if (name == "repeat" || name == "mirror")
+        return {name == "repeat" ? Texture::Wrap::repeat : Texture::Wrap::mirror, std::nullopt};
+    if (name == "clamp")
+        return {Texture::Wrap::clamp, std::nullopt};
+    return {Texture::Wrap::clamp, name == "one" || name == "white" ? 1u : 0u};
 }
 
 } // namespace
@@ -22,15 +34,11 @@ Declaration declare_texture_bitmap() {
                  Parameter{"filter_type", Takes::choice, "bilinear",
                            "between texels; trilinear, ewa and anisotropic are read as bilinear"}
                      .of({"bilinear", "nearest", "trilinear", "ewa", "anisotropic"}),
-                 Parameter{"wrap_mode", Takes::choice, "repeat", "beyond [0, 1]²"}.of({"repeat", "mirror", "clamp"}),
-                 Parameter{"wrap_mode_u", Takes::choice, nullptr, "along u"}
-                     .as("wrap_mode")
-                     .of({"repeat", "mirror", "clamp"})
-                     .of_before_2(),
-                 Parameter{"wrap_mode_v", Takes::choice, nullptr, "along v"}
-                     .as("wrap_mode_u")
-                     .of({"repeat", "mirror", "clamp"})
-                     .of_before_2(),
+                 Parameter{"wrap_mode", Takes::choice, "repeat",
+                           "beyond [0, 1]²; zero and black, one and white are of 0.x"}
+                     .of(wraps),
+                 Parameter{"wrap_mode_u", Takes::choice, nullptr, "along u"}.as("wrap_mode").of(wraps).of_before_2(),
+                 Parameter{"wrap_mode_v", Takes::choice, nullptr, "along v"}.as("wrap_mode_u").of(wraps).of_before_2(),
                  {"raw", Takes::boolean, "false", "8 and 16 bits are linear, not sRGB"},
                  Parameter{"gamma", Takes::number, nullptr, "1 is as raw, all else as sRGB"}
                      .or_else("by raw")
@@ -62,13 +70,14 @@ Texture texture_bitmap(Properties &properties, SceneBuilder &builder) {
     Texture texture;
     texture.kind = Texture::Kind::bitmap;
     texture.is_nearest = properties.choice("filter_type") == "nearest"; // many samples a pixel filter by themselves
-    texture.wrap = read_wrap(properties, "wrap_mode_u");
-    const Texture::Wrap along_v = read_wrap(properties, "wrap_mode_v");
-    if (along_v != texture.wrap)
-        texture.wrap_v = along_v;
+    const FoundWrap along_u = read_wrap(properties, "wrap_mode_u"), along_v = read_wrap(properties, "wrap_mode_v");
+    texture.wrap = along_u.wrap;
+    if (along_v.wrap != along_u.wrap)
+        texture.wrap_v = along_v.wrap;
     read_to_uv(properties, texture);
     texture.bitmap =
         builder.bitmap(read_picture(properties, builder), properties.location_of("filename"), texture.is_srgb);
+    add_border(texture, {along_u.border, along_v.border});
     return texture;
 }
 
