@@ -134,8 +134,6 @@ std::unique_ptr<File> Reader::open(const std::shared_ptr<const OpenFile> &opened
     if (!result)
         fail(file->locate(result.offset), std::string("not well-formed XML: ") + result.description());
     const pugi::xml_node root = file->xml.document_element();
-    if (!root)
-        fail(whole, "no XML element in this file");
     if (is_entity)
         check_entity(*file, root);
     check_root(*file, root, !including);

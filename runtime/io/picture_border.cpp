@@ -23,34 +23,34 @@ std::uint32_t bits_of(std::uint32_t value, Bitmap::Format format) {
 
 } // namespace
 
-void add_border(Texture &texture, const PictureBorder &border) {
-    if (border == PictureBorder())
-        return;
-    const Bitmap &inner = *texture.bitmap;
-    const std::uint32_t left = border.along_u ? 1 : 0, above = border.along_v ? 1 : 0;
-    auto framed = std::make_shared<Bitmap>();
-    framed->path = inner.path;
-    framed->resize(inner.width + 2 * left, inner.height + 2 * above, inner.format, inner.is_color);
-    for (std::uint32_t y = 0; y < framed->height; ++y)
-        for (std::uint32_t x = 0; x < framed->width; ++x) {
-            const bool is_beside = x < left || x >= left + inner.width;
-            const bool is_beyond = y < above || y >= above + inner.height;
-            for (int channel = 0; channel < (inner.is_color ? 3 : 1); ++channel)
-                framed->set(x, y, channel,
-                            is_beside   ? bits_of(*border.along_u, inner.format)
-                            : is_beyond ? bits_of(*border.along_v, inner.format)
-                                        : inner.bits(x - left, y - above, channel));
+Bitmap with_border(const Bitmap &picture, const PictureBorder &border) {
+    const std::uint32_t left = border.columns() / 2, above = border.rows() / 2;
+    Bitmap framed;
+    framed.path = picture.path;
+    framed.resize(picture.width + border.columns(), picture.height + border.rows(), picture.format, picture.is_color);
+    for (std::uint32_t y = 0; y < framed.height; ++y)
+        for (std::uint32_t x = 0; x < framed.width; ++x) {
+            const bool is_beside = x < left || x >= left + picture.width;
+            const bool is_beyond = y < above || y >= above + picture.height;
+            for (int channel = 0; channel < (picture.is_color ? 3 : 1); ++channel)
+                framed.set(x, y, channel,
+                           is_beside   ? bits_of(*border.along_u, picture.format)
+                           : is_beyond ? bits_of(*border.along_v, picture.format)
+                                       : picture.bits(x - left, y - above, channel));
         }
-    const auto shrink = [&](std::size_t row, std::uint32_t size) {
+    return framed;
+}
+
+void move_within(Texture &texture, const PictureBorder &border) {
+    const auto shrink = [&](std::size_t row, std::uint32_t size) { // of the picture with its border
         for (std::size_t i = 0; i < 3; ++i)
             texture.to_uv[row + i] =
-                float((double(texture.to_uv[row + i]) * size + (i == 2 ? 1.0 : 0.0)) / (double(size) + 2));
+                float((double(texture.to_uv[row + i]) * (size - 2.0) + (i == 2 ? 1.0 : 0.0)) / double(size));
     };
     if (border.along_u)
-        shrink(0, inner.width);
+        shrink(0, texture.bitmap->width);
     if (border.along_v)
-        shrink(3, inner.height);
-    texture.bitmap = std::move(framed);
+        shrink(3, texture.bitmap->height);
 }
 
 } // namespace gradus

@@ -6,6 +6,7 @@
 #include "runtime/io/file_search.h"
 #include "runtime/io/load_options.h"
 #include "runtime/io/mesh_files.h"
+#include "runtime/io/picture_border.h"
 #include "runtime/io/pictures_ahead.h"
 #include "runtime/io/properties.h"
 #include "runtime/scene/mesh_builder.h"
@@ -80,6 +81,9 @@ class SceneBuilder {
     /// A picture that a texture names, decoded once. `is_srgb` becomes whether what is stored is sRGB. Throws
     /// SceneError.
     std::shared_ptr<const Bitmap> bitmap(const Picture &picture, const Location &location, bool &is_srgb);
+    /// The same with what lies around it, made once. Throws SceneError.
+    std::shared_ptr<const Bitmap> bordered(const std::shared_ptr<const Bitmap> &inner, const PictureBorder &border,
+                                           const Location &location);
     /// Whether a texture that is the same everywhere becomes one of the scene's, or its range tells all of it.
     enum class OneColor { is_texture, is_no_texture };
     /// The texture that an element describes, with its values clamped to the range: one of the scene's.
@@ -201,6 +205,8 @@ class SceneBuilder {
         bool is_srgb;
     };
     std::map<Picture, DecodedBitmap> bitmaps_;
+    std::map<std::pair<const Bitmap *, PictureBorder>, std::shared_ptr<const Bitmap>> bordered_;
+    void count_texture_bytes(std::uint64_t words, const Location &location);
     /// Textures that name one, in the file's order, and whether they are there for others to refer to.
     std::vector<std::pair<const Element *, bool>> pictures_;
     std::set<std::string> referenced_;     ///< ids that anybody refers to

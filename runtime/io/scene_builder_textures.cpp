@@ -49,6 +49,26 @@ void SceneBuilder::begin_pictures() {
     });
 }
 
+void SceneBuilder::count_texture_bytes(std::uint64_t words, const Location &location) {
+    texture_bytes_ += words * sizeof(std::uint32_t);
+    if (texture_bytes_ > limits_.texture_bytes)
+        throw SceneError(location, fmt::format("the textures up to this one have more than {} MiB of pixels{}",
+                                               limits_.texture_bytes >> 20, limits_hint));
+}
+
+std::shared_ptr<const Bitmap> SceneBuilder::bordered(const std::shared_ptr<const Bitmap> &inner,
+                                                     const PictureBorder &border, const Location &location) {
+    if (border == PictureBorder())
+        return inner;
+    std::shared_ptr<const Bitmap> &known = bordered_[{inner.get(), border}];
+    if (!known) {
+        const std::uint64_t texels = std::uint64_t(inner->width + border.columns()) * (inner->height + border.rows());
+        count_texture_bytes(Bitmap::words_for(texels, inner->format, inner->is_color), location);
+        known = std::make_shared<const Bitmap>(with_border(*inner, border));
+    }
+    return known;
+}
+
 std::shared_ptr<const Bitmap> SceneBuilder::bitmap(const Picture &picture, const Location &location, bool &is_srgb) {
     auto known = bitmaps_.find(picture);
     if (known == bitmaps_.end()) {
@@ -62,10 +82,7 @@ std::shared_ptr<const Bitmap> SceneBuilder::bitmap(const Picture &picture, const
         if (read.not_numbers > 0)
             diagnostics_.warn(location, fmt::format("{}: {} values that are no finite numbers become 0",
                                                     picture.path.string(), read.not_numbers));
-        texture_bytes_ += read.bitmap.words.size() * sizeof(read.bitmap.words[0]);
-        if (texture_bytes_ > limits_.texture_bytes)
-            throw SceneError(location, fmt::format("the textures up to this one have more than {} MiB of pixels{}",
-                                                   limits_.texture_bytes >> 20, limits_hint));
+        count_texture_bytes(read.bitmap.words.size(), location);
         known =
             bitmaps_
                 .emplace(picture, DecodedBitmap{std::make_shared<const Bitmap>(std::move(read.bitmap)), read.is_srgb})

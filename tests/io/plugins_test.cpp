@@ -77,8 +77,7 @@ TEST(BsdfPlugin, ThinDielectric) {
 // 0.6 keeps their hue, and takes the two of a phong together.
 TEST(BsdfPlugin, ReflectancesAboveOneInOldFiles) {
     const auto loaded_as = [](const std::string &bsdf, const char *version) {
-        return load_text(
-            scene_around("<shape type=\"sphere\">\n" + bsdf + "</shape><emitter type=\"constant\"/>", version, ""));
+        return load_text(scene_around("<shape type=\"sphere\">\n" + bsdf + "</shape>", version, constant_light));
     };
     const std::string bright = "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"2 1 0.5\"/></bsdf>";
     LoadedScene loaded = loaded_as(bright, "0.6.0");

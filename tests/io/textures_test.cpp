@@ -397,6 +397,23 @@ TEST_F(TexturePlugin, HasZeroOrOneAround) {
             }
 }
 
+TEST_F(TexturePlugin, BordersAreMadeOnce) {
+    const std::vector<std::uint8_t> bytes(64 * 64, 100);
+    write_values("a.png", 64, 64, 1, OIIO::TypeDesc::UINT8, bytes.data());
+    const auto shape = [](const std::string &wrap) {
+        std::string texture = bitmap_text("a.png", "<string name=\"wrapMode\" value=\"" + wrap + "\"/>");
+        texture.insert(texture.find("type="), "name=\"reflectance\" ");
+        return "<shape type=\"cube\"><bsdf type=\"diffuse\">" + texture + "</bsdf></shape>";
+    };
+    const std::string path = folder_.write(
+        "scene.xml", scene_around(shape("zero") + shape("black") + shape("one"), "0.6.0", constant_light));
+    const LoadedScene loaded = load_scene(path);
+    const std::vector<Texture> &textures = loaded.scene.textures;
+    ASSERT_EQ(textures.size(), 3u);
+    EXPECT_EQ(textures[0].bitmap, textures[1].bitmap);
+    EXPECT_NE(textures[0].bitmap, textures[2].bitmap);
+}
+
 class MapPlugin : public TexturePlugin {
   protected:
     void SetUp() override { write<float>("n.exr", 3, OIIO::TypeDesc::FLOAT, 1); }

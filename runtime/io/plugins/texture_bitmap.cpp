@@ -1,13 +1,10 @@
 // <texture type="bitmap">: a picture from a file.
-#include "runtime/io/picture_border.h"
 #include "runtime/io/plugins/parameters_of_textures.h"
 #include "runtime/io/plugins/plugin.h"
 
 namespace gradus {
 
 namespace {
-
-const std::vector<std::string> wraps = {"repeat", "mirror", "clamp", "zero", "one", "black", "white"};
 
 struct FoundWrap {
     Texture::Wrap wrap;
@@ -26,6 +23,7 @@ FoundWrap read_wrap(Properties &properties, const char *parameter) {
 } // namespace
 
 Declaration declare_texture_bitmap() {
+    const std::vector<std::string> wraps = {"repeat", "mirror", "clamp", "zero", "one", "black", "white"};
     return {
         "a picture from a file: 8 and 16 bits, half and single precision; one channel or three, alpha left out",
         joined({{Parameter{"filename", Takes::filename, nullptr,
@@ -77,7 +75,9 @@ Texture texture_bitmap(Properties &properties, SceneBuilder &builder) {
     read_to_uv(properties, texture);
     texture.bitmap =
         builder.bitmap(read_picture(properties, builder), properties.location_of("filename"), texture.is_srgb);
-    add_border(texture, {along_u.border, along_v.border});
+    const PictureBorder border{along_u.border, along_v.border};
+    texture.bitmap = builder.bordered(texture.bitmap, border, properties.location_of("filename"));
+    move_within(texture, border);
     return texture;
 }
 
