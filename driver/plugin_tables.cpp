@@ -46,6 +46,8 @@ std::string type_text(const Parameter &parameter) {
         return "colour or texture";
     case Takes::color:
         return "colour";
+    case Takes::signed_color:
+        return "colour, of either sign";
     case Takes::textured_number:
         return "number or texture";
     case Takes::refractive_index:

@@ -52,8 +52,7 @@ bool is_of_mitsuba(const std::string &tag, const std::string &type) {
         {"sensor", "radiancemeter"}, {"sensor", "fluencemeter"},      {"sensor", "spherical"},
         {"sensor", "distant"},       {"sensor", "distantflux"},       {"sensor", "mradiancemeter"},
         {"sensor", "batch"},         {"sensor", "perspective_rdist"}, {"sensor", "telecentric"},
-        {"texture", "volume"},       {"texture", "wireframe"},        {"texture", "gridtexture"},
-        {"texture", "curvature"}};
+        {"texture", "volume"},       {"texture", "wireframe"},        {"texture", "curvature"}};
     return plugins.contains({tag, type});
 }
 

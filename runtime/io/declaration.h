@@ -23,6 +23,7 @@ enum class Takes {
     emission,          ///< a colour of at least 0, a light's
     textured_emission, ///< the same, or a texture
     color,             ///< a colour of at least 0, of neither a surface nor a light: an index, or within a texture
+    signed_color,      ///< the same, and less than 0
     textured_number,   ///< a number, or a texture
     refractive_index,  ///< a number, or the name of a material
     objects,           ///< nested objects; the parameter's name is their tag

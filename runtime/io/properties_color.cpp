@@ -161,8 +161,8 @@ Color Properties::color(const std::string &name) {
 }
 
 Color Properties::color_as_written(const std::string &name) {
-    const Parameter &parameter =
-        declared(name, {Takes::reflectance, Takes::emission, Takes::textured_emission, Takes::color});
+    const Parameter &parameter = declared(
+        name, {Takes::reflectance, Takes::emission, Takes::textured_emission, Takes::color, Takes::signed_color});
     const bool reflects = parameter.takes == Takes::reflectance;
     const Element *property = find(parameter);
     if (!property)
@@ -170,12 +170,13 @@ Color Properties::color_as_written(const std::string &name) {
     if (reflects || parameter.takes == Takes::textured_emission)
         if (const Element *texture = texture_of(*property))
             return color_of_texture(*texture, reflects ? 1 : std::numeric_limits<float>::max());
-    const ColorUse use = reflects                          ? ColorUse::reflectance
-                         : parameter.takes == Takes::color ? ColorUse::index
-                                                           : ColorUse::emission;
+    const bool is_signed = parameter.takes == Takes::signed_color;
+    const ColorUse use = reflects                                       ? ColorUse::reflectance
+                         : is_signed || parameter.takes == Takes::color ? ColorUse::index
+                                                                        : ColorUse::emission;
     const Color color = read_color(*property, parameter, use);
     for (float value : {color.r, color.g, color.b}) {
-        if (value < 0)
+        if (value < 0 && !is_signed)
             throw SceneError(property->location, "\"" + name + "\" must not be negative");
         if (!std::isfinite(value))
             throw SceneError(property->location, "\"" + name + "\" is too large for single precision");

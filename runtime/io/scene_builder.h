@@ -78,6 +78,8 @@ class SceneBuilder {
     const LoadLimits &limits() const { return limits_; }
     /// Names of mesh attributes that textures of the file ask for; meshes keep no others.
     const std::vector<std::string> &wanted_attributes() const { return wanted_attributes_; }
+    /// Counts the words of a picture. Throws SceneError where all pictures have more bytes than the limit.
+    void count_texture_bytes(std::uint64_t words, const Location &location);
     /// A picture that a texture names, decoded once. `is_srgb` becomes whether what is stored is sRGB. Throws
     /// SceneError.
     std::shared_ptr<const Bitmap> bitmap(const Picture &picture, const Location &location, bool &is_srgb);
@@ -206,7 +208,6 @@ class SceneBuilder {
     };
     std::map<Picture, DecodedBitmap> bitmaps_;
     std::map<std::pair<const Bitmap *, PictureBorder>, std::shared_ptr<const Bitmap>> bordered_;
-    void count_texture_bytes(std::uint64_t words, const Location &location);
     /// Textures that name one, in the file's order, and whether they are there for others to refer to.
     std::vector<std::pair<const Element *, bool>> pictures_;
     std::set<std::string> referenced_;     ///< ids that anybody refers to

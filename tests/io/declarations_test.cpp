@@ -270,6 +270,7 @@ class Declarations : public testing::Test {
             return color(true);
         case Takes::emission:
         case Takes::color:
+        case Takes::signed_color:
             return color(false);
         case Takes::refractive_index:
             return {named("float", name, "1.7"), named("string", name, "diamond")};
@@ -354,8 +355,11 @@ std::vector<std::string> wrong_values(const Parameter &parameter) {
     case Takes::emission:
     case Takes::textured_emission:
     case Takes::color:
-        list = {named("rgb", name, "rubbish"), named("rgb", name, "-1"), named("rgb", name, "1 2"),
-                named("string", name, "1"), named("spectrum", name, "500:rubbish")};
+    case Takes::signed_color:
+        list = {named("rgb", name, "rubbish"), named("rgb", name, "1 2"), named("string", name, "1"),
+                named("spectrum", name, "500:rubbish")};
+        if (parameter.takes != Takes::signed_color)
+            list.push_back(named("rgb", name, "-1"));
         break;
     case Takes::objects:
     case Takes::nothing:

@@ -166,6 +166,36 @@ TEST_F(TexturePlugin, Checkerboard) {
     EXPECT_EQ(texture_value(legacy, 0.1, 0.1), (std::array<double, 3>{1, 0, 0}));
 }
 
+/// A line lies on both sides of each whole number; what its width comes to is exact where a picture can have it.
+TEST_F(TexturePlugin, GridOf0x) {
+    for (const auto &[text, width] :
+         {std::pair{"", 0.01}, std::pair{"<float name=\"lineWidth\" value=\"0.125\"/>", 0.125},
+          std::pair{"<float name=\"lineWidth\" value=\"0.0317\"/>", 0.0317},
+          std::pair{"<float name=\"lineWidth\" value=\"0\"/>", 0.0},
+          std::pair{"<float name=\"lineWidth\" value=\"3\"/>", 0.5}}) {
+        SCOPED_TRACE(text);
+        const Texture found = texture("<texture type=\"gridtexture\">" + std::string(text) +
+                                          "<rgb name=\"color1\" value=\"1 0.5 0.25\"/></texture>",
+                                      "0.6.0");
+        for (const double whole : {-1.0, 0.0, 1.0})
+            for (const double from_whole : {-0.499, width + 1e-3, -width - 1e-3, width - 1e-3, 1e-3 - width}) {
+                if (std::abs(from_whole) > 0.5)
+                    continue;
+                const double is_line = std::abs(from_whole) < width ? 1 : 0;
+                const std::array<double, 3> color{0.2 + is_line * 0.8, 0.2 + is_line * 0.3, 0.2 + is_line * 0.05};
+                for (const auto &[u, v] :
+                     {std::pair{whole + from_whole, 0.5001}, std::pair{0.5001, whole + from_whole}})
+                    for (std::size_t c = 0; c < 3; ++c)
+                        EXPECT_NEAR(texture_value(found, u, v)[c], color[c], 1e-7) << u << ", " << v;
+            }
+    }
+    const Texture scaled =
+        texture("<texture type=\"gridtexture\"><float name=\"uscale\" value=\"4\"/></texture>", "0.6.0");
+    EXPECT_NEAR(texture_value(scaled, 0.2505, 0.1)[0], 0.4, 1e-7);
+    EXPECT_NEAR(texture_value(scaled, 0.125, 0.1)[0], 0.2, 1e-7);
+    EXPECT_NEAR(texture_range(scaled).mean[0], 0.2 + 0.2 * (1 - 0.98 * 0.98), 1e-6);
+}
+
 /// As Mitsuba's RGB mode has them. They are numbers, not textures: nothing is looked up.
 TEST(TextureOfOneColor, IsANumber) {
     const auto named = [](const std::string &tag, const std::string &name, const std::string &type_and_rest) {
@@ -527,6 +557,23 @@ TEST_F(MapPlugin, WithinOthersAndAround) {
                   .scene.materials.at(1)
                   .front.map.kind,
               NormalTexture::Kind::none);
+}
+
+/// A hill becomes a hollow; a reflectance stays at least 0.
+TEST_F(MapPlugin, AScaleBelow0TurnsABumpOver) {
+    const std::string scale = "<texture type=\"scale\"><float name=\"scale\" value=\"-0.25\"/>";
+    const LoadedScene bump = load_bsdf("<bsdf type=\"bumpmap\">" + scale + map_text + "</texture>" + wood + "</bsdf>");
+    EXPECT_THAT(bump.warnings, IsEmpty());
+    const Texture &hollow = bump.scene.textures.at(std::size_t(bump.scene.materials.at(0).front.map.texture));
+    Texture hill = hollow;
+    hill.scale = {1, 1, 1};
+    EXPECT_NEAR(texture_value(hollow, 0.3, 0.3)[0], -0.25 * texture_value(hill, 0.3, 0.3)[0], 1e-6);
+    EXPECT_LT(texture_value(hollow, 0.3, 0.3)[0], 0);
+    const LoadedScene color =
+        load_bsdf("<bsdf type=\"diffuse\"><texture name=\"reflectance\" type=\"scale\"><float name=\"scale\" "
+                  "value=\"-0.25\"/><texture type=\"checkerboard\"/></texture></bsdf>");
+    EXPECT_THAT(color.warnings, ElementsAre(HasSubstr("clamped to 0")));
+    EXPECT_EQ(color.scene.materials.at(0).front.reflectance.r, 0);
 }
 
 TEST_F(MapPlugin, WhatIsWrong) {

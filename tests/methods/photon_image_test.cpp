@@ -8,6 +8,7 @@
 #include "tests/support/test_name.h"
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 
 #include <numbers>
 

@@ -5,7 +5,8 @@ namespace gradus {
 
 Declaration declare_texture_scale() {
     return {"another texture, times a factor, of 0.x",
-            {{"scale", Takes::color, "1", "the factor"}, {"texture", Takes::objects, nullptr, "one"}}};
+            {{"scale", Takes::signed_color, "1", "the factor; less than 0 it turns a bump map over"},
+             {"texture", Takes::objects, nullptr, "one"}}};
 }
 
 Texture texture_scale(Properties &properties, SceneBuilder &builder) {
