@@ -13,12 +13,12 @@ typedef double real;
 #else
 typedef float real;
 #endif
-#define R(constant) ((real)(constant))
 
 #include "kernels/shared/builtins.h"
 
 #ifdef __OPENCL_VERSION__
 
+#define R(constant) ((real)(constant))
 #define GRADUS_LIB_BEGIN
 #define GRADUS_LIB_END
 #ifndef GRADUS_FN /* a checker that cannot read inlined code names another one */
@@ -51,6 +51,9 @@ typedef float real;
     }
 #define GRADUS_FN static inline __attribute__((unused))
 #define GRADUS_GLOBAL
+
+/* No macro: headers of other libraries have the name, and may come after this one. */
+__attribute__((unused)) static constexpr real R(double constant) { return (real)constant; }
 
 typedef std::uint32_t uint;
 typedef std::uint64_t ulong;

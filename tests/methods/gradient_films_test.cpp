@@ -1,10 +1,10 @@
 // Sums of films against each pixel's by itself: films are summed in blocks, of which each has one number of samples.
-#include <gtest/gtest.h> // before kernels/, whose short macro names are not for it
-
 #include "kernels/shared/tables.h"
 #include "methods/gradient_films.h"
 #include "runtime/device/device.h"
 #include "tests/support/small_scenes.h"
+
+#include <gtest/gtest.h>
 
 #include <random>
 #include <vector>
