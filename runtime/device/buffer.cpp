@@ -52,6 +52,9 @@ struct Buffer::Event {
 };
 
 namespace {
+/// Of an array, in bytes.
+constexpr std::size_t largest_element = 16;
+
 void check_size(const Device::Implementation &device, const std::string &name, std::size_t bytes) {
     const DeviceDescription &d = device.description;
     if (bytes > d.allocation_bytes)
@@ -78,13 +81,14 @@ void ask_for_large_pages(Device::Implementation &device, const cl::Buffer &memor
 } // namespace
 
 Buffer::Buffer(Device &device, const std::string &name, std::size_t bytes)
-    : name_(name), bytes_(std::max<std::size_t>(bytes, 16)) {
+    : name_(name), bytes_(bytes > 0 ? bytes : largest_element) {
     Device::Implementation &d = device.implementation();
     check_size(d, name, bytes_);
     opencl_call(fmt::format("allocating {} MB for {}", bytes_ >> 20, name), [&] {
         // Elsewhere the host's memory would be a second copy.
         const cl_mem_flags place = d.description.shares_memory ? CL_MEM_ALLOC_HOST_PTR : 0;
-        handle_ = std::make_shared<Handle>(d, cl::Buffer(d.context, CL_MEM_READ_WRITE | place, bytes_), bytes_);
+        const std::size_t allocated = std::max(bytes_, largest_element);
+        handle_ = std::make_shared<Handle>(d, cl::Buffer(d.context, CL_MEM_READ_WRITE | place, allocated), allocated);
         ask_for_large_pages(d, handle_->memory, bytes_);
     });
 }

@@ -33,7 +33,7 @@ std::vector<std::uint32_t> counting(std::size_t count) {
 
 TEST(Buffer, HoldsWhatItWasMadeOf) {
     Device device;
-    for (const std::size_t count : {4u, 1000u, 1'000'003u}) {
+    for (const std::size_t count : {1u, 3u, 4u, 1000u, 1'000'003u}) {
         const std::vector<std::uint32_t> values = counting(count);
         const Buffer buffer(device, "numbers", values.data(), values.size() * sizeof(std::uint32_t));
         EXPECT_TRUE(buffer.valid());

@@ -57,10 +57,11 @@ inline Solution solve(PoissonSolver &solver, const HostImages &images, const Poi
 
 /// The solver for a problem's size; made once a process, for its kernels take a second.
 inline PoissonSolver &solver_for(const PoissonProblem &problem) {
+    Device &device = test_device(); // first, so that the solvers go before it
     static std::map<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>, std::unique_ptr<PoissonSolver>> solvers;
     std::unique_ptr<PoissonSolver> &solver = solvers[{problem.width, problem.height, problem.channels}];
     if (!solver)
-        solver = std::make_unique<PoissonSolver>(test_device(), problem.width, problem.height, problem.channels);
+        solver = std::make_unique<PoissonSolver>(device, problem.width, problem.height, problem.channels);
     return *solver;
 }
 
