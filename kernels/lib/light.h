@@ -72,13 +72,16 @@ GRADUS_FN light_choice light_from_sphere(rgb radiance, vec3 center, real radius,
     const real center_distance = r_sqrt(center_distance_squared);
     const int cone = facing > R(0) && center_distance_squared > radius * radius * R(1.0001);
     /* In the cone: the direction, then the sphere's normal at the nearer of the two points it meets, in the frame
-     * of the axis. With sin a at the place, the distance is d cos a - sqrt(r^2 - d^2 sin^2 a). */
+     * of the axis. With sin a at the place, the distance is t = d cos a - h, h = sqrt(r^2 - d^2 sin^2 a). Along the
+     * axis the normal is t cos a - d = -d sin^2 a - h cos a, in which nothing cancels where the sphere is far away. */
     const vec3 ray_local = warp_uniform_cone(light_sphere_cone(radius, center_distance_squared), u1, u2);
     const real sine_squared = ray_local.x * ray_local.x + ray_local.y * ray_local.y;
     const real half_chord = r_sqrt(r_max(radius * radius - center_distance_squared * sine_squared, R(0)));
     const real distance = center_distance * ray_local.z - half_chord;
     const frame axis = frame_from_normal(v3_scale(to_center, R(1) / center_distance));
-    const vec3 cone_normal = v3_normalize(v3_sub(v3_scale(frame_to_world(axis, ray_local), distance), to_center));
+    const vec3 cone_normal =
+        v3_normalize(frame_to_world(axis, v3(distance * ray_local.x, distance * ray_local.y,
+                                             -center_distance * sine_squared - half_chord * ray_local.z)));
     const vec3 area_normal = warp_uniform_sphere(u1, u2);
     const vec3 outward = v3(cone ? cone_normal.x : area_normal.x, cone ? cone_normal.y : area_normal.y,
                             cone ? cone_normal.z : area_normal.z);

@@ -30,9 +30,10 @@ GRADUS_FN vec3 ray_origin(vec3 position, vec3 geometric, real offset, vec3 direc
 }
 
 /* The end, or the whole, of a connection `way` long to a surface, moved off that towards where `facing`, its unit
- * normal, points. */
+ * normal, points. Where the tracer meets a sphere is off by some six roundings of the way to its center, which is why
+ * the way's own are taken twice. */
 GRADUS_FN vec3 connection_before(vec3 end, vec3 facing, real offset, vec3 way) {
-    return v3_mad(end, offset + rounding_along(facing, way), facing);
+    return v3_mad(end, offset + R(2) * rounding_along(facing, way), facing);
 }
 
 /* Where such a connection ends: on the side that it comes from. */

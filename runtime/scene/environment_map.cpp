@@ -27,8 +27,10 @@ std::uint32_t code_of(float number) {
     return bits < 0x30000000u ? 0u : std::min((bits - 0x30000000u) >> 13, 0xFFFFu);
 }
 
-/// The power of two that takes the largest of a map's numbers to its place.
-float unit_of(float largest) { return largest > 0 ? std::ldexp(1.0f, std::ilogb(largest) - largest_exponent) : 1.0f; }
+/// The power of two that takes the largest of a map's numbers to its place, as far as its inverse is a number.
+float unit_of(float largest) {
+    return largest > 0 ? std::ldexp(1.0f, std::max(std::ilogb(largest) - largest_exponent, -126)) : 1.0f;
+}
 
 /// What a row of texels has of the sphere, times the columns: the integral of its hat function over the angles.
 double row_share(std::uint32_t row, std::uint32_t rows) {

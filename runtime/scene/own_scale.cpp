@@ -96,9 +96,11 @@ double bring_to_own_scale(Scene &scene) {
     for (std::size_t row = 0; row < 3; ++row)
         for (std::size_t column = scales ? 0 : 3; column < 4; ++column)
             camera.to_world.m[row * 4 + column] *= factor;
-    for (double *length : {&camera.far_clip, &camera.aperture_radius, &camera.focus_distance})
+    const double depth = camera.far_clip - camera.near_clip; // a length in all cases
+    for (double *length : {&camera.aperture_radius, &camera.focus_distance})
         *length *= factor;
     camera.near_clip *= scales ? 1 : factor;
+    camera.far_clip = camera.near_clip + depth * factor;
     return factor;
 }
 

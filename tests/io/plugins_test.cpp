@@ -361,6 +361,10 @@ TEST(BsdfPlugin, Conductor) {
     expect_rgb(given.front.eta, 0.2, 0.9, 1.1);
     expect_rgb(given.front.k, 3.9, 2.4, 2.1);
     expect_rgb(given.front.specular_reflectance, 0.3, 0.3, 0.3);
+    const Material large = material_of("<bsdf type=\"conductor\"><rgb name=\"eta\" value=\"1 1e10 1e30\"/><rgb "
+                                       "name=\"k\" value=\"1e38 2 1e8\"/></bsdf>");
+    expect_rgb(large.front.eta, 1, 1e8, 1e8); // larger ones reflect no more, and no float holds what they come to
+    expect_rgb(large.front.k, 1e8, 2, 1e8);
 }
 
 TEST(BsdfPlugin, ConductorsOfTheOldDialectStandInAirAndAreCopper) {

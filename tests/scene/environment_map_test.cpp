@@ -253,6 +253,19 @@ TEST(EnvironmentMap, IsTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(one.integral, many.integral);
 }
 
+// Beside a light that is hardly a number black is black.
+TEST(EnvironmentMap, HasBlackBesideTheLeastLightThereIs) {
+    for (const double least : {1e-28, 1e-33, 1e-38, 1e-44}) {
+        const EnvironmentMap map = map_of(image_by(4, 3, [&](std::uint32_t x, std::uint32_t) {
+            return std::array<double, 3>{x == 1 ? least : 0, 0, 0};
+        }));
+        const double seen = double(environment_load(map.texels.data(), 1, 1, 0).radiance.r) * map.unit;
+        EXPECT_EQ(environment_load(map.texels.data(), 3, 1, 0).radiance.r, 0) << least;
+        EXPECT_NEAR(seen, least, least > 1e-35 ? 1e-3 * least : least) << least;
+        EXPECT_TRUE(std::isfinite(map.integral.r)) << least;
+    }
+}
+
 TEST(EnvironmentMap, ABlackOneHasNoLight) {
     const EnvironmentMap map =
         map_of(image_by(4, 3, [](std::uint32_t, std::uint32_t) { return std::array<double, 3>{}; }));

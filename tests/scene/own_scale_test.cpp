@@ -94,10 +94,12 @@ TEST(OwnScale, LengthsOfTheCameraGoAlong) {
     EXPECT_DOUBLE_EQ(camera.aperture_radius, 2e7 * factor);
     EXPECT_DOUBLE_EQ(camera.focus_distance, 1e9 * factor);
     // Here it is the scale of to_world that makes lengths of what it maps.
-    const double near_before = near_plane(parallel.camera), m = parallel.camera.to_world.m[5];
+    const double near_before = near_plane(parallel.camera), far_before = far_plane(parallel.camera);
+    const double m = parallel.camera.to_world.m[5];
     EXPECT_EQ(bring_to_own_scale(parallel), factor);
     EXPECT_DOUBLE_EQ(parallel.camera.to_world.m[5], m * factor);
     EXPECT_DOUBLE_EQ(near_plane(parallel.camera), near_before * factor);
+    EXPECT_DOUBLE_EQ(far_plane(parallel.camera), far_before * factor);
 }
 
 } // namespace

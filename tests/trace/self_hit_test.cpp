@@ -13,6 +13,7 @@
 #define TRAIT_TRIANGLES 1
 #define TRAIT_SPHERES 1
 #include "kernels/lib/frame.h"
+#include "kernels/lib/light.h"
 #include "kernels/lib/scene_hit.h"
 #include "kernels/shared/tables.h"
 
@@ -235,6 +236,37 @@ TEST(SelfHit, ConnectionsMeetNeitherEnd) {
         columns.open = batch.state.data();
         surfaces.tracer.trace(RayColumns{}, 0, columns, rays_a_scene);
         EXPECT_EQ(std::count(batch.state.begin(), batch.state.end(), 0u), 0) << "scene " << i;
+    }
+}
+
+// Lamps of all sizes at the origin and elsewhere, from places up to 1e8 of their radii away, as light sampling finds
+// their points: none is lost. Where the lamp's own coordinates are small, the way alone says how well its surface is
+// known.
+TEST(SelfHit, ConnectionsEndBeforeTheLampThatIsASphere) {
+    Chance chance(6);
+    for (int i = 0; i < 2000; ++i) {
+        const vec3 center = random_place(chance);
+        Scene scene = ball(center);
+        const double from_origin = std::sqrt(v3_length_squared(center));
+        const double radius = chance.magnitude(-4, 1) * std::max(from_origin, 1.0), area = 4 * M_PI * radius * radius;
+        scene.spheres[0].radius = float(radius);
+        Surfaces surfaces(scene);
+        const float of_sphere =
+            primitive_offset(surfaces.tables.triangles.data(), surfaces.tables.spheres.data(), unit, 0, 0);
+        Batch batch;
+        for (std::size_t ray = 0; ray < rays_a_scene; ++ray) {
+            const vec3 place = v3_mad(center, float(radius * chance.magnitude(0.1, 8)), chance.direction());
+            const light_choice s = light_from_sphere(rgb_gray(1), center, float(radius), 1, float(1 / area), place,
+                                                     float(chance.uniform()), float(chance.uniform()));
+            EXPECT_GT(s.pdf, 0);
+            const float offset = offset_at(v3_add(place, s.connection), s.normal, of_sphere);
+            batch.add(place, connection_before(s.connection, s.normal, offset, s.connection), 1);
+        }
+        ShadowColumns columns = batch.columns<ShadowColumns>();
+        columns.open = batch.state.data();
+        surfaces.tracer.trace(RayColumns{}, 0, columns, rays_a_scene);
+        EXPECT_EQ(std::count(batch.state.begin(), batch.state.end(), 0u), 0)
+            << "radius " << radius << " at " << from_origin;
     }
 }
 

@@ -8,7 +8,7 @@ Declaration declare_bsdf_roughdiffuse() {
             {Parameter{"reflectance", Takes::reflectance, "0.5", "albedo of the facets"}.also("diffuse_reflectance"),
              Parameter{"alpha", Takes::textured_number, "0.2", "roughness, as that of Beckmann's microfacets"}
                  .at_least(0)
-                 .at_most(1e30),
+                 .at_most(1e15),
              {"use_fast_approx", Takes::boolean, "false", "the model's short form"}}};
 }
 

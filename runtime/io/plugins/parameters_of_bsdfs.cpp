@@ -162,6 +162,10 @@ void read_conductor(Properties &properties, Bsdf &bsdf) {
     if (has_eta || lower_case(material) != "none")
         for (Rgb *index : {&bsdf.eta, &bsdf.k})
             *index = {float(index->r / outside), float(index->g / outside), float(index->b / outside)};
+    // Beyond that all is reflected, and the squares of squares in single precision are too large.
+    constexpr float most_index = 1e8f;
+    for (Rgb *index : {&bsdf.eta, &bsdf.k})
+        *index = {std::min(index->r, most_index), std::min(index->g, most_index), std::min(index->b, most_index)};
     bsdf.specular_reflectance = properties.color("specular_reflectance");
 }
 
