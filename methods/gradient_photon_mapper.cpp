@@ -221,7 +221,8 @@ void GradientPhotonMapper::gather_photons(const Strip &strip) {
                 });
     }
     gradient_gather_.run(strip.pixels);
-    bias_.add({0, strip.pixels}, strip.first * session_.film.crop_width, done_ / session_.pixels());
+    bias_.add({0, strip.pixels});
+    bias_.keep(strip.pixels, strip.first * session_.film.crop_width, done_ / session_.pixels());
 }
 
 /// The differences of the pairs in a window, whose gather points are of one BSDF kind.

@@ -61,15 +61,17 @@ bool PhotonMapper::render_batch() {
     const std::uint32_t paths = std::min(camera_paths_, session_.pixels() - first_pixel);
     const double radii_before = pairs_.radius_sum();
     const std::uint64_t points_before = statistics_.gather_points;
+    bias_.begin();
     if (session_.max_depth() == 0) { // no path begins, so none sets its slot to zero
         (*tables_)["radiance"].clear();
         if (tables_->has("feature"))
             (*tables_)["feature"].clear();
     } else {
         photons_.begin(pass);
-        paths_.trace(paths, first_pixel, pass, [&](const Hits &hits) { gather_photons(hits, first_pixel, pass); });
+        paths_.trace(paths, first_pixel, pass, [&](const Hits &hits) { gather_photons(hits); });
     }
     film_.add(paths, first_pixel, pass);
+    bias_.keep(paths, first_pixel, pass);
     finish(session_.device);
     count_radii(statistics_, pass, first_pixel == 0,
                 {statistics_.gather_points - points_before, pairs_.radius_sum() - radii_before});
@@ -78,7 +80,7 @@ bool PhotonMapper::render_batch() {
     return done_ < total_;
 }
 
-void PhotonMapper::gather_photons(const Hits &hits, std::uint32_t first_pixel, std::uint64_t pass) {
+void PhotonMapper::gather_photons(const Hits &hits) {
     for (std::size_t kind = 0; kind < paths_.kinds(); ++kind) {
         const Range rows = paths_.gather_points(hits, kind);
         statistics_.gather_points += rows.count;
@@ -89,7 +91,7 @@ void PhotonMapper::gather_photons(const Hits &hits, std::uint32_t first_pixel, s
             bias_.sum(window);
         });
         add_.run(rows.count, {{"first", rows.first}});
-        bias_.add(rows, first_pixel, pass);
+        bias_.add(rows);
     }
 }
 

@@ -42,7 +42,7 @@ class PhotonMapper final : public Method {
 
   private:
     void allocate();
-    void gather_photons(const Hits &hits, std::uint32_t first_pixel, std::uint64_t pass);
+    void gather_photons(const Hits &hits);
 
     RenderOptions options_;
     Session session_;

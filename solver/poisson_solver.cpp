@@ -1,5 +1,6 @@
 #include "solver/poisson_solver.h"
 
+#include "runtime/device/opencl.h"
 #include "runtime/error.h"
 #include "solver/mean_correction.h"
 #include "solver/pieces.h"
@@ -112,7 +113,6 @@ struct PoissonSolver::Implementation {
     const Buffer &staged(const PlaneSource &source);
 
     std::size_t pixels() const { return std::size_t(width) * height; }
-    std::size_t bytes() const { return pixels() * channels * sizeof(float); }
 
     Device &device;
     const std::uint32_t width, height, channels;
@@ -221,19 +221,35 @@ const Buffer &PoissonSolver::Implementation::staged(const PlaneSource &source) {
 }
 
 PoissonSolver::PoissonSolver(Device &device, std::uint32_t width, std::uint32_t height, std::uint32_t channels,
-                             Precision precision, std::uint32_t together) {
+                             Precision precision, std::uint32_t together)
+    : make_([=, &device] {
+          return std::make_unique<Implementation>(device, width, height, channels, precision, together);
+      }),
+      width_(width), height_(height), channels_(channels) {
     if (width == 0 || height == 0)
         throw Error(ExitCode::usage, fmt::format("an image of {} x {} pixels has nothing to solve", width, height));
     if (channels == 0 || channels > most_channels)
         throw Error(ExitCode::usage, fmt::format("{} channels; the solver takes 1 to {}", channels, most_channels));
-    implementation_ = std::make_unique<Implementation>(device, width, height, channels, precision, together);
+    implementation_ = make_();
 }
 
 PoissonSolver::~PoissonSolver() = default;
 
-std::uint32_t PoissonSolver::width() const { return implementation_->width; }
-std::uint32_t PoissonSolver::height() const { return implementation_->height; }
-std::uint32_t PoissonSolver::channels() const { return implementation_->channels; }
+std::uint32_t PoissonSolver::width() const { return width_; }
+std::uint32_t PoissonSolver::height() const { return height_; }
+std::uint32_t PoissonSolver::channels() const { return channels_; }
+
+PoissonReport PoissonSolver::run(const std::function<PoissonReport(Implementation &)> &solve) {
+    if (!implementation_)
+        implementation_ = make_();
+    try {
+        return solve(*implementation_);
+    } catch (...) {
+        implementation_->device.implementation().finish_quietly();
+        implementation_.reset();
+        throw;
+    }
+}
 
 namespace {
 
@@ -252,7 +268,7 @@ PoissonImages<To> converted(const PoissonImages<From> &images, Convert convert) 
 
 PoissonReport PoissonSolver::solve(const DeviceImages &images, const PoissonOptions &options, Buffer &result) {
     check(images, options);
-    const std::size_t bytes = implementation_->bytes();
+    const std::size_t bytes = std::size_t(width_) * height_ * channels_ * sizeof(float);
     const auto check_size = [&](const Buffer &buffer) {
         if (buffer.bytes() < bytes)
             throw Error(ExitCode::usage,
@@ -266,33 +282,34 @@ PoissonReport PoissonSolver::solve(const DeviceImages &images, const PoissonOpti
             check_size(*buffer);
         return buffer ? Input([buffer]() -> const Buffer & { return *buffer; }) : Input();
     });
-    return implementation_->solve(inputs, options, [&]() -> Buffer & { return result; }, {});
+    return run([&](Implementation &i) { return i.solve(inputs, options, [&]() -> Buffer & { return result; }, {}); });
 }
 
 PoissonReport PoissonSolver::solve(const BufferSources &images, const PoissonOptions &options, Buffer &result) {
     check(images, options);
-    return implementation_->solve(images, options, [&]() -> Buffer & { return result; }, {});
+    return run([&](Implementation &i) { return i.solve(images, options, [&]() -> Buffer & { return result; }, {}); });
 }
 
 PoissonReport PoissonSolver::solve(const ImageSources &images, const PoissonOptions &options, const PlaneSink &result,
                                    const std::function<void()> &all_read) {
     check(images, options);
-    Implementation &i = *implementation_;
-    using Input = std::function<const Buffer &()>;
-    const auto inputs = converted<Input>(images, [&i](const PlaneSource &source) {
-        return source ? Input([&i, &source]() -> const Buffer & { return i.staged(source); }) : Input();
+    return run([&](Implementation &i) {
+        using Input = std::function<const Buffer &()>;
+        const auto inputs = converted<Input>(images, [&i](const PlaneSource &source) {
+            return source ? Input([&i, &source]() -> const Buffer & { return i.staged(source); }) : Input();
+        });
+        // compose() may write where it reads the direct image.
+        PoissonReport report = i.solve(
+            inputs, options, [&i]() -> Buffer & { return i.problem.spare(); }, all_read);
+        const auto mapping = i.problem.spare().map(Access::read);
+        for (std::uint32_t c = 0; c < i.channels; ++c)
+            result(c, mapping.as<float>() + c * i.pixels());
+        return report;
     });
-    // compose() may write where it reads the direct image.
-    PoissonReport report = i.solve(
-        inputs, options, [&i]() -> Buffer & { return i.problem.spare(); }, all_read);
-    const auto mapping = i.problem.spare().map(Access::read);
-    for (std::uint32_t c = 0; c < i.channels; ++c)
-        result(c, mapping.as<float>() + c * i.pixels());
-    return report;
 }
 
 PoissonReport PoissonSolver::solve(const HostImages &images, const PoissonOptions &options, float *result) {
-    const std::size_t pixels = implementation_->pixels();
+    const std::size_t pixels = std::size_t(width_) * height_;
     const auto sources = converted<PlaneSource>(images, [pixels](const float *image) {
         return image ? PlaneSource([image, pixels](std::uint32_t channel, float *plane) {
             std::memcpy(plane, image + channel * pixels, pixels * sizeof(float));

@@ -118,7 +118,7 @@ struct PoissonReport {
     std::vector<KernelTime> kernels;
 };
 
-/// Solves problems of one size on one device. Buffers and kernels are made once and used again.
+/// Solves problems of one size on one device. Buffers and kernels are made once and used again; after an error, anew.
 ///
 /// The system is solved for I - I0, which avoids cancellation. L2 with uniform weights keeps the mean of each channel
 /// of I0. Sums have a fixed order: equal inputs give equal bits on one device.
@@ -159,7 +159,13 @@ class PoissonSolver {
     struct Implementation;
 
   private:
-    std::unique_ptr<Implementation> implementation_;
+    /// What `solve` returns of the implementation. Where that throws, what is made so far may be half of itself, and
+    /// goes.
+    PoissonReport run(const std::function<PoissonReport(Implementation &)> &solve);
+
+    std::function<std::unique_ptr<Implementation>()> make_;
+    std::unique_ptr<Implementation> implementation_; ///< nullptr after an error
+    std::uint32_t width_, height_, channels_;
 };
 
 const char *method_name(LinearMethod method);

@@ -187,6 +187,12 @@
     REAL(gather_inner, value_g, "")                                                                                    \
     REAL(gather_inner, value_b, "")
 
+/* By slot: what the radius adds to the radiance of this pass. */
+#define GRADUS_SLOT_BIAS_COLUMNS(REAL, UINT)                                                                           \
+    REAL(slot_bias, value_r, "")                                                                                       \
+    REAL(slot_bias, value_g, "")                                                                                       \
+    REAL(slot_bias, value_b, "")
+
 /* By pixel, of even passes before odd ones: the sum over passes of what the radius adds to the radiance. */
 #define GRADUS_RADIUS_BIAS_COLUMNS(REAL, UINT)                                                                         \
     REAL(radius_bias, value_r, "")                                                                                     \
@@ -420,6 +426,7 @@
     TABLE(photon_sorted, GRADUS_PHOTON_SORTED_COLUMNS)                                                                 \
     TABLE(gather, GRADUS_GATHER_COLUMNS)                                                                               \
     TABLE(gather_inner, GRADUS_GATHER_INNER_COLUMNS)                                                                   \
+    TABLE(slot_bias, GRADUS_SLOT_BIAS_COLUMNS)                                                                         \
     TABLE(radius_bias, GRADUS_RADIUS_BIAS_COLUMNS)                                                                     \
     TABLE(pair_value, GRADUS_PAIR_VALUE_COLUMNS)                                                                       \
     TABLE(pair_difference, GRADUS_PAIR_DIFFERENCE_COLUMNS)                                                             \
@@ -558,6 +565,7 @@ GRADUS_LIB_END
 #define ROWS_OF_photon_sorted photon_rows
 #define ROWS_OF_gather gather_rows
 #define ROWS_OF_gather_inner gather_rows
+#define ROWS_OF_slot_bias slots
 #define ROWS_OF_radius_bias (2u * pixels)
 #define ROWS_OF_pair_value pair_rows
 #define ROWS_OF_pair_difference (4u * pair_rows)

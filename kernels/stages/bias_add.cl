@@ -1,18 +1,16 @@
-/* bias_add: what the radius does to the estimate of each gather point, rows `first` on of `gather`, added to the pixels
- * of their slots: twice what all of the disc says less what the inner half of its area says
- * (methods/photons/radius_bias.h). `half_number`: 0 in even passes and 1 in odd ones, which are kept apart. What is not
- * finite is left out. BY_SLOT: gather points are in the rows of their slots, and their radius is 0 where there is none.
- */
+/* bias_add: what the radius does to the estimate of each gather point, rows `first` on of `gather`, left in its slot of
+ * `slot_bias`: twice what all of the disc says less what the inner half of its area says
+ * (methods/photons/radius_bias.h). What is not finite is left out. BY_SLOT: gather points are in the rows of their
+ * slots, and their radius is 0 where there is none. */
 //! traits: TRAIT_FILTER_SIGNED
 #include "kernels/lib/finite.h"
 #include "kernels/shared/stage.h"
 
-STAGE bias_add(uint count, uint first, uint gather_rows, uint pixels, uint first_pixel, uint half_number,
-               real flux_scale, __global const real *gather, __global const real *gather_inner,
-               __global real *radius_bias
+STAGE bias_add(uint count, uint first, uint gather_rows, uint slots, real flux_scale, __global const real *gather,
+               __global const real *gather_inner, __global real *slot_bias
 #if TRAIT_FILTER_SIGNED
                ,
-               __global const real *filtered, uint slots
+               __global const real *filtered
 #endif
 ) {
     const size_t i = work_item();
@@ -36,7 +34,5 @@ STAGE bias_add(uint count, uint first, uint gather_rows, uint pixels, uint first
     more = rgb_scale(more, AT(filtered, weight, slot));
 #endif
     const int counts = is_known & is_finite(more.r) & is_finite(more.g) & is_finite(more.b);
-    const size_t to = (size_t)half_number * pixels + first_pixel + slot;
-    const rgb before = AT_RGB(radius_bias, value, to);
-    SET_RGB(radius_bias, value, to, rgb_select(counts, rgb_add(before, more), before));
+    SET_RGB(slot_bias, value, slot, rgb_select(counts, more, rgb_gray(R(0))));
 }

@@ -1,5 +1,6 @@
 /* pair_scan: where the pairs of each gather point begin within those of its chunk of PAIR_CHUNK gather points, and how
- * many a chunk has. The host goes on from there. For the statistics, also the sum of the radii. */
+ * many a chunk has, at most PAIR_TOO_MANY. The host goes on from there. For the statistics, also the sum of the radii.
+ */
 #include "kernels/lib/gather_row.h"
 #include "kernels/shared/stage.h"
 
@@ -15,7 +16,7 @@ STAGE pair_scan(uint count, uint first, uint rows, uint gather_rows, __global co
     real radii = R(0);
     for (uint i = begin; i < end; ++i) {
         pair_offset[i] = sum;
-        sum += pair_count[i];
+        sum = pair_count[i] > PAIR_TOO_MANY - sum ? PAIR_TOO_MANY : sum + pair_count[i];
         radii += AT(gather, radius, GATHER_ROW(first + i));
     }
     pair_total[chunk] = sum;

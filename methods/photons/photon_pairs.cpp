@@ -1,6 +1,7 @@
 #include "methods/photons/photon_pairs.h"
 
 #include "kernels/shared/tables.h"
+#include "runtime/error.h"
 #include "runtime/wavefront/host_table.h"
 
 #include <algorithm>
@@ -15,8 +16,10 @@ namespace {
 
 // Pairs that are listed at once, for each row of the batch. More would leave the cache between the stages.
 constexpr std::uint32_t pairs_a_row = 4;
-// Gather points whose pairs are counted together: so few that their pairs are surely fewer than 2^32.
+// Gather points whose pairs are counted together.
 constexpr std::uint32_t pair_chunk = 64;
+// So many are more than the places of pairs within a chunk can tell apart.
+constexpr std::uint32_t too_many_pairs = 0x7FFFFFFF;
 // Of `pair_mark` (kernels/stages/photon_pairs.cl).
 constexpr std::uint32_t mark_columns = 3;
 // The cosine between the geometric normals of gather point and photon: walls at right angles are two surfaces, a mesh
@@ -27,6 +30,7 @@ std::map<std::string, std::string> definitions(const char *list, bool indexed) {
     return {{"LIST", list},
             {"GATHER_INDEXED", indexed ? "1" : "0"},
             {"PAIR_CHUNK", std::to_string(pair_chunk) + "u"},
+            {"PAIR_TOO_MANY", std::to_string(too_many_pairs) + "u"},
             {"PHOTON_LEAST_FACING", least_facing}};
 }
 
@@ -79,6 +83,9 @@ std::uint64_t PhotonPairs::find(Range rows, const std::function<void(const PairW
     scan_.run(chunks, {{"first", rows.first}, {"rows", rows.count}});
     std::vector<std::uint32_t> totals(chunks);
     (*tables_)["pair_total"].read(totals.data(), chunks * sizeof(totals[0]));
+    if (std::ranges::count(totals, too_many_pairs) > 0)
+        throw Error(ExitCode::usage, "too many photons lie within the radius of a gather point; try a smaller --radius "
+                                     "or fewer --photons");
     {
         const HostTable radii((*tables_)["radius_total"], tables_->rows().paths, tables_->precision());
         for (std::uint32_t chunk = 0; chunk < chunks; ++chunk)

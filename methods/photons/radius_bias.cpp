@@ -76,7 +76,9 @@ RadiusBias::RadiusBias(Session &session, Stages &stages, const PhotonPairs &pair
                        .definitions = {{"BY_SLOT", by_slot ? "1" : "0"}},
                        .is_wanted = is_wanted_,
                        .strict = true,
-                       .numbers = {"first", "first_pixel", "half_number"}})) {}
+                       .numbers = {"first"}})),
+      keep_(stages.add(
+          {.name = "bias_keep", .is_wanted = is_wanted_, .strict = true, .numbers = {"first_pixel", "half_number"}})) {}
 
 TableList RadiusBias::tables() const {
     if (!is_wanted_)
@@ -85,6 +87,7 @@ TableList RadiusBias::tables() const {
              .rows = by_slot_ ? RowsOf::slot : RowsOf::path,
              .columns = gather_inner_columns,
              .is_cleared = true},
+            {.name = "slot_bias", .rows = RowsOf::slot, .columns = slot_bias_columns},
             {.name = "radius_bias", .rows = RowsOf::pixel, .multiple = 2, .columns = radius_bias_columns}};
 }
 
@@ -94,14 +97,20 @@ void RadiusBias::attach(Tables &tables) {
         tables["radius_bias"].clear();
 }
 
+void RadiusBias::begin() {
+    if (is_wanted_)
+        (*tables_)["slot_bias"].clear(); // of slots without a gather point
+}
+
 void RadiusBias::sum(const PairWindow &window) {
     if (is_wanted_)
         PhotonPairs::sum(sum_, 1, window);
 }
 
-void RadiusBias::add(Range rows, std::uint32_t first_pixel, std::uint64_t pass) {
-    add_.run(rows.count,
-             {{"first", rows.first}, {"first_pixel", first_pixel}, {"half_number", std::uint32_t(pass % 2)}});
+void RadiusBias::add(Range rows) { add_.run(rows.count, {{"first", rows.first}}); }
+
+void RadiusBias::keep(std::uint32_t slots, std::uint32_t first_pixel, std::uint64_t pass) {
+    keep_.run(slots, {{"first_pixel", first_pixel}, {"half_number", std::uint32_t(pass % 2)}});
 }
 
 std::optional<BiasEstimates> RadiusBias::estimates(std::uint64_t samples) const {

@@ -41,18 +41,22 @@ void add_pass_errors(const std::optional<BiasEstimates> &bias, Image &image, Sta
 
 class RadiusBias {
   public:
-    /// Declares the stages `bias_sum` and `bias_add`; nothing is done unless options ask for its layer. `by_slot`:
-    /// gather points are in the rows of their slots.
+    /// Declares the stages `bias_sum`, `bias_add` and `bias_keep`; nothing is done unless options ask for its layer.
+    /// `by_slot`: gather points are in the rows of their slots.
     RadiusBias(Session &session, Stages &stages, const PhotonPairs &pairs, const RenderOptions &options, bool by_slot);
 
     TableList tables() const;
     /// To be called once these are allocated; all is zero.
     void attach(Tables &tables);
 
+    /// Before a batch of slots.
+    void begin();
     /// After the pairs of a window have been evaluated.
     void sum(const PairWindow &window);
-    /// After all windows of gather points in `rows`; slot 0 is that of pixel `first_pixel`.
-    void add(Range rows, std::uint32_t first_pixel, std::uint64_t pass);
+    /// After all windows of gather points in `rows`.
+    void add(Range rows);
+    /// After all gather points: only now the batch counts. Slot 0 is that of pixel `first_pixel`.
+    void keep(std::uint32_t slots, std::uint32_t first_pixel, std::uint64_t pass);
 
     /// After `samples` samples. Nothing where nobody asked for it.
     std::optional<BiasEstimates> estimates(std::uint64_t samples) const;
@@ -60,7 +64,7 @@ class RadiusBias {
   private:
     Session &session_;
     bool is_wanted_, by_slot_;
-    Stage &sum_, &add_;
+    Stage &sum_, &add_, &keep_;
     Tables *tables_ = nullptr;
 };
 

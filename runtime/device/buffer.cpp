@@ -25,14 +25,16 @@ struct Buffer::Handle {
     }
     ~Handle() {
         device.allocated_bytes -= bytes;
-        // Where an error unwinds, what was queued before it may still use this memory.
-        if (std::uncaught_exceptions() > 0)
+        // What was queued may still use this memory: the host's own goes after its buffer, and where an error unwinds
+        // nobody has waited.
+        if (is_of_host || std::uncaught_exceptions() > 0)
             device.finish_quietly();
     }
 
     Device::Implementation &device;
     cl::Buffer memory;
     std::size_t bytes;             ///< that we allocated: 0 for a caller's and for a part
+    bool is_of_host = false;       ///< of Buffer::over()
     std::shared_ptr<Handle> whole; ///< of a part
     std::size_t first = 0;         ///< byte of the whole
 };
@@ -117,6 +119,7 @@ Buffer Buffer::over(Device &device, const std::string &name, const void *data, s
     opencl_call("taking the host's memory of " + name, [&] {
         buffer.handle_ = std::make_shared<Handle>(
             d, cl::Buffer(d.context, CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR, bytes, const_cast<void *>(data)), bytes);
+        buffer.handle_->is_of_host = true;
         // From where it lies to there: nothing is moved, but who looks after it, as Oclgrind does, knows that it is
         // set.
         d.queue.enqueueWriteBuffer(buffer.handle_->memory, CL_TRUE, 0, bytes, data);

@@ -47,6 +47,28 @@ TEST_F(Program, LaunchesWithArgumentsByName) {
     EXPECT_THAT(result, ::testing::ElementsAre(0, 4, 9, 23, canary, canary, canary, canary));
 }
 
+// Who lends the host's memory lets it go after the buffer, and may not have waited: an interrupted render.
+TEST_F(Program, HasEndedWhereTheHostsMemoryGoes) {
+    if (!device.description().shares_memory)
+        GTEST_SKIP() << "the device copies the host's memory";
+    constexpr std::uint32_t chunks = 1u << 24;
+    std::vector<std::uint32_t> counts(chunks, 1);
+    Kernel kernel = library.build({scan})[0];
+    const Buffer range(device, "range", 64);
+    {
+        const Buffer offset = Buffer::over(device, "chunk_offset", counts.data(), counts.size() * sizeof(counts[0]));
+        kernel.bind(offset);
+        kernel.bind(range);
+        kernel.set("count", 1);
+        kernel.set("bins", 1);
+        kernel.set("chunks", chunks);
+        kernel.launch(1);
+    }
+    const std::vector<std::uint32_t> seen = counts; // the sums of those before
+    EXPECT_EQ(seen.back(), chunks - 1);
+    finish(device);
+}
+
 TEST_F(Program, TellsAnObserverOfLaunchesAndNotOfItsOwn) {
     std::vector<std::string> seen;
     const Buffer offset(device, "chunk_offset", 64), range(device, "range", 64);

@@ -43,6 +43,44 @@ TEST(Stop, IsHeardBetweenBounces) {
     }
 }
 
+// The pass that is given up leaves nothing in any layer, wherever it ends.
+TEST(Stop, AnImageOfPhotonsIsThatOfItsPasses) {
+    SceneMaker maker(16, 16);
+    maker.look({0, 1, 4}, {0, 0, 0}, 40);
+    maker.floor(-2, 0, 2, maker.material(diffuse(0.5)));
+    maker.floor(0, 2, 2, maker.material(mirror())); // photons at what it shows are gathered after those beside it
+    maker.parallelogram({-3, 3, -3}, {6, 0, 0}, {0, 0, 6}, maker.material(diffuse(0.5)));
+    maker.lamp({0, 2, 0}, 1, 1, 5, maker.material(diffuse(0)));
+    maker.scene.settings.max_depth = 4;
+    for (const char *name : {"sppm", "gpm"})
+        for (const int asks : {20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31, 32}) {
+            SCOPED_TRACE(std::string(name) + ' ' + std::to_string(asks));
+            Scene scene = maker.scene;
+            scene.settings.samples_per_pixel = 100;
+            RenderOptions options;
+            options.photons = 3000;
+            options.aov = true;
+            int asked = 0;
+            options.stop = [&] { return ++asked > asks; };
+            const std::unique_ptr<Method> method = make_method(name, shared_device(), scene, options);
+            EXPECT_THROW(
+                {
+                    while (method->render_batch()) {
+                    }
+                },
+                Stopped);
+            scene.settings.samples_per_pixel = std::uint32_t(method->statistics().samples / 256);
+            ASSERT_GT(scene.settings.samples_per_pixel, 0u);
+            options.stop = {};
+            const Image found = method->last_image(), expected = render(scene, options, name).image;
+            for (const Channel &channel : found.channels) {
+                const Channel *const same = expected.find(channel.name);
+                ASSERT_TRUE(same) << channel.name;
+                EXPECT_TRUE(channel.values == same->values) << channel.name;
+            }
+        }
+}
+
 // Without a wish the same calls do not change a bit.
 TEST(Stop, AsksWithoutATrace) {
     SceneMaker maker(16, 4);

@@ -1,11 +1,14 @@
 // Channels that are solved one after the other, which takes a fraction of the memory, or together; and images that are
 // made under way.
 #include "runtime/device/opencl.h"
+#include "runtime/error.h"
 #include "solver/grid.h"
 #include "solver/workspace.h"
 #include "tests/solver/solver_fixture.h"
 
+#include <array>
 #include <functional>
+#include <string>
 #include <utility>
 
 namespace gradus::testing {
@@ -173,6 +176,56 @@ TEST(Sources, AreReadOnceAndGiveTheSameBits) {
             else if (*channel == '0')
                 in_order.emplace_back("all read");
     EXPECT_EQ(calls, in_order);
+}
+
+// A caller's source may throw, and memory may be short, wherever a solve is: the next one is as if nothing had been.
+TEST(Sources, ThatFailLeaveNothingToTheNextSolve) {
+    const PoissonProblem problem = make_poisson_problem(65, 33, 3, 1);
+    const HostImages images = problem.images_with_variances();
+    DeviceDescription &device = test_device().implementation().description;
+    const DeviceDescription before = device;
+    PoissonOptions first, second;
+    first.alpha_from_variances = second.alpha_from_variances = second.weigh_by_variance = true;
+    first.norm = PoissonNorm::l1;
+    second.norm = PoissonNorm::l2;
+    const auto newly = [&](const PoissonOptions &options) {
+        PoissonSolver solver(test_device(), 65, 33);
+        return solve(solver, images, options).image;
+    };
+    const std::array<std::vector<float>, 2> expected = {newly(first), newly(second)};
+    for (int failing = 0; failing < 7; ++failing)
+        for (const bool memory : {false, true}) {
+            SCOPED_TRACE(std::to_string(failing) + (memory ? ", memory" : ", source"));
+            int calls = 0;
+            const auto source = [&](const float *image) -> PlaneSource {
+                return [&, image](std::uint32_t channel, float *plane) {
+                    if (channel == 0 && calls++ == failing) {
+                        if (!memory)
+                            throw Error(ExitCode::image, "the file ends");
+                        device.allocation_bytes = 100; // for the coarsest grids alone
+                    }
+                    std::copy_n(image + channel * problem.pixels(), problem.pixels(), plane);
+                };
+            };
+            ImageSources sources;
+            sources.primal = source(images.primal);
+            sources.dx = source(images.dx);
+            sources.dy = source(images.dy);
+            sources.direct = source(images.primal);
+            sources.primal_variance = source(images.primal_variance);
+            sources.dx_variance = source(images.dx_variance);
+            sources.dy_variance = source(images.dy_variance);
+            PoissonSolver solver(test_device(), 65, 33);
+            const auto fails = [&] { solver.solve(sources, first, [](std::uint32_t, const float *) {}); };
+            if (memory && failing == 6)
+                EXPECT_NO_THROW(fails()); // all is allocated by then
+            else
+                EXPECT_THROW(fails(), Error);
+            device = before;
+            EXPECT_EQ(solver.width(), 65u);
+            EXPECT_EQ(solve(solver, images, second).image, expected[1]);
+            EXPECT_EQ(solve(solver, images, first).image, expected[0]);
+        }
 }
 
 } // namespace
