@@ -306,7 +306,7 @@ class RenderJob {
             if (own_scale_ != 1 && channel.name == "depth.Z")
                 for (float &value : channel.values)
                     value = float(value / own_scale_);
-        black_pixels_ = settle_values(image).pixels;
+        black_pixels_ = std::max(settle_values(image).pixels, prepared_.method->statistics().lost_pixels);
         const std::uint64_t done = prepared_.method->done_samples();
         const double pixels = double(image.width) * double(image.height);
         record_.samples_per_pixel = pixels > 0 ? double(done) / pixels : 0;
@@ -348,7 +348,8 @@ class RenderJob {
             progress_.message("gradus: warning: " + statistics.reconstruction.note);
         if (black_pixels_ > 0)
             print_message(fmt::format("gradus: error: {} pixels have a value that is NaN or infinite, which the image "
-                                      "holds as 0: the scene's numbers are too large or too small\n",
+                                      "holds as 0, or as their neighbours have it: the scene's numbers are too large "
+                                      "or too small\n",
                                       black_pixels_));
         const std::optional<double> error = statistics.estimated_error;
         progress_.message(fmt::format(

@@ -21,6 +21,17 @@ using namespace lib_float;
 
 namespace {
 
+/// Whose R, G or B is no finite number.
+std::uint64_t pixels_without_a_color(const Image &image) {
+    std::uint64_t count = 0;
+    for (std::size_t i = 0; i < image.channels[0].values.size(); ++i)
+        count += std::isfinite(image.channels[0].values[i]) && std::isfinite(image.channels[1].values[i]) &&
+                         std::isfinite(image.channels[2].values[i])
+                     ? 0
+                     : 1;
+    return count;
+}
+
 /// R, G and B of an image that may have more.
 Image mean_of(const Image &image) {
     return {image.width, image.height, {image.channels.begin(), image.channels.begin() + 3}, {}};
@@ -135,6 +146,7 @@ Image DifferenceFilm::image(std::uint64_t samples, bool layers, bool last, std::
     if (last) // what a pass needs and the films do not
         keep_films_and(film_.table_names());
     Image whole = film_.image(samples, non_finite);
+    lost_pixels_ = pixels_without_a_color(whole);
     if (last) {
         mean_ = mean_of(whole);
         keep_films_and({});
@@ -185,6 +197,7 @@ void DifferenceFilm::add_to(Statistics &statistics) const {
     statistics.reconstruction =
         mean_ ? ReconstructionUsed{"none", accuracy_name(Accuracy::unbiased), "the reconstruction failed"} : used_;
     statistics.estimated_error = relative_error_;
+    statistics.lost_pixels = lost_pixels_;
     statistics.rays["edge"] = edge_rays_;
     statistics.render_seconds += edge_seconds_;
     statistics.stages.push_back({"edges of lights", edge_seconds_, 0, 0});

@@ -40,6 +40,7 @@ class DifferenceFilm {
     void add(std::uint32_t first, std::uint32_t rows, std::uint32_t frames, std::uint64_t number);
     /// After `samples` samples; those left out are added to `non_finite`. `last`: lets go of batches and films as soon
     /// as they have been read.
+    /// Pixels whose mean is no finite number are filled by the reconstruction, and counted (add_to()).
     Image image(std::uint64_t samples, bool layers, bool last, std::uint64_t &non_finite);
 
     /// What an image of so many samples is made from, which is read where it lies; and the mean of the samples, which
@@ -67,7 +68,7 @@ class DifferenceFilm {
     Tables *tables_ = nullptr;
     std::vector<DirectPixel> edges_;
     std::uint32_t edge_samples_ = 0; ///< a pixel of the image that `edges_` were sampled for; 0: not yet
-    std::uint64_t edge_rays_ = 0;
+    std::uint64_t edge_rays_ = 0, lost_pixels_ = 0;
     double edge_seconds_ = 0;
     ReconstructionUsed used_;
     std::optional<Image> mean_; ///< while the last image is made, whose films go

@@ -54,7 +54,7 @@ class MtlReader {
         : text_(text), file_(std::make_shared<const std::string>(file_name)), is_there_(is_there) {}
 
     MaterialLibrary read() {
-        for (std::size_t at = 0; at < text_.size();) {
+        for (std::size_t at = byte_order_mark(text_).size(); at < text_.size();) {
             ++line_;
             const std::size_t end = std::min(text_.find('\n', at), text_.size());
             read_line(std::string_view(text_).substr(at, end - at));

@@ -47,7 +47,8 @@ void skip_blanks(const char *&at, const char *end) {
 /// The lines of a file one after the other, without blanks before them.
 class ObjLines {
   public:
-    explicit ObjLines(const std::string &text) : next_(text.data()), end_of_text_(text.data() + text.size()) {}
+    explicit ObjLines(const std::string &text)
+        : next_(text.data() + byte_order_mark(text).size()), end_of_text_(text.data() + text.size()) {}
 
     /// False after the last.
     bool next() {

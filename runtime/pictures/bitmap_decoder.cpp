@@ -198,8 +198,12 @@ ReadBitmap decode_bitmap(const OpenFile &file, const BitmapRequest &request) {
         });
         break;
     case Bitmap::Format::real:
+        // OpenImageIO divides whole numbers of 32 bits by the largest; OpenEXR's are what they say.
+        const bool counts = spec.format == OIIO::TypeDesc::UINT32 && std::string(input.format_name()) == "openexr";
+        const float unit = counts ? 0x1p32f : 1;
         for_each_row<float>(input, file, type_of(stored), [&](std::uint32_t y, const float *row) {
-            copy(row, y, [&](float value) {
+            copy(row, y, [&](float divided) {
+                const float value = divided * unit;
                 const bool is_number = std::isfinite(value);
                 read.not_numbers += !is_number;
                 return is_number ? std::bit_cast<std::uint32_t>(value) : 0;

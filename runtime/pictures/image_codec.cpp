@@ -5,6 +5,7 @@
 #include "runtime/pictures/picture_input.h"
 
 #include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,8 +13,11 @@
 namespace gradus {
 namespace {
 
+/// 8 bits are, unless the file says otherwise; some formats have no place to say so.
 bool holds_srgb(const OIIO::ImageSpec &spec) {
-    return !spec.format.is_floating_point() && spec.get_string_attribute("oiio:ColorSpace") == "sRGB";
+    const std::string space(spec.get_string_attribute("oiio:ColorSpace"));
+    return !spec.format.is_floating_point() &&
+           (space == "sRGB" || (spec.format == OIIO::TypeDesc::UINT8 && !OIIO::Strutil::iequals(space, "linear")));
 }
 
 /// Appends the channels of the part that `input` stands at.

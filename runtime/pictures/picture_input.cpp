@@ -5,6 +5,7 @@
 #include <OpenImageIO/strutil.h>
 
 #include <algorithm>
+#include <string_view>
 #include <vector>
 
 namespace gradus {
@@ -36,6 +37,19 @@ std::vector<std::unique_ptr<OIIO::ImageInput>> readers_for(const OpenFile &file)
 
 } // namespace
 
+namespace {
+
+/// One that is refused has an error. Radiance's files may have their rows in eight orders, which OpenImageIO tells, and
+/// leaves as they are.
+PictureInput checked(PictureInput opened) {
+    if (opened.input && std::string_view(opened.input->format_name()) == "hdr" &&
+        opened.input->spec().get_int_attribute("Orientation", 1) != 1)
+        return {nullptr, "its rows do not run from the top left (a resolution of -Y height +X width)"};
+    return opened;
+}
+
+} // namespace
+
 PictureInput open_picture(const OpenFile &file) {
     OIIO::ImageSpec wishes;
     wishes.attribute("oiio:UnassociatedAlpha", 1);
@@ -44,13 +58,13 @@ PictureInput open_picture(const OpenFile &file) {
         opened.input = OIIO::ImageInput::open(file.library_name(), &wishes);
         if (!opened.input)
             opened.error = OIIO::geterror();
-        return opened;
+        return checked(std::move(opened));
     }
     for (std::unique_ptr<OIIO::ImageInput> &reader : readers_for(file)) {
         OIIO::ImageSpec spec;
         if (reader->open(file.library_name(), spec, wishes)) {
             opened.input = std::move(reader);
-            return opened;
+            return checked(std::move(opened));
         }
         const std::string error = reader->geterror();
         if (opened.error.empty())

@@ -66,6 +66,7 @@ struct Statistics {
     std::optional<double> relative_squared_bias;   ///< by the radii of photons, where it is known
     GatheringSurfaces surfaces;                    ///< where photons are gathered and where not, photon methods
     std::uint64_t non_finite = 0;                  ///< samples left out because they were NaN or infinite
+    std::uint64_t lost_pixels = 0;                 ///< whose mean is no finite number: a reconstruction has filled them
     double render_seconds = 0;                     ///< spent in render_batch()
     std::uint64_t device_bytes = 0;                ///< allocated on the device
     std::uint64_t peak_host_bytes = 0;             ///< the process at its peak

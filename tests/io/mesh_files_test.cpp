@@ -47,6 +47,11 @@ TEST(Obj, PositionsOnly) {
     EXPECT_TRUE(mesh.texcoords.empty());
 }
 
+TEST(Obj, AByteOrderMarkIsNoPartOfTheFirstLine) {
+    const Mesh mesh = parse_obj("\xEF\xBB\xBFv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "m.obj");
+    EXPECT_THAT(mesh.positions, ElementsAre(Vector3{0, 0, 0}, Vector3{1, 0, 0}, Vector3{0, 1, 0}));
+}
+
 TEST(Obj, EndsOfLinesOfEverySystem) {
     const std::string lines[] = {"v 0 0 0", "v 1 0 0", "v 0 1 0", "f 1 2 3", "f 1 2 x"};
     for (const std::string end : {"\n", "\r\n", "\r"}) {

@@ -345,6 +345,37 @@ TEST_F(TexturePlugin, Errors) {
 }
 
 /// A file of a kilobyte may declare any number of pixels.
+// Of 32 bits in OpenEXR: no shares of the largest.
+TEST_F(TexturePlugin, WholeNumbersOfOpenExrAreWhatTheySay) {
+    write<std::uint32_t>("u.exr", 3, OIIO::TypeDesc::UINT32, 16);
+    const Texture found = load(bitmap_text("u.exr")).scene.textures.at(0);
+    for (std::uint32_t i = 0; i < 12; ++i)
+        EXPECT_NEAR(found.bitmap->channel(i / 3 % 2, i / 6, int(i % 3)), i, 1e-6 * i) << i;
+}
+
+TEST_F(TexturePlugin, RadianceFilesOfOtherOrdersAreRefused) {
+    const std::string begin = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n", texels(16, '\x80');
+    for (const char *order : {"+Y 2 +X 2", "-Y 2 -X 2", "+X 2 -Y 2"}) {
+        folder_.write("a.hdr", begin + order + "\n" + texels);
+        EXPECT_THAT(error(bitmap_text("a.hdr")), HasSubstr("do not run from the top left")) << order;
+        EXPECT_THROW(read_image((folder_.path() / "a.hdr").string()), Error) << order;
+    }
+    folder_.write("a.hdr", begin + "-Y 2 +X 2\n" + texels);
+    EXPECT_EQ(error(bitmap_text("a.hdr")), "");
+}
+
+// Whatever a format has to say of it: what an environment is, and `compare` reads.
+TEST_F(TexturePlugin, EightBitsAreSrgbInAllFormats) {
+    write<std::uint8_t>("a.png", 3, OIIO::TypeDesc::UINT8, 255);
+    const Image png = read_image((folder_.path() / "a.png").string());
+    for (const std::string name : {"a.bmp", "a.tga", "a.ppm", "a.tif"}) {
+        write<std::uint8_t>(name, 3, OIIO::TypeDesc::UINT8, 255);
+        const Image same = read_image((folder_.path() / name).string());
+        for (const char *channel : {"R", "G", "B"})
+            EXPECT_EQ(same.find(channel)->values, png.find(channel)->values) << name << " " << channel;
+    }
+}
+
 TEST_F(TexturePlugin, BombsAreRefused) {
     std::string png("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x75\x30\0\0\x75\x30\x08\x02\0\0\0", 29); // 30000 x 30000
     // Its CRC: libpng asks for it.

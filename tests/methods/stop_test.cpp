@@ -97,6 +97,27 @@ TEST(Stop, AsksWithoutATrace) {
     }
 }
 
+// Pixels that no float holds are filled from their neighbours, which nobody should take for an image.
+TEST(MeanImage, SaysWhichPixelsAReconstructionHasMadeUp) {
+    SceneMaker maker(8, 64);
+    maker.look({0, 1, 4}, {0, 0, 0}, 40);
+    maker.floor(-2, 2, 2, maker.material(diffuse(0.5)));
+    maker.lamp({0, 2, 0}, 1, 1, 5, maker.material(diffuse(0)));
+    const auto lost = [&](const char *name) {
+        const std::unique_ptr<Method> method = make_method(name, shared_device(), maker.scene, {});
+        while (method->render_batch()) {
+        }
+        method->last_image();
+        return method->statistics().lost_pixels;
+    };
+    for (const char *name : {"gpt", "gpm"}) {
+        maker.scene.emitters.at(0).value = {1, 1, 1};
+        EXPECT_EQ(lost(name), 0u) << name;
+        maker.scene.emitters.at(0).value = {3e38f, 1, 1};
+        EXPECT_GT(lost(name), 8u) << name;
+    }
+}
+
 // The device has no memory left when the image is to be made, for which a method has let go of its own.
 TEST(MeanImage, IsThereWhereTheReconstructionFails) {
     Scene scene = own_scene("cornell-box.xml", 16, 16);
