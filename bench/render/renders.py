@@ -160,15 +160,24 @@ def known_methods(gradus):
     return listed.group(1).split(",")
 
 
+def reconstruction_of(image):
+    """The options by which `solve` does what the render of an OpenEXR file did, as its header says; none without."""
+    found = re.search(rb"gradus:reconstruction\0string\0(....)", pathlib.Path(image).read_bytes()[:1 << 16], re.DOTALL)
+    if not found:
+        return []
+    text = pathlib.Path(image).read_bytes()[found.end():found.end() + int.from_bytes(found.group(1), "little")].decode()
+    return [] if text == "none" else ["--reconstruction", text]
+
+
 def reconstruction_seconds(gradus, image, options=()):
     """Seconds in which the image is reconstructed from its gradients, all kernels compiled; 0 where it has none.
-    options: those of its render that say how.
+    options: those of its render that say how; without, as the image says.
 
     A render reconstructs once, after the time that its statistics call render_seconds, and loads kernels meanwhile;
     here the third of three is timed."""
     record, output = pathlib.Path(image).with_suffix(".solved.json"), pathlib.Path(image).with_suffix(".solved.exr")
     result = finished(gradus, "solve", image, "-o", output, "--stats", record, "--repeats", 3, "--quiet",
-                      *options, accepted=(0, NO_GRADIENTS))
+                      *(options or reconstruction_of(image)), accepted=(0, NO_GRADIENTS))
     if result.returncode == NO_GRADIENTS:
         return 0.0
     return json.loads(record.read_text())["seconds"]
