@@ -21,17 +21,6 @@ using namespace lib_float;
 
 namespace {
 
-/// Whose R, G or B is no finite number.
-std::uint64_t pixels_without_a_color(const Image &image) {
-    std::uint64_t count = 0;
-    for (std::size_t i = 0; i < image.channels[0].values.size(); ++i)
-        count += std::isfinite(image.channels[0].values[i]) && std::isfinite(image.channels[1].values[i]) &&
-                         std::isfinite(image.channels[2].values[i])
-                     ? 0
-                     : 1;
-    return count;
-}
-
 /// R, G and B of an image that may have more.
 Image mean_of(const Image &image) {
     return {image.width, image.height, {image.channels.begin(), image.channels.begin() + 3}, {}};

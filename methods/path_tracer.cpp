@@ -83,6 +83,7 @@ Image PathTracer::image() {
     Image image = film_.image(done_, statistics_.non_finite);
     const bool tells_error = has_error_layer(options_, keeps_halves()) && has_halves();
     SquaredErrors errors;
+    statistics_.lost_pixels = is_guided() ? pixels_without_a_color(image) : 0;
     if (is_guided())
         guide(image, tells_error ? &errors : nullptr);
     else if (tells_error)

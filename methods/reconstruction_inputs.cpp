@@ -4,6 +4,7 @@
 #include "solver/guide/feature_filter.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace gradus {
 
@@ -31,6 +32,16 @@ Buffer uploaded_features(Device &device, const Image &image) {
 void check_guide(const RenderOptions &options) {
     if (options.reconstruction == Reconstruction::guided && options.guide == Guide::denoiser)
         Denoiser();
+}
+
+std::uint64_t pixels_without_a_color(const Image &image) {
+    std::uint64_t count = 0;
+    for (std::size_t i = 0; i < image.channels[0].values.size(); ++i)
+        count += std::isfinite(image.channels[0].values[i]) && std::isfinite(image.channels[1].values[i]) &&
+                         std::isfinite(image.channels[2].values[i])
+                     ? 0
+                     : 1;
+    return count;
 }
 
 } // namespace gradus

@@ -19,4 +19,7 @@ Buffer uploaded_features(Device &device, const Image &image);
 /// Throws Error(ExitCode::usage) where the guide that options ask for is not there: before anything is rendered.
 void check_guide(const RenderOptions &options);
 
+/// Pixels whose R, G or B, the first channels, is no finite number: a reconstruction takes them as missing.
+std::uint64_t pixels_without_a_color(const Image &image);
+
 } // namespace gradus

@@ -99,18 +99,20 @@ TEST(Stop, AsksWithoutATrace) {
 
 // Pixels that no float holds are filled from their neighbours, which nobody should take for an image.
 TEST(MeanImage, SaysWhichPixelsAReconstructionHasMadeUp) {
-    SceneMaker maker(8, 64);
+    SceneMaker maker(8, 256);
     maker.look({0, 1, 4}, {0, 0, 0}, 40);
     maker.floor(-2, 2, 2, maker.material(diffuse(0.5)));
     maker.lamp({0, 2, 0}, 1, 1, 5, maker.material(diffuse(0)));
     const auto lost = [&](const char *name) {
-        const std::unique_ptr<Method> method = make_method(name, shared_device(), maker.scene, {});
+        RenderOptions options;
+        options.reconstruction = Reconstruction::guided;
+        const std::unique_ptr<Method> method = make_method(name, shared_device(), maker.scene, options);
         while (method->render_batch()) {
         }
         method->last_image();
         return method->statistics().lost_pixels;
     };
-    for (const char *name : {"gpt", "gpm"}) {
+    for (const char *name : {"pt", "gpt", "gpm"}) {
         maker.scene.emitters.at(0).value = {1, 1, 1};
         EXPECT_EQ(lost(name), 0u) << name;
         maker.scene.emitters.at(0).value = {3e38f, 1, 1};
