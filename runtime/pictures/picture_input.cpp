@@ -35,10 +35,6 @@ std::vector<std::unique_ptr<OIIO::ImageInput>> readers_for(const OpenFile &file)
     return readers;
 }
 
-} // namespace
-
-namespace {
-
 /// One that is refused has an error. Radiance's files may have their rows in eight orders, which OpenImageIO tells, and
 /// leaves as they are.
 PictureInput checked(PictureInput opened) {
