@@ -39,8 +39,8 @@ class DifferenceFilm {
     /// first of these frames, which says of which part of the samples they are.
     void add(std::uint32_t first, std::uint32_t rows, std::uint32_t frames, std::uint64_t number);
     /// After `samples` samples; those left out are added to `non_finite`. `last`: lets go of batches and films as soon
-    /// as they have been read.
-    /// Pixels whose mean is no finite number are filled by the reconstruction, and counted (add_to()).
+    /// as they have been read. Pixels whose mean is no finite number are filled by the reconstruction, and counted
+    /// (add_to()).
     Image image(std::uint64_t samples, bool layers, bool last, std::uint64_t &non_finite);
 
     /// What an image of so many samples is made from, which is read where it lies; and the mean of the samples, which

@@ -83,10 +83,10 @@ Image PathTracer::image() {
     Image image = film_.image(done_, statistics_.non_finite);
     const bool tells_error = has_error_layer(options_, keeps_halves()) && has_halves();
     SquaredErrors errors;
-    statistics_.lost_pixels = is_guided() ? pixels_without_a_color(image) : 0;
-    if (is_guided())
+    if (is_guided()) {
+        statistics_.lost_pixels = pixels_without_a_color(image);
         guide(image, tells_error ? &errors : nullptr);
-    else if (tells_error)
+    } else if (tells_error)
         errors = errors_of_halves(half_image(0), half_image(1),
                                   double(samples_of_part(done_, session_.pixels(), 0, 2)) / double(done_));
     if (tells_error)

@@ -36,11 +36,10 @@ void check_guide(const RenderOptions &options) {
 
 std::uint64_t pixels_without_a_color(const Image &image) {
     std::uint64_t count = 0;
-    for (std::size_t i = 0; i < image.channels[0].values.size(); ++i)
-        count += std::isfinite(image.channels[0].values[i]) && std::isfinite(image.channels[1].values[i]) &&
-                         std::isfinite(image.channels[2].values[i])
-                     ? 0
-                     : 1;
+    for (std::size_t i = 0; i < image.channels[0].values.size(); ++i) {
+        const auto is_finite = [&](std::size_t c) { return std::isfinite(image.channels[c].values[i]); };
+        count += is_finite(0) && is_finite(1) && is_finite(2) ? 0 : 1;
+    }
     return count;
 }
 

@@ -1,6 +1,5 @@
 #include "solver/poisson_solver.h"
 
-#include "runtime/device/opencl.h"
 #include "runtime/error.h"
 #include "solver/mean_correction.h"
 #include "solver/pieces.h"
@@ -95,8 +94,8 @@ const char *method_name(LinearMethod method) {
 struct PoissonSolver::Implementation {
     Implementation(Device &device, std::uint32_t width, std::uint32_t height, std::uint32_t channels,
                    Precision precision, std::uint32_t together)
-        : device(device), width(width), height(height), channels(channels),
-          workspace(device, width, height, channels, precision, together), problem(workspace), reweighting(workspace) {}
+        : device(device), workspace(device, width, height, channels, precision, together), problem(workspace),
+          reweighting(workspace) {}
 
     using Call = std::function<void()>;
     /// Where the result goes is asked at the end: it may be memory that the solve needs until then.
@@ -112,10 +111,9 @@ struct PoissonSolver::Implementation {
     /// The problem's memory to spare, filled by a source.
     const Buffer &staged(const PlaneSource &source);
 
-    std::size_t pixels() const { return std::size_t(width) * height; }
+    std::size_t pixels() const { return std::size_t(workspace.grid().width) * workspace.grid().height; }
 
     Device &device;
-    const std::uint32_t width, height, channels;
     Workspace workspace;
     Problem problem;
     Reweighting reweighting;
@@ -215,7 +213,7 @@ PoissonReport PoissonSolver::Implementation::solve(const Inputs &images, const P
 const Buffer &PoissonSolver::Implementation::staged(const PlaneSource &source) {
     const Buffer &buffer = problem.spare();
     const auto mapping = buffer.map(Access::write);
-    for (std::uint32_t c = 0; c < channels; ++c)
+    for (std::uint32_t c = 0; c < workspace.channels; ++c)
         source(c, mapping.as<float>() + c * pixels());
     return buffer;
 }
@@ -240,15 +238,11 @@ std::uint32_t PoissonSolver::height() const { return height_; }
 std::uint32_t PoissonSolver::channels() const { return channels_; }
 
 PoissonReport PoissonSolver::run(const std::function<PoissonReport(Implementation &)> &solve) {
-    if (!implementation_)
-        implementation_ = make_();
-    try {
-        return solve(*implementation_);
-    } catch (...) {
-        implementation_->device.implementation().finish_quietly();
-        implementation_.reset();
-        throw;
-    }
+    // An error takes it along.
+    std::unique_ptr<Implementation> implementation = implementation_ ? std::move(implementation_) : make_();
+    PoissonReport report = solve(*implementation);
+    implementation_ = std::move(implementation);
+    return report;
 }
 
 namespace {
@@ -302,7 +296,7 @@ PoissonReport PoissonSolver::solve(const ImageSources &images, const PoissonOpti
         PoissonReport report = i.solve(
             inputs, options, [&i]() -> Buffer & { return i.problem.spare(); }, all_read);
         const auto mapping = i.problem.spare().map(Access::read);
-        for (std::uint32_t c = 0; c < i.channels; ++c)
+        for (std::uint32_t c = 0; c < channels_; ++c)
             result(c, mapping.as<float>() + c * i.pixels());
         return report;
     });

@@ -162,10 +162,13 @@ def known_methods(gradus):
 
 def reconstruction_of(image):
     """The options by which `solve` does what the render of an OpenEXR file did, as its header says; none without."""
-    found = re.search(rb"gradus:reconstruction\0string\0(....)", pathlib.Path(image).read_bytes()[:1 << 16], re.DOTALL)
+    with open(image, "rb") as file:
+        header = file.read(1 << 16)
+    # A name, its type, the length of its value, the value.
+    found = re.search(rb"gradus:reconstruction\0string\0(....)", header, re.DOTALL)
     if not found:
         return []
-    text = pathlib.Path(image).read_bytes()[found.end():found.end() + int.from_bytes(found.group(1), "little")].decode()
+    text = header[found.end():found.end() + int.from_bytes(found.group(1), "little")].decode()
     return [] if text == "none" else ["--reconstruction", text]
 
 

@@ -170,13 +170,11 @@ Color Properties::color_as_written(const std::string &name) {
     if (reflects || parameter.takes == Takes::textured_emission)
         if (const Element *texture = texture_of(*property))
             return color_of_texture(*texture, reflects ? 1 : std::numeric_limits<float>::max());
-    const bool is_signed = parameter.takes == Takes::signed_color;
-    const ColorUse use = reflects                                       ? ColorUse::reflectance
-                         : is_signed || parameter.takes == Takes::color ? ColorUse::index
-                                                                        : ColorUse::emission;
+    const bool shines = parameter.takes == Takes::emission || parameter.takes == Takes::textured_emission;
+    const ColorUse use = reflects ? ColorUse::reflectance : shines ? ColorUse::emission : ColorUse::index;
     const Color color = read_color(*property, parameter, use);
     for (float value : {color.r, color.g, color.b}) {
-        if (value < 0 && !is_signed)
+        if (value < 0 && parameter.takes != Takes::signed_color)
             throw SceneError(property->location, "\"" + name + "\" must not be negative");
         if (!std::isfinite(value))
             throw SceneError(property->location, "\"" + name + "\" is too large for single precision");

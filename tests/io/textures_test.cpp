@@ -344,7 +344,6 @@ TEST_F(TexturePlugin, Errors) {
     EXPECT_THAT(error("<texture type=\"bitmap\"/>"), HasSubstr("bitmap needs a filename"));
 }
 
-/// A file of a kilobyte may declare any number of pixels.
 // Of 32 bits in OpenEXR: no shares of the largest.
 TEST_F(TexturePlugin, WholeNumbersOfOpenExrAreWhatTheySay) {
     write<std::uint32_t>("u.exr", 3, OIIO::TypeDesc::UINT32, 16);
@@ -376,6 +375,7 @@ TEST_F(TexturePlugin, EightBitsAreSrgbInAllFormats) {
     }
 }
 
+/// A file of a kilobyte may declare any number of pixels.
 TEST_F(TexturePlugin, BombsAreRefused) {
     std::string png("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x75\x30\0\0\x75\x30\x08\x02\0\0\0", 29); // 30000 x 30000
     // Its CRC: libpng asks for it.
