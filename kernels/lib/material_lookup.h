@@ -1,10 +1,11 @@
-/* What a material's parameters are worth at a point of the surface where some are textures: of the materials of one class
- * (runtime/scene/material_class.h). CLASS_TEXTURED and CLASS_LOOKUPS are to it what TRAIT_TEXTURED and TRAIT_LOOKUPS
- * are to the scene; CLASS_ALL_TEXTURED has the parameters that all of its materials have as textures, and TRAIT_TEXTURES
- * is that of the class. parameter_texture is the first texture of the class. */
+/* What a material's parameters are worth at a point of the surface where some are textures: of the materials of one
+ * class (runtime/scene/material_class.h). CLASS_TEXTURED and CLASS_LOOKUPS are to it what TRAIT_TEXTURED and
+ * TRAIT_LOOKUPS are to the scene; CLASS_ALL_TEXTURED has the parameters that all of its materials have as textures, and
+ * TRAIT_TEXTURES is that of the class. parameter_texture is the first texture of the class. */
 #ifndef GRADUS_LIB_MATERIAL_LOOKUP_H
 #define GRADUS_LIB_MATERIAL_LOOKUP_H
 //! traits: TRAIT_LOOKUPS TRAIT_TEXTURES
+#include "kernels/lib/rough_coat.h"
 #include "kernels/lib/texture_lookup.h"
 #include "kernels/shared/material.h"
 #include "kernels/shared/texture.h"
@@ -13,8 +14,7 @@
     , uint parameter_texture, GRADUS_GLOBAL const uint *textures, GRADUS_GLOBAL const real *texture_reals,             \
         GRADUS_GLOBAL const uint *texels, GRADUS_GLOBAL const uint *material_textures,                                 \
         GRADUS_GLOBAL const uint *material_lookups
-#define LOOKUP_ARGUMENTS                                                                                               \
-    , parameter_texture, textures, texture_reals, texels, material_textures, material_lookups, unit
+#define LOOKUP_ARGUMENTS , parameter_texture, textures, texture_reals, texels, material_textures, material_lookups, unit
 
 GRADUS_LIB_BEGIN
 
@@ -59,9 +59,11 @@ GRADUS_LIB_BEGIN
         m.name = is_constant ? m.name : rgb_luminance(looked_up);                                                      \
     }
 
-/* The material of `record`, as it was loaded, with what its textures are worth at the point. */
-GRADUS_FN material material_looked_up(material m, uint record, texture_point point LOOKUP_PARAMETERS, uint unit) {
-    (void)record, (void)material_textures;
+/* The material of `record` with what its textures are worth at the point. */
+GRADUS_FN material material_looked_up(GRADUS_GLOBAL const real *materials, uint record,
+                                      texture_point point LOOKUP_PARAMETERS, uint unit) {
+    material m = material_load(materials, record, unit);
+    (void)material_textures;
 #if CLASS_LOOKUPS >= 1 && CLASS_LOOKUPS <= 3
     const rgb looked_up_0 = LOOKED_UP(0u);
 #if CLASS_LOOKUPS >= 2
@@ -71,7 +73,9 @@ GRADUS_FN material material_looked_up(material m, uint record, texture_point poi
     const rgb looked_up_2 = LOOKED_UP(2u);
 #endif
 #endif
-    GRADUS_TEXTURED_PARAMETERS(TAKE_COLOR, TAKE_NUMBER, )
+    GRADUS_LOOKED_UP_PARAMETERS(TAKE_COLOR, TAKE_NUMBER, )
+    if (HAS_PARAMETER(CLASS_TEXTURED, coat_0))
+        m = rough_coat_of(m, materials, unit);
     return m;
 }
 

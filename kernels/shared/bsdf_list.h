@@ -7,7 +7,7 @@
 /* COLOR(WITH, name, default, what it is) and NUMBER(WITH, ...): the parameters of all kinds, first those for which a
  * texture may stand. A kind ignores those that it does not name. Colours are unitless linear RGB. WITH is handed on as
  * it is. */
-#define GRADUS_TEXTURED_PARAMETERS(COLOR, NUMBER, WITH)                                                                \
+#define GRADUS_LOOKED_UP_PARAMETERS(COLOR, NUMBER, WITH)                                                               \
     COLOR(WITH, reflectance, 0.5f, "albedo")                                                                           \
     COLOR(WITH, specular_reflectance, 1, "factor on reflected light")                                                  \
     COLOR(WITH, specular_transmittance, 1, "factor on transmitted light")                                              \
@@ -26,12 +26,8 @@
     NUMBER(WITH, clearcoat, 0, "how much a second, clear coat reflects")                                               \
     NUMBER(WITH, clearcoat_gloss, 0, "how smooth that coat is")                                                        \
     NUMBER(WITH, diff_trans, 0, "share of diffuse light that passes a thin surface, 0 to 2")
-/* Those that no texture can stand for. */
-#define GRADUS_PLAIN_PARAMETERS(COLOR, NUMBER, WITH)                                                                   \
-    COLOR(WITH, eta, 0, "real part of the index, relative to the outside; eta = 0, k = 1 is a perfect mirror")         \
-    COLOR(WITH, k, 1, "imaginary part of the index, relative to the outside")                                          \
-    NUMBER(WITH, ior, 1.5046f, "index inside over index outside (the normal points outside)")                          \
-    NUMBER(WITH, nonlinear, 0, "1: colours shift by what is scattered under a coat more than once")                    \
+/* Those that vary where roughness does: kernels/lib/rough_coat.h. */
+#define GRADUS_COAT_PARAMETERS(NUMBER, WITH)                                                                           \
     NUMBER(WITH, internal_reflectance, 0, "of a coat from within, for diffuse light; follows from ior and roughness")  \
     NUMBER(WITH, coat_0, 1, "and on to coat_9: the coat's transmittance, a polynomial; follows likewise")              \
     NUMBER(WITH, coat_1, 0, "")                                                                                        \
@@ -42,7 +38,16 @@
     NUMBER(WITH, coat_6, 0, "")                                                                                        \
     NUMBER(WITH, coat_7, 0, "")                                                                                        \
     NUMBER(WITH, coat_8, 0, "")                                                                                        \
-    NUMBER(WITH, coat_9, 0, "")                                                                                        \
+    NUMBER(WITH, coat_9, 0, "")
+#define GRADUS_TEXTURED_PARAMETERS(COLOR, NUMBER, WITH)                                                                \
+    GRADUS_LOOKED_UP_PARAMETERS(COLOR, NUMBER, WITH) GRADUS_COAT_PARAMETERS(NUMBER, WITH)
+/* Those that no texture can stand for. */
+#define GRADUS_PLAIN_PARAMETERS(COLOR, NUMBER, WITH)                                                                   \
+    COLOR(WITH, eta, 0, "real part of the index, relative to the outside; eta = 0, k = 1 is a perfect mirror")         \
+    COLOR(WITH, k, 1, "imaginary part of the index, relative to the outside")                                          \
+    NUMBER(WITH, ior, 1.5046f, "index inside over index outside (the normal points outside)")                          \
+    NUMBER(WITH, nonlinear, 0, "1: colours shift by what is scattered under a coat more than once")                    \
+    NUMBER(WITH, coat_records, 0, "records of this coat at other roughnesses (kernels/lib/rough_coat.h); 0: none")     \
     NUMBER(WITH, pane_ior, 1.5046f, "index of a thin pane over that around it")                                        \
     NUMBER(WITH, fast_approximation, 0, "1: the simpler model of diffuse facets")                                      \
     NUMBER(WITH, ward_variant, 2, "of Ward's lobe: 0 as published, 1 after Duer, 2 balanced")

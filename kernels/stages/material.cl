@@ -141,7 +141,7 @@ STAGE read_material(uint count, uint unit, uint first, uint traced_rows, uint pa
         choice = is_blend ? r_min(rest, R(0.99999994)) : choice;
     }
 #endif
-    const material m = material_looked_up(material_load(materials, record, unit), record, point LOOKUP_ARGUMENTS);
+    const material m = material_looked_up(materials, record, point LOOKUP_ARGUMENTS);
     GRADUS_TEXTURED_PARAMETERS(LEAVE_COLOR, LEAVE_NUMBER, )
 #if TRAIT_BLENDS
     *(GRADUS_GLOBAL uint *)(surface + (size_t)surface_record * traced_rows + row) = record;

@@ -24,7 +24,7 @@
         __global const uint *material_lookups
 #define BITS_OF_MATERIAL texture_bits(TRAIT_TEXTURES, parameter_texture, textures, texture_reals, unit)
 #define MATERIAL_AT(point, primitive, hit)                                                                             \
-    material_looked_up(material_load(materials, (point).material, unit), (point).material,                             \
+    material_looked_up(materials, (point).material,                                                                    \
                        hit_texture_point(triangle_texcoords, unit, triangle_count, primitive, hit,                     \
                                          PLACE_ON_SPHERE(primitive, hit)) LOOKUP_ARGUMENTS)
 

@@ -2,10 +2,14 @@
 
 #include "kernels/lib/fresnel.h"
 #include "kernels/lib/microfacet.h"
+#include "kernels/lib/rough_coat.h"
+
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <vector>
 
@@ -69,6 +73,10 @@ Passed through_rough(int distribution, float alpha, double eta, double mu, const
     return passed;
 }
 
+bool has_rough_coat(const Bsdf &bsdf) {
+    return bsdf.kind == BsdfKind::roughplastic_ggx || bsdf.kind == BsdfKind::roughplastic_beckmann;
+}
+
 constexpr int coefficients = 10;
 
 /// Of the polynomial in x that interpolates the values at `nodes` places, the least squares of Chebyshev's.
@@ -108,7 +116,7 @@ double internal_reflectance_of_smooth(double ior) {
 
 void set_coating(Bsdf &bsdf) {
     const double ior = bsdf.ior;
-    if (bsdf.kind != BsdfKind::roughplastic_ggx && bsdf.kind != BsdfKind::roughplastic_beckmann) {
+    if (!has_rough_coat(bsdf)) {
         bsdf.internal_reflectance = float(internal_reflectance_of_smooth(ior));
         return;
     }
@@ -134,6 +142,22 @@ void set_coating(Bsdf &bsdf) {
                                           &bsdf.coat_5, &bsdf.coat_6, &bsdf.coat_7, &bsdf.coat_8, &bsdf.coat_9};
     for (int k = 0; k < coefficients; ++k)
         *fields[k] = float(coat[k]);
+    // Whose roughness varies, its coat varies by the same texture.
+    bsdf.internal_reflectance.texture = bsdf.alpha_u.texture;
+    for (Number *field : fields)
+        field->texture = bsdf.alpha_u.texture;
+}
+
+bool has_varying_coat(const Bsdf &bsdf) { return has_rough_coat(bsdf) && bsdf.coat_0.texture != no_texture; }
+
+std::vector<Bsdf> coat_records(const Bsdf &bsdf) {
+    std::vector<Bsdf> records(rough_coat_records);
+    tbb::parallel_for(0u, rough_coat_records, [&](std::uint32_t i) {
+        records[i] = bsdf;
+        records[i].alpha_u = records[i].alpha_v = rough_coat_roughness(i);
+        set_coating(records[i]);
+    });
+    return records;
 }
 
 } // namespace gradus

@@ -4,6 +4,8 @@
 
 #include "runtime/scene/scene.h"
 
+#include <vector>
+
 namespace gradus {
 
 /// The share of diffuse light that a smooth interface throws back into the denser side, by quadrature, to 1e-6. ior:
@@ -17,6 +19,13 @@ double internal_reflectance_of_smooth(double ior);
 /// for roughness of 0.05 and more, and to 1e-2 for smoother ones, where it is steep at grazing angles. The internal
 /// reflectance is Mitsuba's too: twice the mean of mu times the reflectance from within over 64 even cosines from 0 to
 /// 1, ends included, which is about 1 % less than the integral.
+/// Where alpha_u is a texture they have that texture too, and values for the least roughness.
 void set_coating(Bsdf &bsdf);
+
+/// Whether it has a rough coat whose roughness is a texture.
+bool has_varying_coat(const Bsdf &bsdf);
+
+/// The BSDF with each of the roughnesses of kernels/lib/rough_coat.h.
+std::vector<Bsdf> coat_records(const Bsdf &bsdf);
 
 } // namespace gradus

@@ -6,6 +6,7 @@
 #include "kernels/shared/texture.h"
 #include "runtime/scene/attribute_light.h"
 #include "runtime/scene/camera_record.h"
+#include "runtime/scene/coating.h"
 #include "runtime/scene/environment_map.h"
 #include "runtime/scene/instances.h"
 #include "runtime/scene/light_builder.h"
@@ -15,6 +16,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 namespace gradus {
 
@@ -355,9 +358,26 @@ void reserve_tables(const Scene &scene, const TraitMap &traits, SceneTables &tab
 
 bool has_own_back(const Material &material) { return material.two_sided && !(material.back == material.front); }
 
+/// After all others the records that coats of varying roughness have, once for each kind and index.
+void add_coat_records(const std::vector<Bsdf> &records, SceneTables &tables) {
+    std::map<std::pair<BsdfKind, float>, std::size_t> first;
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        if (!has_varying_coat(records[i]))
+            continue;
+        const std::size_t count = tables.materials.size() / material_stride;
+        const auto [found, is_new] = first.emplace(std::pair(records[i].kind, float(records[i].ior)), count);
+        if (is_new)
+            for (const Bsdf &bsdf : coat_records(records[i]))
+                add_material_record(bsdf, tables);
+        tables.materials[i * material_stride + material_coat_records] = float(found->second);
+    }
+}
+
 void add_materials(const Scene &scene, SceneTables &tables) {
-    for (const Bsdf &bsdf : material_records(scene))
+    const std::vector<Bsdf> records = material_records(scene);
+    for (const Bsdf &bsdf : records)
         add_material_record(bsdf, tables);
+    add_coat_records(records, tables);
     std::uint32_t back = static_cast<std::uint32_t>(scene.materials.size());
     for (std::size_t i = 0; i < scene.materials.size(); ++i)
         if (has_own_back(scene.materials[i]))

@@ -335,6 +335,67 @@ TEST(Textures, KernelsReadThoseOfTheirClass) {
     }
 }
 
+/// Strips of a wall of rough plastics: two whose roughness is a picture share a kind and an index, one has others, and
+/// of one only the base is a picture. `pictures`: of one texel, in place of constants.
+Image wall_of_coats(bool pictures, const char *method) {
+    SceneMaker maker(size, 1);
+    maker.look({0, 0, 3}, {0, 0, 0}, 60);
+    maker.directional_light({3, 3, 3}, {0.6f, 0, -0.8f});
+    maker.scene.settings.max_depth = 2;
+    const auto picture_of = [&](std::uint32_t code) {
+        auto bitmap = std::make_shared<Bitmap>();
+        bitmap->resize(1, 1, Bitmap::Format::byte, false);
+        bitmap->set(0, 0, 0, code);
+        Texture texture;
+        texture.bitmap = bitmap;
+        maker.scene.textures.push_back(texture);
+        return pictures ? std::int32_t(maker.scene.textures.size() - 1) : no_texture;
+    };
+    float left = -2;
+    const auto add = [&](Bsdf bsdf) {
+        set_coating(bsdf);
+        maker.parallelogram({left, -2, 0}, {1, 0, 0}, {0, 4, 0}, maker.material(bsdf));
+        left += 1;
+    };
+    const auto coat = [&](BsdfKind kind, std::uint32_t code, float ior) {
+        Bsdf bsdf = diffuse(0.6);
+        bsdf.kind = kind;
+        bsdf.ior = ior;
+        bsdf.nonlinear = 1.0f;
+        bsdf.alpha_u = bsdf.alpha_v = Number(float(code) / 255);
+        return bsdf;
+    };
+    const auto varying = [&](BsdfKind kind, std::uint32_t code, float ior) {
+        Bsdf bsdf = coat(kind, code, ior);
+        bsdf.alpha_u.texture = bsdf.alpha_v.texture = picture_of(code);
+        return bsdf;
+    };
+    add(varying(BsdfKind::roughplastic_ggx, 38, 1.5f));
+    Bsdf base_alone = coat(BsdfKind::roughplastic_ggx, 77, 1.5f);
+    base_alone.reflectance = {0.2f, 0.2f, 0.2f};
+    base_alone.reflectance.texture = picture_of(51);
+    add(base_alone);
+    add(varying(BsdfKind::roughplastic_ggx, 153, 1.5f));
+    add(varying(BsdfKind::roughplastic_beckmann, 102, 1.9f));
+    return render(maker.scene, RenderOptions(), method).image;
+}
+
+/// What a coat lets pass is known of some roughnesses, and linear between: as near as the polynomials that it is made
+/// of.
+TEST(Textures, OfRoughnessVaryWhatACoatLetsPass) {
+    constexpr double between = 2e-3;
+    for (const char *method : {"pt", "gpt"}) {
+        const Image constants = wall_of_coats(false, method), read = wall_of_coats(true, method);
+        double largest = 0;
+        for (std::size_t i = 0; i < size * size; ++i) {
+            const double expected = constants.find("R")->values[i];
+            ASSERT_NEAR(read.find("R")->values[i], expected, between * expected) << method << ", pixel " << i;
+            largest = worse(largest, expected);
+        }
+        EXPECT_GT(largest, 0.3) << method;
+    }
+}
+
 /// A sphere of half mirror, half wall, under light from everywhere, has the radiance of its mean albedo, however the
 /// parts are nested, and from both sides. (Mitsuba 3.9 is no judge of it: it weighs a Dirac part by densities.)
 TEST(Blends, HaveTheMeanOfTheirParts) {

@@ -5,16 +5,14 @@
 namespace gradus {
 
 Declaration declare_bsdf_roughplastic() {
-    return {"a diffuse base under a rough dielectric coat, as rough along both axes, and not by a texture",
-            joined({parameters_of_plastic(), parameters_of_roughness(Takes::number)})};
+    return {"a diffuse base under a rough dielectric coat, as rough along both axes",
+            joined({parameters_of_plastic(), parameters_of_roughness()})};
 }
 
 Material bsdf_roughplastic(Properties &properties, SceneBuilder &) {
     Material material;
-    const bool is_ggx = read_distribution(properties) == Microfacet::ggx;
-    material.front.alpha_u = Number(float(properties.number("alpha_u")));
-    material.front.alpha_v = Number(float(properties.number("alpha_v")));
-    if (material.front.alpha_u != material.front.alpha_v)
+    const bool is_ggx = read_roughness(properties, material.front) == Microfacet::ggx;
+    if (!(material.front.alpha_u == material.front.alpha_v))
         throw properties.error("alpha_u", "roughplastic is as rough along both axes: give alpha");
     material.front.kind = is_ggx ? BsdfKind::roughplastic_ggx : BsdfKind::roughplastic_beckmann;
     read_plastic(properties, material.front);

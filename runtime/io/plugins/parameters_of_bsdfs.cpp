@@ -9,12 +9,15 @@
 
 namespace gradus {
 
-ParameterList parameters_of_roughness(Takes takes) {
+ParameterList parameters_of_roughness() {
     // Below this, single precision cannot hold the distribution's peak.
     constexpr double least_alpha = 1e-4;
     constexpr double most_alpha = 1e30;
     const auto roughness = [&](const char *name, const char *otherwise, const char *about) {
-        return Parameter{name, takes, otherwise, about}.at_least(0).at_most(most_alpha).raised_to(least_alpha);
+        return Parameter{name, Takes::textured_number, otherwise, about}
+            .at_least(0)
+            .at_most(most_alpha)
+            .raised_to(least_alpha);
     };
     return joined({{Parameter{"distribution", Takes::choice, "beckmann",
                               "of the microfacets; phong and as, of 0.x, are read as beckmann of the same alpha"}
@@ -30,10 +33,6 @@ ParameterList roughness_left_over() { return meaningless({"alpha", "distribution
 Microfacet read_roughness(Properties &properties, Bsdf &bsdf) {
     bsdf.alpha_u = properties.textured_number("alpha_u");
     bsdf.alpha_v = properties.textured_number("alpha_v");
-    return read_distribution(properties);
-}
-
-Microfacet read_distribution(Properties &properties) {
     const std::string distribution = properties.choice("distribution");
     if (distribution == "phong" || distribution == "as")
         properties.diagnostics().warn(properties.location_of("distribution"),

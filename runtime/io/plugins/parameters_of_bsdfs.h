@@ -9,10 +9,8 @@ namespace gradus {
 enum class Microfacet { beckmann, ggx };
 
 /// The distribution of microfacets, which it returns, and their roughness.
-ParameterList parameters_of_roughness(Takes takes = Takes::textured_number);
+ParameterList parameters_of_roughness();
 Microfacet read_roughness(Properties &properties, Bsdf &bsdf);
-/// The distribution alone.
-Microfacet read_distribution(Properties &properties);
 /// Left in files whose surface was rough once.
 ParameterList roughness_left_over();
 ParameterList parameters_of_dielectric();
