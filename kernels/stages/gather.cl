@@ -3,7 +3,8 @@
  *
  * Photons are gathered from a disc whose radius goes with what a pixel covers there: `radius_slope` times the length of
  * the path from the camera, within [radius_start, radius_most], times `radius_scale`, which shrinks from pass to pass;
- * but at least `radius_least`.
+ * but at least LEAST_SHARE of the point's coordinates, and LEAST_OFFSETS times what it may be off its surface:
+ * positions are not exact to much less.
  *
  * BY_SLOT: in the rows of their slots instead.
  *
@@ -20,14 +21,16 @@
 #include "kernels/lib/vertex_frame.h"
 #include "kernels/shared/stage.h"
 
+#define LEAST_SHARE R(0x1p-18)
+#define LEAST_OFFSETS R(16)
+
 STAGE gather(uint count, uint unit, uint first, uint to, uint capacity, uint gather_rows, uint max_depth,
              __global const uint *index, __global const real *path_old, __global const real *ray_old,
              __global const real *travelled, __global real *gather, __global const real *triangles,
              __global const real *triangle_normals, __global const real *triangle_tangents,
              __global const real *spheres, uint triangle_count, __global const uint *primitive_material,
              __global const uint *material_back, __global const uint *material_kind, real radius_slope,
-             real radius_start, real radius_most, real radius_least,
-             real radius_scale SURFACE_ARGUMENT CAMERA_WAY_ARGUMENT
+             real radius_start, real radius_most, real radius_scale SURFACE_ARGUMENT CAMERA_WAY_ARGUMENT
 #if FEATURES
              ,
              __global const real *materials, __global real *feature, uint slots
@@ -58,7 +61,10 @@ STAGE gather(uint count, uint unit, uint first, uint to, uint capacity, uint gat
     AT_UINT(gather, slot, row) = slot;
     AT_UINT(gather, deepest, row) = max_depth - depth - 1u;
     const real first_radius = r_clamp(length * radius_slope, radius_start, radius_most);
-    AT(gather, radius, row) = r_max(first_radius * radius_scale, radius_least);
+    const vec3 at = point.position;
+    const real coordinate = r_max(r_max(r_abs(at.x), r_abs(at.y)), r_abs(at.z));
+    const real least = r_max(LEAST_SHARE * coordinate, LEAST_OFFSETS * point.offset);
+    AT(gather, radius, row) = r_max(first_radius * radius_scale, least);
 #if TRAIT_OPACITY
     /* Photons are here in the share that the surface meets, and so is this path: one of both is enough. */
     const real met = (real)AT_UINT_IN(ray_old, ray, opacity, old) * (R(1) / (real)ray_opacity_one);

@@ -7,6 +7,9 @@
  * does not shine through to the other, and one wall not around a corner to the next), and where both paths together are
  * not too long. Cells of lines that share keys hold strangers: these are of another line.
  *
+ * A gather point that reaches over more lines of cells than a share of the photons looks at all photons instead, in
+ * their order: so no single one, towards the horizon or behind a mirror, takes longer than that.
+ *
  * A gather point whose pairs are cut by the end of a window leaves a mark, from which the next window goes on: so each
  * photon is looked at once, or twice in the block where the end fell, however many windows there are. `pair_looked`
  * says how many were.
@@ -19,6 +22,8 @@
 
 /* Photons that are tested at once before any is listed. */
 #define PHOTON_BLOCK 32u
+/* Photons that are tested in the time that one line of cells takes. */
+#define PHOTONS_A_LINE R(8)
 
 /* Where a gather point's list was cut: the line of cells, counted from its first one; the first photon of the block;
  * and how many pairs come before that. */
@@ -33,10 +38,10 @@
 #define COUNTS(i)                                                                                                      \
     ((SQUARED(i, x) + SQUARED(i, y) + SQUARED(i, z) <= squared) &                                                      \
      (v3_dot(AT_V3(photon_sorted, normal, i), normal) > PHOTON_LEAST_FACING) &                                         \
-     (AT_UINT(photon_sorted, depth, i) <= deepest) & (photon_line_sorted[i] == line))
+     (AT_UINT(photon_sorted, depth, i) <= deepest) & (takes_all | (photon_line_sorted[i] == line)))
 
-STAGE photon_pairs(uint count, uint first, uint from, uint gather_rows, uint photon_rows, PHOTON_GRID, real grid_reach,
-                   __global const real *gather, __global const real *photon_sorted,
+STAGE photon_pairs(uint count, uint first, uint from, uint gather_rows, uint photon_rows, uint photons_sorted,
+                   PHOTON_GRID, real grid_reach, __global const real *gather, __global const real *photon_sorted,
                    __global const uint *photon_line_sorted, __global const uint *photon_first,
                    __global uint *pair_looked GATHER_INDEX
 #if LIST
@@ -65,7 +70,9 @@ STAGE photon_pairs(uint count, uint first, uint from, uint gather_rows, uint pho
     const uint y1 = photon_cell(at.y + reach, grid.low.y, grid.inverse_edge, grid.last_y);
     const uint z0 = photon_cell(at.z - reach, grid.low.z, grid.inverse_edge, grid.last_z);
     const uint z1 = photon_cell(at.z + reach, grid.low.z, grid.inverse_edge, grid.last_z);
-    const uint wide = y1 - y0 + 1u, lines = wide * (z1 - z0 + 1u);
+    const uint wide = y1 - y0 + 1u, high = z1 - z0 + 1u;
+    const int takes_all = PHOTONS_A_LINE * (real)wide * (real)high > (real)photons_sorted;
+    const uint lines = takes_all ? 1u : wide * high;
 #if LIST
     /* Where the next pair goes, less where the window begins: below 0 before it. */
     const int begin = (int)(pair_chunk_first[place / PAIR_CHUNK] + pair_offset[place] - window_first);
@@ -81,13 +88,14 @@ STAGE photon_pairs(uint count, uint first, uint from, uint gather_rows, uint pho
 #endif
         const uint line = photon_line(y0 + k % wide, z0 + k / wide, grid_last_y);
         const uint key = photon_line_key(line, line_stride, line_shift);
-        const uint end = photon_first[key + x1 + 1u];
+        const uint begins = takes_all ? 0u : photon_first[key + x0];
+        const uint end = takes_all ? photons_sorted : photon_first[key + x1 + 1u];
 #if LIST
         /* A block at a time, first which count, then which these are, then to the list: the first loop becomes vectors,
          * and none has a branch that nobody can foresee. The last compares each place with the window: with bounds from
          * `max` and `min`, which may cross, PoCL 3.1 wrote beyond the window. */
         const int goes_on = is_cut && k == MARK(MARK_LINE);
-        for (uint block = goes_on ? MARK(MARK_PHOTON) : photon_first[key + x0]; block < end; block += PHOTON_BLOCK) {
+        for (uint block = goes_on ? MARK(MARK_PHOTON) : begins; block < end; block += PHOTON_BLOCK) {
             const uint rows = min(end - block, PHOTON_BLOCK);
             looked += rows;
             uint counts[PHOTON_BLOCK], near[PHOTON_BLOCK];
@@ -113,7 +121,7 @@ STAGE photon_pairs(uint count, uint first, uint from, uint gather_rows, uint pho
             to += found;
         }
 #else
-        for (uint i = photon_first[key + x0]; i < end; ++i)
+        for (uint i = begins; i < end; ++i)
             found += COUNTS(i) ? 1u : 0u;
 #endif
     }

@@ -2,7 +2,7 @@
 
 #include "kernels/shared/scene_records.h"
 #include "methods/path_stages.h"
-#include "methods/photons/seen_distance.h"
+#include "methods/photons/seen_distances.h"
 #include "runtime/error.h"
 
 #include <fmt/format.h>
@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 namespace gradus {
 
@@ -20,11 +21,11 @@ namespace {
 // The largest radius where pixels say it, as a share of the scene's diameter: through a mirror or towards the horizon a
 // pixel may cover much.
 constexpr double largest_share = 0.05;
-// The least, of the scene's diameter or its distance from the origin: positions are not exact to much less.
-constexpr double least_share = 0x1p-18;
-// Edge of the grid's cells, in radii; measured.
-constexpr double cell_edge = 1;
-constexpr double most_radii_a_cell = 8;
+// Lines of cells that a gather point reaches over on average, at most.
+constexpr double most_lines_reached = 64;
+// Cells have the median radius for an edge, or more where they would hold fewer photons than this, but not so many
+// radii. About that share of the photons is where the camera looks. Measured in the Cornell box and slab-and-ball.
+constexpr double photons_a_cell = 4, most_radii_a_cell = 4, seen_share = 1.0 / 3;
 
 bool any_bsdf(const Scene &scene, double roughness, bool rough) {
     bool found = false;
@@ -37,6 +38,25 @@ LightPaths::Direct direct_of(const RenderOptions &options) {
 }
 
 std::uint32_t photon_rows(const LightPaths &paths) { return paths.tables().front().multiple; }
+
+/// The edge that cells have at least, so that gather points of these radii reach over few enough of them.
+double least_edge(const std::vector<double> &radii, double edge) {
+    const auto lines = [&] {
+        double sum = 0;
+        for (const double radius : radii)
+            sum += (2 * radius / edge + 1) * (2 * radius / edge + 1);
+        return sum / double(radii.size());
+    };
+    while (lines() > most_lines_reached)
+        edge *= 1.25;
+    return edge;
+}
+
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+    std::ranges::nth_element(values, middle);
+    return *middle;
+}
 
 double length_of(const float *record, int field) {
     return std::hypot(record[field], record[field + 1], record[field + 2]);
@@ -96,22 +116,24 @@ PassPhotons::PassPhotons(Session &session, Stages &stages, const Scene &scene, c
 
 void PassPhotons::set_radius(Session &session, RenderOptions::GatherRadius radius) {
     const double diameter = session.scene.scene_diameter;
-    const Bounds &box = session.scene.bounds;
-    double farthest = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        farthest = std::max({farthest, std::fabs(box.lower[axis]), std::fabs(box.upper[axis])});
     const float *camera = session.scene.camera.data();
     const double pixel = std::sqrt(length_of(camera, camera_right_x) * length_of(camera, camera_down_x));
     // Of an orthographic camera pixels are as wide at any distance.
     const double width = std::sqrt(length_of(camera, camera_step_right_x) * length_of(camera, camera_step_down_x));
     const double slope = radius.of_scene ? 0 : radius.value * pixel;
-    const double start = radius.value * (radius.of_scene ? diameter : width);
-    largest_radius_ = radius.of_scene ? start : largest_share * diameter;
-    typical_radius_ = std::clamp(slope * seen_distance(session), start, largest_radius_);
+    const double largest = diameter * (radius.of_scene ? radius.value : largest_share);
+    const double start = radius.of_scene ? largest : std::min(radius.value * width, largest);
+    const std::vector<double> distances = seen_distances(session);
+    std::vector<double> radii;
+    for (const double distance : distances)
+        radii.push_back(std::clamp(slope * distance, start, largest));
+    median_radius_ = median(radii);
+    least_edge_ = least_edge(radii, median_radius_);
+    seen_area_ = double(session.film.width) * session.film.height *
+                 std::pow(std::max(pixel * median(distances), width), 2) / seen_share;
     session.reals["radius_slope"] = slope;
     session.reals["radius_start"] = start;
-    session.reals["radius_most"] = largest_radius_;
-    session.reals["radius_least"] = least_share * std::max(diameter, farthest);
+    session.reals["radius_most"] = largest;
     session.reals["radius_scale"] = 1; // begin_pass() says it
     session.reals["flux_scale"] = 1;   // once it is known how many light paths a pass has
 }
@@ -135,8 +157,9 @@ void PassPhotons::begin(std::uint64_t pass) {
     const double scale = std::sqrt(radius_shrinkage(of_half, options_.radius_alpha));
     stages_.set_real("radius_scale", scale);
     const std::uint32_t photons = light_paths_.trace(pass * paths_a_pass_, paths_a_pass_);
+    const double sparse = std::sqrt(seen_area_ * photons_a_cell / std::max(photons, 1u));
     map_.build(light_paths_.rows(), photons,
-               scale * std::max(cell_edge * typical_radius_, largest_radius_ / most_radii_a_cell));
+               std::max(scale * least_edge_, std::min(sparse, most_radii_a_cell * scale * median_radius_)));
     pass_ = pass;
 }
 

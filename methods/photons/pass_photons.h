@@ -51,7 +51,9 @@ class PassPhotons {
     PhotonMap map_;
     std::uint32_t paths_a_pass_ = 0; ///< light paths
     std::uint64_t pass_ = ~0ull;
-    double typical_radius_ = 0, largest_radius_ = 0; ///< of the first pass
+    /// Of gather points in the first pass, as far as the camera tells, world units: their radius, the least edge of
+    /// cells for them, and the area that all photons are spread over.
+    double median_radius_ = 0, least_edge_ = 0, seen_area_ = 0;
 };
 
 } // namespace gradus

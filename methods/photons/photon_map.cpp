@@ -16,8 +16,8 @@ namespace {
 constexpr std::uint32_t key_bits = 21, most_keys = 1u << key_bits;
 // What there is room for at first: most grids have fewer than a million keys, small renders a few hundred.
 constexpr std::uint32_t first_keys = 1u << 12;
-// Cells along an axis: so lines have numbers of 30 bits.
-constexpr double most_cells = 1 << 15;
+// Cells along an axis: so many single precision tells apart. And lines of cells, which have numbers of 32 bits.
+constexpr double most_cells = 1 << 20, most_lines = 0x1p31;
 // Positions are computed, and are off by some units in the last place of the largest coordinate.
 constexpr double rounding = 0x1p-20;
 
@@ -47,7 +47,8 @@ PhotonGrid::PhotonGrid(const Bounds &box, double edge, std::uint32_t most) : low
     double farthest = 0;
     for (int axis = 0; axis < 3; ++axis)
         farthest = std::max({farthest, std::fabs(box.lower[axis]), std::fabs(box.upper[axis])});
-    edge = std::max({edge, box.extent() / (most_cells - 1), 1e-30});
+    const double height = box.upper[1] - box.lower[1], depth = box.upper[2] - box.lower[2];
+    edge = std::max({edge, box.extent() / (most_cells - 1), std::sqrt(height * depth / most_lines), 1e-30});
     inverse_edge = 1 / edge;
     reach = farthest * rounding;
     std::uint64_t cells = 1;
@@ -75,7 +76,8 @@ PhotonMap::PhotonMap(Session &session, Stages &stages, std::uint32_t rows)
       sort_(session, stages, "photon_sort", RowsOf::one, rows), cells_(stages.add(cells_stage("photon_cells", {}))),
       copy_(stages.add(cells_stage("photon_copy", {}))), lines_(stages.add(cells_stage("photon_lines", {}))),
       starts_(stages.add(cells_stage("photon_starts", {"photons", "keys"}))) {
-    set_grid( // build() says it
+    session.numbers["photons_sorted"] = 0; // build() says it, and the grid
+    set_grid(
         PhotonGrid(box_, 1, most_keys), [&](const std::string &name, double value) { session.reals[name] = value; },
         [&](const std::string &name, std::uint32_t value) { session.numbers[name] = value; });
 }
@@ -115,6 +117,7 @@ void PhotonMap::build(std::uint32_t rows, std::uint32_t count, double edge) {
     set_grid(
         grid, [&](const std::string &name, double value) { stages_.set_real(name, value); },
         [&](const std::string &name, std::uint32_t value) { stages_.set(name, value); });
+    stages_.set("photons_sorted", count);
     cells_.run(rows);
     sort_.run_in((*tables_)["photon_order"], (*tables_)["photon_key"], count, grid.keys - 1);
     copy_.run_planes(0, count, columns_);

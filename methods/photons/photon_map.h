@@ -37,9 +37,8 @@ class PhotonMap {
     void attach(Tables &tables);
 
     /// Sorts the `count` photons that `photon_order` names, of the first `rows` of `photon`, into cells of edge `edge`,
-    /// world units. The smaller these are
-    /// the fewer photons beyond the radius are looked at, and the more cells: about the radius is best. Photons of a
-    /// cell stay in that order. Where `photon` has grown, so do the tables of this.
+    /// world units. The smaller these are the fewer photons beyond the radius are looked at, and the more cells: about
+    /// the radius is best. Photons of a cell stay in that order. Where `photon` has grown, so do the tables of this.
     void build(std::uint32_t rows, std::uint32_t count, double edge);
 
   private:

@@ -107,8 +107,9 @@ Scattered scattered(const Case &c, std::size_t photons, std::size_t points) {
 
 TEST_P(Search, FindsWhatBruteForceFinds) {
     const Case &c = GetParam();
-    const Scattered all = scattered(c, 6000, 700);
-    PhotonSearch search(shared_device(), c.low, c.high, 6000, 768);
+    constexpr std::uint32_t photons = 20000;
+    const Scattered all = scattered(c, photons, 700);
+    PhotonSearch search(shared_device(), c.low, c.high, photons, 768);
     search.place(all.photons, all.points);
     const std::vector<FoundPair> found = search.find(c.edge);
     EXPECT_EQ(found.size(), search.total);
@@ -125,7 +126,10 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"large_cells", {-1, -1, -1}, {1, 1, 1}, 0.3f, 1.7},
                       Case{"one_cell", {-1, -1, -1}, {1, 1, 1}, 0.3f, 50},
                       // So many cells that lines of them are hashed to the same keys.
-                      Case{"hashed_cells", {-1, -1, -1}, {1, 1, 1}, 0.3f, 0.012},
+                      Case{"hashed_cells", {-1, -1, -1}, {1, 1, 1}, 0.2f, 0.012},
+                      // So many lines that all photons are looked at.
+                      Case{"many_cells_a_radius", {-1, -1, -1}, {1, 1, 1}, 0.5f, 0.012},
+                      Case{"more_lines_than_numbers", {-1, -1, -1}, {1, 1, 1}, 0.3f, 1e-9},
                       Case{"small_scene", {1e-3f, -2e-3f, 0}, {2e-3f, -1e-3f, 1e-3f}, 1.5e-4f, 1e-4},
                       Case{"large_scene", {-1e4f, -1e4f, -1e4f}, {1e4f, 1e4f, 1e4f}, 3e3f, 2e3},
                       Case{"far_from_the_origin", {9e3f, 9e3f, -9e3f}, {9002, 9002, -8998}, 0.3f, 0.3},
@@ -141,15 +145,16 @@ TEST(PhotonHash, DoesNotCountPhotonsTwice) {
     std::mt19937 random(3);
     std::uniform_real_distribution<float> unit(-1, 1);
     Scattered all;
-    for (int i = 0; i < 6000; ++i) // a ball within the reach of all
+    constexpr std::uint32_t photons = 200000, points = 4; // more photons than lines within reach, which are looked at
+    for (std::uint32_t i = 0; i < photons; ++i)           // within the reach of all
         all.photons.push_back({{0.2f * unit(random), 0.2f * unit(random), 0.2f * unit(random)}, {0, 0, 1}, 1});
-    for (int i = 0; i < 20; ++i)
+    for (std::uint32_t i = 0; i < points; ++i)
         all.points.push_back({{0.1f * unit(random), 0.1f * unit(random), 0.1f * unit(random)}, {0, 0, 1}, 0.9f, 5});
-    PhotonSearch search(shared_device(), {-1, -1, -1}, {1, 1, 1}, 6000, 64);
+    PhotonSearch search(shared_device(), {-1, -1, -1}, {1, 1, 1}, photons, 64);
     search.place(all.photons, all.points);
     expect_the_same(search.find(edge), brute_force(all.photons, all.points));
-    EXPECT_EQ(search.total, 6000u * 20u);
-    EXPECT_GT(search.windows, 20u * 6000u / PhotonPairs::pair_rows(64));
+    EXPECT_EQ(search.total, photons * points);
+    EXPECT_GE(search.windows, points * photons / PhotonPairs::pair_rows(64));
 }
 
 // What listing looks at goes by the photons near gather points, not by the windows times these: a search of hundreds of

@@ -267,6 +267,35 @@ TEST_P(FullPhotonStabilityUnder, Glass) {
 INSTANTIATE_TEST_SUITE_P(Full, FullPhotonStabilityUnder,
                          ::testing::Values("a block", "a coarse lens", "a smooth lens"));
 
+// A ground that reaches far beyond what is seen: what is seen has the radii that it has without, and each gather point
+// looks at the photons near it, not at all of them.
+TEST(PhotonStability, AboveALargeGround) {
+    RenderOptions options;
+    options.radius_alpha = 0.3;
+    double radius[2], seconds[2];
+    for (const bool on_ground : {false, true}) {
+        SceneMaker maker(128, 8);
+        const std::uint32_t gray = maker.material(diffuse(0.5));
+        maker.floor(-2, 2, 4, gray);
+        maker.lamp({0, 3, 0}, 1, 1, 5, maker.material(diffuse(0)));
+        maker.look({0, 2, 2}, {0, 0, 0}, 40);
+        if (on_ground)
+            maker.parallelogram({-20000, -0.5f, -20000}, {0, 0, 40000}, {40000, 0, 0}, gray);
+        const Rendered rendered = render(maker.scene, options, "sppm");
+        const GatherRadii &last = rendered.statistics.last_radii;
+        radius[on_ground] = last.sum / double(last.points);
+        seconds[on_ground] = 0;
+        for (const StageTime &stage : rendered.statistics.stages)
+            seconds[on_ground] += stage.name.starts_with("photon_pairs") ? stage.seconds : 0;
+    }
+    record_stability({area, "a ground far larger than what is seen: radii and cells go by the whole scene",
+                      "a floor 4 wide under a lamp, over a ground 40,000 wide",
+                      "radii are at least what a point's own position is exact to; cells go by the radii seen",
+                      "change of the mean radius of the eighth pass", std::fabs(radius[1] / radius[0] - 1), 1e-3});
+    fmt::print("search: {:.4f} s without the ground, {:.4f} s with it\n", seconds[0], seconds[1]);
+    EXPECT_LT(seconds[1], 20 * seconds[0]); // hundreds of times with cells that go by the scene
+}
+
 // The same random numbers in a scene of another size: rounding decides some paths otherwise, and nothing else may.
 TEST(PhotonStability, InScenesOfAnotherSize) {
     Scene scene = own_scene("cornell-box.xml", 32, 32);

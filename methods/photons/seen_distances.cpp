@@ -1,17 +1,15 @@
-#include "methods/photons/seen_distance.h"
+#include "methods/photons/seen_distances.h"
 
 #include "runtime/trace/camera_rays.h"
 
-#include <algorithm>
 #include <cmath>
-#include <vector>
 
 namespace gradus {
 
 using namespace lib_float;
 
-double seen_distance(Session &session) {
-    constexpr std::size_t side = 24, count = side * side;
+std::vector<double> seen_distances(Session &session) {
+    constexpr std::size_t side = 64, count = side * side;
     const SceneTables &tables = session.scene;
     CameraRays rays;
     rays.trace(tables, session.tracer, count, [&](std::size_t i) {
@@ -26,10 +24,8 @@ double seen_distance(Session &session) {
         distances.push_back(std::sqrt(v3_dot(step, step)) + rays.way_before(tables, i));
     }
     if (distances.empty())
-        return tables.scene_diameter;
-    const auto middle = distances.begin() + std::ptrdiff_t(distances.size() / 2);
-    std::nth_element(distances.begin(), middle, distances.end());
-    return *middle;
+        distances.push_back(tables.scene_diameter);
+    return distances;
 }
 
 } // namespace gradus
