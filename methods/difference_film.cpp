@@ -7,6 +7,7 @@
 #include "methods/reconstruction_inputs.h"
 #include "runtime/seconds_since.h"
 #include "runtime/wavefront/sample_parts.h"
+#include "solver/squared_errors.h"
 
 #include <fmt/format.h>
 
@@ -38,7 +39,8 @@ std::vector<std::string> film_names(std::uint32_t parts) {
 DifferenceFilm::DifferenceFilm(Session &session, Stages &stages, const RenderOptions &options, const char *counts)
     : session_(session), options_(options), counts_(counts),
       film_names_(film_names(1u << session.traits.at("TRAIT_PART_BITS"))),
-      combine_(stages.add({.name = "gradient_combine", .strict = true})), film_(session, stages),
+      combine_(stages.add({.name = "gradient_combine", .strict = true})),
+      film_(session, stages, has_error_layer(options, keeps_halves(options))),
       accumulate_(
           stages.add({.name = "gradient_accumulate",
                       .strict = true,
@@ -90,6 +92,34 @@ const std::vector<DirectPixel> &DifferenceFilm::edges(std::uint64_t samples, boo
     return edges_;
 }
 
+bool DifferenceFilm::tells_error() const {
+    return may_tell_error_ && has_error_layer(options_, keeps_halves(options_));
+}
+
+std::vector<float> DifferenceFilm::direct_variance(std::uint64_t samples, const std::vector<DirectPixel> &edges) const {
+    const GradientFilms films = this->films(samples);
+    const std::size_t pixels = session_.pixels();
+    std::vector<float> direct[2], primal(pixels);
+    for (int half = 0; half < 2; ++half) {
+        direct[half].resize(3 * pixels);
+        const GradientFilms of_half = films.half(half);
+        const PlaneSource mean = of_half.mean(GradientFilm::primal);
+        for (std::uint32_t c = 0; c < 3; ++c) {
+            float *plane = &direct[half][c * pixels];
+            film_.half_mean(half, samples, int(c), plane);
+            mean(c, primal.data());
+            for (std::size_t i = 0; i < pixels; ++i)
+                plane[i] -= primal[i];
+        }
+    }
+    const double share = double(films.half(0).samples()) / double(samples);
+    std::vector<float> variance = errors_of_halves(direct[0], direct[1], share).variance;
+    for (const DirectPixel &edge : edges)
+        for (std::size_t c = 0; c < 3; ++c)
+            variance[c * pixels + edge.pixel] = edge.variance[c];
+    return variance;
+}
+
 void DifferenceFilm::clear_slots() {
     for (const char *table : {"radiance", "feature", "direct", "prefix", "difference"})
         if (tables_->has(table))
@@ -136,6 +166,10 @@ Image DifferenceFilm::image(std::uint64_t samples, bool layers, bool last, std::
         keep_films_and(film_.table_names());
     Image whole = film_.image(samples, non_finite);
     lost_pixels_ = pixels_without_a_color(whole);
+    const std::vector<DirectPixel> &of_edges = edges(samples, last);
+    ErrorOfImage error;
+    if (tells_error())
+        error.direct_variance = direct_variance(samples, of_edges);
     if (last) {
         mean_ = mean_of(whole);
         keep_films_and({});
@@ -145,14 +179,14 @@ Image DifferenceFilm::image(std::uint64_t samples, bool layers, bool last, std::
     if (!solver_)
         solver_ =
             std::make_unique<PoissonSolver>(session_.device, session_.film.crop_width, session_.film.crop_height, 3);
-    relative_error_.reset();
     Image image = reconstruct(
-        session_.device, *solver_, std::move(whole), films(samples), edges(samples, last), options_, layers,
+        session_.device, *solver_, std::move(whole), films(samples), of_edges, options_, layers,
         [&] {
             if (last)
                 tables_->release_all_but({counts_});
         },
-        used_, tells_error_ && has_error_layer(options_, keeps_halves(options_)) ? &relative_error_ : nullptr);
+        used_, tells_error() ? &error : nullptr);
+    relative_error_ = error.relative;
     if (last) {
         solver_.reset();
         mean_.reset();

@@ -27,7 +27,7 @@ class DifferenceFilm {
     /// For strips that are whole frames: no differences are carried from one to the next. Before stages are built.
     void carry_nothing() { carry_.leave_out(); }
     /// For methods whose error is more than halves know.
-    void tell_no_error() { tells_error_ = false; }
+    void tell_no_error() { may_tell_error_ = false; }
     /// To be called once the tables are allocated; all is zero.
     void attach(Tables &tables);
 
@@ -57,6 +57,11 @@ class DifferenceFilm {
     /// What the camera sees of lights at their edges, for an image of so many samples. Images under way take that of a
     /// power of two, whichever were asked for before.
     const std::vector<DirectPixel> &edges(std::uint64_t samples, bool last);
+    /// Whether an image says its error.
+    bool tells_error() const;
+    /// The squared error of what the camera sees of lights, by pixel and channel: of edges as their rays tell, else as
+    /// both halves of the samples do.
+    std::vector<float> direct_variance(std::uint64_t samples, const std::vector<DirectPixel> &edges) const;
 
     Session &session_;
     const RenderOptions &options_;
@@ -72,7 +77,7 @@ class DifferenceFilm {
     double edge_seconds_ = 0;
     ReconstructionUsed used_;
     std::optional<Image> mean_; ///< while the last image is made, whose films go
-    bool tells_error_ = true;
+    bool may_tell_error_ = true;
     std::optional<double> relative_error_; ///< estimated, of the last image
     std::unique_ptr<PoissonSolver> solver_;
     std::shared_ptr<void> compilers_;   ///< from before the stages' kernels are compiled until the solver's are

@@ -166,15 +166,14 @@ void compile_reconstruction(Device &device, const RenderOptions &options, std::u
 
 Image reconstruct(Device &device, PoissonSolver &solver, Image whole, GradientFilms films,
                   const std::vector<DirectPixel> &edges, const RenderOptions &options, bool layers,
-                  const std::function<void()> &films_are_read, ReconstructionUsed &used,
-                  std::optional<double> *relative_error) {
+                  const std::function<void()> &films_are_read, ReconstructionUsed &used, ErrorOfImage *error) {
     used = reconstruction_used(options, films.samples(), films.pixels());
     take_primal_off(whole, films, edges);
     std::vector<Channel> more;
     if (layers)
         more = layers_of(whole, films, tells_variance(options));
     SquaredErrors errors;
-    const bool tells_error = relative_error && films.are_halves() && films.frames() >= 2;
+    const bool tells_error = error && films.are_halves() && films.frames() >= 2;
     if (needs_halves(options.reconstruction) && halves_have_variances(films.samples(), films.pixels()))
         reconstruct_from_halves(device, solver, whole, films, options, tells_error ? &errors : nullptr, films_are_read);
     else {
@@ -187,8 +186,11 @@ Image reconstruct(Device &device, PoissonSolver &solver, Image whole, GradientFi
         whole.channels.resize(3);
     whole.channels.insert(whole.channels.begin() + 3, std::make_move_iterator(more.begin()),
                           std::make_move_iterator(more.end()));
-    if (tells_error)
-        *relative_error = add_error_layer(whole, errors);
+    if (tells_error) {
+        for (std::size_t i = 0; i < errors.variance.size(); ++i)
+            errors.variance[i] += error->direct_variance[i];
+        error->relative = add_error_layer(whole, errors);
+    }
     return whole;
 }
 

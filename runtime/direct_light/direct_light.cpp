@@ -242,16 +242,25 @@ std::vector<DirectPixel> sample_direct_edges(const SceneTables &tables, const Fi
             return at;
         });
         for (std::size_t e = begin; e < end; ++e) {
-            double sum[3] = {};
-            for (std::size_t i = (e - begin) * count; i < (e - begin + 1) * count; ++i) {
-                sum[0] += double(weights[i]) * light[i].r;
-                sum[1] += double(weights[i]) * light[i].g;
-                sum[2] += double(weights[i]) * light[i].b;
-            }
             DirectPixel pixel;
             pixel.pixel = edges[e];
-            for (int c = 0; c < 3; ++c)
-                pixel.light[c] = static_cast<float>(sum[c] / count);
+            const std::size_t first = (e - begin) * count, middle = first + count / 2, last = first + count;
+            const auto add = [&](double(&sum)[3], std::size_t ray, std::size_t end) {
+                for (; ray < end; ++ray) {
+                    sum[0] += double(weights[ray]) * light[ray].r;
+                    sum[1] += double(weights[ray]) * light[ray].g;
+                    sum[2] += double(weights[ray]) * light[ray].b;
+                }
+            };
+            double sum[3] = {}, rest[3] = {};
+            add(sum, first, middle);
+            add(rest, middle, last);
+            const double share = double(middle - first) / count;
+            for (int c = 0; c < 3; ++c) {
+                const double apart = sum[c] / (share * count) - rest[c] / ((1 - share) * count);
+                pixel.variance[c] = static_cast<float>(share * (1 - share) * apart * apart);
+                pixel.light[c] = static_cast<float>((sum[c] + rest[c]) / count);
+            }
             found.push_back(pixel);
         }
         begin = end;

@@ -15,6 +15,8 @@ namespace gradus {
 struct DirectPixel {
     std::size_t pixel = 0; ///< of the crop, line by line
     std::array<float, 3> light{};
+    /// Of `light`, as its rays' first half and their second tell: these are one sequence, so rather more than in truth.
+    std::array<float, 3> variance{};
 };
 
 /// Finds the pixels in whose reach lights begin or end, by four rays through each that may see one (lit_rectangle.h),

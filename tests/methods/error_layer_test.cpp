@@ -3,6 +3,7 @@
 #include "runtime/error.h"
 #include "tests/methods/reference_scene.h"
 #include "tests/support/gradient_layers.h"
+#include "tests/support/small_scenes.h"
 #include "tests/support/stability.h"
 
 #include <gmock/gmock.h>
@@ -204,6 +205,40 @@ INSTANTIATE_TEST_SUITE_P(Reconstructions, ErrorOfRenders,
                                            RenderedErrors{"gpt", Reconstruction::weighted, 0.6, 1.3},
                                            RenderedErrors{"gpt", Reconstruction::guided, 0.4, 2.5},
                                            RenderedErrors{"pt", Reconstruction::guided, 0.4, 2.5}));
+
+/// Nothing but lamps that are seen: few, whose edges gpt samples anew, and so many that it does not.
+TEST(ErrorLayer, KnowsOfTheLightsThatAreSeen) {
+    for (const int lamps : {8, 200}) {
+        const auto scene = [&](std::uint64_t samples) {
+            SceneMaker maker(48, samples);
+            maker.scene.settings.max_depth = 1;
+            maker.look({0, 0, 3}, {0, 0, 0}, 40);
+            maker.environment(1); // in the dark a lamp that all samples missed would be most of relMSE
+            const std::uint32_t black = maker.material(diffuse(0));
+            std::mt19937 generator(7);
+            std::uniform_real_distribution<float> place(-1, 1);
+            for (int i = 0; i < lamps; ++i) {
+                const float x = place(generator), y = place(generator);
+                maker.sphere({x, y, 0}, 0.04f, black, maker.emitter(Emitter::Kind::area, {5, 5, 5}));
+            }
+            return maker.scene;
+        };
+        RenderOptions options;
+        options.seed = 100;
+        const Image truth = render(scene(1024), options, "pt").image;
+        constexpr int seeds = 3;
+        double told = 0, right = 0;
+        options.error = true;
+        for (options.seed = 1; options.seed <= seeds; ++options.seed) {
+            const Rendered rendered = render(scene(16), options, "gpt");
+            told += rendered.statistics.estimated_error.value() / seeds;
+            right += relative_mse(rendered.image, truth) / seeds;
+        }
+        std::printf("%d lamps: relMSE %.5f, told %.5f\n", lamps, right, told);
+        EXPECT_GT(told / right, 0.7);
+        EXPECT_LT(told / right, 4); // halves of one sequence of places differ by more than it is wrong
+    }
+}
 
 /// A render of a grey wall where one sample in two hundred is thirty times as bright: the image's mean after 16 and 32
 /// samples a pixel, and the estimate at 16.
