@@ -242,7 +242,7 @@ class RenderJob {
             progress_.update(now);
             if (record_.stopped_by == "error")
                 break;
-            if (is_over(0)) {
+            if (more && is_over(0)) {
                 record_.stopped_by = "time";
                 break;
             }
@@ -300,6 +300,13 @@ class RenderJob {
         }
     }
 
+    /// Radii are the only lengths there.
+    Statistics in_units_of_the_scene(Statistics statistics) const {
+        for (double *sum : {&statistics.radius_sum, &statistics.first_radii.sum, &statistics.last_radii.sum})
+            *sum /= own_scale_;
+        return statistics;
+    }
+
     /// An image as it is to be written: in the scene's own units, without what is no number, and with what made it.
     Image described(Image image, bool partial) {
         for (Channel &channel : image.channels)
@@ -336,7 +343,7 @@ class RenderJob {
     }
 
     void write_results(const Image &image) {
-        const Statistics statistics = prepared_.method->statistics();
+        const Statistics statistics = in_units_of_the_scene(prepared_.method->statistics());
         write_outputs(request_.outputs, image, image, [&] {
             record_.wall_seconds = seconds_since(job_start_);
             return statistics_to_json(record_, statistics);

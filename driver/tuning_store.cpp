@@ -65,7 +65,7 @@ nlohmann::json read_entries(const std::string &path) {
 
 std::string tuning_file() {
     const char *cache = std::getenv("XDG_CACHE_HOME"), *home = std::getenv("HOME");
-    if (cache && *cache)
+    if (cache && std::filesystem::path(cache).is_absolute()) // else not to be used
         return std::string(cache) + "/gradus/tuning.json";
     return home && *home ? std::string(home) + "/.cache/gradus/tuning.json" : "";
 }

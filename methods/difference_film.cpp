@@ -226,10 +226,10 @@ void DifferenceFilm::add_to(Statistics &statistics) const {
     statistics.stages.push_back({"edges of lights", edge_seconds_, 0, 0});
 }
 
-void DifferenceFilm::clear() {
+void DifferenceFilm::clear(std::uint64_t first_sample) {
     edge_rays_ = 0;
     edge_seconds_ = 0;
-    film_.clear();
+    film_.clear(first_sample);
     for (const std::string &name : film_names_)
         (*tables_)[name].clear();
 }

@@ -48,8 +48,10 @@ class DifferenceFilm {
     GradientFilms films(std::uint64_t samples) const;
     Image mean(std::uint64_t samples) const;
 
-    /// All sums and counts zero again. Edges of lights that have been sampled stay.
-    void clear();
+    /// All sums and counts zero again, of samples from this number on. Edges of lights that have been sampled stay.
+    void clear(std::uint64_t first_sample = 0);
+    /// What samples weigh.
+    const SharedWeights &weights() const { return film_.weights(); }
     /// Adds what sampling the edges of lights took, and how the last image was reconstructed.
     void add_to(Statistics &statistics) const;
 

@@ -423,7 +423,9 @@ void GradientPathTracer::restart(std::uint64_t first_sample, std::uint64_t sampl
     done_ = 0;
     total_ = session_.pixels() * samples_per_pixel;
     primaries_beside_ = 0;
-    film_.clear();
+    film_.clear(first_sample);
+    if (film_.weights().are_there()) // which start at a place of their own
+        stages_.set("shared_start", session_.numbers["shared_start"] = film_.weights().chosen_start());
     (*tables_)["outcome"].clear();
     statistics_ = Statistics();
     session_.rays.clear();

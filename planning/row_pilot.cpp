@@ -62,8 +62,10 @@ class BlockReader {
         const double values = 6 * double(columns);
         block.brightness /= values;
         block.primal /= values;
-        block.across /= values - (first + columns == width_ ? 6 : 0);
         block.down /= 0.5 * values;
+        // A last column by itself has no difference across.
+        const double values_across = values - (first + columns == width_ ? 6 : 0);
+        block.across = values_across > 0 ? block.across / values_across : block.down;
         return block;
     }
 

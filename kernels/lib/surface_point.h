@@ -17,7 +17,7 @@ typedef struct {
 } surface_point;
 
 #if TRAIT_INDEXED && TRAIT_ANISOTROPIC
-/* dp/du, of any length; zero where (u, v) do not tell. */
+/* dp/du, of any length; zero where (u, v) do not tell, or are not the file's. */
 GRADUS_FN vec3 tangent_of_corners(GRADUS_GLOBAL const real *vertices, uint unit, scene_triangle triangle) {
     const real u_0 = OF_VERTEX(vertices, triangle.corner_0, vertex_u);
     const real v_0 = OF_VERTEX(vertices, triangle.corner_0, vertex_v);
@@ -26,7 +26,8 @@ GRADUS_FN vec3 tangent_of_corners(GRADUS_GLOBAL const real *vertices, uint unit,
     const real u_2 = OF_VERTEX(vertices, triangle.corner_2, vertex_u) - u_0;
     const real v_2 = OF_VERTEX(vertices, triangle.corner_2, vertex_v) - v_0;
     const real determinant = u_1 * v_2 - u_2 * v_1;
-    const real sign = determinant == R(0) ? R(0) : r_copysign1(determinant); /* only the direction counts */
+    const int is_told = (determinant != R(0)) & (u_0 != (real)unit_first_u);
+    const real sign = is_told ? r_copysign1(determinant) : R(0); /* only the direction counts */
     return v3_scale(v3_mad(v3_scale(triangle.e1, v_2), -v_1, triangle.e2), sign);
 }
 #endif

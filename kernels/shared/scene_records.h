@@ -147,6 +147,10 @@
     FIELD(camera, lens_up_z, "")                                                                                       \
     FIELD(camera, inverse_focus, "one over the distance of the plane of focus along forward")
 
+/* Where a mesh has no (u, v), corners of its triangles have those of the unit triangle, (0, 0), (1, 0) and (0, 1). In
+ * place of the first 0 is this, which is as good: so they tell no direction of dp/du. */
+#define unit_first_u 0x1p-100f
+
 GRADUS_LIB_BEGIN
 
 #define GRADUS_RECORD_INDEX(record, field, text) record##_##field,

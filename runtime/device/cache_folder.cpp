@@ -109,7 +109,7 @@ fs::path program_cache_folder() {
         const std::string folder = variable("GRADUS_CACHE_DIR");
         return folder.empty() || folder == "off" ? fs::path() : fs::absolute(folder);
     }
-    if (const std::string cache = variable("XDG_CACHE_HOME"); !cache.empty())
+    if (const std::string cache = variable("XDG_CACHE_HOME"); fs::path(cache).is_absolute()) // else not to be used
         return fs::path(cache) / "gradus" / "programs";
     const std::string home = variable("HOME");
     return home.empty() ? fs::path() : fs::path(home) / ".cache" / "gradus" / "programs";

@@ -29,6 +29,16 @@ constexpr const char *suffix = ".program", *alias_suffix = ".alias", *unfinished
 /// The name of a file is one hash of its key, its head holds another: a file that was renamed is seen.
 constexpr std::uint64_t seed_in_name = 1, seed_in_head = 2, seed_of_content = 3;
 
+/// Whether a file of that name is one of the store's, written or being written: others may lie in its folder.
+bool is_ours(std::string_view name) {
+    const std::size_t digits = std::min(name.find_first_not_of("0123456789abcdef"), name.size());
+    if (digits != 2 * sizeof(Hash128))
+        return false;
+    name.remove_prefix(digits);
+    name = name.substr(0, name.find(unfinished));
+    return name == suffix || name == alias_suffix;
+}
+
 void write_hash(ByteWriter &writer, const Hash128 &hash) {
     writer.number(hash.low);
     writer.number(hash.high);
@@ -172,8 +182,8 @@ void ProgramStore::trim() const {
     const auto now = fs::file_time_type::clock::now();
     for (fs::directory_iterator file(folder_, failure), end; !failure && file != end; file.increment(failure)) {
         const std::string name = file->path().filename().string();
-        if (name.find(suffix) == std::string::npos && name.find(alias_suffix) == std::string::npos)
-            continue; // not ours
+        if (!is_ours(name))
+            continue;
         std::error_code gone;
         const auto used = fs::last_write_time(file->path(), gone);
         const std::uint64_t bytes = gone ? 0 : fs::file_size(file->path(), gone);

@@ -155,9 +155,8 @@ void add_normal_map(const NormalTexture &map, SceneTables &tables) {
 } // namespace
 
 void add_triangle_texcoords(const Mesh &mesh, const std::array<std::uint32_t, 3> &triangle, SceneTables &tables) {
-    constexpr std::array<float, 2> unit[] = {{0, 0}, {1, 0}, {0, 1}};
     for (std::size_t corner = 0; corner < 3; ++corner) {
-        const auto &[u, v] = mesh.texcoords.empty() ? unit[corner] : mesh.texcoords[triangle[corner]];
+        const auto &[u, v] = mesh.texcoords.empty() ? unit_texcoords[corner] : mesh.texcoords[triangle[corner]];
         tables.triangle_texcoords.insert(tables.triangle_texcoords.end(), {u, v});
     }
 }

@@ -63,6 +63,8 @@ int indexed_trait(const TraitMap &traits, std::size_t triangles) {
     return 3 + (traits.at("TRAIT_SHADING_NORMALS") ? 3 : 0) + (has_uv(traits) ? 2 : 0);
 }
 
+const std::array<std::array<float, 2>, 3> unit_texcoords = {{{unit_first_u, 0}, {1, 0}, {0, 1}}};
+
 bool has_own_vertices(const Scene &scene, const Shape &shape) {
     bool is_textured = false;
     for_each_texture(scene, shape, [&](std::int32_t texture) {
@@ -132,12 +134,11 @@ void add_vertices(const Scene &scene, int numbers, SceneTables &tables) {
         });
         const std::size_t count = table_vertex_count(scene, shape);
         for_each_in_parallel(count, [&](std::size_t i) {
-            constexpr std::array<float, 2> unit[] = {{0, 0}, {1, 0}, {0, 1}};
             float *record = &tables.triangles[(vertex + i) * places.numbers];
             if (own)
-                places.put(mesh, mesh.triangles[i / 3][i % 3], unit[i % 3], record);
+                places.put(mesh, mesh.triangles[i / 3][i % 3], unit_texcoords[i % 3], record);
             else
-                places.put(mesh, i, mesh.texcoords.empty() ? unit[0] : mesh.texcoords[i], record);
+                places.put(mesh, i, mesh.texcoords.empty() ? unit_texcoords[0] : mesh.texcoords[i], record);
         });
         corners += 3 * mesh.triangles.size();
         vertex += count;

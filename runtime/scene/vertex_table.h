@@ -26,6 +26,9 @@ int indexed_trait(const TraitMap &traits, std::size_t triangles);
 /// Lays out the indices and vertices of all meshes, in the order of the shapes, and instances behind them.
 void add_vertices(const Scene &scene, int numbers, SceneTables &tables);
 
+/// (u, v) of a triangle of a mesh that has none.
+extern const std::array<std::array<float, 2>, 3> unit_texcoords;
+
 /// Where (u, v) is read of a mesh that has none, each triangle has those of the unit triangle, and so vertices of its
 /// own: three for each, in their order.
 bool has_own_vertices(const Scene &scene, const Shape &shape);

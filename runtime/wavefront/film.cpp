@@ -116,7 +116,8 @@ void Film::attach(Tables &tables) {
     clear();
 }
 
-void Film::clear() {
+void Film::clear(std::uint64_t first_sample) {
+    weights_.begin_at(first_sample);
     std::vector<std::string> names = table_names();
     names.emplace_back("splat_film");
     for (const std::string &name : names)

@@ -38,8 +38,8 @@ class Film {
     /// What its samples weigh.
     const SharedWeights &weights() const { return weights_; }
 
-    /// All zero again, splats too.
-    void clear();
+    /// All zero again, splats too. Samples are those from this number on.
+    void clear(std::uint64_t first_sample = 0);
 
     /// The tables that image() reads, but for splats.
     std::vector<std::string> table_names() const;

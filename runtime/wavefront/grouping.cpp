@@ -9,8 +9,15 @@ Grouping::Grouping(const Session &session, Stages &stages, const std::string &na
 
 TableList Grouping::tables() const {
     TableList list = partition_.tables(bins_);
-    for (const char *table : {"_bin", "_index", "_chunk_offset"}) // a chunk has many rows, so the last is large enough
+    for (const char *table : {"_bin", "_index"})
         list.push_back({.name = name_ + table, .rows = rows_of_, .multiple = multiple_, .is_uint = true});
+    // All bins of each chunk: a chunk has more rows than there are bins, and where rows are less than a chunk there are
+    // still those of a line of memory.
+    const std::uint32_t lines = (bins_ + odd_lines(1) - 1) / odd_lines(1);
+    list.push_back({.name = name_ + "_chunk_offset",
+                    .rows = rows_of_,
+                    .multiple = lines <= multiple_ ? multiple_ : multiple_ + lines,
+                    .is_uint = true});
     return list;
 }
 

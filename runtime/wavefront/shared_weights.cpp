@@ -20,8 +20,14 @@ constexpr double least_share = 0.4;
 SharedWeights::SharedWeights(const Session &session)
     : session_(session), are_there_(session.has("TRAIT_SHARED_JITTER") && session.has("TRAIT_FILTER_SIGNED")) {}
 
+void SharedWeights::begin_at(std::uint64_t first_frame) {
+    first_frame_ = first_frame;
+    weights_.clear();
+}
+
 /// As kernels/stages/camera.cl draws it.
 double SharedWeights::weight(std::uint64_t frame, std::uint32_t start_number) const {
+    frame += first_frame_;
     // Where parts are more than two, each has a sequence of its own (kernels/lib/sample_number.h).
     const int bits = session_.traits.at("TRAIT_PART_BITS");
     const std::uint64_t number = bits > 1 ? frame >> bits | frame << (64 - bits) : frame;

@@ -16,6 +16,9 @@ class SharedWeights {
     /// Reads the scene's tables, which must live as long.
     explicit SharedWeights(const Session &session);
 
+    /// Frames are those from this number on; from 0 at first.
+    void begin_at(std::uint64_t first_frame);
+
     /// Whether frames weigh other than 1.
     bool are_there() const { return are_there_; }
     /// What the frames of a part weigh among the first `frames` ones, at least least_share of their number: few frames
@@ -27,10 +30,12 @@ class SharedWeights {
     std::uint32_t chosen_start() const;
 
   private:
+    /// Of a frame, counted from the first.
     double weight(std::uint64_t frame, std::uint32_t start) const;
 
     const Session &session_;
     bool are_there_;
+    std::uint64_t first_frame_ = 0;
     mutable std::vector<double> weights_; ///< of the first frames, as far as they have been asked for
 };
 

@@ -168,12 +168,19 @@ TEST_F(Store, StaysBelowItsLimit) {
     put_aged("c", 3);
     put_aged("d", 2);
     ASSERT_TRUE(small.find("a")) << "now it was used last";
-    std::ofstream(folder / "not ours") << std::string(9000, 'x');
+    const std::string number = small.file_of("a").stem();
+    const std::vector<std::string> others = {"not ours",           ".alias",         "notes.program.tar",
+                                             number + ".program~", "x.unfinished-1", number + "0.program"};
+    for (const std::string &name : others) {
+        std::ofstream(folder / name) << std::string(9000, 'x');
+        fs::last_write_time(folder / name, fs::file_time_type::clock::now() - std::chrono::hours(9));
+    }
     small.trim();
     EXPECT_FALSE(small.find("b"));
     EXPECT_TRUE(small.find("a"));
     EXPECT_TRUE(small.find("d"));
-    EXPECT_TRUE(fs::exists(folder / "not ours"));
+    for (const std::string &name : others)
+        EXPECT_TRUE(fs::exists(folder / name)) << name;
 }
 
 TEST_F(Store, DeletesWhatAKilledProcessLeft) {

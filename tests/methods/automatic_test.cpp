@@ -286,6 +286,29 @@ TEST(RowPilot, RendersRowsOfTheImage) {
     }
 }
 
+/// Samples of a pilot have numbers of their own, and so weights, where these may be negative: what is as bright
+/// everywhere is so in its image, too.
+TEST(Pilot, IsAsBrightAsTheImage) {
+    for (const auto filter : {FilmSettings::Filter::lanczos, FilmSettings::Filter::mitchell})
+        for (const std::uint64_t seed : {0, 1, 3}) {
+            SceneMaker maker(8, 4);
+            maker.look({0, 0, 3}, {0, 0, 0}, 40);
+            maker.environment(0.5);
+            maker.scene.film.filter = filter;
+            maker.scene.film.filter_radius = filter == FilmSettings::Filter::lanczos ? 3 : 2;
+            RenderOptions options;
+            options.seed = seed;
+            GradientPathTracer method(shared_device(), maker.scene, options);
+            for (const std::uint64_t first :
+                 {std::uint64_t(1) << 62, (std::uint64_t(1) << 62) + (std::uint64_t(1) << 32)}) {
+                method.restart(first, 4);
+                while (method.render_batch()) {
+                }
+                EXPECT_NEAR(method.mean_image().find("G")->values[0], 0.5, 1e-5) << seed << " from " << first;
+            }
+        }
+}
+
 /// The image is that of the method, for every batch size and number of threads, and so are the estimates.
 void expect_choice(const Scene &scene, const std::string &method) {
     RenderOptions options;

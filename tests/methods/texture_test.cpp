@@ -190,6 +190,15 @@ TEST(Textures, AreReadByIndexAlike) {
     maker.parallelogram({0.25f, 0.25f, 0.25f}, {1, 0, 0}, {0, 1, 0.25f}, textured_again);
     maker.scene.meshes.back().texcoords.clear();
     maker.scene.meshes.back().normals.assign(4, {0, -0.6f, 0.8f});
+    Bsdf brushed = rough_metal(0.1);
+    brushed.alpha_v = 0.5f;
+    brushed.specular_reflectance = textured(maker, random_texture());
+    for (const bool has_texcoords : {false, true}) {
+        maker.parallelogram({-1, has_texcoords ? 0 : 0.9f, 0.25f}, {0.8f, 0, 0}, {0, 0.8f, 0.25f},
+                            maker.material(brushed));
+        if (!has_texcoords)
+            maker.scene.meshes.back().texcoords.clear();
+    }
     RenderOptions options = exact_options();
     options.aov = true;
     const Image by_record = render(maker.scene, options).image;

@@ -1,4 +1,5 @@
 // The counting sort against std::stable_sort, by the bins of `classify`.
+#include "runtime/wavefront/grouping.h"
 #include "runtime/wavefront/wavefront.h"
 
 #include "runtime/device/opencl.h"
@@ -184,6 +185,23 @@ INSTANTIATE_TEST_SUITE_P(Devices, Partition, ::testing::Bool(),
                          [](const auto &info) { return info.param ? "processor" : "elsewhere"; });
 
 // Phases are bins of kinds, one after the other, behind those of paths that escaped.
+/// However few rows: counts of all bins of a chunk, as in a crop of one pixel of a scene of many BSDF kinds.
+TEST(GroupingOf, FewRowsHasRoomForManyBins) {
+    Device device;
+    Session session(device, scene_of(1), {}, {});
+    for (const std::uint32_t bins : {2u, 17u, 19u, 100u})
+        for (const std::uint32_t multiple : {1u, 4u})
+            for (const std::uint32_t rows : {odd_lines(1), odd_lines(partition_chunk + 1), odd_lines(100000)}) {
+                Stages stages;
+                for (const TableDeclaration &table :
+                     Grouping(session, stages, "group", bins, RowsOf::slot, multiple).tables())
+                    if (table.name == "group_chunk_offset") {
+                        EXPECT_GE(rows * table.multiple, bins * chunks_of(rows * multiple))
+                            << bins << " bins of " << multiple << " x " << rows << " rows";
+                    }
+            }
+}
+
 TEST(HitsOf, PhasesLieBehindEachOther) {
     const BinLayout layout = {.escaped = 2, .phases = 3, .kinds = 2};
     ASSERT_EQ(layout.bins(), 14u);
