@@ -103,6 +103,11 @@ void find_sample_counts(const CompareRequest &request, const std::vector<Image> 
         result.samples_per_pixel = least;
     }
     result.reference_spp = request.reference_spp > 0 ? request.reference_spp : stated_samples(reference);
+    const auto sampler = images[0].metadata.find("sampler");
+    if (images.size() == 1 && result.variance_given && sampler != images[0].metadata.end() &&
+        sampler->second == "sobol" && result.samples_per_pixel < result.reference_spp)
+        result.notes.push_back("of Sobol samples few have more variance than the reference's tells, which falls faster "
+                               "than 1 / n: z scores are too large; give images of several seeds");
     if (result.variance_given && (result.samples_per_pixel <= 0 || result.reference_spp <= 0))
         result.notes.push_back(fmt::format("the reference's variance is no floor for ours: {} not known (give {})",
                                            result.reference_spp <= 0 ? "its sample count is" : "our sample count is",

@@ -4,6 +4,7 @@
 #include "driver/scene_summary.h"
 #include "methods/method.h"
 #include "runtime/error.h"
+#include "runtime/wavefront/sample_parts.h"
 
 #include <fmt/format.h>
 
@@ -82,17 +83,19 @@ std::uint64_t address_space_bytes(int threads) {
 
 std::uint64_t bytes_of_pixel(const std::string &method, const RenderOptions &options, std::uint64_t samples_per_pixel) {
     // As renders of growing size allocate (tests/driver/memory_check_test.cpp): films, or, where images are
-    // reconstructed, rather the solver. Features and variances are most of --aov.
-    const bool is_guided = options.reconstruction == Reconstruction::guided;
+    // reconstructed, rather the solver. Films of replicates, which tell variances, are most of --aov.
+    const bool is_guided = options.reconstruction == Reconstruction::guided, has_parts = has_replicates(options);
     if (method == "sppm")
-        return options.aov ? 164 : 28;
+        return tells_variance(options) ? 164 : options.aov ? 106 : 28;
     if (method == "gpt" || method == "gpm")
-        return options.aov                                    ? 570
+        return has_parts                                      ? 570
                : !keeps_halves(options)                       ? 185
                : !halves_have_variances(samples_per_pixel, 1) ? 240 // the films: there is none but L1
                : is_guided                                    ? 480
                                                               : 330;
-    return is_guided ? 300 : options.aov ? 140 : options.error ? 56 : 28;
+    if (is_guided)
+        return samples_per_pixel >= 2 ? 300 : 106; // of one sample it is the mean
+    return has_parts ? 140 : options.aov ? 80 : options.error ? 56 : 28;
 }
 
 std::uint64_t least_render_bytes(const Scene &scene, const std::string &method, const RenderOptions &options) {

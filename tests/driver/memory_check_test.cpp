@@ -18,11 +18,14 @@ struct MemoryCase {
     Reconstruction reconstruction = Reconstruction::weighted;
     bool aov = false, error = false;
     std::uint64_t samples = 4; ///< of each pixel
+    bool variance = true;      ///< with aov
+    SessionOptions::Sampler sampler = SessionOptions::Sampler::sobol;
 };
 
 std::ostream &operator<<(std::ostream &out, const MemoryCase &c) {
     return out << c.method << '_' << reconstruction_name(c.reconstruction) << (c.aov ? "_aov" : "")
-               << (c.error ? "_error" : "") << '_' << c.samples;
+               << (c.error ? "_error" : "") << '_' << c.samples << (c.variance ? "" : "_no_variance")
+               << (c.sampler == SessionOptions::Sampler::sobol ? "" : "_independent");
 }
 
 RenderOptions options_of(const MemoryCase &c) {
@@ -30,6 +33,8 @@ RenderOptions options_of(const MemoryCase &c) {
     options.reconstruction = c.reconstruction;
     options.aov = c.aov;
     options.error = c.error;
+    options.variance = c.variance;
+    options.sampler = c.sampler;
     options.batch_size = 2048;
     options.photons = 1000;
     return options;
@@ -61,18 +66,21 @@ TEST_P(BytesOfPixel, AreWhatRendersAllocate) {
     EXPECT_GE(told, growth * 0.8) << "renders that do not fit would be begun";
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, BytesOfPixel,
-                         ::testing::Values(MemoryCase{"pt"}, MemoryCase{"pt", Reconstruction::weighted, true},
-                                           MemoryCase{"pt", Reconstruction::weighted, false, true},
-                                           MemoryCase{"pt", Reconstruction::guided},
-                                           MemoryCase{"gpt", Reconstruction::l1}, MemoryCase{"gpt"},
-                                           MemoryCase{"gpt", Reconstruction::guided},
-                                           MemoryCase{"gpt", Reconstruction::weighted, false, false, 1},
-                                           MemoryCase{"gpt", Reconstruction::weighted, true}, MemoryCase{"sppm"},
-                                           MemoryCase{"sppm", Reconstruction::weighted, true},
-                                           MemoryCase{"gpm", Reconstruction::l1}, MemoryCase{"gpm"},
-                                           MemoryCase{"gpm", Reconstruction::guided},
-                                           MemoryCase{"gpm", Reconstruction::weighted, true}));
+INSTANTIATE_TEST_SUITE_P(
+    Methods, BytesOfPixel,
+    ::testing::Values(
+        MemoryCase{"pt"}, MemoryCase{"pt", Reconstruction::weighted, true},
+        MemoryCase{"pt", Reconstruction::weighted, false, true}, MemoryCase{"pt", Reconstruction::guided},
+        MemoryCase{"gpt", Reconstruction::l1}, MemoryCase{"gpt"}, MemoryCase{"gpt", Reconstruction::guided},
+        MemoryCase{"gpt", Reconstruction::weighted, false, false, 1}, MemoryCase{"gpt", Reconstruction::weighted, true},
+        MemoryCase{"gpt", Reconstruction::weighted, true, false, 4, false},
+        MemoryCase{"gpt", Reconstruction::l1, true, false, 4, false},
+        MemoryCase{"pt", Reconstruction::weighted, true, false, 4, false},
+        MemoryCase{"pt", Reconstruction::weighted, true, false, 4, true, SessionOptions::Sampler::independent},
+        MemoryCase{"pt", Reconstruction::guided, false, false, 1},
+        MemoryCase{"sppm", Reconstruction::weighted, true, false, 4, false}, MemoryCase{"sppm"},
+        MemoryCase{"sppm", Reconstruction::weighted, true}, MemoryCase{"gpm", Reconstruction::l1}, MemoryCase{"gpm"},
+        MemoryCase{"gpm", Reconstruction::guided}, MemoryCase{"gpm", Reconstruction::weighted, true}));
 
 } // namespace
 } // namespace gradus::testing
