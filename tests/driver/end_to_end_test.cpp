@@ -358,14 +358,16 @@ class EndToEndPhotons : public EndToEnd {
         std::ofstream(folder / "ball.xml")
             << "<scene version=\"3.0.0\">"
             << "<sensor type=\"perspective\"><transform name=\"to_world\">"
-            << "<lookat origin=\"0, 0, 4\" target=\"0, 0, 0\" up=\"0, 1, 0\"/>"
-            << "</transform></sensor>" << light << "<shape type=\"sphere\">" << bsdf << "</shape></scene>";
+            << "<lookat origin=\"0, 0, " << 4 * size << "\" target=\"0, 0, 0\" up=\"0, 1, 0\"/>"
+            << "</transform></sensor>" << light << "<shape type=\"sphere\"><float name=\"radius\" value=\"" << size
+            << "\"/>" << bsdf << "</shape></scene>";
         more.insert(more.begin(), {"render", "ball.xml", "-o", "out.exr", "--method", method, "--size", "16x16",
                                    "--spp", "3", "--photons", "500"});
         return run(more);
     }
     const std::string light = "<emitter type=\"constant\"/>", gray = "<bsdf type=\"diffuse\"/>";
     std::string method = "sppm";
+    double size = 1; // the ball's radius
     const std::string metal = "<bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"0.02\"/></bsdf>";
 };
 
@@ -424,6 +426,24 @@ TEST_F(EndToEndPhotons, StatisticsSayWhatIsGathered) {
     EXPECT_NEAR(gathering.at("relative_variance"), sum, 1e-5 * sum);
     EXPECT_TRUE(gathering.at("relative_squared_bias").is_number());
     EXPECT_NE(image.find("bias.G"), nullptr);
+}
+
+/// Also where the scene is rendered in another unit.
+TEST_F(EndToEndPhotons, StatisticsHaveTheUnitOfTheScene) {
+    const std::vector<std::string> names = {"mean_radius", "mean_radius_of_first_pass", "mean_radius_of_last_pass"};
+    std::vector<double> radii;
+    for (const double unit : {1.0, 1e7}) {
+        size = unit;
+        const Outcome outcome = render_ball(gray, light, {"--stats", "-"});
+        ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+        const nlohmann::json gathering = nlohmann::json::parse(outcome.out).at("gathering");
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            const double radius = gathering.at(names[i]).get<double>() / unit;
+            if (radii.size() < names.size())
+                radii.push_back(radius);
+            EXPECT_NEAR(radius, radii[i], 1e-3 * radii[i]) << names[i];
+        }
+    }
 }
 
 TEST_F(EndToEndPhotons, InspectSaysWhatIsGathered) {
