@@ -357,8 +357,9 @@ class EndToEndPhotons : public EndToEnd {
     Outcome render_ball(const std::string &bsdf, const std::string &light, std::vector<std::string> more = {}) const {
         std::ofstream(folder / "ball.xml")
             << "<scene version=\"3.0.0\">"
-            << "<sensor type=\"perspective\"><transform name=\"to_world\">"
-            << "<lookat origin=\"0, 0, " << 4 * size << "\" target=\"0, 0, 0\" up=\"0, 1, 0\"/>"
+            << "<sensor type=\"perspective\"><float name=\"far_clip\" value=\"" << 10 * size
+            << "\"/><transform name=\"to_world\"><lookat origin=\"0, 0, " << 4 * size
+            << "\" target=\"0, 0, 0\" up=\"0, 1, 0\"/>"
             << "</transform></sensor>" << light << "<shape type=\"sphere\"><float name=\"radius\" value=\"" << size
             << "\"/>" << bsdf << "</shape></scene>";
         more.insert(more.begin(), {"render", "ball.xml", "-o", "out.exr", "--method", method, "--size", "16x16",
