@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <csignal>
 #include <cstddef>
 #include <cstring>
@@ -30,6 +31,7 @@ struct sigaction before[watched_count];
 
 // Gives the default action back to every signal but those that were ignored, so that the next one ends the process.
 void on_signal(int) {
+    const int error = errno; // of the code that it came between
     interrupted = 1;
     const char *const line = answer_line;
     if (line && write(STDERR_FILENO, line, std::strlen(line)) < 0)
@@ -39,6 +41,7 @@ void on_signal(int) {
     for (std::size_t i = 0; i < watched_count; ++i)
         if (!was_ignored[i])
             sigaction(watched[i], &standard, nullptr);
+    errno = error;
 }
 
 } // namespace

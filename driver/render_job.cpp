@@ -189,6 +189,8 @@ class RenderJob {
         return prepared_.method->done_samples() < std::min(pixels(), prepared_.method->total_samples());
     }
 
+    bool is_done() const { return prepared_.method->done_samples() >= prepared_.method->total_samples(); }
+
     /// Whether the time is over. An image with holes, or none, is of no use, so a sample of each pixel is waited for,
     /// but not for ever.
     bool is_over(double patience) const {
@@ -242,7 +244,7 @@ class RenderJob {
             progress_.update(now);
             if (record_.stopped_by == "error")
                 break;
-            if (more && is_over(0)) {
+            if (!is_done() && is_over(0)) {
                 record_.stopped_by = "time";
                 break;
             }
@@ -353,6 +355,10 @@ class RenderJob {
                                           statistics.non_finite));
         if (!statistics.reconstruction.note.empty())
             progress_.message("gradus: warning: " + statistics.reconstruction.note);
+        if (services_.programs_not_kept() > 0)
+            progress_.message(fmt::format("gradus: warning: not all kernels could be kept in '{}', so the next render "
+                                          "compiles them again: is the disk full?",
+                                          services_.cache_folder().string()));
         if (black_pixels_ > 0)
             print_message(fmt::format("gradus: error: {} pixels have a value that is NaN or infinite, which the image "
                                       "holds as 0, or as their neighbours have it: the scene's numbers are too large "

@@ -106,7 +106,7 @@ GradientPhotonMapper::GradientPhotonMapper(Device &device, const Scene &scene, c
     if (has_chains())
         manifold_walk_.emplace(session_, stages_, WalkSettings{.most_vertices = most_inner});
     const std::vector<std::string> &kinds = session_.scene.kinds;
-    session_.add_scene_buffer("material_bin", bins_of_kinds(scene, kinds));
+    session_.add_scene_buffer("bin_of_material", bins_of_kinds(scene, kinds));
     session_.add_scene_buffer("leaving_bin", bins_of_leaving(scene, kinds, options));
     session_.add_scene_buffer("walked_kind", kinds_for_walks(scene, options.gather_roughness));
     statistics_.surfaces = gathering_surfaces(scene, options.gather_roughness);

@@ -26,7 +26,7 @@ class PhotonPairs {
     /// it, and each has its launches.
     static constexpr std::uint32_t least_batch = 8192;
 
-    /// Declares the stages that list pairs and sum over them. `Session::numbers` gets "pair_rows" in attach().
+    /// Declares the stages that list pairs and sum over them.
     /// indexed: find() is asked for places in the table `gather_index`, which has rows of `gather`, not for such rows.
     PhotonPairs(Stages &stages, bool indexed = false);
 

@@ -154,7 +154,8 @@ fs::path compile_worker_program() {
 double compile_limit() {
     const char *chosen = std::getenv("GRADUS_COMPILE_LIMIT");
     const double seconds = chosen ? std::strtod(chosen, nullptr) : 0;
-    return seconds > 0 ? seconds : 120;
+    constexpr double most = 1e6; // days, which no type of a limit is too short for
+    return seconds > 0 ? std::min(seconds, most) : 120;
 }
 
 CompileWorkers::CompileWorkers() = default;

@@ -5,6 +5,7 @@
 #include "runtime/device/needed_source.h"
 #include "runtime/device/program_key.h"
 #include "runtime/error.h"
+#include "runtime/seconds_since.h"
 
 #include <algorithm>
 #include <atomic>
@@ -25,8 +26,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 using Shared = std::shared_ptr<const BuiltProgram>;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 /// Programs that this call makes, while others that ask for them wait.
 class Claims {

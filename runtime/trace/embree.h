@@ -8,7 +8,17 @@
 #include <embree4/rtcore.h>
 #endif
 
+#include <limits>
+
 namespace gradus {
+
+/// Ends the rays of a packet before they begin whose lane of `valid` is not -1. On processors without AVX-512, where
+/// Embree 3.13 has no packets of 16 itself, it does not look at `valid` and traces all rays of some length.
+template <class Ray>
+void end_invalid_rays(const int *valid, Ray &rays) {
+    for (int lane = 0; lane < 16; ++lane)
+        rays.tfar[lane] = valid[lane] != 0 ? rays.tfar[lane] : -std::numeric_limits<float>::infinity();
+}
 
 #if GRADUS_EMBREE == 3
 
@@ -24,12 +34,14 @@ struct RayQuery {
 };
 
 inline void intersect(RTCScene scene, RayQuery &query, RTCRayHit &ray) { rtcIntersect1(scene, &query.context, &ray); }
-/// Of the packet's rays those whose lane of `valid` is -1.
+/// Of the packet's rays those whose lane of `valid` is -1. The others' ends are lost.
 inline void intersect(const int *valid, RTCScene scene, RayQuery &query, RTCRayHit16 &rays) {
+    end_invalid_rays(valid, rays.ray);
     rtcIntersect16(valid, scene, &query.context, &rays);
 }
 inline void occlude(RTCScene scene, RayQuery &query, RTCRay &ray) { rtcOccluded1(scene, &query.context, &ray); }
 inline void occlude(const int *valid, RTCScene scene, RayQuery &query, RTCRay16 &rays) {
+    end_invalid_rays(valid, rays);
     rtcOccluded16(valid, scene, &query.context, &rays);
 }
 
@@ -55,10 +67,12 @@ inline void intersect(RTCScene scene, RayQuery &query, RTCRayHit &ray) {
     rtcIntersect1(scene, &ray, &query.intersecting);
 }
 inline void intersect(const int *valid, RTCScene scene, RayQuery &query, RTCRayHit16 &rays) {
+    end_invalid_rays(valid, rays.ray);
     rtcIntersect16(valid, scene, &rays, &query.intersecting);
 }
 inline void occlude(RTCScene scene, RayQuery &query, RTCRay &ray) { rtcOccluded1(scene, &ray, &query.occluding); }
 inline void occlude(const int *valid, RTCScene scene, RayQuery &query, RTCRay16 &rays) {
+    end_invalid_rays(valid, rays);
     rtcOccluded16(valid, scene, &rays, &query.occluding);
 }
 

@@ -95,9 +95,11 @@ void Tables::grow(const std::string &name, std::uint32_t multiple) {
     if (!entry.declaration.grows || entry.declaration.alternates)
         throw std::logic_error("the table " + name + " does not grow");
     const std::size_t element = element_bytes(entry.declaration, precision_), before = rows_of(name) * element;
-    entry.declaration.multiple = multiple;
+    TableDeclaration declaration = entry.declaration;
+    declaration.multiple = multiple;
+    Buffer grown(device_, name, table_bytes(declaration, rows_, precision_));
+    entry.declaration = std::move(declaration);
     const std::size_t after = rows_of(name) * element;
-    Buffer grown(device_, name, table_bytes(entry.declaration, rows_, precision_));
     {
         const auto from = entry.buffer[0].map(Access::read), to = grown.map(Access::write);
         for (std::size_t column = 0; column < entry.declaration.columns; ++column)

@@ -104,6 +104,13 @@ TEST_F(CommandLine, WarmNamesTheKernels) {
         EXPECT_EQ(run({"warm", "scene.xml"}).exit_code, exit_code) << folder;
     }
     unsetenv("FAKE_CACHE");
+    // A full disk ends it, and is no error of a render, which says why it will be slow again.
+    setenv("FAKE_FULL_DISK", "yes", 1);
+    EXPECT_EQ(run({"warm", "scene.xml"}).exit_code, 5);
+    const Outcome render = run({"render", "scene.xml", "-o", "out.exr"});
+    EXPECT_EQ(render.exit_code, 0);
+    EXPECT_THAT(render.err, HasSubstr("not all kernels could be kept"));
+    unsetenv("FAKE_FULL_DISK");
     // What a render would refuse or warn of.
     EXPECT_EQ(run({"warm", "scene.xml", "--method", "pt", "--alpha", "0.5"}).exit_code, 2);
     EXPECT_EQ(run({"warm", "scene.xml", "--guide", "filter"}).exit_code, 2);

@@ -190,7 +190,7 @@ int main(int argc, char **argv) {
     services.load_scene = gradus::load_fake_scene;
     services.list_devices = [] { return std::vector<gradus::DeviceDescription>(); };
     services.method_names = [] { return std::vector<std::string>{"pt", "gpt", "sppm", "gpm", "auto"}; };
-    services.programs_not_kept = [] { return std::uint64_t(0); };
+    services.programs_not_kept = [] { return std::uint64_t(std::getenv("FAKE_FULL_DISK") ? 1 : 0); };
     services.cache_folder = [] {
         const char *folder = std::getenv("FAKE_CACHE");
         return folder ? std::filesystem::path(folder) : std::filesystem::temp_directory_path();

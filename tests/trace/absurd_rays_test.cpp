@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "runtime/trace/embree.h"
 #include "runtime/trace/tracer.h"
 
 #include "kernels/shared/tables.h"
@@ -49,6 +50,19 @@ TEST(AbsurdRays, MeetNothingAndHarmNone) {
         EXPECT_EQ(primitive[i], i % 2 == 0 ? 0u : ray_escaped) << i;
         EXPECT_EQ(open[i], 0u) << i;
     }
+}
+
+/// As AbsurdRays needs it on processors without AVX-512.
+TEST(InvalidRays, EndBeforeTheyBegin) {
+    RTCRay16 packet{};
+    int valid[16];
+    for (int lane = 0; lane < 16; ++lane) {
+        packet.tfar[lane] = float(lane);
+        valid[lane] = lane % 3 == 0 ? -1 : 0;
+    }
+    end_invalid_rays(valid, packet);
+    for (int lane = 0; lane < 16; ++lane)
+        EXPECT_EQ(packet.tfar[lane], valid[lane] ? float(lane) : -std::numeric_limits<float>::infinity()) << lane;
 }
 
 } // namespace
