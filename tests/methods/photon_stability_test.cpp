@@ -1,4 +1,5 @@
 // Photon mapping where it is at its worst: for each case a small scene whose light is known, or found by path tracing.
+#include "methods/photons/pass_photons.h"
 #include "tests/methods/photon_case.h"
 #include "tests/methods/photon_scenes.h"
 #include "tests/methods/reference_scene.h"
@@ -282,8 +283,10 @@ TEST(PhotonStability, AboveALargeGround) {
         if (on_ground)
             maker.parallelogram({-20000, -0.5f, -20000}, {0, 0, 40000}, {40000, 0, 0}, gray);
         const Rendered rendered = render(maker.scene, options, "sppm");
-        const GatherRadii &last = rendered.statistics.last_radii;
+        const GatherRadii &first = rendered.statistics.first_radii, &last = rendered.statistics.last_radii;
         radius[on_ground] = last.sum / double(last.points);
+        EXPECT_NEAR(radius[on_ground] / (first.sum / double(first.points)),
+                    std::sqrt(radius_shrinkage(7, options.radius_alpha)), 1e-3);
         seconds[on_ground] = 0;
         for (const StageTime &stage : rendered.statistics.stages)
             seconds[on_ground] += stage.name.starts_with("photon_pairs") ? stage.seconds : 0;

@@ -377,6 +377,8 @@ Image wall_of_coats(bool pictures, const char *method) {
     const auto varying = [&](BsdfKind kind, std::uint32_t code, float ior) {
         Bsdf bsdf = coat(kind, code, ior);
         bsdf.alpha_u.texture = bsdf.alpha_v.texture = picture_of(code);
+        if (pictures)
+            bsdf.alpha_u.value = bsdf.alpha_v.value = 0.02f; // as if it were as smooth as that elsewhere
         return bsdf;
     };
     add(varying(BsdfKind::roughplastic_ggx, 38, 1.5f));
