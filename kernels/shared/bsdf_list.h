@@ -85,7 +85,8 @@
  * differ. */
 #define GRADUS_PRINCIPLED "alpha_u alpha_v roughness anisotropic spec_tint sheen sheen_tint flatness"
 #define GRADUS_ROUGH_COAT                                                                                              \
-    "nonlinear internal_reflectance coat_0 coat_1 coat_2 coat_3 coat_4 coat_5 coat_6 coat_7 coat_8 coat_9 coat_records"
+    "nonlinear internal_reflectance coat_0 coat_1 coat_2 coat_3 coat_4 coat_5 coat_6 coat_7 coat_8 coat_9 "            \
+    "coat_records"
 
 /* FIELD(name): the reals of a material's record; `bsdf` is the number of its kind. */
 #define GRADUS_COLOR_FIELDS(FIELD, name, value, text) FIELD(name##_r) FIELD(name##_g) FIELD(name##_b)
