@@ -2,11 +2,11 @@
 
 #include "runtime/error.h"
 #include "runtime/io/atomic_file.h"
+#include "runtime/user_cache_folder.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
@@ -64,10 +64,8 @@ nlohmann::json read_entries(const std::string &path) {
 } // namespace
 
 std::string tuning_file() {
-    const char *cache = std::getenv("XDG_CACHE_HOME"), *home = std::getenv("HOME");
-    if (cache && std::filesystem::path(cache).is_absolute()) // else not to be used
-        return std::string(cache) + "/gradus/tuning.json";
-    return home && *home ? std::string(home) + "/.cache/gradus/tuning.json" : "";
+    const std::filesystem::path cache = user_cache_folder();
+    return cache.empty() ? "" : (cache / "gradus" / "tuning.json").string();
 }
 
 std::optional<Tuning> stored_tuning(const DeviceDescription &device, std::string *problem) {

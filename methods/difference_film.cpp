@@ -36,11 +36,12 @@ std::vector<std::string> film_names(std::uint32_t parts) {
 
 } // namespace
 
-DifferenceFilm::DifferenceFilm(Session &session, Stages &stages, const RenderOptions &options, const char *counts)
+DifferenceFilm::DifferenceFilm(Session &session, Stages &stages, const RenderOptions &options, const char *counts,
+                               bool may_tell_error)
     : session_(session), options_(options), counts_(counts),
+      tells_error_(may_tell_error && has_error_layer(options, keeps_halves(options))),
       film_names_(film_names(1u << session.traits.at("TRAIT_PART_BITS"))),
-      combine_(stages.add({.name = "gradient_combine", .strict = true})),
-      film_(session, stages, has_error_layer(options, keeps_halves(options))),
+      combine_(stages.add({.name = "gradient_combine", .strict = true})), film_(session, stages, tells_error_),
       accumulate_(
           stages.add({.name = "gradient_accumulate",
                       .strict = true,
@@ -90,10 +91,6 @@ const std::vector<DirectPixel> &DifferenceFilm::edges(std::uint64_t samples, boo
         edge_seconds_ += seconds_since(start);
     }
     return edges_;
-}
-
-bool DifferenceFilm::tells_error() const {
-    return may_tell_error_ && has_error_layer(options_, keeps_halves(options_));
 }
 
 std::vector<float> DifferenceFilm::direct_variance(std::uint64_t samples, const std::vector<DirectPixel> &edges) const {
@@ -167,8 +164,9 @@ Image DifferenceFilm::image(std::uint64_t samples, bool layers, bool last, std::
     Image whole = film_.image(samples, non_finite);
     lost_pixels_ = pixels_without_a_color(whole);
     const std::vector<DirectPixel> &of_edges = edges(samples, last);
+    relative_error_.reset();
     ErrorOfImage error;
-    if (tells_error())
+    if (tells_error_)
         error.direct_variance = direct_variance(samples, of_edges);
     if (last) {
         mean_ = mean_of(whole);
@@ -185,7 +183,7 @@ Image DifferenceFilm::image(std::uint64_t samples, bool layers, bool last, std::
             if (last)
                 tables_->release_all_but({counts_});
         },
-        used_, tells_error() ? &error : nullptr);
+        used_, tells_error_ ? &error : nullptr);
     relative_error_ = error.relative;
     if (last) {
         solver_.reset();

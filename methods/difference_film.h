@@ -19,15 +19,15 @@ namespace gradus {
 class DifferenceFilm {
   public:
     /// Declares the stages `gradient_combine`, `accumulate`, `gradient_accumulate` and `gradient_carry`. `options` must
-    /// live as long. `counts`: the table that the method's statistics read after the last image.
-    DifferenceFilm(Session &session, Stages &stages, const RenderOptions &options, const char *counts);
+    /// live as long. `counts`: the table that the method's statistics read after the last image. `may_tell_error`: not
+    /// for methods whose error is more than halves know.
+    DifferenceFilm(Session &session, Stages &stages, const RenderOptions &options, const char *counts,
+                   bool may_tell_error = true);
 
     /// By slot `direct`, `prefix` and `difference`, which the method fills; and the sums.
     TableList tables() const;
     /// For strips that are whole frames: no differences are carried from one to the next. Before stages are built.
     void carry_nothing() { carry_.leave_out(); }
-    /// For methods whose error is more than halves know.
-    void tell_no_error() { may_tell_error_ = false; }
     /// To be called once the tables are allocated; all is zero.
     void attach(Tables &tables);
 
@@ -59,8 +59,6 @@ class DifferenceFilm {
     /// What the camera sees of lights at their edges, for an image of so many samples. Images under way take that of a
     /// power of two, whichever were asked for before.
     const std::vector<DirectPixel> &edges(std::uint64_t samples, bool last);
-    /// Whether an image says its error.
-    bool tells_error() const;
     /// The squared error of what the camera sees of lights, by pixel and channel: of edges as their rays tell, else as
     /// both halves of the samples do.
     std::vector<float> direct_variance(std::uint64_t samples, const std::vector<DirectPixel> &edges) const;
@@ -68,6 +66,7 @@ class DifferenceFilm {
     Session &session_;
     const RenderOptions &options_;
     const std::string counts_;
+    const bool tells_error_;                    ///< whether an image says its error
     const std::vector<std::string> film_names_; ///< the tables of the sums: one, or one for each part of the samples
     Stage &combine_;
     Film film_;
@@ -78,8 +77,7 @@ class DifferenceFilm {
     std::uint64_t edge_rays_ = 0, lost_pixels_ = 0;
     double edge_seconds_ = 0;
     ReconstructionUsed used_;
-    std::optional<Image> mean_; ///< while the last image is made, whose films go
-    bool may_tell_error_ = true;
+    std::optional<Image> mean_;            ///< while the last image is made, whose films go
     std::optional<double> relative_error_; ///< estimated, of the last image
     std::unique_ptr<PoissonSolver> solver_;
     std::shared_ptr<void> compilers_;   ///< from before the stages' kernels are compiled until the solver's are

@@ -100,9 +100,9 @@ GradientPhotonMapper::GradientPhotonMapper(Device &device, const Scene &scene, c
       arrive_(
           stages_.add({.name = "photon_arrive", .by_kind = true, .dirac = DiracKinds::left_out, .numbers = {"pairs"}})),
       sum_(stages_.add(pairs_.sum_stage("pair_difference_sum"))),
-      gradient_gather_(stages_.add({.name = "gradient_gather"})), film_(session_, stages_, options_, "photon_found") {
+      gradient_gather_(stages_.add({.name = "gradient_gather"})),
+      film_(session_, stages_, options_, "photon_found", false) {
     check_error(options, "gpm");
-    film_.tell_no_error();
     if (has_chains())
         manifold_walk_.emplace(session_, stages_, WalkSettings{.most_vertices = most_inner});
     const std::vector<std::string> &kinds = session_.scene.kinds;

@@ -20,7 +20,8 @@ GRADUS_FN real rough_coat_place(real roughness) {
     return (real)rough_coat_records * (roughness / (roughness + ROUGH_COAT_MIDDLE));
 }
 
-#define MIX_ROUGH_COAT(name) m.name = has_records ? one.name + share * (other.name - one.name) : m.name;
+#define MIX_ROUGH_COAT(with, name, value, text)                                                                        \
+    m.name = has_records ? one.name + share * (other.name - one.name) : m.name;
 
 /* A material with what its coat makes of its alpha_u; above the last roughness as at that. Unchanged where
  * coat_records is 0; there must be rough_coat_records records all the same. */
@@ -30,17 +31,7 @@ GRADUS_FN material rough_coat_of(material m, GRADUS_GLOBAL const real *materials
     const real below = r_min(r_floor(place), (real)(rough_coat_records - 2u)), share = place - below;
     const uint first = (uint)(m.coat_records + below);
     const material one = material_load(materials, first, unit), other = material_load(materials, first + 1u, unit);
-    MIX_ROUGH_COAT(internal_reflectance)
-    MIX_ROUGH_COAT(coat_0)
-    MIX_ROUGH_COAT(coat_1)
-    MIX_ROUGH_COAT(coat_2)
-    MIX_ROUGH_COAT(coat_3)
-    MIX_ROUGH_COAT(coat_4)
-    MIX_ROUGH_COAT(coat_5)
-    MIX_ROUGH_COAT(coat_6)
-    MIX_ROUGH_COAT(coat_7)
-    MIX_ROUGH_COAT(coat_8)
-    MIX_ROUGH_COAT(coat_9)
+    GRADUS_COAT_PARAMETERS(MIX_ROUGH_COAT, )
     return m;
 }
 #undef MIX_ROUGH_COAT

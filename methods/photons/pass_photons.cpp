@@ -124,13 +124,14 @@ void PassPhotons::set_radius(Session &session, RenderOptions::GatherRadius radiu
     const double largest = diameter * (radius.of_scene ? radius.value : largest_share);
     const double start = radius.of_scene ? largest : std::min(radius.value * width, largest);
     const std::vector<double> distances = seen_distances(session);
-    std::vector<double> radii;
-    for (const double distance : distances)
-        radii.push_back(std::clamp(slope * distance, start, largest));
-    median_radius_ = median(radii);
+    const double middle = median(distances);
+    const auto radius_at = [&](double distance) { return std::clamp(slope * distance, start, largest); };
+    std::vector<double> radii(distances.size());
+    std::ranges::transform(distances, radii.begin(), radius_at);
+    median_radius_ = radius_at(middle);
     least_edge_ = least_edge(radii, median_radius_);
-    seen_area_ = double(session.film.width) * session.film.height *
-                 std::pow(std::max(pixel * median(distances), width), 2) / seen_share;
+    seen_area_ =
+        double(session.film.width) * session.film.height * std::pow(std::max(pixel * middle, width), 2) / seen_share;
     session.reals["radius_slope"] = slope;
     session.reals["radius_start"] = start;
     session.reals["radius_most"] = largest;

@@ -1,5 +1,7 @@
 #include "runtime/device/cache_folder.h"
 
+#include "runtime/user_cache_folder.h"
+
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/statvfs.h>
@@ -104,15 +106,12 @@ class PrivateFolder {
 } // namespace
 
 fs::path program_cache_folder() {
-    const auto variable = [](const char *name) { return std::string(std::getenv(name) ? std::getenv(name) : ""); };
-    if (std::getenv("GRADUS_CACHE_DIR")) {
-        const std::string folder = variable("GRADUS_CACHE_DIR");
+    if (const char *chosen = std::getenv("GRADUS_CACHE_DIR")) {
+        const std::string folder = chosen;
         return folder.empty() || folder == "off" ? fs::path() : fs::absolute(folder);
     }
-    if (const std::string cache = variable("XDG_CACHE_HOME"); fs::path(cache).is_absolute()) // else not to be used
-        return fs::path(cache) / "gradus" / "programs";
-    const std::string home = variable("HOME");
-    return home.empty() ? fs::path() : fs::path(home) / ".cache" / "gradus" / "programs";
+    const fs::path cache = user_cache_folder();
+    return cache.empty() ? fs::path() : cache / "gradus" / "programs";
 }
 
 fs::path private_folder() {

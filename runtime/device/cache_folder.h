@@ -5,8 +5,8 @@
 
 namespace gradus {
 
-/// Where compiled programs are kept: $GRADUS_CACHE_DIR, else $XDG_CACHE_HOME/gradus/programs, else
-/// ~/.cache/gradus/programs. Empty where GRADUS_CACHE_DIR is empty or "off", or where there is no home.
+/// Where compiled programs are kept: $GRADUS_CACHE_DIR, else gradus/programs in user_cache_folder(). Empty where
+/// GRADUS_CACHE_DIR is empty or "off", or where there is no home.
 std::filesystem::path program_cache_folder();
 
 /// A folder that only this process uses, deleted when it ends; made at the first call. Empty where none can be made.

@@ -3,8 +3,7 @@
 #include "kernels/lib/fresnel.h"
 #include "kernels/lib/microfacet.h"
 #include "kernels/lib/rough_coat.h"
-
-#include <tbb/parallel_for.h>
+#include "runtime/scene/parallel.h"
 
 #include <algorithm>
 #include <array>
@@ -120,6 +119,12 @@ void set_coating(Bsdf &bsdf) {
         bsdf.internal_reflectance = float(internal_reflectance_of_smooth(ior));
         return;
     }
+    if (bsdf.alpha_u.texture != no_texture) { // coat_records() are what they come to
+#define GRADUS_TAKE_TEXTURE(with, name, value, text) bsdf.name.texture = bsdf.alpha_u.texture;
+        GRADUS_COAT_PARAMETERS(GRADUS_TAKE_TEXTURE, )
+#undef GRADUS_TAKE_TEXTURE
+        return;
+    }
     const int distribution = bsdf.kind == BsdfKind::roughplastic_ggx ? microfacet_ggx : microfacet_beckmann;
     const float alpha = microfacet_alpha(bsdf.alpha_u);
     // By the symmetry about the plane of wi, half of the turn says all.
@@ -142,21 +147,18 @@ void set_coating(Bsdf &bsdf) {
                                           &bsdf.coat_5, &bsdf.coat_6, &bsdf.coat_7, &bsdf.coat_8, &bsdf.coat_9};
     for (int k = 0; k < coefficients; ++k)
         *fields[k] = float(coat[k]);
-    // Whose roughness varies, its coat varies by the same texture.
-    bsdf.internal_reflectance.texture = bsdf.alpha_u.texture;
-    for (Number *field : fields)
-        field->texture = bsdf.alpha_u.texture;
 }
 
 bool has_varying_coat(const Bsdf &bsdf) { return has_rough_coat(bsdf) && bsdf.coat_0.texture != no_texture; }
 
 std::vector<Bsdf> coat_records(const Bsdf &bsdf) {
     std::vector<Bsdf> records(rough_coat_records);
-    tbb::parallel_for(0u, rough_coat_records, [&](std::uint32_t i) {
+    const auto make = [&](std::size_t i) {
         records[i] = bsdf;
-        records[i].alpha_u = records[i].alpha_v = rough_coat_roughness(i);
+        records[i].alpha_u = records[i].alpha_v = rough_coat_roughness(std::uint32_t(i));
         set_coating(records[i]);
-    });
+    };
+    for_each_in_parallel(records.size(), make, 1);
     return records;
 }
 

@@ -19,7 +19,7 @@ double internal_reflectance_of_smooth(double ior);
 /// for roughness of 0.05 and more, and to 1e-2 for smoother ones, where it is steep at grazing angles. The internal
 /// reflectance is Mitsuba's too: twice the mean of mu times the reflectance from within over 64 even cosines from 0 to
 /// 1, ends included, which is about 1 % less than the integral.
-/// Where alpha_u is a texture they have that texture too, and values for the least roughness.
+/// Where alpha_u is a texture they have that texture too, and no values: coat_records() do.
 void set_coating(Bsdf &bsdf);
 
 /// Whether it has a rough coat whose roughness is a texture.

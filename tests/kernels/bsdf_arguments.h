@@ -24,7 +24,7 @@ inline Arguments draw_arguments(std::mt19937_64 &random, double smallest_alpha) 
     Arguments a;
     const auto factor = [&] { return rounded(0.1 + 0.9 * uniform(random)); };
     for (double &field : a.material) // reflectances, and whatever has no range of its own below
-        field = factor();
+        field = &field == &a[Field::coat_records] ? 0 : factor(); // no argument of a BSDF, but a number of records
     for (const Field eta : {Field::eta_r, Field::eta_g, Field::eta_b})
         a[eta] = rounded(0.05 + 2 * uniform(random));
     for (const Field k : {Field::k_r, Field::k_g, Field::k_b})

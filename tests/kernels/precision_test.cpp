@@ -118,11 +118,11 @@ TEST(Precision, FloatSamplesMatchDouble) {
                     direction.quantile(0.999), direction.quantile(1), differing, compared);
         EXPECT_LE(direction.quantile(0.999), 5e-6) << in_float[kind].name;
         worst = worse(worst, direction.quantile(0.999));
-        // Near u1 = 1 Beckmann's slope is a double root: its error goes with one over the root of what is left to 1.
-        if (std::string(in_float[kind].name).find("beckmann") != std::string::npos)
-            EXPECT_LE(by_root.quantile(1), 2.5e-5) << in_float[kind].name;
-        else
-            EXPECT_LE(direction.quantile(1), 1e-4) << in_float[kind].name;
+        // Near u1 = 1 Beckmann's slope is a double root: it is known to the root of the rounding error, which goes with
+        // one over the root of what is left to 1.
+        const bool is_beckmann = std::string(in_float[kind].name).find("beckmann") != std::string::npos;
+        EXPECT_LE(direction.quantile(1), is_beckmann ? 5e-3 : 1e-4) << in_float[kind].name;
+        EXPECT_LE(by_root.quantile(1), is_beckmann ? 2.5e-5 : 1e-4) << in_float[kind].name;
         EXPECT_LE(differing, compared / 10'000) << in_float[kind].name;
     }
     record_stability({"Numbers", "float: what is left where terms cancel", "samples of every BSDF, roughness 1e-4 to 1",

@@ -275,7 +275,7 @@ TEST(PhotonStability, AboveALargeGround) {
     options.radius_alpha = 0.3;
     double radius[2], seconds[2];
     for (const bool on_ground : {false, true}) {
-        SceneMaker maker(128, 8);
+        SceneMaker maker(256, 8);
         const std::uint32_t gray = maker.material(diffuse(0.5));
         maker.floor(-2, 2, 4, gray);
         maker.lamp({0, 3, 0}, 1, 1, 5, maker.material(diffuse(0)));

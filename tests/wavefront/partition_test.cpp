@@ -184,7 +184,6 @@ TEST_P(Partition, LeavesRowsBeyondTheCountAlone) { expect_sorted(random_hits(300
 INSTANTIATE_TEST_SUITE_P(Devices, Partition, ::testing::Bool(),
                          [](const auto &info) { return info.param ? "processor" : "elsewhere"; });
 
-// Phases are bins of kinds, one after the other, behind those of paths that escaped.
 /// However few rows: counts of all bins of a chunk, as in a crop of one pixel of a scene of many BSDF kinds.
 TEST(GroupingOf, FewRowsHasRoomForManyBins) {
     Device device;
@@ -202,6 +201,7 @@ TEST(GroupingOf, FewRowsHasRoomForManyBins) {
             }
 }
 
+// Phases are bins of kinds, one after the other, behind those of paths that escaped.
 TEST(HitsOf, PhasesLieBehindEachOther) {
     const BinLayout layout = {.escaped = 2, .phases = 3, .kinds = 2};
     ASSERT_EQ(layout.bins(), 14u);
