@@ -4,6 +4,7 @@
 #include "driver/standard_streams.h"
 #include "driver/tuning_store.h"
 #include "runtime/error.h"
+#include "runtime/scene/own_scale.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -35,10 +36,12 @@ void print_trial(const TuningTrial &trial) {
 
 int run_tune(const TuneRequest &request, const Services &services) {
     check_tuning_file();
-    const Scene scene = load_requested_scene(request.scene, services, [](const std::string &warning) {
+    Scene scene = load_requested_scene(request.scene, services, [](const std::string &warning) {
         print_message("gradus: warning: " + warning + "\n");
     });
+    bring_to_own_scale(scene);
     TuningOptions options;
+    options.threads = request.threads;
     options.on_trial = print_trial;
     const TunedDevice tuned = services.tune(request.device, request.threads, scene, options);
     store_tuning(tuned.description, tuned.report.chosen);

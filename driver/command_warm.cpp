@@ -5,6 +5,7 @@
 #include "driver/scene_request.h"
 #include "driver/standard_streams.h"
 #include "runtime/error.h"
+#include "runtime/scene/own_scale.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -42,9 +43,10 @@ int run_warm(const WarmRequest &request, const Services &services) {
     const auto start = std::chrono::steady_clock::now();
     check_method_options(request.method);
     const auto warn = [](const std::string &warning) { print_message("gradus: warning: " + warning + "\n"); };
-    const Scene scene = load_requested_scene(for_method(request.scene, request.method.method), services, warn);
+    Scene scene = load_requested_scene(for_method(request.scene, request.method.method), services, warn);
     for (const std::string &sentence : unread_options(request.method, request.method.method))
         warn(sentence);
+    bring_to_own_scale(scene);
     check_memory(scene, request.method.method, request.method.options);
     RenderOptions options = request.method.options;
     options.on_compiled = [](const std::string &kernel, std::size_t ready, std::size_t total, double seconds) {

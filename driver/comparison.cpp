@@ -47,6 +47,14 @@ void check_variance(const Image &variance, const Image &reference, const std::st
                             fmt::format("{}: a variance is below 0 in channel {}: {:g}", path, channel->name, value));
 }
 
+/// Crops of different places have no pixel in common.
+void check_crop(const std::string &path, const Image &image, const Image &reference) {
+    const auto ours = image.metadata.find("crop"), theirs = reference.metadata.find("crop");
+    if (ours != image.metadata.end() && theirs != reference.metadata.end() && ours->second != theirs->second)
+        throw Error(ExitCode::image, fmt::format("{}: it is the crop {} of its image, and the reference is {}", path,
+                                                 ours->second, theirs->second));
+}
+
 /// Samples a pixel as our own files state them; 0 where the file does not say.
 double stated_samples(const Image &image) {
     const auto at = image.metadata.find("spp");
@@ -226,6 +234,7 @@ Comparison compare_images(const CompareRequest &request) {
     std::vector<Image> images;
     for (const std::string &path : request.images) {
         images.push_back(read_selected(path, request));
+        check_crop(path, images.back(), reference);
         result.images.push_back(figures_of(path, images.back(), reference));
         if (request.layer.empty())
             result.images.back().error_layer = error_calibration(images.back(), reference, variance);

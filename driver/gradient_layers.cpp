@@ -157,14 +157,6 @@ bool may_be_missing(GradientLayer layer, const GradientSources &sources) {
     return layer == GradientLayer::direct || (sources.features && is_of_half(layer) && !is_primal_of_half(layer));
 }
 
-bool is_asked_for(GradientLayer layer, const GradientSources &sources) {
-    if (layer == GradientLayer::direct)
-        return true;
-    if (is_feature(layer))
-        return sources.features;
-    return is_of_half(layer) == sources.halves && (!is_variance(layer) || sources.halves || sources.variances);
-}
-
 /// The render that writes layers of halves.
 std::string layers_with(const GradientSources &sources) {
     return fmt::format("`gradus render --layers --reconstruction {}`", sources.features ? "guided" : "weighted");
@@ -265,6 +257,14 @@ bool is_of_half(GradientLayer layer) {
 
 bool is_feature(GradientLayer layer) {
     return layer == GradientLayer::albedo || layer == GradientLayer::normal || layer == GradientLayer::depth;
+}
+
+bool is_asked_for(GradientLayer layer, const GradientSources &sources) {
+    if (layer == GradientLayer::direct)
+        return true;
+    if (is_feature(layer))
+        return sources.features;
+    return is_of_half(layer) == sources.halves && (!is_variance(layer) || sources.halves || sources.variances);
 }
 
 const char *layer_name(GradientLayer layer) { return all_names.at(layer).name; }

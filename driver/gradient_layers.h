@@ -88,6 +88,9 @@ struct GradientSources {
     std::uint64_t limits = 1; ///< of read_image()
 };
 
+/// Whether read_gradient_images() looks for the layer.
+bool is_asked_for(GradientLayer layer, const GradientSources &sources);
+
 struct GradientImages {
     std::uint32_t width = 0, height = 0;
     std::vector<std::string> channels; ///< "R", "G", "B", or "Y" alone

@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <new>
 
@@ -67,16 +68,11 @@ class SolveJob {
 
     /// Whether all values of the image are finite.
     bool run() {
-        if (!request_.sources.variances)
-            for (const auto &[layer, path] : request_.sources.files)
-                if (is_variance(layer))
-                    warn(fmt::format("'{}' is not read: only --alpha auto and --weights variance use variances", path));
+        warn_of_what_is_not_read();
         images_ = read_gradient_images(request_.sources);
         warn_of_other_reconstruction();
-        if (request_.options.alpha_from_variances && !varies(GradientLayer::primal_variance) &&
-            !varies(GradientLayer::dx_variance) && !varies(GradientLayer::dy_variance))
-            warn(fmt::format("all variances are 0, as of one sample a pixel: they tell no alpha, so it is {}",
-                             request_.options.alpha));
+        if (request_.sources.variances)
+            check_variances();
         if (request_.sources.features && images_.channels.size() != 3)
             throw Error(ExitCode::image, "--reconstruction guided is for images of R, G and B");
         solve();
@@ -99,10 +95,40 @@ class SolveJob {
                              made->second, name));
     }
 
-    bool varies(GradientLayer layer) const {
-        const float *plane = images_.find(layer);
+    void warn_of_what_is_not_read() const {
+        const auto reason = [&](GradientLayer layer) {
+            return is_variance(layer) ? std::string("only --alpha auto and --weights variance use variances")
+                                      : fmt::format("--reconstruction {} has no use for {}",
+                                                    reconstruction_name(request_.reconstruction), layer_name(layer));
+        };
+        for (const auto &[layer, path] : request_.sources.files)
+            if (!is_asked_for(layer, request_.sources))
+                warn(fmt::format("'{}' is not read: {}", path, reason(layer)));
+        for (const auto &[layer, name] : request_.sources.names)
+            if (!is_asked_for(layer, request_.sources))
+                warn(fmt::format("--layer {}={} is not read: {}", layer_name(layer), name, reason(layer)));
+    }
+
+    /// What is NaN, infinite or below 0 is no variance: its equation would be left out.
+    void check_variances() const {
         const std::size_t values = std::size_t(images_.width) * images_.height * images_.channels.size();
-        return plane && std::any_of(plane, plane + values, [](float value) { return value != 0; });
+        std::size_t missing = 0, above_zero = 0;
+        for (const GradientLayer layer :
+             {GradientLayer::primal_variance, GradientLayer::dx_variance, GradientLayer::dy_variance}) {
+            const float *plane = images_.find(layer);
+            for (std::size_t i = 0; i < values; ++i) {
+                missing += std::isfinite(plane[i]) && plane[i] >= 0 ? 0 : 1;
+                above_zero += std::isfinite(plane[i]) && plane[i] > 0 ? 1 : 0;
+            }
+        }
+        if (missing == 3 * values)
+            throw Error(ExitCode::image, "no variance is a number of at least 0");
+        if (missing > 0)
+            warn(fmt::format("{} of {} variances are NaN, infinite or below 0, which says nothing", missing,
+                             3 * values));
+        if (request_.options.alpha_from_variances && above_zero == 0)
+            warn(fmt::format("all variances are 0, as of one sample a pixel: they tell no alpha, so it is {}",
+                             request_.options.alpha));
     }
 
     void solve() {
@@ -171,8 +197,14 @@ class SolveJob {
         const std::uint64_t samples =
             text == images_.metadata.end() ? 0 : std::strtoull(text->second.c_str(), nullptr, 10);
         const std::uint64_t pixels = std::uint64_t(images_.width) * images_.height;
-        if (samples < 2 * pixels)
+        if (samples == 0)
             return {1, 1};
+        // Halves without differences need no variances.
+        const std::uint64_t least = images_.find(GradientLayer::dx_even) ? 2 * least_half_samples : 2;
+        if (samples / pixels < least)
+            throw Error(ExitCode::image,
+                        fmt::format("{} needs {} samples of each pixel, and the render that wrote these layers took {}",
+                                    record_.reconstruction, least, samples / pixels));
         return {samples_of_part(samples, pixels, 0, 2), samples_of_part(samples, pixels, 1, 2)};
     }
 
@@ -222,7 +254,8 @@ class SolveJob {
         // L1 comes ever closer and is stopped by count as a rule; L2 that does not arrive is not the solution.
         if (!report_.converged && request_.options.iterations == 0 && request_.options.norm == PoissonNorm::l2)
             warn("the tolerance was not reached");
-        if (report_.missing_primal == std::uint64_t(images_.width) * images_.height)
+        const std::uint64_t primals = request_.sources.halves ? 2 : 1;
+        if (report_.missing_primal == primals * images_.width * images_.height)
             warn("no pixel of the primal has a finite value");
         if (!request_.quiet && request_.outputs.statistics != "-")
             print_result(solve_report_text(report_));

@@ -20,19 +20,20 @@ constexpr std::uint64_t endless_samples = std::uint64_t(1) << 30;
 /// The image that is compared: some thousand samples, more than the smallest batch takes at once.
 constexpr std::uint32_t compared_width = 96, compared_height = 64, compared_samples = 2;
 
-RenderOptions options_of(const Tuning &tuning) {
+RenderOptions options_of(const Tuning &tuning, int threads) {
     RenderOptions options;
+    options.threads = threads;
     options.work_group_size = tuning.work_group_size;
     options.batch_size = tuning.batch_size;
     return options;
 }
 
-Image small_image(Device &device, const std::string &name, Scene scene, const Tuning &tuning) {
+Image small_image(Device &device, const std::string &name, Scene scene, const Tuning &tuning, int threads) {
     scene.film.width = compared_width;
     scene.film.height = compared_height;
     scene.film.crop_x = scene.film.crop_y = scene.film.crop_width = scene.film.crop_height = 0;
     scene.settings.samples_per_pixel = compared_samples;
-    const auto method = make_method(name, device, scene, options_of(tuning));
+    const auto method = make_method(name, device, scene, options_of(tuning, threads));
     while (method->render_batch()) {
     }
     return method->image();
@@ -41,9 +42,9 @@ Image small_image(Device &device, const std::string &name, Scene scene, const Tu
 /// A render without end.
 class Runner {
   public:
-    Runner(Device &device, const std::string &name, Scene scene, const Tuning &tuning) {
+    Runner(Device &device, const std::string &name, Scene scene, const Tuning &tuning, int threads) {
         scene.settings.samples_per_pixel = endless_samples;
-        method_ = make_method(name, device, scene, options_of(tuning));
+        method_ = make_method(name, device, scene, options_of(tuning, threads));
         method_->render_batch(); // what is first is slow
     }
     /// Samples per second over at least so many seconds.
@@ -74,14 +75,15 @@ class Tuner {
   public:
     Tuner(Device &device, const std::string &method, const Scene &scene, const TuningOptions &options)
         : device_(device), method_(method), scene_(scene), options_(options),
-          expected_(small_image(device, method, scene, {})), defaults_(device, method, scene, {}) {}
+          expected_(small_image(device, method, scene, {}, options.threads)),
+          defaults_(device, method, scene, {}, options.threads) {}
 
     TuningTrial judge(const Tuning &tuning) {
         TuningTrial trial{tuning, false, "", {}, 0};
         try {
-            trial.same_image = equal_bits(expected_, small_image(device_, method_, scene_, tuning));
+            trial.same_image = equal_bits(expected_, small_image(device_, method_, scene_, tuning, options_.threads));
             if (trial.same_image) {
-                Runner candidate(device_, method_, scene_, tuning);
+                Runner candidate(device_, method_, scene_, tuning, options_.threads);
                 for (int turn = 0; turn < options_.turns; ++turn) {
                     const double before = defaults_.rate(options_.seconds_a_turn);
                     trial.gains.push_back(candidate.rate(options_.seconds_a_turn) / before);

@@ -37,6 +37,7 @@ struct TuningReport {
 };
 
 struct TuningOptions {
+    int threads = 0; ///< that trace, as RenderOptions has them; the device has its own
     int turns = 5;
     double seconds_a_turn = 0.15; ///< of each candidate
     /// Called after each candidate has been judged.

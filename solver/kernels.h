@@ -27,7 +27,7 @@ struct Kernels {
     Kernel reduce, reduce_product, reduce_two_products, reduce_plane, finish_sum;
     Kernel import_image, import_variance, gradient_residual, right_side, start, start_between_neighbours, compose;
     Kernel base_weights, least_squares_weights, residual_scale, reweight, extrapolate, squared_norm;
-    Kernel fill_ring, mark_held, add_base;
+    Kernel mark_held, add_base;
     Kernel largest_of_columns, third_largest, correction_weights, correction_right_side, correction_pass,
         add_correction;
 

@@ -6,7 +6,7 @@
 
 namespace gradus::solver {
 
-Problem::Problem(Workspace &workspace) : workspace_(workspace), fill_(workspace) {}
+Problem::Problem(Workspace &workspace) : workspace_(workspace) {}
 
 void Problem::allocate() {
     if (base_.valid())
@@ -22,31 +22,37 @@ void Problem::allocate() {
     valid_dy_ = make.planes("valid_dy", grid, 1);
 }
 
-double Problem::import_planes(Kernel &kernel, std::uint32_t planes, const Buffer &packed, const Buffer &imported,
-                              std::uint32_t columns, std::uint32_t rows) {
-    workspace_.sums.bind_parts(kernel, planes);
+void Problem::import_planes(Kernel &kernel, std::uint32_t planes, const Buffer &packed, const Buffer &imported,
+                            std::uint32_t columns, std::uint32_t rows) {
     kernel.set("edge_columns", columns);
     kernel.set("edge_rows", rows);
     kernel.bind("packed", packed);
     kernel.bind("imported", imported);
     workspace_.grid().launch(kernel, {0, planes});
-    workspace_.sums.sum(workspace_.any_kernels(), slot_sum, {0, planes});
-    const std::vector<double> sums = workspace_.sums.read(slot_sum);
-    return std::accumulate(sums.begin(), sums.begin() + planes, 0.0);
 }
 
 double Problem::import_image(const Buffer &packed, const Buffer &imported, const Buffer &valid, std::uint32_t columns,
                              std::uint32_t rows) {
     Kernel &kernel = workspace_.any_kernels().import_image;
     kernel.bind("valid", valid);
-    return import_planes(kernel, 1, packed, imported, columns, rows);
+    workspace_.sums.bind_parts(kernel, 1);
+    import_planes(kernel, 1, packed, imported, columns, rows);
+    workspace_.sums.sum(workspace_.any_kernels(), slot_sum, {0, 1});
+    return workspace_.sums.read(slot_sum, 0);
 }
 
 double Problem::mean_variance(const Buffer &packed, std::uint32_t planes, const Buffer &variance, std::uint32_t columns,
                               std::uint32_t rows) {
     Kernel &kernel = workspace_.any_kernels().import_variance;
-    return import_planes(kernel, planes, packed, variance, columns, rows) /
-           std::max(double(columns) * rows * planes, 1.0);
+    workspace_.sums.bind_parts(kernel, 2 * planes);
+    kernel.set("planes", planes);
+    import_planes(kernel, planes, packed, variance, columns, rows);
+    workspace_.sums.sum_two(workspace_.any_kernels(), slot_sum, slot_second_sum, {0, planes});
+    const auto total = [&](Slot slot) {
+        const std::vector<double> sums = workspace_.sums.read(slot);
+        return std::accumulate(sums.begin(), sums.begin() + planes, 0.0);
+    };
+    return total(slot_sum) / std::max(double(columns) * rows * planes - total(slot_second_sum), 1.0);
 }
 
 void Problem::import(const Inputs &images, PoissonReport &report) {
@@ -62,7 +68,7 @@ void Problem::import(const Inputs &images, PoissonReport &report) {
     held_is_known_ = false;
     anything_missing_ = missing + missing_x + missing_y > 0;
     if (missing > 0)
-        fill_.run(base_, valid_primal_);
+        fill_missing(workspace_.make.precision(), grid, workspace_.channels, valid_primal_, base_);
     Kernel &kernel = workspace_.any_kernels().gradient_residual;
     kernel.bind("base", base_);
     kernel.bind("dx", gradient_x_);
@@ -264,7 +270,7 @@ std::uint64_t Problem::compose(Kernels &kernels, const Inputs &images, bool keep
         find_held(kernels);
     if (not_held_ > 0) {
         add_to_u(kernels, base_, mean_factor);
-        fill_.run(u_, held_);
+        fill_missing(workspace_.make.precision(), grid, workspace_.channels, held_, u_);
     }
     Kernel &compose = kernels.compose;
     workspace_.sums.bind_scalars(compose);

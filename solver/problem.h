@@ -71,12 +71,13 @@ class Problem {
     const Buffer &right_side();
 
   private:
-    /// With kernel import_image or import_variance, which is launched on `planes` planes; the sum that it leaves.
-    double import_planes(Kernel &kernel, std::uint32_t planes, const Buffer &packed, const Buffer &imported,
-                         std::uint32_t columns, std::uint32_t rows);
+    /// With kernel import_image or import_variance, which is launched on `planes` planes.
+    void import_planes(Kernel &kernel, std::uint32_t planes, const Buffer &packed, const Buffer &imported,
+                       std::uint32_t columns, std::uint32_t rows);
     /// Returns how many pixels or differences are missing.
     double import_image(const Buffer &packed, const Buffer &imported, const Buffer &valid, std::uint32_t columns,
                         std::uint32_t rows);
+    /// Of those that are there.
     double mean_variance(const Buffer &packed, std::uint32_t planes, const Buffer &variance, std::uint32_t columns,
                          std::uint32_t rows);
     /// u += image - the sum in slot_mean times mean_factor.
@@ -86,7 +87,6 @@ class Problem {
     void allocate();
 
     Workspace &workspace_;
-    Fill fill_;
     Buffer base_, gradient_x_, gradient_y_, u_, spare_; ///< of all channels
     Buffer right_side_;                                 ///< of a group
     Buffer valid_primal_, valid_dx_, valid_dy_;

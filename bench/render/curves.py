@@ -71,12 +71,13 @@ def time_to_reach(curve, error):
 
 def time_ratio(curve, other, floor=0.0):
     """How many times less time `curve` takes than `other` to reach the least error that both reach: {"error", "ratio",
-    "at_least"}, the last where `curve` was under it from its first point. None where a curve is empty."""
+    "at_least"}, the last where `curve` was under it from its first point. None where a curve is empty, and where
+    `other` was under it from its first point: nobody knows since when."""
     if not curve or not other:
         return None
     error = max(min(e for _, e in curve), min(e for _, e in other), FLOORS * floor)
     mine, others = time_to_reach(curve, error), time_to_reach(other, error)
-    if mine is None or others is None:
+    if mine is None or others is None or other[0][1] < error:
         return None
     return {"error": error, "ratio": others / mine, "at_least": curve[0][1] < error}
 

@@ -36,9 +36,14 @@ def ratios(methods, over, at):
 
 
 def without_reference_error(points):
-    """Those that have more error than the reference has itself, with what they have more."""
-    return [{**point, "relmse": point["relmse"] - point["reference_error"]} for point in points
-            if point["relmse"] > point["reference_error"]]
+    """With what they have more error than the reference has itself, which of single seeds may be less than nothing;
+    without those of a method and a count where that is the median."""
+    groups = {}
+    for point in points:
+        more = {**point, "relmse": point["relmse"] - point["reference_error"]}
+        groups.setdefault((point["scene"], point["method"], point["budget"]), []).append(more)
+    return [point for group in groups.values() for point in group
+            if statistics.median(seed["relmse"] for seed in group) > 0]
 
 
 def row(name, spp, values):

@@ -14,10 +14,10 @@ SEED = 1 << 30
 
 
 def key(scene, samples):
-    """Changes with whatever changes the image; files that the scene names are taken by name, size and date."""
+    """Changes with whatever changes the image; files of the scene's folder are taken by name, size and date."""
     hashed = hashlib.sha256(scene.file.read_bytes())
     for path in sorted(scene.file.parent.rglob("*")):
-        if path.is_file() and path.suffix in (".obj", ".ply", ".serialized", ".xml"):
+        if path.is_file():
             hashed.update(f"{path.name} {path.stat().st_size} {path.stat().st_mtime}".encode())
     about = [scene.width, scene.height, scene.max_depth, sorted(scene.parameters.items()), samples]
     hashed.update(json.dumps(about).encode())

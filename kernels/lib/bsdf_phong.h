@@ -14,8 +14,12 @@ GRADUS_LIB_BEGIN
 
 GRADUS_FN bsdf_terms phong_terms(material m, vec3 wi, vec3 wo) {
     const int is_valid = (wi.z > R(0)) & (wo.z > R(0));
-    const real cosine = r_min(wi.z * wo.z - wi.x * wo.x - wi.y * wo.y, R(1));
-    const real power = cosine > R(0) ? approx_exp(m.exponent * approx_log(r_max(cosine, R(1e-30)))) : R(0);
+    /* 1 - cos without cancellation, which a high exponent would raise; near 0 the series of the logarithm. */
+    const real c = R(0.5) * v3_length_squared(v3(wo.x + wi.x, wo.y + wi.y, wo.z - wi.z));
+    const real series =
+        R(1) + c * (R(1.0 / 2) + c * (R(1.0 / 3) + c * (R(1.0 / 4) + c * (R(1.0 / 5) + c * R(1.0 / 6)))));
+    const real logarithm = c < R(1.0 / 256) ? -c * series : approx_log(r_max(R(1) - c, R(1e-30)));
+    const real power = c < R(1) ? approx_exp(m.exponent * logarithm) : R(0);
     const real lobe_pdf = (m.exponent + R(1)) * R(0.5) * GRADUS_INV_PI * power;
     const real lobe = (m.exponent + R(2)) * R(0.5) * GRADUS_INV_PI * power * wo.z;
     return lobe_beside_diffuse(m, wi, wo, is_valid, lobe_pdf, lobe);

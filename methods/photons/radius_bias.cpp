@@ -60,7 +60,8 @@ double BiasEstimates::relative_square(const Image &image) const {
 }
 
 void add_pass_errors(const std::optional<BiasEstimates> &bias, Image &image, Statistics &statistics) {
-    statistics.relative_variance = relative_variance_of_passes(image);
+    if (!bias || bias->has_halves) // one pass tells nothing of itself
+        statistics.relative_variance = relative_variance_of_passes(image);
     if (!bias)
         return;
     bias->add_layer(image);

@@ -140,6 +140,10 @@ class TemporaryFile {
     }
 
     void publish() {
+        // What its owner keeps from others stays so.
+        struct stat replaced = {};
+        if (::stat(target_.c_str(), &replaced) == 0)
+            (void)::fchmod(descriptor_, replaced.st_mode & 07777);
         // A full disk may show only here; without the flush a crash could leave the new name on an empty file.
         if (::fsync(descriptor_) != 0)
             fail(path_, std::strerror(errno));
@@ -182,6 +186,8 @@ void check_writable(const std::string &path) {
     const long longest = ::pathconf(target.parent_path().c_str(), _PC_NAME_MAX);
     if (longest > 0 && target.filename().string().size() > std::size_t(longest))
         fail(path, std::strerror(ENAMETOOLONG));
+    if (::access(target.c_str(), F_OK) == 0 && ::access(target.c_str(), W_OK) != 0)
+        fail(path, "it is there, and write-protected");
     if (!may_replace(target))
         fail(path, "it is somebody else's, in a folder where only owners may replace files");
 }

@@ -6,6 +6,7 @@
 #include "runtime/io/properties.h"
 #include "runtime/io/spectrum_file.h"
 #include "runtime/io/text.h"
+#include "runtime/io/text_encoding.h"
 
 #include <fmt/format.h>
 #include <pugixml.hpp>
@@ -54,7 +55,7 @@ class Reader {
 
     Document read(const std::string &path) {
         const auto main = open(OpenFile::open(path), path, std::nullopt);
-        folders_.insert(folders_.begin(), main->path.parent_path());
+        folders_.push_back(main->path.parent_path());
         collect_parameters(*main, main->xml.document_element(), 0);
         read_deferred_includes();
         diagnostics_.throw_if_errors();
@@ -76,8 +77,8 @@ class Reader {
     void check_root(const File &file, const pugi::xml_node &root, bool is_main) const;
     void check_entity(const File &file, const pugi::xml_node &root) const;
     void collect_parameters(const File &file, const pugi::xml_node &node, int depth);
-    void collect_nested_defaults(const File &file, const pugi::xml_node &object);
     void add_default(const File &file, const pugi::xml_node &node);
+    void add_include(const File &file, const pugi::xml_node &node, int depth);
     bool open_include(const File &file, const pugi::xml_node &node, int depth, bool last_chance);
     /// Beside `file`, or in the folders to search; an error where it is in none of them.
     std::optional<fs::path> find(const File &file, const Location &location, const char *what, const std::string &name);
@@ -117,6 +118,7 @@ std::unique_ptr<File> Reader::open(const std::shared_ptr<const OpenFile> &opened
         fail(whole, "the scene's files have more than " + std::to_string(limits_.xml_bytes >> 20) + " MiB of XML" +
                         limits_hint);
     std::optional<std::string> text = opened ? opened->read() : std::nullopt;
+    const bool is_utf8 = text && convert_to_utf8(*text);
     if (text)
         text = with_entities(*std::move(text), limits_.xml_bytes);
     if (text && is_entity) // it may have any number of roots
@@ -128,7 +130,8 @@ std::unique_ptr<File> Reader::open(const std::shared_ptr<const OpenFile> &opened
         if ((*text)[i] == '\n')
             file->line_starts.push_back(i + 1);
     file->text = std::move(*text);
-    const pugi::xml_parse_result result = file->xml.load_buffer_inplace(file->text.data(), file->text.size());
+    const pugi::xml_parse_result result = file->xml.load_buffer_inplace(
+        file->text.data(), file->text.size(), pugi::parse_default, is_utf8 ? pugi::encoding_utf8 : pugi::encoding_auto);
     if (result.status == pugi::status_no_document_element)
         fail(whole, "not well-formed XML: there is no element in it; a scene is an XML file");
     if (!result)
@@ -184,26 +187,32 @@ void Reader::check_entity(const File &file, const pugi::xml_node &root) const {
 void Reader::add_folder(const File &file, const pugi::xml_node &node, const std::string &value) {
     if (folders_.size() > most_folders)
         fail(file.locate(node), "more than " + std::to_string(most_folders) + " folders to search");
-    folders_.push_back(file.path.parent_path() / value);
+    folders_.insert(folders_.begin(), file.path.parent_path() / value); // the last that is named goes first
 }
 
+/// Of what stands in `parent`, however deep, and in the files that it includes; `depth`: of these.
 void Reader::collect_parameters(const File &file, const pugi::xml_node &parent, int depth) {
-    for (pugi::xml_node node : parent.children()) {
-        const std::string_view tag = node.name();
-        if (tag == "default") {
-            add_default(file, node);
-        } else if (tag == "include") {
-            if (++includes_ > limits_.includes)
-                fail(file.locate(node),
-                     "more than " + std::to_string(limits_.includes) + " files are included" + limits_hint);
-            if (!open_include(file, node, depth, false))
-                deferred_.push_back({&file, node, depth});
-        } else if (tag == "path") {
-            if (const std::string value = node.attribute("value").value(); value.find('$') == std::string::npos)
-                add_folder(file, node, value);
-        } else if (is_object_tag(std::string(tag)))
-            collect_nested_defaults(file, node);
-    }
+    struct Walker final : pugi::xml_tree_walker {
+        Reader &reader;
+        const File &file;
+        const int includes;
+        Walker(Reader &r, const File &f, int i) : reader(r), file(f), includes(i) {}
+        bool for_each(pugi::xml_node &node) override {
+            const std::string_view tag = node.name();
+            if (tag == "default") {
+                reader.add_default(file, node);
+            } else if (tag == "include") {
+                reader.add_include(file, node, includes);
+            } else if (tag == "path" && depth() == 0) {
+                if (const std::string value = node.attribute("value").value(); value.find('$') == std::string::npos)
+                    reader.add_folder(file, node, value);
+            }
+            return true;
+        }
+    };
+    Walker walker(*this, file, depth);
+    pugi::xml_node from = parent;
+    from.traverse(walker);
 }
 
 void Reader::add_default(const File &file, const pugi::xml_node &node) {
@@ -213,21 +222,11 @@ void Reader::add_default(const File &file, const pugi::xml_node &node) {
     parameters_.add_default(name, node.attribute("value").value(), file.locate(node));
 }
 
-/// Of an object and all in it, however deep.
-void Reader::collect_nested_defaults(const File &file, const pugi::xml_node &object) {
-    struct Walker final : pugi::xml_tree_walker {
-        Reader &reader;
-        const File &file;
-        Walker(Reader &r, const File &f) : reader(r), file(f) {}
-        bool for_each(pugi::xml_node &node) override {
-            if (std::string_view(node.name()) == "default")
-                reader.add_default(file, node);
-            return true;
-        }
-    };
-    Walker walker(*this, file);
-    pugi::xml_node from = object;
-    from.traverse(walker);
+void Reader::add_include(const File &file, const pugi::xml_node &node, int depth) {
+    if (++includes_ > limits_.includes)
+        fail(file.locate(node), "more than " + std::to_string(limits_.includes) + " files are included" + limits_hint);
+    if (!open_include(file, node, depth, false))
+        deferred_.push_back({&file, node, depth});
 }
 
 /// False where the file name holds a parameter that is not known yet.
@@ -255,8 +254,8 @@ bool Reader::open_include(const File &file, const pugi::xml_node &node, int dept
 
 std::optional<fs::path> Reader::find(const File &file, const Location &location, const char *what,
                                      const std::string &name) {
-    std::vector<fs::path> folders{file.path.parent_path()};
-    folders.insert(folders.end(), folders_.begin(), folders_.end());
+    std::vector<fs::path> folders = folders_;
+    folders.insert(folders.end() - 1, file.path.parent_path()); // before that of the scene
     const std::optional<FoundFile> found = finder_.find(name, folders);
     if (!found) {
         diagnostics_.error(location,
@@ -349,10 +348,7 @@ void Reader::convert_children(const File &file, pugi::xml_node parent, Element &
             continue;
         }
         if (tag == "include") {
-            const auto found = included_.find(child.internal_object());
-            if (found == included_.end()) // only reached where an <include> is nested in an object
-                fail(file.locate(child), "<include> must stand directly in <scene>");
-            const File &included = *found->second;
+            const File &included = *included_.at(child.internal_object());
             const pugi::xml_node root = included.xml.document_element();
             if (std::string(root.name()) == "scene")
                 convert_children(included, root, element, depth);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -46,10 +47,36 @@ class Words {
     std::string_view text_;
 };
 
-std::string replaced(std::string text, char from, const std::string &to) {
-    for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
-        text.replace(at, 1, to);
-    return text;
+std::string replaced(std::string_view text, char from, std::string_view to) {
+    std::string result;
+    for (const char c : text)
+        if (c == from)
+            result += to;
+        else
+            result += c;
+    return result;
+}
+
+/// Where the first of the characters wanted is that no quotes of either kind are around, or npos.
+std::size_t find_outside_quotes(std::string_view text, std::string_view wanted, std::size_t at) {
+    for (; at < text.size(); ++at) {
+        if (wanted.find(text[at]) != std::string_view::npos)
+            return at;
+        if (text[at] != '"' && text[at] != '\'')
+            continue;
+        at = text.find(text[at], at + 1);
+        if (at == std::string_view::npos)
+            break;
+    }
+    return std::string_view::npos;
+}
+
+/// Behind the comment, the instruction or the declaration that begins at `at`; npos where it has no end.
+std::size_t behind_markup(std::string_view text, std::size_t at) {
+    const std::string_view rest = text.substr(at);
+    const std::string_view end = rest.starts_with("<!--") ? "-->" : rest.starts_with("<?") ? "?>" : ">";
+    const std::size_t found = end == ">" ? find_outside_quotes(text, end, at) : text.find(end, at);
+    return found == std::string_view::npos ? found : found + end.size();
 }
 
 /// What a declaration, from behind "<!ENTITY" on, puts in the place of which name.
@@ -57,54 +84,77 @@ std::optional<std::pair<std::string, std::string>> declared(std::string_view dec
     Words words(declaration);
     const std::string name(words.word());
     if (const auto value = words.quoted())
-        return std::pair{name, replaced(replaced(std::string(*value), '\n', " "), '\r', " ")};
+        return std::pair{name, replaced(replaced(*value, '\n', " "), '\r', " ")};
     if (words.word() != "SYSTEM")
         return std::nullopt;
     const auto file = words.quoted();
     if (!file)
         return std::nullopt;
     return std::pair{name, std::string("<include ") + entity_attribute + "=\"" + name + "\" filename=\"" +
-                               replaced(std::string(*file), '"', "&quot;") + "\"/>"};
+                               replaced(*file, '"', "&quot;") + "\"/>"};
 }
 
-/// Those of the <!DOCTYPE>, which ends with `end`.
-std::map<std::string, std::string> entities_of(std::string_view type) {
-    std::map<std::string, std::string> entities;
-    constexpr std::string_view begin = "<!ENTITY";
-    for (std::size_t at = 0; (at = type.find(begin, at)) != std::string_view::npos;) {
-        at += begin.size();
-        if (auto entity = declared(type.substr(at)))
-            entities.insert(*std::move(entity));
+using Entities = std::map<std::string, std::string, std::less<>>;
+
+/// What a <!DOCTYPE> declares, and where it ends.
+struct DocumentType {
+    Entities entities;
+    std::size_t end;
+};
+
+/// That of a file, which stands before all elements. Nothing where there is none, or one that declares nothing or is
+/// not well-formed.
+std::optional<DocumentType> document_type(std::string_view text) {
+    constexpr std::size_t nowhere = std::string_view::npos;
+    std::size_t at = text.find('<');
+    while (at != nowhere && !text.substr(at).starts_with("<!DOCTYPE")) {
+        if (text.substr(at, 2) != "<!" && text.substr(at, 2) != "<?")
+            return std::nullopt;
+        at = text.find('<', behind_markup(text, at));
     }
-    return entities;
+    const std::size_t bracket = find_outside_quotes(text, "[>", at);
+    if (bracket == nowhere || text[bracket] == '>')
+        return std::nullopt;
+    DocumentType type;
+    constexpr std::string_view entity = "<!ENTITY";
+    for (at = bracket + 1; (at = text.find_first_of("<]", at)) != nowhere && text[at] == '<';) {
+        const std::size_t end = behind_markup(text, at);
+        if (end == nowhere)
+            return std::nullopt;
+        if (const std::string_view markup = text.substr(at, end - at - 1); markup.starts_with(entity))
+            if (auto found = declared(markup.substr(entity.size())))
+                type.entities.insert(*std::move(found));
+        at = end;
+    }
+    type.end = find_outside_quotes(text, ">", at);
+    if (type.end == nowhere || type.entities.empty())
+        return std::nullopt;
+    return type;
 }
 
 } // namespace
 
 std::string with_entities(std::string text, std::size_t most_bytes) {
-    const std::size_t type = text.find("<!DOCTYPE");
-    const std::size_t end = type == std::string::npos ? type : text.find("]>", type);
-    if (end == std::string::npos)
+    const std::optional<DocumentType> type = document_type(text);
+    if (!type)
         return text;
-    const auto entities = entities_of(std::string_view(text).substr(type, end - type));
-    if (entities.empty())
-        return text;
-    std::string result = text.substr(0, end);
-    for (std::size_t at = end; at < text.size();) {
+    std::string result = text.substr(0, type->end);
+    for (std::size_t at = type->end; at < text.size();) {
         const std::size_t ampersand = std::min(text.find('&', at), text.size());
         result.append(text, at, ampersand - at);
         at = ampersand;
         if (at == text.size())
             break;
-        const std::size_t semicolon = text.find(';', at);
-        const auto found =
-            semicolon == std::string::npos ? entities.end() : entities.find(text.substr(at + 1, semicolon - at - 1));
-        if (found == entities.end()) {
+        const std::size_t end = text.find_first_of(";&", at + 1); // each of many ampersands ends the search of another
+        const auto found = end == std::string::npos || text[end] == '&'
+                               ? type->entities.end()
+                               : type->entities.find(std::string_view(text).substr(at + 1, end - at - 1));
+        if (found == type->entities.end()) {
             result += text[at++];
             continue;
         }
         result += found->second;
-        at = semicolon + 1;
+        at = end + 1;
         if (result.size() > most_bytes)
             return text;
     }

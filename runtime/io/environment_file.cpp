@@ -1,7 +1,7 @@
 #include "runtime/io/environment_file.h"
 
 #include "runtime/error.h"
-#include "runtime/io/image_io.h"
+#include "runtime/io/text.h"
 
 #include <fmt/format.h>
 
@@ -39,27 +39,63 @@ void mend(std::vector<float> &values, float largest, Mended &mended) {
     }
 }
 
+/// The channel of that name, in lower case; nullptr: there is none.
+Channel *channel_named(Image &image, const std::string &name) {
+    const auto found = std::find_if(image.channels.begin(), image.channels.end(),
+                                    [&](const Channel &channel) { return lower_case(channel.name) == name; });
+    return found == image.channels.end() ? nullptr : &*found;
+}
+
+/// Channels that make one picture: three, or one for gray.
+using Planes = std::vector<Channel *>;
+
+/// The pictures that an image may stand for: the file's own R, G and B, or those of its layers ("Layer.R"), or else a Y
+/// of either, or its only channel.
+std::vector<Planes> pictures_in(Image &image) {
+    std::vector<std::string> layers = {""};
+    for (const Channel &channel : image.channels)
+        if (std::string layer = lower_case(channel.name.substr(0, channel.name.rfind('.') + 1)); layer != layers.back())
+            layers.push_back(std::move(layer));
+    std::vector<Planes> colors, grays;
+    for (const std::string &layer : layers) {
+        const Planes color = {channel_named(image, layer + "r"), channel_named(image, layer + "g"),
+                              channel_named(image, layer + "b")};
+        if (std::ranges::count(color, nullptr) == 0)
+            colors.push_back(color);
+        if (Channel *const luminance = channel_named(image, layer + "y"))
+            grays.push_back({luminance});
+        if (layer.empty() && !colors.empty())
+            return colors;
+    }
+    if (!colors.empty())
+        return colors;
+    return grays.empty() && image.channels.size() == 1 ? std::vector<Planes>{{&image.channels.front()}} : grays;
+}
+
 } // namespace
 
 std::shared_ptr<const EnvironmentMap> read_environment(const OpenFile &file, std::uint64_t limits,
-                                                       const Location &location, Diagnostics &diagnostics) {
+                                                       const Location &location, Diagnostics &diagnostics,
+                                                       WholeNumbers are) {
     const std::string path = file.name().string();
     Image image;
     try {
-        image = read_image(file, limits);
+        image = read_image(file, limits, are);
     } catch (const Error &error) {
         throw SceneError(location, error.what());
     }
     if (std::uint64_t(image.width) * image.height > most_environment_texels)
         throw SceneError(location, fmt::format("the environment map {} has {} x {} texels; {} million are possible",
                                                path, image.width, image.height, most_environment_texels >> 20));
-    std::vector<Channel *> planes;
-    for (const char *name : {"R", "G", "B"})
-        for (Channel &channel : image.channels)
-            if (channel.name == name && planes.size() < 3)
-                planes.push_back(&channel);
-    if (planes.size() != 3)
-        planes = {&image.channels.front()};
+    const std::vector<Planes> pictures = pictures_in(image);
+    if (pictures.empty())
+        throw SceneError(location, fmt::format("of the {} channels of the environment map {} none are R, G, B or Y",
+                                               image.channels.size(), path));
+    const Planes &planes = pictures.front();
+    if (pictures.size() > 1)
+        diagnostics.warn(location, fmt::format("the environment map {} has {} layers that could be meant; it is that "
+                                               "of the channel {}",
+                                               path, pictures.size(), planes.front()->name));
     float largest = 0;
     for (const Channel *plane : planes)
         largest = std::max(largest, largest_finite(plane->values));

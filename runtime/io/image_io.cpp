@@ -32,10 +32,10 @@ Image read_image(const std::string &path, std::uint64_t limits) {
     return read_image(*file, limits);
 }
 
-Image read_image(const OpenFile &file, std::uint64_t limits) {
+Image read_image(const OpenFile &file, std::uint64_t limits, WholeNumbers are) {
     if (const std::optional<ExrSize> declared = exr_size(file.library_name()))
         return read_exr(file, *declared, limits);
-    return picture_library().read_image(file, limits);
+    return picture_library().read_image(file, limits, are);
 }
 
 void write_image(const Image &image, const std::string &path) {

@@ -9,6 +9,9 @@
 
 namespace gradus {
 
+/// What colours of 8 and 16 bits are; as_told: what their file says, and sRGB where it says nothing of 8 bits.
+enum class WholeNumbers { as_told, srgb, linear };
+
 /// Reads an OpenEXR file, or an image of any other format that OpenImageIO knows, all channels as float, row by row
 /// from the top left. Channels keep their names ("R", "layer.R"); their order is the file's, so look them up by name.
 /// Colour channels of formats that hold sRGB values (PNG, JPEG) are decoded to linear. Parts of a file after the first
@@ -17,7 +20,7 @@ namespace gradus {
 /// checked before anything is allocated: at most `limits` times 1024 channels and 256 MiB of pixels as floats, to which
 /// 64 times the file's size comes. Throws Error(ExitCode::image).
 Image read_image(const std::string &path, std::uint64_t limits = 1);
-Image read_image(const OpenFile &file, std::uint64_t limits = 1);
+Image read_image(const OpenFile &file, std::uint64_t limits = 1, WholeNumbers are = WholeNumbers::as_told);
 
 /// Writes all channels as 32-bit float to an OpenEXR file, zipped where that makes it smaller by a seventh, with the
 /// metadata as string attributes "gradus:KEY". Infinities and NaN are kept. The file is written in whole or not at all

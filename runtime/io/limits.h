@@ -18,15 +18,17 @@ struct LoadLimits {
     std::uint64_t geometry_bytes = 4ull << 30; ///< of vertices and triangles of all shapes
     std::uint64_t texture_bytes = 4ull << 30;  ///< of all textures' pixels, as they are kept
     std::uint64_t blend_parts = 1000;          ///< BSDFs in one blend, as often as it holds them
+    std::uint64_t blended = 200'000;           ///< BSDFs in all blends together
     std::uint64_t unfolding = 64;              ///< how many times its size a compressed mesh may unfold to, ...
     std::uint64_t unfolded_bytes = 64u << 20;  ///< ... if that is more than this
     std::uint64_t images = 1;                  ///< times what read_image() takes
 
     LoadLimits times(std::uint64_t factor) const {
         LoadLimits more = *this;
-        for (std::uint64_t *limit : {&more.xml_bytes, &more.includes, &more.elements, &more.value_bytes,
-                                     &more.expanded_bytes, &more.mesh_bytes, &more.geometry_bytes, &more.texture_bytes,
-                                     &more.blend_parts, &more.unfolding, &more.unfolded_bytes, &more.images})
+        for (std::uint64_t *limit :
+             {&more.xml_bytes, &more.includes, &more.elements, &more.value_bytes, &more.expanded_bytes,
+              &more.mesh_bytes, &more.geometry_bytes, &more.texture_bytes, &more.blend_parts, &more.blended,
+              &more.unfolding, &more.unfolded_bytes, &more.images})
             *limit *= factor;
         return more;
     }

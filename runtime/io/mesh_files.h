@@ -66,7 +66,6 @@ struct SerializedMesh {
     Mesh mesh;
     bool face_normals = false;        ///< the file asks for flat shading
     std::uint64_t unfolded_bytes = 0; ///< of the stream that it was read from
-    std::string warning = {};         ///< what of the file was left out; empty: nothing
 };
 /// Mesh `index` (from 0) of a file in Mitsuba's serialized format, versions 3 and 4. Of the limits those of what a
 /// stream may unfold to count. Its colours become the attribute "vertex_color" where that is wanted.

@@ -16,6 +16,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <unordered_map>
 
 namespace gradus {
 
@@ -115,7 +116,10 @@ std::optional<std::string> material_named(std::string_view line) { return named_
 /// A mesh of some of the faces: corners that are alike become one vertex, and polygons fans.
 class MeshOfFaces {
   public:
-    MeshOfFaces(const ObjLists &lists, const std::string &file_name) : lists_(lists), file_name_(file_name) {}
+    /// most_corners: of its faces, if that is known.
+    MeshOfFaces(const ObjLists &lists, const std::string &file_name,
+                std::size_t most_corners = std::numeric_limits<std::size_t>::max())
+        : lists_(lists), file_name_(file_name), is_small_(most_corners < lists.positions.size() / 8) {}
 
     void begin_material(const std::string &) {}
     void add_face(std::span<const ObjCorner> face) {
@@ -129,11 +133,14 @@ class MeshOfFaces {
 
   private:
     std::uint32_t vertex_of(const ObjCorner &corner);
+    std::uint32_t &first_at(std::uint32_t position);
 
     const ObjLists &lists_;
     const std::string &file_name_;
-    std::vector<ObjCorner> corners_;             // by vertex of the mesh
-    std::vector<std::uint32_t> first_, next_;    // the first few vertices that share a position, as lists
+    std::vector<ObjCorner> corners_;          // by vertex of the mesh
+    std::vector<std::uint32_t> first_, next_; // the first few vertices that share a position, as lists
+    const bool is_small_;                     // beside the file, of which it may be one of thousands of parts
+    std::unordered_map<std::uint32_t, std::uint32_t> first_of_small_; // in place of first_
     std::map<ObjCorner, std::uint32_t> crowded_; // the others: a list of all would be searched for each corner
     std::vector<std::uint32_t> polygon_;
     std::vector<std::array<std::uint32_t, 3>> triangles_;
@@ -268,11 +275,18 @@ void ObjReader<Faces>::read_face(const char *at, const char *end) {
     faces_.add_face(face_);
 }
 
-std::uint32_t MeshOfFaces::vertex_of(const ObjCorner &corner) {
+std::uint32_t &MeshOfFaces::first_at(std::uint32_t position) {
+    if (is_small_)
+        return first_of_small_.try_emplace(position, none).first->second;
     if (first_.size() < lists_.positions.size())
         first_.resize(lists_.positions.size(), none);
+    return first_[position];
+}
+
+std::uint32_t MeshOfFaces::vertex_of(const ObjCorner &corner) {
+    std::uint32_t &first = first_at(corner.position);
     int length = 0;
-    for (std::uint32_t vertex = first_[corner.position]; vertex != none; vertex = next_[vertex], ++length)
+    for (std::uint32_t vertex = first; vertex != none; vertex = next_[vertex], ++length)
         if (corners_[vertex] == corner)
             return vertex;
     if (length >= longest_list)
@@ -286,8 +300,8 @@ std::uint32_t MeshOfFaces::vertex_of(const ObjCorner &corner) {
     if (length >= longest_list) {
         crowded_.emplace(corner, vertex);
     } else {
-        next_.back() = first_[corner.position];
-        first_[corner.position] = vertex;
+        next_.back() = first;
+        first = vertex;
     }
     return vertex;
 }
@@ -321,19 +335,23 @@ struct ObjFile::Content {
     ObjLists lists;
     std::vector<ObjCorner> corners;
     std::vector<std::uint32_t> corners_of_face;
+    /// Of faces one after the other that have the same material.
     struct Run {
-        std::string material;
-        std::size_t first_face, first_corner;
+        std::size_t first_face, first_corner, faces = 0, corners = 0;
     };
-    std::vector<Run> runs = {{"", 0, 0}}; ///< of faces one after the other that have the same material
-    std::set<std::string> materials;      ///< of faces
+    std::map<std::string, std::vector<Run>> runs; ///< by material
+    std::string material;
+    Run *run = nullptr; ///< the last; nullptr: its first face is still to come
 
-    void begin_material(const std::string &material) {
-        runs.push_back({material, corners_of_face.size(), corners.size()});
+    void begin_material(const std::string &its_name) {
+        material = its_name;
+        run = nullptr;
     }
     void add_face(std::span<const ObjCorner> face) {
-        if (runs.back().first_face == corners_of_face.size())
-            materials.insert(runs.back().material);
+        if (!run)
+            run = &runs[material].emplace_back(Run{corners_of_face.size(), corners.size()});
+        ++run->faces;
+        run->corners += face.size();
         corners.insert(corners.end(), face.begin(), face.end());
         corners_of_face.push_back(std::uint32_t(face.size()));
     }
@@ -350,14 +368,25 @@ ObjFile &ObjFile::operator=(ObjFile &&) noexcept = default;
 ObjFile::~ObjFile() = default;
 
 Mesh ObjFile::mesh(const FacesOf &faces) const {
-    const std::vector<Content::Run> &runs = content_->runs;
-    MeshOfFaces mesh(content_->lists, content_->file_name);
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-        if (!faces.has(runs[i].material))
-            continue;
-        const std::size_t end = i + 1 < runs.size() ? runs[i + 1].first_face : content_->corners_of_face.size();
-        const ObjCorner *corner = content_->corners.data() + runs[i].first_corner;
-        for (std::size_t face = runs[i].first_face; face < end; ++face) {
+    std::vector<Content::Run> runs;
+    const auto take = [&](const std::vector<Content::Run> &more) { runs.insert(runs.end(), more.begin(), more.end()); };
+    if (faces.others) {
+        for (const auto &[material, its_runs] : content_->runs)
+            if (faces.has(material))
+                take(its_runs);
+    } else {
+        for (const std::string &material : faces.materials)
+            if (const auto found = content_->runs.find(material); found != content_->runs.end())
+                take(found->second);
+    }
+    std::ranges::sort(runs, {}, &Content::Run::first_face); // as the file has them
+    std::size_t corners = 0;
+    for (const Content::Run &run : runs)
+        corners += run.corners;
+    MeshOfFaces mesh(content_->lists, content_->file_name, corners);
+    for (const Content::Run &run : runs) {
+        const ObjCorner *corner = content_->corners.data() + run.first_corner;
+        for (std::size_t face = run.first_face; face < run.first_face + run.faces; ++face) {
             mesh.add_face({corner, content_->corners_of_face[face]});
             corner += content_->corners_of_face[face];
         }
@@ -365,7 +394,7 @@ Mesh ObjFile::mesh(const FacesOf &faces) const {
     return mesh.assemble();
 }
 
-bool ObjFile::has_material(const std::string &material) const { return content_->materials.contains(material); }
+bool ObjFile::has_material(const std::string &material) const { return content_->runs.contains(material); }
 
 Mesh parse_obj(const std::string &text, const std::string &file_name, const std::filesystem::path &place) {
     ObjLists lists;

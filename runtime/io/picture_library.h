@@ -4,6 +4,7 @@
 
 #include "runtime/film/image.h"
 #include "runtime/io/bitmap_reader.h"
+#include "runtime/io/image_io.h"
 #include "runtime/io/open_file.h"
 
 #include <cstdint>
@@ -16,7 +17,7 @@ namespace gradus {
 struct PictureLibrary {
     const char *version; ///< the project's: what was built with another one does not know these functions
     /// As image_io.h has it, of all but OpenEXR files.
-    Image (*read_image)(const OpenFile &file, std::uint64_t limits);
+    Image (*read_image)(const OpenFile &file, std::uint64_t limits, WholeNumbers are);
     ReadBitmap (*read_bitmap)(const OpenFile &file, const BitmapRequest &request);     ///< as bitmap_reader.h has it
     std::vector<unsigned char> (*png_of)(const Image &image, const std::string &path); ///< what write_png() writes
 };

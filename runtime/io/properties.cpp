@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 
@@ -188,7 +189,9 @@ const Element *Properties::texture_of(const Element &property) {
 
 std::int64_t Properties::integer(const std::string &name) {
     const Parameter &parameter = declared(name, {Takes::integer});
-    return integer(name, std::int64_t(parameter.lowest), std::int64_t(parameter.highest));
+    using Limits = std::numeric_limits<std::int64_t>;
+    return integer(name, std::isfinite(parameter.lowest) ? std::int64_t(parameter.lowest) : Limits::min(),
+                   std::isfinite(parameter.highest) ? std::int64_t(parameter.highest) : Limits::max());
 }
 
 std::int64_t Properties::integer(const std::string &name, std::int64_t lowest, std::int64_t highest) {
@@ -240,6 +243,8 @@ Double3 Properties::point(const std::string &name) {
     if (!property || property->attribute("value")) {
         const std::string text = text_of(parameter, property);
         const std::optional<std::vector<double>> values = parse_numbers(text);
+        if (values && values->size() == 1) // for all three
+            return {values->front(), values->front(), values->front()};
         if (!values || values->size() != 3)
             throw error(name, "\"" + name + "\" needs three numbers, not \"" + text + "\"");
         return {(*values)[0], (*values)[1], (*values)[2]};

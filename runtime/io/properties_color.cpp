@@ -136,7 +136,7 @@ Rgb Properties::read_color(const Element &property, const Parameter &parameter, 
     Double3 color = read_rgb(value_of(property), parameter, property.location);
     if (gamma_coded)
         for (double &value : color)
-            value = value < 0 ? value : srgb_to_linear(value);
+            value = value < 0 ? value : srgb_to_linear_value(value);
     return to_rgb(color);
 }
 

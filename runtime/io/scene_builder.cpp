@@ -72,17 +72,13 @@ void SceneBuilder::index(const Element &element, int depth) {
         const std::string *id = element.attribute("id"), *as = element.attribute("as");
         if (!id || !as)
             diagnostics_.error(element.location, "<alias> needs id and as");
-        else {
+        else
             aliases_[*as] = *id;
-            referenced_.insert(*id);
-        }
     }
-    if (element.tag == "ref")
-        referenced_.insert(element.attribute_or("id", ""));
     if (element.tag == "texture") {
         want_attribute(element);
         if (type_of(element) == "bitmap")
-            pictures_.emplace_back(&element, depth == 1);
+            pictures_.push_back(&element);
     }
     if (is_object_tag(element.tag) || depth == 0) {
         check_children(element);
@@ -91,11 +87,8 @@ void SceneBuilder::index(const Element &element, int depth) {
     }
 }
 
-const Element &SceneBuilder::resolve(const Element &reference) {
-    const std::string *id = reference.attribute("id");
-    if (!id)
-        throw SceneError(reference.location, "<ref> needs id");
-    std::string name = *id;
+/// nullptr where nothing has the id.
+const Element *SceneBuilder::find_by_id(std::string name) const {
     auto found = by_id_.find(name);
     for (std::size_t i = 0; found == by_id_.end() && i < longest_alias; ++i) {
         const auto alias = aliases_.find(name);
@@ -104,7 +97,15 @@ const Element &SceneBuilder::resolve(const Element &reference) {
         name = alias->second;
         found = by_id_.find(name);
     }
-    if (found == by_id_.end()) {
+    return found == by_id_.end() ? nullptr : found->second;
+}
+
+const Element &SceneBuilder::resolve(const Element &reference) {
+    const std::string *id = reference.attribute("id");
+    if (!id)
+        throw SceneError(reference.location, "<ref> needs id");
+    const Element *const found = find_by_id(*id);
+    if (!found) {
         std::vector<std::string> known; // not for the thousandth time: there may be as many ids
         for (auto at = by_id_.begin(); at != by_id_.end() && !diagnostics_.is_full(); ++at)
             known.push_back(at->first);
@@ -113,7 +114,7 @@ const Element &SceneBuilder::resolve(const Element &reference) {
             message += "; did you mean \"" + *nearest + "\"?";
         throw SceneError(reference.location, message);
     }
-    return *found->second;
+    return *found;
 }
 
 template <typename Result>
@@ -169,14 +170,18 @@ std::optional<FoundFile> SceneBuilder::look_for(const std::string &name, const s
 std::filesystem::path SceneBuilder::find_file(Properties &properties) {
     const std::string name = properties.string("filename");
     std::vector<std::filesystem::path> folders = document_.search_folders;
-    if (const auto &file = properties.location().file) // an included file may lie elsewhere, its meshes beside it
-        folders.push_back(std::filesystem::path(*file).parent_path());
-    const auto found = missing_files_.contains(name) ? std::nullopt : finder_.find(name, folders);
+    std::filesystem::path beside;
+    if (const auto &file = properties.location().file) { // an included file may lie elsewhere, its meshes beside it
+        beside = std::filesystem::path(*file).parent_path();
+        folders.push_back(beside);
+    }
+    const std::string place = (beside / name).string();
+    const auto found = missing_files_.contains(place) ? std::nullopt : finder_.find(name, folders);
     if (!found) {
-        missing_files_.insert(name);
+        missing_files_.insert(place);
         SceneError error =
             properties.error("filename", "cannot find the file \"" + name + "\"" + finder_.why_not(name, folders));
-        error.cause = name;
+        error.cause = place;
         throw error;
     }
     if (!found->exact)
@@ -214,7 +219,9 @@ Scene SceneBuilder::build() {
         each("shape", [&](const Element &element) { shapes.push_back(&element); });
         build_shapes(shapes, nullptr);
         settle_instances();
-        each("bsdf", [&](const Element &element) { check_unused_bsdf(element); });
+        std::vector<const Element *> bsdfs;
+        each("bsdf", [&](const Element &element) { bsdfs.push_back(&element); });
+        check_unused_bsdfs(bsdfs);
         each("texture", [&](const Element &element) { check_unused_texture(element); });
         check_media(root);
         scene.report_unknown();

@@ -12,6 +12,7 @@
 #include "runtime/scene/mesh_builder.h"
 #include "runtime/scene/scene.h"
 
+#include <array>
 #include <deque>
 #include <filesystem>
 #include <map>
@@ -21,6 +22,7 @@
 #include <set>
 #include <string>
 #include <tuple>
+#include <unordered_set>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -36,6 +38,7 @@ class MeshFile {
     MeshFile(const FileFinder &finder, std::filesystem::path path, std::uint64_t size, Location location)
         : finder_(finder), path_(std::move(path)), size_(size), location_(std::move(location)) {}
     const std::filesystem::path &path() const { return path_; }
+    std::uint64_t size() const { return size_; }
     /// Throws SceneError at the shape that asked first where it cannot be read.
     const std::string &bytes();
     /// Where they were read from, links resolved; once they have been.
@@ -71,7 +74,7 @@ class SceneBuilder {
     std::shared_ptr<const OpenFile> open_file(const std::filesystem::path &path, const Location &location) const;
     /// A file that a shape takes as a whole; it counts as read. Throws SceneError where that is too much.
     std::shared_ptr<MeshFile> mesh_file(const std::filesystem::path &path, const Location &location);
-    /// The same of a file that many shapes may come from: the last one is kept, and counts once.
+    /// The same of a file that many shapes may come from: the last ones are kept, and count once.
     std::shared_ptr<MeshFile> shared_mesh_file(const std::filesystem::path &path, const Location &location);
     /// Counts what a shape reads. Throws SceneError where all of them read more than the limit.
     void count_mesh_bytes(std::uint64_t bytes, const Location &location);
@@ -100,6 +103,8 @@ class SceneBuilder {
     Bsdf blend(const Bsdf &first, const Bsdf &second, const Number &weight, const Location &location);
     /// The material with a map under it, or under each part of a blend. Throws SceneError where one has a map already.
     Material with_map(Material material, const NormalTexture &map, const Location &location);
+    /// set_coating() of runtime/scene/coating.h, worked out once for each kind, index and roughness.
+    void set_coating(Bsdf &bsdf);
     /// Whether light passes a side of a surface, or any part of a blend there.
     bool transmits(const Bsdf &bsdf) const;
     /// Builds a nested object by its plugin. Throws SceneError where its type is not known.
@@ -115,6 +120,8 @@ class SceneBuilder {
 
   private:
     Bsdf with_map(const Bsdf &bsdf, const NormalTexture &map, const Location &location);
+    /// Throws SceneError where all blends together would hold too much with so many more.
+    void check_blended(std::uint64_t more, const Location &location) const;
     template <typename Result>
     Result read_as(const Element &element, const std::string &type);
     void index(const Element &element, int depth);
@@ -122,8 +129,12 @@ class SceneBuilder {
     void begin_pictures();
     void settle_attributes(Mesh &mesh, const std::string &name, const Location &location);
     void check_attributes(const Shape &shape, const Mesh *mesh, const Location &location) const;
+    TextureRange range_of(const Texture &texture);
+    TextureRange unclamped_range_of(Texture texture);
     void check_children(const Element &element);
+    const Element *find_by_id(std::string name) const;
     const Element &resolve(const Element &reference);
+    std::unordered_set<const Element *> used_objects() const;
     void build_sensor(const Element &element);
     void build_integrator(const Element &element);
     const Element &innermost_integrator(const Element &element) const;
@@ -171,7 +182,7 @@ class SceneBuilder {
     void check_media(const Element &element);
     std::uint32_t boundary_material();
     void build_emitter(const Element &element);
-    void check_unused_bsdf(const Element &element);
+    void check_unused_bsdfs(const std::vector<const Element *> &elements);
     void check_unused_texture(const Element &element);
     std::uint32_t material_of(const Element &shape);
     std::int32_t emitter_of(const Element &shape);
@@ -197,6 +208,7 @@ class SceneBuilder {
     std::map<const Element *, std::uint32_t> materials_;
     /// Each is built once, however many refer to it, and fails once.
     std::map<const Element *, std::variant<Material, SceneError>> built_materials_;
+    std::map<std::tuple<BsdfKind, float, float>, Bsdf> coatings_; ///< by kind, ior and alpha_u
     std::vector<std::string> wanted_attributes_;
     std::vector<std::uint64_t> blend_parts_; ///< of each of the scene's blends
     std::map<const Element *, Emitter> area_emitters_;
@@ -208,17 +220,19 @@ class SceneBuilder {
     };
     std::map<Picture, DecodedBitmap> bitmaps_;
     std::map<std::pair<const Bitmap *, PictureBorder>, std::shared_ptr<const Bitmap>> bordered_;
-    /// Textures that name one, in the file's order, and whether they are there for others to refer to.
-    std::vector<std::pair<const Element *, bool>> pictures_;
-    std::set<std::string> referenced_;     ///< ids that anybody refers to
-    std::set<std::string> missing_files_;  ///< that were looked for
-    std::set<const Element *> told_media_; ///< that they are not rendered
+    /// Of pictures: whether they are sRGB, times a scale, clamped from and to.
+    std::map<std::tuple<const Bitmap *, bool, std::array<float, 3>, float, float>, TextureRange> ranges_;
+    /// In place of pictures that no shape needs, while it is there: the bitmap of all that are not known.
+    std::shared_ptr<const Bitmap> stand_in_;
+    std::vector<const Element *> pictures_; ///< textures that name one, in the file's order
+    std::set<std::string> missing_files_;   ///< as beside the file that names them
+    std::set<const Element *> told_media_;  ///< that they are not rendered
     std::optional<PicturesAhead> pictures_ahead_;
     std::int64_t default_material_ = -1, default_emitter_material_ = -1, boundary_material_ = -1;
     const Element *sensor_ = nullptr, *integrator_ = nullptr, *environment_ = nullptr;
-    std::vector<const Element *> open_; ///< objects that are being built, outermost first
-    std::deque<Element> made_;          ///< by plugins
-    std::shared_ptr<MeshFile> shared_file_;
+    std::vector<const Element *> open_;                   ///< objects that are being built, outermost first
+    std::deque<Element> made_;                            ///< by plugins
+    std::vector<std::shared_ptr<MeshFile>> shared_files_; ///< the last that was asked for is the last
     std::uint64_t mesh_bytes_ = 0, geometry_bytes_ = 0, shapes_in_line_ = 0, texture_bytes_ = 0;
     const InstanceChoice instance_choice_;
     const std::uint64_t most_copied_bytes_;

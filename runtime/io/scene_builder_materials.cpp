@@ -1,19 +1,31 @@
 // BSDFs of a scene file: the materials of its shapes, blends and maps.
 #include "runtime/io/plugins/plugin.h"
 #include "runtime/io/scene_builder.h"
+#include "runtime/scene/coating.h"
 #include "runtime/scene/traits.h"
 
 namespace gradus {
 
-/// A BSDF that no shape uses cannot harm the image: what is wrong with it is worth a warning.
-void SceneBuilder::check_unused_bsdf(const Element &element) {
-    if (built_materials_.count(&element))
-        return;
-    try {
-        build_object<Material>(element);
-    } catch (const SceneError &error) {
-        diagnostics_.warn(element.location, std::string("unused BSDF: ") + error.what());
-    }
+/// A BSDF that no shape uses cannot harm the image: what is wrong with it is worth a warning. Its pictures are not
+/// worth to be decoded, and nothing of it stays in the scene.
+void SceneBuilder::check_unused_bsdfs(const std::vector<const Element *> &elements) {
+    const std::size_t textures = scene_.textures.size(), blends = scene_.blends.size(), blended = scene_.blended.size();
+    Bitmap gray;
+    gray.resize(1, 1, Bitmap::Format::byte, false);
+    gray.set(0, 0, 0, 128);
+    stand_in_ = std::make_shared<const Bitmap>(std::move(gray));
+    for (const Element *element : elements)
+        try {
+            if (!built_materials_.contains(element))
+                build_object<Material>(*element);
+        } catch (const SceneError &error) {
+            diagnostics_.warn(element->location, std::string("unused BSDF: ") + error.what());
+        }
+    stand_in_.reset();
+    scene_.textures.resize(textures);
+    scene_.blends.resize(blends);
+    scene_.blended.resize(blended);
+    blend_parts_.resize(blends);
 }
 
 bool SceneBuilder::is_bsdf(const Element &child) const {
@@ -63,6 +75,15 @@ std::uint32_t SceneBuilder::boundary_material() {
     return std::uint32_t(boundary_material_);
 }
 
+void SceneBuilder::check_blended(std::uint64_t more, const Location &location) const {
+    if (scene_.blended.size() + more <= limits_.blended)
+        return;
+    SceneError error(location, "the blends up to this one hold more than " + std::to_string(limits_.blended) +
+                                   " BSDFs" + limits_hint);
+    error.cause = "blended";
+    throw error;
+}
+
 Bsdf SceneBuilder::blend(const Bsdf &first, const Bsdf &second, const Number &weight, const Location &location) {
     // Whatever goes through a blend meets a part as often as it is held, and blends of a blend twice are soon millions.
     const auto parts_of = [this](const Bsdf &part) {
@@ -72,6 +93,7 @@ Bsdf SceneBuilder::blend(const Bsdf &first, const Bsdf &second, const Number &we
     if (parts > limits_.blend_parts)
         throw SceneError(location,
                          "a blend of more than " + std::to_string(limits_.blend_parts) + " BSDFs" + limits_hint);
+    check_blended(2, location);
     blend_parts_.push_back(parts);
     Blend blend;
     blend.weight = weight;
@@ -87,6 +109,8 @@ Bsdf SceneBuilder::blend(const Bsdf &first, const Bsdf &second, const Number &we
 
 Bsdf SceneBuilder::with_map(const Bsdf &bsdf, const NormalTexture &map, const Location &location) {
     if (bsdf.blend != no_blend) {
+        // All of it is copied.
+        check_blended(2 * (blend_parts_[std::size_t(bsdf.blend)] - 1), location);
         const Blend parts = scene_.blends[std::size_t(bsdf.blend)];
         const Bsdf first = with_map(Bsdf(scene_.blended[parts.first]), map, location);
         return blend(first, with_map(Bsdf(scene_.blended[parts.second]), map, location), parts.weight, location);
@@ -107,6 +131,17 @@ Material SceneBuilder::with_map(Material material, const NormalTexture &map, con
     if (material.two_sided)
         material.back = is_alike ? material.front : with_map(material.back, of_sides, location);
     return material;
+}
+
+void SceneBuilder::set_coating(Bsdf &bsdf) {
+    if (bsdf.alpha_u.texture != no_texture)
+        return gradus::set_coating(bsdf);
+    const auto [known, is_new] = coatings_.try_emplace({bsdf.kind, bsdf.ior, bsdf.alpha_u.value}, bsdf);
+    if (is_new)
+        gradus::set_coating(known->second);
+#define GRADUS_TAKE(with, name, value, text) bsdf.name = known->second.name;
+    GRADUS_COAT_PARAMETERS(GRADUS_TAKE, )
+#undef GRADUS_TAKE
 }
 
 bool SceneBuilder::transmits(const Bsdf &bsdf) const {

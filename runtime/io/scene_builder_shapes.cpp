@@ -17,6 +17,16 @@ namespace {
 constexpr std::size_t longest_line = 256;
 /// Of mesh files in a line: what is read at once lies in memory beside what is built.
 constexpr std::uint64_t most_line_bytes = 256u << 20;
+/// Of mesh files, for further shapes of them.
+constexpr std::uint64_t most_kept_bytes = 64u << 20;
+constexpr std::size_t most_kept_files = 16;
+
+/// Of a sum, which every further shape is beyond: told once.
+SceneError too_much(const char *cause, const Location &location, const std::string &message) {
+    SceneError error(location, message);
+    error.cause = cause;
+    return error;
+}
 
 /// A surface that all light passes as if it were not there.
 bool is_never_met(const Material &material) {
@@ -67,24 +77,35 @@ std::shared_ptr<MeshFile> SceneBuilder::mesh_file(const std::filesystem::path &p
 }
 
 std::shared_ptr<MeshFile> SceneBuilder::shared_mesh_file(const std::filesystem::path &path, const Location &location) {
-    if (!shared_file_ || shared_file_->path() != path)
-        shared_file_ = mesh_file(path, location);
-    return shared_file_;
+    const auto known = std::ranges::find(shared_files_, path, &MeshFile::path);
+    if (known == shared_files_.end())
+        shared_files_.push_back(mesh_file(path, location));
+    else
+        std::rotate(known, known + 1, shared_files_.end());
+    std::uint64_t bytes = 0;
+    for (const std::shared_ptr<MeshFile> &file : shared_files_)
+        bytes += file->size();
+    while (shared_files_.size() > 1 && (bytes > most_kept_bytes || shared_files_.size() > most_kept_files)) {
+        bytes -= shared_files_.front()->size();
+        shared_files_.erase(shared_files_.begin());
+    }
+    return shared_files_.back();
 }
 
 void SceneBuilder::count_mesh_bytes(std::uint64_t bytes, const Location &location) {
     mesh_bytes_ += std::min(bytes, limits_.mesh_bytes + 1);
     if (mesh_bytes_ > limits_.mesh_bytes)
-        throw SceneError(location, "the shapes up to this one read more than " +
-                                       std::to_string(limits_.mesh_bytes >> 20) + " MiB of meshes" + limits_hint);
+        throw too_much("mesh bytes", location,
+                       "the shapes up to this one read more than " + std::to_string(limits_.mesh_bytes >> 20) +
+                           " MiB of meshes" + limits_hint);
 }
 
 void SceneBuilder::count_geometry(std::uint64_t bytes, const Location &location) {
     geometry_bytes_ += bytes;
     if (geometry_bytes_ > limits_.geometry_bytes)
-        throw SceneError(location, "the meshes up to this one have more than " +
-                                       std::to_string(limits_.geometry_bytes >> 20) + " MiB of vertices and triangles" +
-                                       limits_hint);
+        throw too_much("geometry bytes", location,
+                       "the meshes up to this one have more than " + std::to_string(limits_.geometry_bytes >> 20) +
+                           " MiB of vertices and triangles" + limits_hint);
 }
 
 /// Where media are not to be ignored, an error at each, else a warning.
@@ -162,8 +183,6 @@ void SceneBuilder::build_line(std::deque<ShapeInLine> &line, std::vector<Prototy
             SerializedMesh mesh = read_file(shape);
             shape.unfolded_bytes = mesh.unfolded_bytes;
             pending.options.face_normals |= mesh.face_normals;
-            if (!mesh.warning.empty())
-                shape.messages.push_back({Diagnostics::Held::Kind::warning, shape.element->location, mesh.warning});
             shape.geometry = build_mesh(std::move(mesh.mesh), pending.to_world, pending.options);
         } catch (const SceneError &error) {
             shape.error = error;
@@ -171,19 +190,21 @@ void SceneBuilder::build_line(std::deque<ShapeInLine> &line, std::vector<Prototy
     };
     // What is past the limit is left for one after the other, where the first that is too much is told.
     std::atomic<std::uint64_t> unfolded = mesh_bytes_;
+    const auto is_too_much = [&] { return geometry_bytes_ > limits_.geometry_bytes; };
     tbb::parallel_for(std::size_t(0), line.size(), [&](std::size_t i) {
-        if (std::holds_alternative<PendingMesh>(line[i].geometry) && unfolded <= limits_.mesh_bytes) {
+        if (std::holds_alternative<PendingMesh>(line[i].geometry) && unfolded <= limits_.mesh_bytes && !is_too_much()) {
             read(line[i]);
             unfolded += line[i].unfolded_bytes;
         }
     });
     for (ShapeInLine &shape : line) {
-        if (!shape.error && std::holds_alternative<PendingMesh>(shape.geometry))
+        if (!shape.error && std::holds_alternative<PendingMesh>(shape.geometry) && !is_too_much())
             read(shape);
         diagnostics_.replay(shape.messages);
         try {
             if (shape.error)
                 throw *shape.error;
+            count_geometry(0, shape.element->location); // nothing was read where it is too much already
             count_mesh_bytes(shape.unfolded_bytes, shape.element->location);
             finish(shape, group);
         } catch (const SceneError &error) {

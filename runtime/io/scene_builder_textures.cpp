@@ -16,15 +16,40 @@
 #include <cmath>
 #include <limits>
 #include <thread>
+#include <unordered_set>
+#include <utility>
 
 namespace gradus {
 
+/// Those that shapes, lights and what else makes the image come to; of BSDFs and textures that are there to be referred
+/// to, only those that are. <ref>s that lead nowhere are told where they are read.
+std::unordered_set<const Element *> SceneBuilder::used_objects() const {
+    std::unordered_set<const Element *> used;
+    std::vector<const Element *> left; // no recursion: references may be as deep as a file is long
+    for (const Element &child : document_.root.children)
+        if (child.tag != "bsdf" && child.tag != "texture")
+            left.push_back(&child);
+    while (!left.empty()) {
+        const Element *const element = left.back();
+        left.pop_back();
+        const std::string *const id = element->tag == "ref" ? element->attribute("id") : nullptr;
+        const Element *const meant = id ? find_by_id(*id) : element;
+        if (!meant || !used.insert(meant).second)
+            continue;
+        for (const Element &child : meant->children)
+            if (child.tag == "ref" || is_object_tag(child.tag))
+                left.push_back(&child);
+    }
+    return used;
+}
+
 /// Has the pictures that textures name decoded, as the rest is built.
 void SceneBuilder::begin_pictures() {
+    const auto used = pictures_.empty() ? std::unordered_set<const Element *>() : used_objects();
     std::vector<Picture> pictures;
     const Plugin<Texture> plugin = find_plugin<Texture>("bitmap");
-    for (const auto &[element, is_shared] : pictures_) {
-        if (is_shared && !referenced_.contains(element->attribute_or("id", "")))
+    for (const Element *element : pictures_) {
+        if (!used.contains(element))
             continue; // nobody will ask for it
         // What is wrong with it, or strange, is said where it is built.
         diagnostics_.hold();
@@ -58,7 +83,7 @@ void SceneBuilder::count_texture_bytes(std::uint64_t words, const Location &loca
 
 std::shared_ptr<const Bitmap> SceneBuilder::bordered(const std::shared_ptr<const Bitmap> &inner,
                                                      const PictureBorder &border, const Location &location) {
-    if (border == PictureBorder())
+    if (border == PictureBorder() || inner == stand_in_)
         return inner;
     std::shared_ptr<const Bitmap> &known = bordered_[{inner.get(), border}];
     if (!known) {
@@ -71,6 +96,10 @@ std::shared_ptr<const Bitmap> SceneBuilder::bordered(const std::shared_ptr<const
 
 std::shared_ptr<const Bitmap> SceneBuilder::bitmap(const Picture &picture, const Location &location, bool &is_srgb) {
     auto known = bitmaps_.find(picture);
+    if (known == bitmaps_.end() && stand_in_) {
+        is_srgb = false;
+        return stand_in_;
+    }
     if (known == bitmaps_.end()) {
         const Phase phase(phases_, phase_names::pictures);
         ReadBitmap read;
@@ -90,6 +119,30 @@ std::shared_ptr<const Bitmap> SceneBuilder::bitmap(const Picture &picture, const
     }
     is_srgb = known->second.is_srgb;
     return known->second.bitmap;
+}
+
+/// texture_range(), which goes over all texels of a picture, once for all textures that are alike in what it goes by.
+TextureRange SceneBuilder::range_of(const Texture &texture) {
+    if (texture.kind != Texture::Kind::bitmap)
+        return texture_range(texture);
+    const auto [known, is_new] =
+        ranges_.try_emplace({texture.bitmap.get(), texture.is_srgb, texture.scale, texture.lowest, texture.highest});
+    if (is_new)
+        known->second = texture_range(texture);
+    return known->second;
+}
+
+/// The same of a texture that is clamped nowhere, once for all scales.
+TextureRange SceneBuilder::unclamped_range_of(Texture texture) {
+    const std::array<float, 3> scale = std::exchange(texture.scale, {1, 1, 1});
+    TextureRange range = range_of(texture);
+    for (std::size_t c = 0; c < 3; ++c) {
+        for (double *value : {&range.mean[c], &range.least[c], &range.most[c]})
+            *value *= scale[c];
+        if (scale[c] < 0)
+            std::swap(range.least[c], range.most[c]);
+    }
+    return range;
 }
 
 FoundTexture SceneBuilder::texture(const Element &element, double lowest, double highest, StandsFor stands_for,
@@ -115,20 +168,21 @@ FoundTexture SceneBuilder::texture(const Element &element, double lowest, double
     texture.lowest = std::numeric_limits<float>::lowest();
     texture.highest = std::numeric_limits<float>::max();
     FoundTexture found;
-    found.range = texture_range(texture);
+    found.range = unclamped_range_of(texture);
     const double least = *std::min_element(found.range.least.begin(), found.range.least.end());
     const double most = *std::max_element(found.range.most.begin(), found.range.most.end());
     texture.lowest = float(lowest);
     texture.highest = float(highest);
     constexpr double not_worth_a_word = 1e-3;
     if (least < lowest || most > highest) {
-        const bool is_known = texture.kind != Texture::Kind::mesh_attribute;
+        const bool is_known =
+            texture.kind != Texture::Kind::mesh_attribute && !(stand_in_ && texture.bitmap == stand_in_);
         if (is_known && (least < lowest - not_worth_a_word || most > highest + not_worth_a_word))
             diagnostics_.warn(element.location,
                               fmt::format("the texture has values from {:.4g} to {:.4g}; they are clamped to {:.4g} to "
                                           "{:.4g}",
                                           least, most, lowest, highest));
-        found.range = texture_range(texture);
+        found.range = range_of(texture);
     }
     const bool is_one_color = texture.kind == Texture::Kind::checkerboard && found.range.least == found.range.most;
     if (is_one_color && one_color == OneColor::is_no_texture) {

@@ -186,8 +186,4 @@ SampledSpectrum black_body_spectrum(double temperature) {
     return spectrum;
 }
 
-double srgb_to_linear(double value) {
-    return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
-}
-
 } // namespace gradus

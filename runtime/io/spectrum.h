@@ -27,7 +27,4 @@ constexpr double least_temperature = 1, most_temperature = 1e9;
 /// Values in W / (m² sr nm).
 SampledSpectrum black_body_spectrum(double temperature);
 
-/// One component of gamma-coded sRGB (IEC 61966-2-1) to linear; both in [0, 1].
-double srgb_to_linear(double value);
-
 } // namespace gradus

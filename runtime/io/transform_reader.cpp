@@ -41,10 +41,14 @@ Double3 triple_attribute(const Element &step, const std::string &name) {
     return {numbers[0], numbers[1], numbers[2]};
 }
 
-/// x, y, z as attributes, or all three in value.
+/// x, y, z as attributes, or all three in value, which may be one number for all of them.
 Double3 components(const Element &step, double otherwise) {
-    if (step.attribute("value"))
+    if (step.attribute("value")) {
+        const std::vector<double> numbers = list_attribute(step, "value");
+        if (numbers.size() == 1)
+            return {numbers[0], numbers[0], numbers[0]};
         return triple_attribute(step, "value");
+    }
     return {number_attribute(step, "x", otherwise), number_attribute(step, "y", otherwise),
             number_attribute(step, "z", otherwise)};
 }
@@ -55,10 +59,15 @@ Matrix4 read_matrix(const Element &step) {
     if (values.size() == 16) {
         for (int i = 0; i < 16; ++i)
             result.m[i] = values[i];
-        if (values[12] != 0 || values[13] != 0 || values[14] != 0 || values[15] == 0)
+        constexpr double tolerance = 1e-6; // what an inverse in single precision may leave there
+        const double most = tolerance * std::fabs(values[15]);
+        if (!(most > 0) || std::fabs(values[12]) > most || std::fabs(values[13]) > most || std::fabs(values[14]) > most)
             fail(step, "the last row must be 0 0 0 1; projective maps are not supported");
-        for (int i = 0; i < 16; ++i)
+        for (int i = 0; i < 12; ++i)
             result.m[i] /= values[15];
+        for (int i = 12; i < 15; ++i)
+            result.m[i] = 0;
+        result.m[15] = 1;
     } else if (values.size() == 9) {
         for (int row = 0; row < 3; ++row)
             for (int column = 0; column < 3; ++column)
@@ -66,14 +75,6 @@ Matrix4 read_matrix(const Element &step) {
     } else
         fail(step, "value needs 16 or 9 numbers, not " + std::to_string(values.size()));
     return result;
-}
-
-Matrix4 read_scale(const Element &step) {
-    if (const std::string *value = step.attribute("value"); value && split_list(*value).size() == 1) {
-        const double s = number_attribute(step, "value", 1);
-        return scaling({s, s, s});
-    }
-    return scaling(components(step, 1));
 }
 
 Matrix4 read_rotation(const Element &step) {
@@ -126,7 +127,7 @@ Matrix4 read_transform(const Element &transform, Diagnostics &diagnostics) {
         else if (kind == "translate")
             matrix = translation(components(step, 0));
         else if (kind == "scale")
-            matrix = read_scale(step);
+            matrix = scaling(components(step, 1));
         else if (kind == "rotate")
             matrix = read_rotation(step);
         else if (kind == "lookat")

@@ -49,29 +49,29 @@ OIIO::TypeDesc type_of(Bitmap::Format format) {
     return OIIO::TypeDesc::FLOAT;
 }
 
-/// Before anything is allocated.
-void check_size(const OpenFile &file, const OIIO::ImageSpec &spec, std::uint64_t limits) {
-    const std::string path = file.name().string();
-    if (spec.deep || spec.depth > 1 || spec.width <= 0 || spec.height <= 0)
-        refuse(path, "it is not a plane of pixels");
+void check_bytes(const OpenFile &file, double bytes, std::uint64_t limits) {
     const double most = double(most_pixel_bytes(file, limits));
-    const double bytes = double(spec.width) * spec.height * spec.nchannels * double(spec.format.size());
     if (bytes > most)
-        refuse(path,
+        refuse(file.name().string(),
                fmt::format("its pixels would take {:.0f} MiB, far more than a file of its size holds; --limits 10 "
                            "allows ten times the {:.0f} MiB that are read",
                            bytes / 0x1p20, most / 0x1p20));
 }
 
+/// Before anything is allocated.
+void check_size(const OpenFile &file, const OIIO::ImageSpec &spec, std::uint64_t limits) {
+    if (spec.deep || spec.depth > 1 || spec.width <= 0 || spec.height <= 0)
+        refuse(file.name().string(), "it is not a plane of pixels");
+    check_bytes(file, double(spec.width) * spec.height * spec.nchannels * double(spec.format.size()), limits);
+}
+
 void check_exr(const OpenFile &file, std::uint64_t limits) {
-    const std::string path = file.name().string();
     const std::optional<ExrSize> declared = exr_size(file.library_name());
     if (!declared)
         return;
     if (!declared->fits(file.bytes()))
-        refuse(path, "it is truncated or damaged: its header and its size do not agree");
-    if (declared->bytes > most_pixel_bytes(file, limits))
-        refuse(path, "it declares far more pixels than a file of its size holds");
+        refuse(file.name().string(), "it is truncated or damaged: its header and its size do not agree");
+    check_bytes(file, double(declared->bytes), limits);
 }
 
 int channel_named(const OIIO::ImageSpec &spec, const std::string &name) {

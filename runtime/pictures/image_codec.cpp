@@ -13,15 +13,19 @@
 namespace gradus {
 namespace {
 
-/// 8 bits are, unless the file says otherwise; some formats have no place to say so.
-bool holds_srgb(const OIIO::ImageSpec &spec) {
+/// As told, 8 bits are unless the file says otherwise; some formats have no place to say so.
+bool holds_srgb(const OIIO::ImageSpec &spec, WholeNumbers are) {
+    if (are != WholeNumbers::as_told)
+        return are == WholeNumbers::srgb &&
+               (spec.format == OIIO::TypeDesc::UINT8 || spec.format == OIIO::TypeDesc::UINT16);
     const std::string space(spec.get_string_attribute("oiio:ColorSpace"));
     return !spec.format.is_floating_point() &&
            (space == "sRGB" || (spec.format == OIIO::TypeDesc::UINT8 && !OIIO::Strutil::iequals(space, "linear")));
 }
 
 /// Appends the channels of the part that `input` stands at.
-void read_part(OIIO::ImageInput &input, int part, const OpenFile &file, PixelLimit &limit, Image &image) {
+void read_part(OIIO::ImageInput &input, int part, const OpenFile &file, WholeNumbers are, PixelLimit &limit,
+               Image &image) {
     const OIIO::ImageSpec spec = input.spec();
     if (spec.deep || spec.depth > 1)
         fail_to_read(file, "it is not a plane of pixels");
@@ -30,7 +34,7 @@ void read_part(OIIO::ImageInput &input, int part, const OpenFile &file, PixelLim
     const std::size_t pixels = std::size_t(width) * height, count = static_cast<std::size_t>(spec.nchannels);
     const std::string part_name(spec.get_string_attribute("oiio:subimagename", std::to_string(part)));
     const std::string prefix = part == 0 ? "" : part_name + ".";
-    const bool decode = holds_srgb(spec);
+    const bool decode = holds_srgb(spec, are);
     const std::size_t first_channel = image.channels.size();
     for (std::size_t c = 0; c < count; ++c)
         image.channels.push_back({prefix + spec.channelnames[c], std::vector<float>(pixels)});
@@ -63,14 +67,14 @@ void read_part(OIIO::ImageInput &input, int part, const OpenFile &file, PixelLim
 
 } // namespace
 
-Image decode_image(const OpenFile &file, std::uint64_t limits) {
+Image decode_image(const OpenFile &file, std::uint64_t limits, WholeNumbers are) {
     PixelLimit limit(file, limits);
     const PictureInput opened = open_picture(file);
     if (!opened.input)
         fail_to_read(file, opened.error);
     Image image;
     for (int part = 0; opened.input->seek_subimage(part, 0); ++part)
-        read_part(*opened.input, part, file, limit, image);
+        read_part(*opened.input, part, file, are, limit, image);
     return image;
 }
 

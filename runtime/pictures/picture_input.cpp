@@ -50,7 +50,8 @@ PictureInput open_picture(const OpenFile &file) {
     OIIO::ImageSpec wishes;
     wishes.attribute("oiio:UnassociatedAlpha", 1);
     PictureInput opened;
-    if (!file.is_confined()) {
+    // Of a name with a question mark OpenImageIO takes what follows it for parameters; readers themselves do not.
+    if (!file.is_confined() && file.library_name().find('?') == std::string::npos) {
         opened.input = OIIO::ImageInput::open(file.library_name(), &wishes);
         if (!opened.input)
             opened.error = OIIO::geterror();
@@ -66,7 +67,8 @@ PictureInput open_picture(const OpenFile &file) {
         if (opened.error.empty())
             opened.error = named_in(error, file);
     }
-    opened.error += "; with --confined the formats are " + OIIO::Strutil::join(formats_of_one_file, ", ");
+    opened.error += std::string("; ") + (file.is_confined() ? "with --confined" : "of a name with a question mark") +
+                    " the formats are " + OIIO::Strutil::join(formats_of_one_file, ", ");
     return opened;
 }
 

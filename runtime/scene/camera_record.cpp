@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace gradus {
 
@@ -22,7 +23,7 @@ Vec normalized(Vec v) {
 } // namespace
 
 double film_tangent(const Camera &camera, double width, double height) {
-    const double tangent = std::tan(camera.fov * 3.14159265358979323846 / 360);
+    const double tangent = std::tan(camera.fov * std::numbers::pi / 360);
     const double aspect = width / height;
     switch (camera.fov_axis) {
     case Camera::FovAxis::x:

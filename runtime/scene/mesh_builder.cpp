@@ -11,13 +11,6 @@ namespace {
 
 bool is_finite(const Vector3 &v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-/// Twice the area, along the geometric normal.
-Double3 area_vector(const Mesh &mesh, const std::array<std::uint32_t, 3> &triangle) {
-    const Double3 p0 = to_double(mesh.positions[triangle[0]]);
-    return cross(subtract(to_double(mesh.positions[triangle[1]]), p0),
-                 subtract(to_double(mesh.positions[triangle[2]]), p0));
-}
-
 void transform_positions(Mesh &mesh, const Matrix4 &to_world) {
     for_each_in_parallel(mesh.positions.size(), [&](std::size_t i) {
         mesh.positions[i] = to_float(transform_point(to_world, to_double(mesh.positions[i])));
@@ -115,6 +108,12 @@ void reverse_winding(Mesh &mesh) {
 }
 
 } // namespace
+
+Double3 area_vector(const Mesh &mesh, const std::array<std::uint32_t, 3> &triangle) {
+    const Double3 p0 = to_double(mesh.positions[triangle[0]]);
+    return cross(subtract(to_double(mesh.positions[triangle[1]]), p0),
+                 subtract(to_double(mesh.positions[triangle[2]]), p0));
+}
 
 std::vector<Vector3> smooth_vertex_normals(const Mesh &mesh) {
     std::vector<Double3> sums(mesh.positions.size(), Double3{0, 0, 0});

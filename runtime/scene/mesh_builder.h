@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/scene/scene.h"
+#include "runtime/scene/transform.h"
 
 #include <cstddef>
 
@@ -32,6 +33,9 @@ BuiltMesh build_mesh(Mesh mesh, const Matrix4 &to_world, const MeshOptions &opti
 /// Adds up the normals of the triangles at each vertex, weighted by the angle there (Thuermer and Wuethrich 1998,
 /// "Computing vertex normals from polygonal facets"). Normals of vertices without a triangle are (0, 0, 1).
 std::vector<Vector3> smooth_vertex_normals(const Mesh &mesh);
+
+/// Twice the area of a triangle, along its geometric normal.
+Double3 area_vector(const Mesh &mesh, const std::array<std::uint32_t, 3> &triangle);
 
 /// Sum of the areas of the triangles, in square scene units.
 double surface_area(const Mesh &mesh);

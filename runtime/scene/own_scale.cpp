@@ -3,9 +3,13 @@
 #include "runtime/error.h"
 #include "runtime/scene/bounds.h"
 #include "runtime/scene/instances.h"
+#include "runtime/scene/mesh_builder.h"
 
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -13,14 +17,51 @@ namespace gradus {
 namespace {
 
 constexpr double least_extent = 1e-3, most_extent = 1e6; ///< of scenes that stay as they are
-/// Of a shape over the scene: the fourth power of its size is then just above the least of floats.
+/// Of a shape over the scene.
 constexpr double least_share = 1e-9;
+/// Of a triangle, twice: its square is then just above the least of floats, in which kernels take it.
+constexpr double least_area = 4e-19;
+/// Of a triangle's edges over the scene: a shape of `least_share` may have some ten thousand of these. What is smaller
+/// still is left over from modelling and not looked after.
+constexpr double least_share_of_edge = 1e-11;
 /// Past it differences of coordinates overflow.
 constexpr double largest_float_extent = 1e37;
 /// Of the camera's place over the scene: from farther, all of it is one direction.
 constexpr double most_away = 1e15;
 
 void multiply(Vector3 &v, float factor) { v = {v.x * factor, v.y * factor, v.z * factor}; }
+
+/// Twice the least area of a triangle that is at least so large; infinite where there is none.
+double smallest_area(const Scene &scene, double at_least) {
+    double least = INFINITY;
+    for (const Mesh &mesh : scene.meshes) {
+        using Range = tbb::blocked_range<std::size_t>;
+        const auto least_of = [&](const Range &range, double found) {
+            for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                const Double3 normal = area_vector(mesh, mesh.triangles[i]);
+                const double area = std::sqrt(dot(normal, normal));
+                if (area >= at_least)
+                    found = std::min(found, area);
+            }
+            return found;
+        };
+        least = tbb::parallel_reduce(Range(0, mesh.triangles.size(), 1 << 14), least, least_of,
+                                     [](double a, double b) { return std::min(a, b); });
+    }
+    return least;
+}
+
+/// A power of two that lengths are multiplied by, of a scene so large: 1 where nothing is too small or too large.
+double scale_of(const Scene &scene, double extent) {
+    const bool stays = extent >= least_extent && extent <= most_extent;
+    const double factor = stays ? 1 : std::exp2(-std::floor(std::log2(extent)));
+    const double edge = least_share_of_edge * extent, smallest = smallest_area(scene, edge * edge) * factor * factor;
+    if (smallest >= least_area)
+        return factor;
+    const double needed = std::ceil(0.5 * std::log2(least_area / smallest)),
+                 possible = std::floor(std::log2(most_extent / (extent * factor)));
+    return factor * std::exp2(std::max(std::min(needed, possible), 0.0));
+}
 
 } // namespace
 
@@ -67,9 +108,9 @@ double bring_to_own_scale(Scene &scene) {
                     fmt::format("the camera is at {:.3g}, {:.3g}, {:.3g}, too far from a scene of {:.3g} "
                                 "for single precision: see its to_world",
                                 eye[0], eye[1], eye[2], extent));
-    if (extent >= least_extent && extent <= most_extent)
+    const double factor = scale_of(scene, extent);
+    if (factor == 1)
         return 1;
-    const double factor = std::exp2(-std::floor(std::log2(extent)));
     for (Mesh &mesh : scene.meshes)
         for (Vector3 &p : mesh.positions)
             multiply(p, float(factor));

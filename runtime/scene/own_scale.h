@@ -6,7 +6,8 @@
 namespace gradus {
 
 /// Multiplies all lengths of a scene by the returned power of two, by which it becomes about 1 large; by 1, so not at
-/// all, where it is from a thousandth to a million large. The picture stays as it is: lengths alone change, and
+/// all, where it is from a thousandth to a million large. Where its triangles are too small then, it becomes larger, by
+/// as much as they need and at most a million large. The picture stays as it is: lengths alone change, and
 /// intensities of point lights with their square. Depths of the image are to be divided by the factor. Scenes that are
 /// larger or smaller and have not been through this lose light without a word.
 ///

@@ -1,6 +1,7 @@
 #include "runtime/scene/transform.h"
 
 #include <cmath>
+#include <numbers>
 
 namespace gradus {
 
@@ -36,7 +37,7 @@ Matrix4 scaling(const Double3 &factors) {
 // Rodrigues' formula: cos(t) I + (1 - cos(t)) a a^T + sin(t) [a]x for a unit axis a.
 Matrix4 rotation(const Double3 &axis, double degrees) {
     const Double3 a = normalize(axis);
-    const double radians = degrees * (3.14159265358979323846 / 180);
+    const double radians = degrees * (std::numbers::pi / 180);
     const double c = std::cos(radians), s = std::sin(radians), d = 1 - c;
     Matrix4 result;
     result.m = {c + d * a[0] * a[0],

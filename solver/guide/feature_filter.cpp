@@ -4,6 +4,8 @@
 #include "kernels/shared/solver_shared.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <vector>
 
 namespace gradus {
@@ -25,6 +27,20 @@ std::vector<double> shares_inside(std::uint32_t size, std::uint32_t stride) {
             shares[std::size_t(offset + GUIDE_RADIUS) * stride + i] = 1.0 / std::max(count, 1);
         }
     return shares;
+}
+
+/// A power of two that brings depths near 1, so that the scene's unit changes no bit: the mean of their exponents.
+double depth_scale(const Buffer &features, std::size_t pixels) {
+    const auto mapping = features.map(Access::read);
+    const float *const depths = mapping.as<float>() + (FeatureFilter::features - 1) * pixels;
+    std::int64_t sum = 0, count = 0;
+    for (std::size_t i = 0; i < pixels; ++i)
+        if (std::isnormal(depths[i]) && depths[i] > 0) {
+            sum += std::ilogb(depths[i]);
+            ++count;
+        }
+    // Rounded down, so that an exponent more of all is one more of the mean.
+    return count > 0 ? std::ldexp(1.0, -int(std::floor(double(sum) / double(count)))) : 1;
 }
 
 } // namespace
@@ -69,6 +85,7 @@ void FeatureFilter::run(const std::array<const Buffer *, 2> &halves, double shar
     import_features_.set_real("albedo_unit", 1 / units.albedo);
     import_features_.set_real("normal_unit", 1 / units.normal);
     import_features_.set_real("depth_unit", 1 / units.depth);
+    import_features_.set_real("depth_scale", depth_scale(features, std::size_t(grid_.width) * grid_.height));
     import_features_.bind("packed", features);
     import_features_.bind(near_features);
     grid_.launch(import_features_, {0, 1});

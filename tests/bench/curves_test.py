@@ -73,6 +73,9 @@ class Ratios(unittest.TestCase):
         self.assertTrue(found["at_least"])
         self.assertAlmostEqual(found["ratio"], 8 / 0.5)
 
+    def test_of_time_is_none_where_the_other_was_better_from_the_first_point_on(self):
+        self.assertIsNone(curves.time_ratio([(1, 0.01), (2, 0.005)], [(4, 0.01), (8, 0.005)], floor=1))
+
     def test_of_time_stays_over_the_floor(self):
         self.assertAlmostEqual(curves.time_ratio(power_law(0.25, -1), power_law(1, -1), 0.05)["error"], 0.2)
 
@@ -135,6 +138,12 @@ class Summaries(unittest.TestCase):
         for found in ratios.ratios(methods, "pt", "time").values():
             self.assertAlmostEqual(found["gpt"], 0.1)
         self.assertEqual(ratios.without_reference_error(points("gpt", [(1, 0.04)], floor=0.05)), [])
+
+    def test_ratios_keep_seeds_with_less_error_than_the_reference(self):
+        seeds = points("gpt", [(1, 1.0)], scatter=(0.9, 0.95, 1.05, 1.1, 1.2), floor=1.0)
+        left = ratios.without_reference_error(seeds)
+        self.assertEqual(len(left), 5)
+        self.assertAlmostEqual(curves.curves(left, "relmse")["box"]["gpt"][0]["error"]["median"], 0.05)
 
 
 if __name__ == "__main__":

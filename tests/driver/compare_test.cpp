@@ -50,6 +50,20 @@ class Compare : public ProgramTest {
     }
 };
 
+TEST_F(Compare, CropsOfDifferentPlacesHaveNothingInCommon) {
+    Image image = make_gray(side, side, std::vector<float>(side * side, 1));
+    write_image(image, at("reference.exr"));
+    image.metadata["crop"] = "0,0,64,64";
+    write_image(image, at("first.exr"));
+    image.metadata["crop"] = "64,0,64,64";
+    write_image(image, at("second.exr"));
+    const Outcome outcome = run({"compare", "first.exr", "second.exr"});
+    EXPECT_EQ(outcome.exit_code, 6);
+    EXPECT_THAT(outcome.err, HasSubstr("it is the crop 0,0,64,64 of its image, and the reference is 64,0,64,64"));
+    EXPECT_EQ(run({"compare", "first.exr", "first.exr"}).exit_code, 0);
+    EXPECT_EQ(run({"compare", "first.exr", "reference.exr"}).exit_code, 0) << "which does not say";
+}
+
 /// Of 64 x 64 values with normal errors; 3 standard errors of a share of so many are 0.022.
 TEST_F(Compare, SaysHowRightAnErrorLayerIs) {
     write_noise("image.exr", 1, 0.1, 0, "64");

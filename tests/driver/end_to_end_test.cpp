@@ -468,6 +468,20 @@ TEST_F(EndToEnd, InspectDevicesAndWarm) {
     EXPECT_EQ(warm.exit_code, 0) << warm.err;
 }
 
+// What single precision cannot see is refused as by a render.
+TEST_F(EndToEnd, WarmRefusesWhatARenderDoes) {
+    std::ofstream(folder / "tiny.xml") << R"(<scene version="3.0.0">
+        <sensor type="perspective"/>
+        <shape type="sphere"/>
+        <shape type="sphere"><float name="radius" value="1e-12"/></shape>
+        </scene>)";
+    for (const char *command : {"warm", "tune"}) {
+        const Outcome outcome = run({command, "tiny.xml", "--size", "8x8"});
+        EXPECT_EQ(outcome.exit_code, 3) << command;
+        EXPECT_THAT(outcome.err, HasSubstr("too small a share")) << command;
+    }
+}
+
 /// Files and sockets that it opens do not take their places: all kernels are kept, and none is compiled again.
 TEST_F(EndToEnd, DoesWithoutStandardStreams) {
     const auto kernels_compiled = [&] {

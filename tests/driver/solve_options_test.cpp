@@ -8,6 +8,9 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <array>
+#include <limits>
 #include <new>
 #include <optional>
 #include <stdexcept>
@@ -28,6 +31,7 @@ struct Asked {
     PoissonOptions options;
     HostImages images; ///< the pointers are not valid any more; null where there was none
     std::vector<float> primal, dx, dy, direct, dx_variance;
+    std::array<std::uint64_t, 2> samples = {}; ///< of halves
 };
 
 class SolveOptions : public GradientImagesTest {
@@ -49,7 +53,7 @@ class SolveOptions : public GradientImagesTest {
                                          std::uint32_t height, std::uint32_t channels) {
             if (prepare_fails)
                 prepare_fails();
-            asked = {device, threads, width, height, channels, {}, {}, {}, {}, {}, {}, {}};
+            asked = {device, threads, width, height, channels, {}, {}, {}, {}, {}, {}, {}, {}};
             PreparedSolver solver;
             solver.description.name = "fake device";
             solver.solve = [this](const HostImages &images, const PoissonOptions &options, float *result) {
@@ -63,6 +67,11 @@ class SolveOptions : public GradientImagesTest {
                 for (std::size_t i = 0; i < asked.primal.size(); ++i)
                     result[i] = asked.primal[i] + 0.5f;
                 ++solves;
+                return report;
+            };
+            solver.solve_weighted = [this](const HostHalves &halves, float *result) {
+                asked.samples = halves.samples;
+                std::fill_n(result, asked.width * asked.height * asked.channels, 1.0f);
                 return report;
             };
             return solver;
@@ -96,6 +105,20 @@ class SolveOptions : public GradientImagesTest {
                                                              {"primal_variance", 500},
                                                              {"dx_variance", 600},
                                                              {"dy_variance", 700}})));
+    }
+
+    /// Layers of a weighted render of so many samples a pixel; 0: the file does not say.
+    std::string write_halves(const std::string &name, int samples) const {
+        std::vector<std::pair<std::string, float>> all;
+        for (const char *half : {"even", "odd"})
+            for (const char *image : {"primal_", "dx_", "dy_"}) {
+                all.push_back({std::string(image) + half, 1.0f});
+                all.push_back({std::string(image) + half + "_variance", 1.0f});
+            }
+        Image image = counting_image(3, 2, layers(all));
+        if (samples > 0)
+            image.metadata["samples"] = std::to_string(6 * samples);
+        return write(name, image);
     }
 
     Asked asked;
@@ -222,6 +245,59 @@ TEST_F(SolveOptions, VariancesAreReadWhereTheyAreUsed) {
     const Result unused = run({path, "-o", at("out.exr"), "--variance-dx", own});
     EXPECT_EQ(unused.exit_code, 0);
     EXPECT_THAT(unused.err, HasSubstr("own.exr' is not read: only --alpha auto and --weights variance use variances"));
+}
+
+TEST_F(SolveOptions, VariancesThatAreNoneAreTold) {
+    Image image = counting_image(3, 2, layers({{"primal", 1}, {"dx", 2}, {"dy", 3}}));
+    for (const char *name : {"primal_variance", "dx_variance", "dy_variance"})
+        for (const char *color : {"R", "G", "B"})
+            image.channels.push_back({std::string(name) + "." + color, std::vector<float>(6, -1)});
+    const std::string none = write("none.exr", image);
+    const std::vector<std::string> weights{none, "-o", at("out.exr"), "--norm", "L2", "--weights", "variance"};
+    const Result by_none = run(weights);
+    EXPECT_EQ(by_none.exit_code, 6);
+    EXPECT_THAT(by_none.err, HasSubstr("no variance is a number of at least 0"));
+    image.channels.back().values = {
+        0, 1, 2, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN(), -1};
+    write("none.exr", image);
+    const Result by_three = run(weights);
+    EXPECT_EQ(by_three.exit_code, 0);
+    EXPECT_THAT(by_three.err, HasSubstr("51 of 54 variances are NaN, infinite or below 0"));
+    image.channels.back().values = {0, 0, 0, -1, -1, -1};
+    write("none.exr", image);
+    EXPECT_THAT(run({none, "-o", at("out.exr"), "--alpha", "auto"}).err, HasSubstr("all variances are 0"));
+}
+
+TEST_F(SolveOptions, WhatAReconstructionHasNoUseForIsTold) {
+    const std::string own = write_colours("own.exr", 7), halves = write_halves("halves.exr", 4);
+    const Result result = run({halves, "-o", at("out.exr"), "--reconstruction", "weighted", "--primal", own, "--layer",
+                               "dx=gradient", "--variance-dx", own});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("own.exr' is not read: --reconstruction weighted has no use for primal"));
+    EXPECT_THAT(result.err, HasSubstr("--layer dx=gradient is not read: --reconstruction weighted has no use for dx"));
+    EXPECT_THAT(result.err, HasSubstr("own.exr' is not read: only --alpha auto and --weights variance use variances"));
+}
+
+TEST_F(SolveOptions, HalvesOfTooFewSamplesAreRefused) {
+    report.converged = true;
+    const Result result = run({write_halves("halves.exr", 3), "-o", at("out.exr"), "--reconstruction", "weighted"});
+    EXPECT_EQ(result.exit_code, 6);
+    EXPECT_THAT(result.err, HasSubstr("weighted needs 4 samples of each pixel, and the render that wrote these layers "
+                                      "took 3"));
+    EXPECT_EQ(run({write_halves("halves.exr", 4), "-o", at("out.exr"), "--reconstruction", "weighted"}).err, "");
+    EXPECT_EQ(asked.samples, (std::array<std::uint64_t, 2>{12, 12}));
+    // Where the file does not say, both halves have as many.
+    EXPECT_EQ(run({write_halves("halves.exr", 0), "-o", at("out.exr"), "--reconstruction", "weighted"}).err, "");
+    EXPECT_EQ(asked.samples, (std::array<std::uint64_t, 2>{1, 1}));
+}
+
+TEST_F(SolveOptions, PixelsThatAreMissingAreThoseOfBothHalves) {
+    const std::vector<std::string> words{write_halves("halves.exr", 4), "-o", at("out.exr"), "--reconstruction",
+                                         "weighted"};
+    report.missing_primal = 6; // half of 3 x 2 pixels, twice
+    EXPECT_THAT(run(words).err, Not(HasSubstr("no pixel of the primal")));
+    report.missing_primal = 12;
+    EXPECT_THAT(run(words).err, HasSubstr("no pixel of the primal has a finite value"));
 }
 
 TEST_F(SolveOptions, LayersAreNamed) {

@@ -186,6 +186,20 @@ TEST_F(ImageFiles, AFileOverTheLimitLeavesTheOldOne) {
     EXPECT_EQ(files(), 1u);
 }
 
+TEST_F(ImageFiles, AFileKeepsItsPermissions) {
+    write_file_atomically(at("file"), "old", 3);
+    fs::permissions(at("file"), fs::perms(0640));
+    write_file_atomically(at("file"), "new", 3);
+    EXPECT_EQ(bytes(at("file")), "new");
+    EXPECT_EQ(fs::status(at("file")).permissions(), fs::perms(0640));
+    fs::permissions(at("file"), fs::perms(0440));
+    if (geteuid() == 0) // who may write to anything
+        return;
+    std::string message;
+    EXPECT_EQ(code_of([&] { check_writable(at("file")); }, &message), ExitCode::output);
+    EXPECT_THAT(message, ::testing::HasSubstr("write-protected"));
+}
+
 TEST_F(ImageFiles, LinksAreFollowed) {
     fs::create_directory(folder / "real");
     fs::create_symlink("real/target.exr", folder / "link.exr");

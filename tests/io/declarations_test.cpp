@@ -36,7 +36,7 @@ const std::map<std::string, std::string> needed = {
     {"bsdf normalmap", picture + diffuse},
     {"bsdf mask", diffuse},
     {"bsdf twosided", diffuse},
-    {"emitter envmap", file("a.exr")},
+    {"emitter envmap", file("a.png")},
     {"emitter projector", white},
     {"sensor thinlens", named("float", "aperture_radius", "1")},
     {"shape instance", "<shape type=\"shapegroup\">" + cube + "</shape>"},
@@ -99,6 +99,7 @@ const std::map<std::string, std::string> values = {
     {"shape obj usemtl", named("string", "usemtl", "x")},
     {"shape obj usemtl_other_than", named("string", "usemtl_other_than", "x")},
     {"texture bitmap channel", named("string", "channel", "g")},
+    {"emitter envmap gamma", named("float", "gamma", "1")},
     {"texture bitmap gamma", named("float", "gamma", "1")},
     {"texture mesh_attribute name", named("string", "name", "vertex_other")},
     // Nested objects.

@@ -1,4 +1,6 @@
 // What happens to a scene file as text: parameters, includes, references, unknown parameters, file search.
+#include "runtime/io/image_io.h"
+#include "runtime/io/properties.h"
 #include "tests/io/scene_text.h"
 
 namespace gradus {
@@ -150,6 +152,26 @@ TEST(Includes, PathAddsAFolder) {
     EXPECT_EQ(load_scene(path).scene.meshes.size(), 1u);
 }
 
+// As Mitsuba's resolver has it.
+TEST(Includes, FoldersThatAreNamedGoBeforeTheScenesAndTheLastFirst) {
+    TemporaryFolder folder;
+    const std::string one = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\n", two = one + "f 2 3 4\n",
+                      three = two + "f 1 2 4\n";
+    folder.write("mesh.obj", one);
+    folder.write("first/mesh.obj", two);
+    folder.write("second/mesh.obj", three);
+    const auto triangles_with = [&](const std::string &paths) {
+        const std::string path = folder.write(
+            "scene.xml",
+            scene_around(paths + "<shape type=\"obj\"><string name=\"filename\" value=\"mesh.obj\"/></shape>", "3.0.0",
+                         ""));
+        return load_scene(path).scene.meshes.at(0).triangles.size();
+    };
+    EXPECT_EQ(triangles_with(""), 1u);
+    EXPECT_EQ(triangles_with("<path value=\"first\"/>"), 2u);
+    EXPECT_EQ(triangles_with("<path value=\"first\"/><path value=\"second\"/>"), 3u);
+}
+
 TEST(Includes, MeshesMayLieBesideTheIncludedFile) {
     TemporaryFolder folder;
     folder.write("part/mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -158,6 +180,56 @@ TEST(Includes, MeshesMayLieBesideTheIncludedFile) {
     const std::string path =
         folder.write("scene.xml", scene_around("<include filename=\"part/part.xml\"/>", "3.0.0", ""));
     EXPECT_EQ(load_scene(path).scene.meshes.size(), 1u);
+}
+
+/// Of an object's parameters, of objects in it and, through another file, of more; in the dialect of each.
+TEST(Includes, WithinObjects) {
+    TemporaryFolder folder;
+    folder.write("parts/material.xml",
+                 "<bsdf version=\"3.0.0\" type=\"diffuse\"><rgb name=\"reflectance\" value=\"$gray\"/>"
+                 "</bsdf>");
+    folder.write("parts/all.xml",
+                 "<scene version=\"0.6.0\"><default name=\"gray\" value=\"0.25\"/><float name=\"radius\" "
+                 "value=\"3\"/><boolean name=\"flipNormals\" value=\"true\"/><include "
+                 "filename=\"$name.xml\"/></scene>");
+    const LoadedScene loaded =
+        load_scene(folder.write("scene.xml", scene_around("<shape type=\"sphere\"><include filename=\"parts/all.xml\"/>"
+                                                          "</shape><default name=\"name\" value=\"material\"/>" +
+                                                              constant_light,
+                                                          "3.0.0", "")));
+    EXPECT_THAT(loaded.warnings, IsEmpty());
+    EXPECT_EQ(loaded.scene.spheres.at(0).radius, 3);
+    EXPECT_TRUE(loaded.scene.spheres.at(0).flip_normals);
+    expect_rgb(loaded.scene.materials.at(0).front.reflectance, 0.25, 0.25, 0.25);
+    EXPECT_THAT(error_of(folder.write("scene.xml", scene_around("<shape type=\"sphere\">\n<include "
+                                                                "filename=\"parts/none.xml\"/></shape>"))),
+                HasSubstr("scene.xml:4: cannot find the included file"));
+    EXPECT_THAT(error_of(folder.write("scene.xml", scene_around("<shape type=\"sphere\">\n<include "
+                                                                "filename=\"scene.xml\"/></shape>"))),
+                HasSubstr("a circle?"));
+}
+
+/// What is missing beside one file may lie beside another.
+TEST(FileSearch, OneNameInTwoFolders) {
+    TemporaryFolder folder;
+    Image white;
+    white.width = white.height = 1;
+    white.channels = {{"R", {1}}, {"G", {1}}, {"B", {1}}};
+    std::filesystem::create_directories(folder.path() / "b");
+    write_png(white, (folder.path() / "b/picture.png").string());
+    const std::string includes =
+        "<include filename=\"a/part.xml\"/><include filename=\"b/part.xml\"/>" + constant_light;
+    for (const char *name : {"a", "b"})
+        folder.write(name + std::string("/part.xml"),
+                     "<scene version=\"3.0.0\"><bsdf type=\"diffuse\"><texture name=\"reflectance\" type=\"bitmap\">"
+                     "<string name=\"filename\" value=\"picture.png\"/></texture></bsdf></scene>");
+    EXPECT_THAT(load_scene(folder.write("scene.xml", scene_around(includes))).warnings,
+                ElementsAre(AllOf(HasSubstr("a/part.xml"), HasSubstr("cannot find"))));
+    for (const char *name : {"a", "b"})
+        folder.write(name + std::string("/part.xml"), "<shape version=\"3.0.0\" type=\"obj\"><string name=\"filename\" "
+                                                      "value=\"no.obj\"/></shape>");
+    EXPECT_THAT(error_of(folder.write("scene.xml", scene_around(includes))),
+                AllOf(HasSubstr("a/part.xml"), HasSubstr("b/part.xml")));
 }
 
 TEST(FileSearch, WrongCaseAndBackslashesAreForgiven) {
@@ -281,6 +353,46 @@ TEST(Values, IntegersMayBeWrittenAsFloats) {
                              "<integer name=\"sample_count\" value=\"1e3\"/></sampler></sensor><shape "
                              "type=\"cube\"/></scene>";
     EXPECT_EQ(load_text(text).scene.settings.samples_per_pixel, 1000u);
+}
+
+/// Lines are counted and entities replaced as in UTF-8.
+TEST(Encodings, AreThoseOfXml) {
+    const std::string umlaut = "\xfc", body = "<!-- " + std::string(40, '\xfc') +
+                                              " -->\n\n<bsdf type=\"diffuse\" id=\"" + umlaut +
+                                              "\"><float name=\"&word;\" value=\"1\"/></bsdf><shape "
+                                              "type=\"cube\"><ref id=\"" +
+                                              umlaut + "\"/></shape>" + constant_light + std::string(100, '\n');
+    const std::string latin = "<!DOCTYPE scene [<!ENTITY word \"nonsense\">]>\n" + scene_around(body, "3.0.0", "");
+    const auto wide = [&](bool is_big_endian, std::size_t bytes) {
+        std::string result;
+        for (const char letter : "\xfe" + latin) // whose first stands for the byte order mark
+            for (std::size_t i = 0; i < bytes; ++i) {
+                const std::size_t place = is_big_endian ? bytes - 1 - i : i;
+                const bool is_mark = result.size() < bytes;
+                result += place == 0 ? (is_mark ? '\xff' : letter) : place == 1 && is_mark ? '\xfe' : '\0';
+            }
+        return result;
+    };
+    for (const std::string &text : {"<?xml version=\"1.0\" encoding=\"ISO-8859-1\"?>" + latin, wide(false, 2),
+                                    wide(true, 2), wide(true, 2).substr(2), wide(false, 4), wide(true, 4)}) {
+        const LoadedScene loaded = load_text(text);
+        EXPECT_THAT(loaded.warnings, ElementsAre(HasSubstr("scene.xml:6: unknown parameter \"nonsense\"")));
+        EXPECT_EQ(loaded.scene.materials.at(0).name, "\xc3\xbc");
+    }
+}
+
+TEST(Values, IntegersWithoutBounds) {
+    Element element;
+    element.tag = "sampler";
+    element.children.emplace_back();
+    element.children[0].tag = "integer";
+    element.children[0].attributes = {{"name", "count"}, {"value", "-9e15"}};
+    const Declaration declaration{"", {{"count", Takes::integer, "0", ""}}};
+    const ResolveReference resolve = [&](const Element &reference) -> const Element & { return reference; };
+    Diagnostics diagnostics(false);
+    EXPECT_EQ(Properties(element, declaration, resolve, diagnostics).integer("count"), -9000000000000000);
+    element.children[0].attributes[1].second = "9e15";
+    EXPECT_EQ(Properties(element, declaration, resolve, diagnostics).integer("count"), 9000000000000000);
 }
 
 } // namespace

@@ -125,6 +125,22 @@ TEST_F(HostileScene, ManyFoldersToSearch) {
                 HasSubstr("folders to search"));
 }
 
+/// Names after ampersands, and declarations: each would be looked for to the end of the file.
+TEST_F(HostileScene, EntitiesWithoutEnd) {
+    const auto with_type = [](const std::string &declarations, const std::string &text) {
+        return "<!DOCTYPE scene [" + declarations + "]>\n" + scene_around("<!-- " + text + " -->");
+    };
+    const std::string declaration = "<!ENTITY a \"1\">";
+    for (const std::string &text :
+         {with_type(declaration, repeated("&", 2000000)), with_type(declaration, repeated("&", 2000000) + ";"),
+          with_type("<!ENTITY " + repeated("&", 1000000) + " \"1\">", repeated("&", 1000000) + ";"),
+          with_type("<!ENTITY a SYSTEM '" + repeated("\"", 2000000) + "'>", "")})
+        EXPECT_EQ(error_of_text(text), "");
+    for (const std::string &text :
+         {with_type(repeated("<!ENTITY", 300000), ""), with_type(repeated("<!ENTITY", 300000) + declaration, "")})
+        EXPECT_THAT(error_of_text(text), HasSubstr("not well-formed XML"));
+}
+
 /// Each is reported with the nearest of as many names.
 TEST_F(HostileScene, ManyOfWhatIsWrong) {
     EXPECT_THAT(error_of_text(scene_around(numbered(20000,
@@ -208,6 +224,62 @@ TEST_F(HostileScene, OneSpectrumForManySurfaces) {
     const std::string other =
         "<shape type=\"sphere\"><bsdf type=\"twosided\"><ref id=\"b\"/></bsdf><ref id=\"e\"/></shape>\n";
     EXPECT_EQ(load_text(scene_around(bsdf + first + repeated(other, 5000))).scene.emitters.size(), 5001u);
+}
+
+/// Each has a part of the file, and all of it is read once.
+TEST_F(HostileScene, OneMeshForManyMaterials) {
+    TemporaryFolder folder;
+    folder.write("m.obj", "mtllib m.mtl\n" + numbered(60000, [](const std::string &i) {
+                              return "v 0 0 " + i + "\nv 1 0 0\nv 0 1 0\nusemtl m" + i + "\nf -1 -2 -3\n";
+                          }));
+    folder.write("m.mtl", numbered(59000, [](const std::string &i) { return "newmtl m" + i + "\n"; }));
+    const std::string path = folder.write(
+        "scene.xml", scene_around("<shape type=\"obj\"><string name=\"filename\" value=\"m.obj\"/></shape>", "0.6.0",
+                                  constant_light));
+    EXPECT_EQ(load_scene(path).scene.shapes.size(), 59001u);
+}
+
+/// Several files of meshes are kept; what is too much is told once.
+TEST_F(HostileScene, SharedMeshesInTurn) {
+    TemporaryFolder folder;
+    std::string shapes;
+    for (const std::string name : {"a.serialized", "b.serialized"}) {
+        std::string padded = serialized_file({folded_square()}, {});
+        folder.write(name, padded.insert(padded.size() - 12, 1 << 20, '\0'));
+        shapes += "<shape type=\"serialized\"><string name=\"filename\" value=\"" + name + "\"/></shape>\n";
+    }
+    const std::string path = folder.write("scene.xml", scene_around(repeated(shapes, 50)));
+    LoadOptions options;
+    options.limits.mesh_bytes = 3 << 20;
+    EXPECT_EQ(error_of(path, options), "");
+    options.limits.mesh_bytes = 1 << 20;
+    const std::string error = error_of(path, options);
+    EXPECT_THAT(error, HasSubstr("scene.xml:3: the shapes up to this one read more"));
+    EXPECT_EQ(error.find("the shapes up to"), error.rfind("the shapes up to"));
+}
+
+/// The numbers of a rough coat take 15 ms.
+TEST_F(HostileScene, RoughCoatsThatAreAlike) {
+    EXPECT_EQ(error_of_text(scene_around(repeated("<bsdf type=\"roughplastic\"/>\n", 20000) +
+                                         "<shape type=\"cube\"><bsdf type=\"roughplastic\"/></shape>")),
+              "");
+}
+
+/// A map around a blend copies all of it.
+TEST_F(HostileScene, MapsAroundBlends) {
+    std::string weights, parts;
+    for (int i = 0; i < 500; ++i) {
+        weights += "0.001 ";
+        parts += "<bsdf type=\"diffuse\"/>";
+    }
+    const std::string mixture = "<bsdf type=\"mixturebsdf\" id=\"b\"><string name=\"weights\" value=\"" + weights +
+                                "\"/>" + parts + "</bsdf>\n";
+    const std::string bump = "<shape type=\"cube\"><bsdf type=\"bumpmap\"><texture type=\"checkerboard\"/>"
+                             "<ref id=\"b\"/></bsdf></shape>\n";
+    const std::string error = error_of_text(scene_around(mixture + repeated(bump, 3000), "0.6.0"));
+    EXPECT_THAT(error, HasSubstr("the blends up to this one hold more than 200000 BSDFs; --limits"));
+    EXPECT_EQ(error.find("the blends up to"), error.rfind("the blends up to"));
+    EXPECT_EQ(error_of_text(scene_around(mixture + repeated(bump, 100), "0.6.0")), "");
 }
 
 TEST_F(HostileScene, OneMeshForManyShapes) {

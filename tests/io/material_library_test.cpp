@@ -147,6 +147,19 @@ TEST_F(ObjMaterials, OfLibrariesCountWhereTheShapeHasNoBsdfForThem) {
     EXPECT_EQ(triangles(load("").scene), (Found{{0, 3}})) << "the last of a name counts";
 }
 
+/// A line `newmtl` that names nothing is no material of faces that have none.
+TEST_F(ObjMaterials, WithoutANameAreNobodys) {
+    folder_.write("meshes/a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nusemtl one\nf 1 2 3\nf 1 3 2\n");
+    write_mtl("newmtl\nKd 0 1 0\nnewmtl one\nKd 1 0 0\n");
+    EXPECT_EQ(triangles(load("").scene), (Found{{1, 2}, {0.5f, 1}}));
+}
+
+TEST_F(ObjMaterials, PartsOfAFileByNumberAreWarnedOf) {
+    folder_.write("meshes/a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    EXPECT_THAT(load("<integer name=\"shapeIndex\" value=\"1\"/>").warnings,
+                ElementsAre(AllOf(HasSubstr("scene.xml:4: "), HasSubstr("shape_index of an OBJ file is not read"))));
+}
+
 TEST_F(ObjMaterials, WhatLibrariesLackIsWarnedOf) {
     folder_.write("meshes/a.obj", two_materials);
     const LoadedScene without = load("");

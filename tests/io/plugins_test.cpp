@@ -66,6 +66,25 @@ TEST(BsdfPlugin, Plastic) {
     EXPECT_EQ(material_of("<bsdf type=\"roughplastic\"/>").front.kind, BsdfKind::roughplastic_beckmann);
 }
 
+/// What follows from index and roughness is worked out once for each pair.
+TEST(BsdfPlugin, CoatsAreEachMaterialsOwn) {
+    const auto plastic = [](const std::string &distribution, const std::string &alpha, const std::string &ior) {
+        return "<bsdf type=\"roughplastic\"><string name=\"distribution\" value=\"" + distribution +
+               "\"/><float name=\"alpha\" value=\"" + alpha + "\"/><float name=\"int_ior\" value=\"" + ior +
+               "\"/></bsdf>";
+    };
+    const std::vector<std::string> bsdfs = {plastic("ggx", "0.1", "1.5"), plastic("ggx", "0.4", "1.5"),
+                                            plastic("ggx", "0.1", "1.8"), plastic("beckmann", "0.1", "1.5"),
+                                            plastic("ggx", "0.1", "1.5")};
+    std::string shapes;
+    for (const std::string &bsdf : bsdfs)
+        shapes += "<shape type=\"cube\">" + bsdf + "</shape>";
+    const Scene all = load_text(scene_around(shapes)).scene;
+    for (std::size_t i = 0; i < bsdfs.size(); ++i)
+        EXPECT_EQ(all.materials.at(all.shapes.at(i).material).front, material_of(bsdfs[i]).front) << i;
+    EXPECT_NE(all.materials.at(0).front.coat_1.value, all.materials.at(1).front.coat_1.value);
+}
+
 TEST(BsdfPlugin, ThinDielectric) {
     const Bsdf pane = material_of("<bsdf type=\"thindielectric\"><float name=\"int_ior\" value=\"1.6\"/>"
                                   "<float name=\"ext_ior\" value=\"1\"/></bsdf>")
@@ -381,6 +400,30 @@ TEST(BsdfPlugin, ConductorsOfTheOldDialectStandInAirAndAreCopper) {
     expect_rgb(mirror.front.k, 1, 1, 1, 0);
 }
 
+/// As Mitsuba 3.9 and 0.6 have it.
+TEST(BsdfPlugin, ConductorsByOneIndex) {
+    const auto metal = [](const std::string &inside, const std::string &version = "3.0.0") {
+        return material_of("<bsdf type=\"conductor\">" + inside + "</bsdf>", version).front;
+    };
+    const std::string eta = "<rgb name=\"eta\" value=\"0.2 0.9 1.1\"/>", k = "<rgb name=\"k\" value=\"3 2.4 2.1\"/>",
+                      none = "<string name=\"material\" value=\"none\"/>";
+    for (const std::string &both : {eta + k, none + eta + k}) {
+        expect_rgb(metal(both).eta, 0.2, 0.9, 1.1);
+        expect_rgb(metal(both).k, 3, 2.4, 2.1);
+    }
+    expect_rgb(metal(eta).eta, 0.2, 0.9, 1.1);
+    expect_rgb(metal(eta).k, 1, 1, 1);
+    expect_rgb(metal(k).eta, 0, 0, 0);
+    expect_rgb(metal(k).k, 3, 2.4, 2.1);
+    const std::string vacuum = "<float name=\"extEta\" value=\"1\"/>";
+    const Bsdf copper = metal(vacuum, "0.6.0"), of_copper = metal(vacuum + eta, "0.6.0"),
+               aluminium = metal(vacuum + "<string name=\"material\" value=\"Al\"/>" + k, "0.6.0");
+    expect_rgb(of_copper.eta, 0.2, 0.9, 1.1);
+    EXPECT_EQ(of_copper.k, copper.k);
+    EXPECT_NEAR(aluminium.eta.r, 1.6575, 1e-3);
+    expect_rgb(aluminium.k, 3, 2.4, 2.1);
+}
+
 TEST(BsdfPlugin, RoughConductor) {
     const Material plain = material_of("<bsdf type=\"roughconductor\"/>");
     EXPECT_EQ(plain.front.kind, BsdfKind::roughconductor_beckmann);
@@ -526,6 +569,8 @@ TEST(EmitterPlugin, Point) {
     EXPECT_EQ(emitter.kind, Emitter::Kind::point);
     expect_vector(emitter.position, 1, 2, 3);
     expect_rgb(emitter.value, 4, 5, 6);
+    expect_vector(emitter_of("<emitter type=\"point\"><point name=\"position\" value=\"0.5\"/></emitter>").position,
+                  0.5, 0.5, 0.5);
     const Emitter moved = emitter_of("<emitter type=\"point\"><transform name=\"toWorld\"><translate y=\"7\"/>"
                                      "</transform></emitter>",
                                      "0.5.0");
@@ -567,6 +612,19 @@ TEST(EmitterPlugin, Spot) {
     EXPECT_THAT(
         error_of_text(scene_around("<emitter type=\"spot\"><float name=\"beam_width\" value=\"30\"/></emitter>")),
         HasSubstr("wider than its cutoff_angle"));
+}
+
+/// Mitsuba's cone is as its to_world stretches it.
+TEST(EmitterPlugin, SpotsAreNotStretched) {
+    const auto warnings = [](const std::string &steps) {
+        return load_text(scene_around("<emitter type=\"spot\"><transform name=\"to_world\">" + steps +
+                                      "</transform></emitter>"))
+            .warnings;
+    };
+    EXPECT_THAT(warnings("<scale x=\"2\"/>"), ElementsAre(HasSubstr("scene.xml:3: to_world turns and moves a spot")));
+    EXPECT_THAT(warnings("<scale z=\"2\"/>"), ElementsAre(HasSubstr("that it stretches does not count")));
+    EXPECT_THAT(warnings("<scale x=\"-3\" y=\"3\" z=\"3\"/><rotate x=\"1\" angle=\"30\"/><translate x=\"4\"/>"),
+                IsEmpty());
 }
 
 TEST(EmitterPlugin, SpotWithAPicture) {
@@ -702,6 +760,44 @@ TEST(EmitterPlugin, EnvironmentMap) {
     expect_vector(turned.scene.emitters[0].axes[2], 1, 0, 0);
 }
 
+/// Of an environment of one texel with such channels, each of which is worth its place: 1, 2, 3...
+LoadedScene load_with_channels(const std::vector<std::string> &names) {
+    TemporaryFolder folder;
+    Image image;
+    image.width = image.height = 1;
+    for (const std::string &name : names)
+        image.channels.push_back({name, {float(image.channels.size() + 1)}});
+    write_image(image, (folder.path() / "sky.exr").string());
+    return load_scene(folder.write("scene.xml", scene_around("<emitter type=\"envmap\">" + sky_file + "</emitter>")));
+}
+
+TEST(EmitterPlugin, EnvironmentMapsOfLayers) {
+    const auto expect_channels = [](const std::vector<std::string> &names, double r, double g, double b) {
+        const LoadedScene loaded = load_with_channels(names);
+        const double sphere = 4 * 3.14159265358979;
+        expect_rgb(loaded.scene.emitters.at(0).map->integral, r * sphere, g * sphere, b * sphere, 1e-3);
+        return loaded.warnings;
+    };
+    EXPECT_THAT(expect_channels({"A", "B", "G", "R", "view.R"}, 4, 3, 2), IsEmpty());
+    EXPECT_THAT(expect_channels({"b", "g", "r"}, 3, 2, 1), IsEmpty());
+    EXPECT_THAT(expect_channels({"Layer.Combined.A", "Layer.Combined.B", "Layer.Combined.G", "Layer.Combined.R",
+                                 "Layer.Depth.Z", "Layer.Mist.Y"},
+                                4, 3, 2),
+                IsEmpty());
+    EXPECT_THAT(expect_channels({"a.B", "a.G", "a.R", "b.B", "b.G", "b.R"}, 3, 2, 1),
+                ElementsAre(HasSubstr("2 layers that could be meant; it is that of the channel a.R")));
+    EXPECT_THAT(expect_channels({"A", "Y"}, 2, 2, 2), IsEmpty());
+    EXPECT_THAT(expect_channels({"light"}, 1, 1, 1), IsEmpty());
+    for (const std::vector<std::string> &names :
+         {std::vector<std::string>{"X", "Z"}, {"R", "G"}, {"a.R", "b.G", "c.B"}})
+        try {
+            load_with_channels(names);
+            ADD_FAILURE() << names[0];
+        } catch (const Error &error) {
+            EXPECT_THAT(error.what(), HasSubstr("sky.exr none are R, G, B or Y"));
+        }
+}
+
 TEST(EmitterPlugin, EnvironmentMapsThatCannotBe) {
     const auto error_with_map = [](const std::string &inside) {
         try {
@@ -829,6 +925,17 @@ TEST(SensorPlugin, Orthographic) {
     EXPECT_THAT(loaded.warnings, IsEmpty());
     EXPECT_EQ(loaded.scene.camera.kind, Camera::Kind::orthographic);
     EXPECT_EQ(loaded.scene.camera.to_world.m[0], 3);
+}
+
+/// A camera may be as small as its model; its axes may not fall together.
+TEST(SensorPlugin, PlacesThatCannotBeUndone) {
+    const auto error = [](const std::string &steps) {
+        return error_of_text("<scene version=\"3.0.0\"><sensor type=\"perspective\"><transform name=\"to_world\">" +
+                             steps + "</transform></sensor><shape type=\"cube\"/></scene>");
+    };
+    EXPECT_EQ(error("<scale value=\"1e-11\"/>"), "");
+    EXPECT_THAT(error("<scale y=\"0\"/>"), HasSubstr("has no inverse"));
+    EXPECT_THAT(error("<matrix value=\"1e9 1e9 0 1e9 1e9 0 0 0 1\"/>"), HasSubstr("has no inverse"));
 }
 
 TEST(FilmPlugin, Defaults) {

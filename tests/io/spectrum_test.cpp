@@ -82,10 +82,10 @@ TEST(Spectrum, BlackBodiesInBothDialects) {
 }
 
 TEST(Spectrum, GammaCurve) {
-    EXPECT_DOUBLE_EQ(srgb_to_linear(0), 0);
-    EXPECT_NEAR(srgb_to_linear(1), 1, 1e-12);
-    EXPECT_NEAR(srgb_to_linear(0.5), 0.2140411, 1e-6);
-    EXPECT_NEAR(srgb_to_linear(0.04), 0.04 / 12.92, 1e-12);
+    EXPECT_DOUBLE_EQ(srgb_to_linear_value(0), 0);
+    EXPECT_NEAR(srgb_to_linear_value(1), 1, 1e-12);
+    EXPECT_NEAR(srgb_to_linear_value(0.5), 0.2140411, 1e-6);
+    EXPECT_NEAR(srgb_to_linear_value(0.04), 0.04 / 12.92, 1e-12);
 }
 
 double reflectance(double eta, double k) { return ((eta - 1) * (eta - 1) + k * k) / ((eta + 1) * (eta + 1) + k * k); }

@@ -1,10 +1,14 @@
 // Textures from scene files: plugins in both dialects, picture formats, and what is wrong with files.
+#include "runtime/io/bitmap_reader.h"
 #include "runtime/io/image_io.h"
+#include "runtime/scene/environment_map.h"
 #include "tests/io/scene_text.h"
 
 #include <OpenImageIO/imageio.h>
 
 #include <cmath>
+#include <ctime>
+#include <sstream>
 
 namespace gradus {
 namespace {
@@ -340,7 +344,7 @@ TEST_F(TexturePlugin, Errors) {
                 HasSubstr("unknown wrap_mode \"two\" (known: repeat, mirror, clamp, zero, one, black, white)"));
     EXPECT_THAT(error("<texture type=\"bitmep\"/>"), HasSubstr("did you mean \"bitmap\"?"));
     EXPECT_THAT(error("<texture type=\"scale\"/>"), HasSubstr("scale needs one nested texture, not 0"));
-    EXPECT_THAT(error(bitmap_text("a.png"), "eta", "conductor"), HasSubstr("conductor needs both eta and k"));
+    EXPECT_THAT(error(bitmap_text("a.png"), "eta", "conductor"), HasSubstr("\"eta\" cannot be a texture"));
     EXPECT_THAT(error("<texture type=\"bitmap\"/>"), HasSubstr("bitmap needs a filename"));
 }
 
@@ -390,6 +394,111 @@ TEST_F(TexturePlugin, BombsAreRefused) {
     png += std::string("\0\0\0\0IDAT\x35\xaf\x06\x1e", 12);
     folder_.write("bomb.png", png);
     EXPECT_THAT(error(bitmap_text("bomb.png")), HasSubstr("far more than a file of its size holds"));
+}
+
+/// A header may declare any number of pixels in few blocks.
+TEST_F(TexturePlugin, BombsOfOpenExrAreRefused) {
+    const std::vector<float> white(4, 1);
+    const std::string path = (folder_.path() / "bomb.exr").string();
+    const auto output = OIIO::ImageOutput::create(path);
+    OIIO::ImageSpec spec(2, 2, 1, OIIO::TypeDesc::FLOAT);
+    spec.attribute("compression", "dwab"); // 256 lines a block
+    ASSERT_TRUE(output && output->open(path, spec) && output->write_image(OIIO::TypeDesc::FLOAT, white.data()) &&
+                output->close());
+    std::stringstream bytes;
+    bytes << std::ifstream(path, std::ios::binary).rdbuf();
+    std::string text = bytes.str();
+    const std::size_t box = text.find("dataWindow") + sizeof "dataWindow" + sizeof "box2i" + 4;
+    text.replace(box + 8, 8, std::string("\0\0\2\0\xff\3\0\0", 8)); // 131073 x 1024
+    folder_.write("bomb.exr", text);
+    EXPECT_THAT(error(bitmap_text("bomb.exr")), HasSubstr("its pixels would take 512 MiB, far more than a file of its "
+                                                          "size holds; --limits 10"));
+}
+
+/// What OpenImageIO would take for parameters.
+TEST_F(TexturePlugin, NamesMayHaveQuestionMarks) {
+    write<std::uint8_t>("a.png", 3, OIIO::TypeDesc::UINT8, 255);
+    std::filesystem::rename(folder_.path() / "a.png", folder_.path() / "a?b.png");
+    EXPECT_NEAR(texel(texture(bitmap_text("a?b.png")), 1, 0)[2], linear(79 / 255.0), 1e-9);
+    folder_.write("c?.png", "nothing");
+    EXPECT_THAT(error(bitmap_text("c?.png")), HasSubstr("of a name with a question mark the formats are openexr"));
+}
+
+/// Their pictures are not decoded, nor do they stay; what is wrong with them else is told.
+TEST_F(TexturePlugin, OfBsdfsThatNobodyUsesAreNotRead) {
+    write<std::uint8_t>("a.png", 3, OIIO::TypeDesc::UINT8, 255);
+    folder_.write("bad.png", "\x89PNG\r\n\x1a\nnothing");
+    const auto bsdf = [](const std::string &picture, const std::string &inside = "") {
+        std::string text = bitmap_text(picture);
+        return "<bsdf type=\"diffuse\">" + text.insert(text.find(' '), " name=\"reflectance\"") + inside + "</bsdf>\n";
+    };
+    const std::string bump = bitmap_text("bad.png", "<string name=\"wrapMode\" value=\"black\"/>");
+    const LoadedScene loaded = load_scene(folder_.write(
+        "scene.xml",
+        scene_around(bsdf("bad.png") + bsdf("gone.png") + bsdf("bad.png", "<float name=\"no\" value=\"1\"/>") +
+                         "<bsdf type=\"bumpmap\"><texture type=\"scale\"><float name=\"scale\" value=\"9\"/>" + bump +
+                         "</texture><bsdf type=\"blendbsdf\">" + bsdf("bad.png") + bsdf("a.png") +
+                         "<float name=\"weight\" value=\"0.5\"/></bsdf></bsdf>\n<shape type=\"cube\">" + bsdf("a.png") +
+                         "</shape>",
+                     "0.6.0", constant_light)));
+    EXPECT_THAT(loaded.warnings,
+                ElementsAre(HasSubstr("scene.xml:4: unused BSDF: "), HasSubstr("unknown parameter \"no\"")));
+    EXPECT_THAT(loaded.warnings.at(0), HasSubstr("cannot find the file \"gone.png\""));
+    ASSERT_EQ(loaded.scene.textures.size(), 1u);
+    EXPECT_EQ(loaded.scene.textures[0].bitmap->width, 2u);
+    EXPECT_THAT(loaded.scene.blends, IsEmpty());
+    EXPECT_THAT(loaded.scene.blended, IsEmpty());
+}
+
+/// To go over 16 million texels takes 16 ms.
+TEST_F(TexturePlugin, RangesOfOnePictureAreFoundOnce) {
+    const std::vector<std::uint8_t> black(std::size_t(4096) * 4096);
+    write_values("a.png", 4096, 4096, 1, OIIO::TypeDesc::UINT8, black.data());
+    const std::string texture = "<texture type=\"bitmap\"><string name=\"filename\" value=\"a.png\"/></texture>";
+    std::string shapes;
+    for (int i = 0; i < 400; ++i) {
+        std::string in_it = texture;
+        shapes += "<shape type=\"cube\"><bsdf type=\"roughconductor\">" +
+                  in_it.insert(in_it.find(' '), " name=\"alpha\"") +
+                  "<texture type=\"scale\" name=\"specular_reflectance\"><float name=\"scale\" value=\"0." +
+                  std::to_string(1000 + i) + "\"/>" + texture + "</texture></bsdf></shape>";
+    }
+    const std::clock_t start = std::clock();
+    EXPECT_EQ(load_scene(folder_.write("scene.xml", scene_around(shapes))).scene.textures.size(), 800u);
+    EXPECT_LT(double(std::clock() - start) / CLOCKS_PER_SEC, 20);
+}
+
+/// Environments take 8 and 16 bits as textures do, whatever the file says of them.
+TEST_F(TexturePlugin, EnvironmentsAreSrgbUnlessTheirGammaIs1) {
+    const auto sky = [&](const std::string &inside) {
+        return load_scene(folder_.write(
+            "scene.xml", scene_around("<emitter type=\"envmap\"><string name=\"filename\" value=\"sky.png\"/>" +
+                                          inside + "</emitter>",
+                                      "0.6.0")));
+    };
+    const auto radiance = [](const LoadedScene &loaded) {
+        return loaded.scene.emitters.at(0).map->integral.g / (4 * 3.14159265358979);
+    };
+    const auto gamma = [](const std::string &value) { return "<float name=\"gamma\" value=\"" + value + "\"/>"; };
+    const std::string path = (folder_.path() / "sky.png").string();
+    for (const std::string space : {"", "linear", "Gamma2.2"})
+        for (const OIIO::TypeDesc type : {OIIO::TypeDesc::UINT8, OIIO::TypeDesc::UINT16}) {
+            OIIO::ImageSpec spec(1, 1, 3, type);
+            if (!space.empty())
+                spec.attribute("oiio:ColorSpace", space);
+            const float half[] = {0.5f, 0.5f, 0.5f};
+            const auto output = OIIO::ImageOutput::create(path);
+            ASSERT_TRUE(output && output->open(path, spec) && output->write_image(OIIO::TypeDesc::FLOAT, half) &&
+                        output->close());
+            const double stored = read_bitmap(*OpenFile::open(path), {true}).bitmap.channel(0, 0, 0);
+            EXPECT_NEAR(stored, 0.5, 0.01);
+            // As a map is kept, to 11 bits.
+            EXPECT_NEAR(radiance(sky("")), linear(stored), 1e-3 * stored) << space;
+            EXPECT_NEAR(radiance(sky(gamma("-1"))), linear(stored), 1e-3 * stored) << space;
+            EXPECT_NEAR(radiance(sky(gamma("1"))), stored, 1e-3 * stored) << space;
+            EXPECT_THAT(sky(gamma("1")).warnings, IsEmpty());
+            EXPECT_THAT(sky(gamma("2.2")).warnings, ElementsAre(HasSubstr("read as the curve of sRGB")));
+        }
 }
 
 TEST_F(TexturePlugin, WrapsOtherwiseAlongV) {

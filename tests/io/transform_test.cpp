@@ -27,9 +27,20 @@ TEST(Transform, MatrixOfSixteenAndNine) {
                   {1, 2, 3, 0, 4, 5, 6, 0, 7, 8, 10, 0, 0, 0, 0, 1});
 }
 
+/// An exporter's inverse may leave rounding in the last row, or a factor.
+TEST(Transform, MatrixWithALastRowThatIsNearlyThatOfAnAffineMap) {
+    for (const char *row : {"1e-17 0 0 1", "0 -2e-6 1e-7 2"}) {
+        const Matrix4 matrix = matrix_of("<matrix value=\"2 0 0 0 0 2 0 0 0 0 2 0 " + std::string(row) + "\"/>");
+        for (int i = 12; i < 16; ++i)
+            EXPECT_EQ(matrix.m[i], i == 15 ? 1 : 0);
+        EXPECT_EQ(matrix.m[0], row[0] == '0' ? 1 : 2);
+    }
+}
+
 TEST(Transform, TranslateAndScale) {
     expect_matrix(matrix_of("<translate x=\"1\" z=\"-2\"/>"), {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, -2, 0, 0, 0, 1});
     expect_matrix(matrix_of("<translate value=\"1, 2, 3\"/>"), {1, 0, 0, 1, 0, 1, 0, 2, 0, 0, 1, 3, 0, 0, 0, 1});
+    expect_matrix(matrix_of("<translate value=\"0.3\"/>"), {1, 0, 0, 0.3, 0, 1, 0, 0.3, 0, 0, 1, 0.3, 0, 0, 0, 1});
     expect_matrix(matrix_of("<scale x=\"2\" y=\"-3\"/>"), {2, 0, 0, 0, 0, -3, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
     expect_matrix(matrix_of("<scale value=\"4\"/>"), {4, 0, 0, 0, 0, 4, 0, 0, 0, 0, 4, 0, 0, 0, 0, 1});
     expect_matrix(matrix_of("<scale value=\"4 5 6\"/>"), {4, 0, 0, 0, 0, 5, 0, 0, 0, 0, 6, 0, 0, 0, 0, 1});
@@ -44,6 +55,7 @@ TEST(Transform, RotationIsRightHanded) {
     // A third of a turn about the diagonal takes x to y, y to z and z to x.
     expect_matrix(matrix_of("<rotate x=\"1\" y=\"1\" z=\"1\" angle=\"120\"/>"),
                   {0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1});
+    expect_matrix(matrix_of("<rotate value=\"5\" angle=\"120\"/>"), {0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1});
 }
 
 TEST(Transform, StepsApplyInTheirOrder) {

@@ -72,6 +72,25 @@ TEST(Entities, StandForFiles) {
                 HasSubstr("cannot find the included file \"absent.xml\""));
 }
 
+TEST(Entities, AreThoseThatTheTypeDeclares) {
+    const auto radius = [](const std::string &before) {
+        const LoadedScene loaded =
+            load_text(before + scene_around("<shape type=\"sphere\"><float name=\"radius\" value=\"&r;\"/></shape>",
+                                            "3.0.0", constant_light));
+        EXPECT_THAT(loaded.warnings, IsEmpty());
+        return loaded.scene.spheres.at(0).radius;
+    };
+    EXPECT_FLOAT_EQ(radius("<!DOCTYPE scene [<!-- <!ENTITY r \"0.1\"> ]> --><!ENTITY r \"0.5\">]>"), 0.5f);
+    EXPECT_FLOAT_EQ(radius("<?xml version='1.0'?><!-- <!DOCTYPE scene [<!ENTITY r '0.1'>]> -->\n"
+                           "<!DOCTYPE scene [<!ENTITY r \"0.5\">]>"),
+                    0.5f);
+    EXPECT_FLOAT_EQ(radius("<!DOCTYPE scene [<?a ' ]> ?><!ELEMENT b (c)><!ENTITY s ']>'>\n<!ENTITY r '0.5'>\n] \n>"),
+                    0.5f);
+    EXPECT_THAT(error_of_text("<!DOCTYPE scene SYSTEM 'a[<!ENTITY r \"2\">]>'>" +
+                              scene_around("<shape type=\"sphere\"><float name=\"radius\" value=\"&r;\"/></shape>")),
+                HasSubstr("not \"&r;\""));
+}
+
 /// Of ten thousand entities, each of a million characters, none is put in its place.
 TEST(Entities, DoNotFillTheMemory) {
     std::string many;

@@ -95,6 +95,34 @@ TEST(BsdfOldKinds, PhongIsTheModifiedOne) {
     EXPECT_NEAR(power, m.reflectance_g + m.specular_reflectance_g, 1e-5);
 }
 
+TEST(BsdfOldKinds, PhongIsRightForHighExponents) {
+    const Kind &kind = kind_named("phong");
+    lib::material m = coloured_material(1, 1);
+    std::mt19937_64 random(7);
+    std::uniform_real_distribution<double> uniform;
+    for (const double exponent : {1e5, 1e7, 1e8}) {
+        m.exponent = real(exponent);
+        double most = 0;
+        for (int i = 0; i < 1000; ++i) {
+            const lib::vec3 wi = draw_direction(random);
+            if (std::fabs(wi.z) < R(0.1))
+                continue;
+            // Within a few widths of the lobe of the mirror direction.
+            const auto beside = [&] { return (2 * uniform(random) - 1) * 2 / std::sqrt(exponent); };
+            const double x = -wi.x + beside(), y = -wi.y + beside(), z = std::fabs(double(wi.z)) + beside();
+            const double length = std::hypot(x, y, z);
+            const lib::vec3 from = lib::v3(wi.x, wi.y, std::fabs(wi.z)),
+                            to = lib::v3(real(x / length), real(y / length), real(z / length));
+            const double apart = std::hypot(double(to.x) + from.x, double(to.y) + from.y, double(to.z) - from.z);
+            const double lobe = (exponent + 2) / (2 * M_PI) * std::exp(exponent * std::log1p(-apart * apart / 2));
+            const double expected = (m.reflectance_g / M_PI + m.specular_reflectance_g * lobe) * to.z;
+            most = std::max(most, std::fabs(kind.eval(m, from, to).g - expected) / std::max(1.0, expected));
+        }
+        // Directions are known to 1e-7, and the lobe is 1 / sqrt(exponent) wide.
+        EXPECT_LE(most, bound(6e-3, 1e-10)) << exponent;
+    }
+}
+
 TEST(BsdfOldKinds, WardIsEachOfItsVariants) {
     const Kind &kind = kind_named("ward");
     for_pairs([&](const lib::material &m, lib::vec3 wi, lib::vec3 wo) {

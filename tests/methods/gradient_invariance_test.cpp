@@ -42,8 +42,8 @@ TEST_P(GradientInvariance, ToTheThreadsThatTrace) {
     EXPECT_FALSE(equal_bits(image, render(scene, options, "gpt").image));
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, GradientInvariance, ::testing::Values("cornell-box", "materials", "plates"),
-                         name_of_scene);
+INSTANTIATE_TEST_SUITE_P(Methods, GradientInvariance, ::testing::Values("cornell-box", "materials"), name_of_scene);
+INSTANTIATE_TEST_SUITE_P(Full, GradientInvariance, ::testing::Values("plates"), name_of_scene);
 
 /// Paths that meet nothing, or a mirror, gather nothing at their first vertices: what earlier passes left must be gone.
 TEST(GradientEdges, BeginAnewWithEachPass) {

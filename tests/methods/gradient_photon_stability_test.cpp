@@ -177,7 +177,7 @@ TEST(GradientPhotonStability, OnGlossyMetal) {
 
 /// A wall throws a caustic onto the floor. Half of it is a mirror, the other half a dark one, so that a walk that took
 /// the one for the other would be off by far.
-TEST(GradientPhotonStability, ByABlendOfMirrors) {
+TEST(FullGradientPhotonStability, ByABlendOfMirrors) {
     SceneMaker maker = scene_of(32);
     add_plain_floor(maker);
     Bsdf blend, dark = mirror();

@@ -139,7 +139,7 @@ TEST(GradientPhotonImage, HasQuietDifferencesOfThePrimalUnderAWallWithANormalMap
 
 /// By a mirror in a mask, and past a pane that half of the rays pass: where chance decides whether a chain is there, it
 /// decides once.
-TEST(GradientPhotonImage, HasDifferencesOfThePrimalByMirrorsInAMask) {
+TEST(FullGradientPhotonImage, HasDifferencesOfThePrimalByMirrorsInAMask) {
     for (const bool past_a_pane : {false, true}) {
         SceneMaker maker(16, passes);
         maker.look({0, 2.5f, -4}, {0, 0.2f, 0}, 40);

@@ -131,7 +131,7 @@ TEST(HalfVectorStability, AtIndexRatiosNearOne) {
 }
 
 // Lamps of metal: light is found there, and light goes on from there.
-TEST(HalfVectorStability, ToLampsThatMirror) {
+TEST(FullHalfVectorStability, ToLampsThatMirror) {
     SceneMaker scene = room();
     const std::int32_t light = scene.emitter(Emitter::Kind::area, {1, 0.5f, 0.2f});
     scene.sphere({-0.4f, -0.4f, 0}, 0.35f, scene.material(mirror()), light);

@@ -94,14 +94,14 @@ TEST(ReconnectionStability, ToTheOtherSideByShadingNormals) {
                     "the shift fails for both directions alike; primal and differences are unbiased", 0.25});
 }
 
-TEST(ReconnectionStability, ToTheOtherSideOfWhatGlows) {
+TEST(FullReconnectionStability, ToTheOtherSideOfWhatGlows) {
     expect_no_bias(bias_under_a_leaning_card(0.3f),
                    {area, other_side, "such a card, which also glows",
                     "paths end there by its light; those that go on fail alike both ways; unbiased", 0.25});
 }
 
 // Stripes of chalk and metal, which find the lamp by quite different densities, under a lamp whose normals lean.
-TEST(ReconnectionStability, ToALampFromEitherSideByShadingNormals) {
+TEST(FullReconnectionStability, ToALampFromEitherSideByShadingNormals) {
     SceneMaker scene = scene_for_bias(2);
     const std::uint32_t stripes[] = {scene.material(diffuse(0.7)), scene.material(two_sided(rough_metal(0.1)))};
     for (int i = 0; i < 16; ++i)

@@ -43,6 +43,26 @@ TEST(OwnScale, OthersBecomeAboutOneLarge) {
     }
 }
 
+// Kernels take squares of areas: the fourth power of an edge of 1e-11 is no float.
+TEST(OwnScale, SmallTrianglesMakeTheSceneLarger) {
+    const auto factor_with = [](float size, float edge) {
+        SceneMaker maker = room(size);
+        for (const float side : {edge, size}) // the smallest decides, not the last
+            maker.parallelogram({0, 0, 0}, {side, 0, 0}, {0, side, 0}, 0);
+        Scene scene = maker.scene;
+        return bring_to_own_scale(scene);
+    };
+    EXPECT_EQ(factor_with(1, 1e-8f), 1);
+    EXPECT_EQ(factor_with(1e-3f, 1e-9f), 1);
+    for (const auto &[size, edge] : {std::pair{1e-2f, 3e-11f}, {1e-3f, 3e-12f}, {1e-5f, 3e-14f}, {1e8f, 0.5f}}) {
+        const double factor = factor_with(size, edge);
+        EXPECT_EQ(std::exp2(std::round(std::log2(factor))), factor);
+        EXPECT_GE(edge * factor, 6e-10) << size;
+        EXPECT_LE(edge * factor, 4e-9) << size << ": no larger than it need be";
+        EXPECT_LE(size * factor, 1e6) << size;
+    }
+}
+
 TEST(OwnScale, WhatNoFloatHoldsIsRefusedWithItsName) {
     const auto refusal = [](Scene scene) {
         try {

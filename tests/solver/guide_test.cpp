@@ -182,6 +182,21 @@ TEST(GuideImages, WhatIsMissingGivesNothing) {
                       double(count_non_finite(image.values)), 0});
 }
 
+// A render filters in lengths of its own, and `gradus solve` in the scene's.
+TEST(GuideImages, TheUnitOfDepthsChangesNoBit) {
+    const Wall wall(48, 32);
+    const GuideHalves halves = noisy(wall.truth, 0.2, 5), expected = filtered(halves, wall.features);
+    for (const int exponent : {-60, -13, 1, 50}) {
+        GuideImage features = wall.features;
+        for (int y = 0; y < 32; ++y)
+            for (int x = 0; x < 48; ++x)
+                features.at(6, x, y) = std::ldexp(features.at(6, x, y), exponent);
+        const GuideHalves guides = filtered(halves, features);
+        EXPECT_EQ(guides[0].values, expected[0].values) << exponent;
+        EXPECT_EQ(guides[1].values, expected[1].values) << exponent;
+    }
+}
+
 TEST(GuideImages, WithoutNoiseNothingChanges) {
     Wall wall(40, 30);
     const GuideHalves halves{wall.truth, wall.truth};

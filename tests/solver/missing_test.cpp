@@ -174,6 +174,35 @@ TEST_P(MissingPixels, InABlockLieBetweenTheirSurroundings) {
                       "how far a filled pixel is outside of what surrounds it", outside, 1e-5});
 }
 
+TEST_P(MissingPixels, AllTakeTheOnlyValue) {
+    constexpr std::uint32_t wide = 601, high = 423, x = 130, y = 400;
+    PoissonProblem problem = make_poisson_problem(wide, high, 3, 9);
+    for (std::vector<float> *plane : {&problem.primal, &problem.dx, &problem.dy})
+        std::fill(plane->begin(), plane->end(), nan);
+    for (std::uint32_t c = 0; c < 3; ++c)
+        problem.primal[problem.at(c, x, y)] = 0.7f + float(c);
+    const Solution solution = solve(problem, options());
+    EXPECT_EQ(solution.report.filled, wide * high - 1);
+    for (std::uint32_t c = 0; c < 3; ++c)
+        for (std::uint32_t i = 0; i < wide * high; ++i)
+            ASSERT_FLOAT_EQ(solution.image[c * wide * high + i], 0.7f + float(c)) << i;
+}
+
+TEST_P(MissingPixels, OfRingsHaveTheMeanOfTheRingBefore) {
+    // One row: 0 at one end and 6 at the other; between them three pixels from each side, and one that has both.
+    constexpr std::uint32_t wide = 9;
+    PoissonProblem problem = make_poisson_problem(wide, 1, 3, 10);
+    for (std::vector<float> *plane : {&problem.primal, &problem.dx, &problem.dy})
+        std::fill(plane->begin(), plane->end(), nan);
+    for (std::uint32_t c = 0; c < 3; ++c) {
+        problem.primal[problem.at(c, 0, 0)] = 0;
+        problem.primal[problem.at(c, wide - 1, 0)] = 6;
+    }
+    const Solution solution = solve(problem, options());
+    for (std::uint32_t x = 0; x < wide; ++x)
+        EXPECT_FLOAT_EQ(solution.image[problem.at(1, x, 0)], x < 4 ? 0.0f : x > 4 ? 6.0f : 3.0f) << x;
+}
+
 /// Where gradients tie pixels to each other but nothing ties them to the rest, their level is nobody's to say; it must
 /// be finite all the same, and the rest must not notice.
 TEST_P(MissingPixels, ThatFormAnIslandAreFinite) {

@@ -123,6 +123,24 @@ TEST(VariancesWeights, LessenTheError) {
     EXPECT_LT(with, 0.8 * without);
 }
 
+// Missing ones say nothing, and so not that nothing varies.
+TEST(VariancesWeights, AlphaGoesByTheVariancesThatAreThere) {
+    PoissonProblem problem = make_poisson_problem(75, 43, 3, 6);
+    problem.primal_variance.assign(problem.primal.size(), 4.0f);
+    problem.dx_variance.assign(problem.primal.size(), 1.0f);
+    problem.dy_variance.assign(problem.primal.size(), 1.0f);
+    PoissonOptions options = l2_options(LinearMethod::automatic);
+    options.alpha_from_variances = true;
+    EXPECT_NEAR(solve_with_variances(problem, options).report.alpha, 0.5, 1e-6);
+    const float none[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -1};
+    for (std::size_t i = 0; i < problem.primal.size(); i += 2)
+        problem.primal_variance[i] = none[i % 3];
+    EXPECT_NEAR(solve_with_variances(problem, options).report.alpha, 0.5, 1e-6);
+    for (std::size_t i = 1; i < problem.primal.size(); i += 3)
+        problem.dx_variance[i] = none[i % 3];
+    EXPECT_NEAR(solve_with_variances(problem, options).report.alpha, 0.5, 1e-6);
+}
+
 TEST(VariancesWeights, ThatJumpTakeFewSteps) {
     const PoissonProblem problem = make_jumping_problem(513, 301, 3, 7);
     PoissonOptions options = weighted_options(LinearMethod::automatic, 1e-4);

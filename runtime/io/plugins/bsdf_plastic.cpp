@@ -8,10 +8,11 @@ Declaration declare_bsdf_plastic() {
     return {"a diffuse base under a smooth dielectric coat", joined({parameters_of_plastic(), roughness_left_over()})};
 }
 
-Material bsdf_plastic(Properties &properties, SceneBuilder &) {
+Material bsdf_plastic(Properties &properties, SceneBuilder &builder) {
     Material material;
     material.front.kind = BsdfKind::plastic;
     read_plastic(properties, material.front);
+    builder.set_coating(material.front);
     return material;
 }
 

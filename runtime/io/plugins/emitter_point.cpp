@@ -1,4 +1,5 @@
 // <emitter type="point">: light from one point, the same into every direction.
+#include "runtime/io/plugins/parameters_of_emitters.h"
 #include "runtime/io/plugins/plugin.h"
 
 namespace gradus {
@@ -17,9 +18,10 @@ Emitter emitter_point(Properties &properties, SceneBuilder &) {
     emitter.value = properties.color("intensity");
     if (properties.has("position") && properties.has("to_world"))
         throw properties.error("position", "give a point emitter's position or its to_world, not both");
-    const Double3 position = properties.has("to_world") ? transform_point(properties.transform("to_world"), {0, 0, 0})
-                                                        : properties.point("position");
-    emitter.position = to_float(position);
+    const bool is_moved = properties.has("to_world");
+    const Double3 position =
+        is_moved ? transform_point(properties.transform("to_world"), {0, 0, 0}) : properties.point("position");
+    emitter.position = place_of(properties, is_moved ? "to_world" : "position", position);
     return emitter;
 }
 

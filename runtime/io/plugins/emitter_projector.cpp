@@ -4,6 +4,8 @@
 #include "runtime/io/plugins/plugin.h"
 #include "runtime/scene/camera_record.h"
 
+#include <numbers>
+
 namespace gradus {
 
 Declaration declare_emitter_projector() {
@@ -20,7 +22,7 @@ Declaration declare_emitter_projector() {
 }
 
 Emitter emitter_projector(Properties &properties, SceneBuilder &builder) {
-    constexpr float pi = 3.14159265358979f;
+    constexpr auto pi = std::numbers::pi_v<float>;
     Emitter emitter;
     emitter.kind = Emitter::Kind::projector;
     const Color irradiance = properties.color("irradiance");

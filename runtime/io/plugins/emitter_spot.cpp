@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace gradus {
 
@@ -27,7 +28,7 @@ Declaration declare_emitter_spot() {
 }
 
 Emitter emitter_spot(Properties &properties, SceneBuilder &builder) {
-    constexpr double radians = 3.14159265358979323846 / 180;
+    constexpr double radians = std::numbers::pi / 180;
     Emitter emitter;
     emitter.kind = Emitter::Kind::spot;
     emitter.value = properties.color("intensity");
@@ -35,7 +36,10 @@ Emitter emitter_spot(Properties &properties, SceneBuilder &builder) {
     const Double3 axis = transform_vector(to_world, {0, 0, 1});
     if (!(length(axis) > 0))
         throw properties.error("to_world", "the direction of a spot is zero");
-    emitter.position = to_float(transform_point(to_world, {0, 0, 0}));
+    if (!turned_axes(to_world))
+        properties.diagnostics().warn(properties.location_of("to_world"),
+                                      "to_world turns and moves a spot; that it stretches does not count");
+    emitter.position = place_of(properties, "to_world", transform_point(to_world, {0, 0, 0}));
     emitter.direction = to_float(normalize(axis));
     const double cutoff = properties.number("cutoff_angle");
     const double beam = properties.has("beam_width") ? properties.number("beam_width") : cutoff * 0.75;

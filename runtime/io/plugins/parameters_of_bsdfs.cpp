@@ -2,7 +2,6 @@
 
 #include "runtime/io/refractive_index.h"
 #include "runtime/io/text.h"
-#include "runtime/scene/coating.h"
 
 #include <algorithm>
 #include <cmath>
@@ -66,7 +65,6 @@ void read_plastic(Properties &properties, Bsdf &bsdf) {
     bsdf.reflectance = properties.color("diffuse_reflectance");
     bsdf.specular_reflectance = properties.color("specular_reflectance");
     bsdf.nonlinear = properties.boolean("nonlinear") ? 1.0f : 0.0f;
-    set_coating(bsdf);
 }
 
 ParameterList parameters_of_two_lobes() {
@@ -128,9 +126,9 @@ void read_principled(Properties &properties, Bsdf &bsdf) {
 ParameterList parameters_of_conductor() {
     return {
         Parameter{"material", Takes::string, "none", "a metal's name; none: a perfect mirror"}.before_2("Cu"),
-        Parameter{"eta", Takes::color, nullptr, "index of refraction, with k and without material"}.or_else(
-            "by material"),
-        Parameter{"k", Takes::color, nullptr, "its imaginary part"}.or_else("by material"),
+        Parameter{"eta", Takes::color, nullptr, "index of refraction, beside a material in 0.x alone"}.or_else(
+            "by material; 0 beside k"),
+        Parameter{"k", Takes::color, nullptr, "its imaginary part, as eta"}.or_else("by material; 1 beside eta"),
         Parameter{"ext_eta", Takes::refractive_index, "vacuum", "index of refraction around it"}.before_2("air").also(
             "ext_ior"),
         {"specular_reflectance", Takes::reflectance, "1", "what reflection is times"}};
@@ -139,26 +137,20 @@ ParameterList parameters_of_conductor() {
 void read_conductor(Properties &properties, Bsdf &bsdf) {
     const std::string material = properties.string("material");
     const bool has_eta = properties.has("eta"), has_k = properties.has("k");
-    if (has_eta != has_k)
-        throw properties.error(has_eta ? "eta" : "k", "a conductor needs both eta and k, or a material");
-    if (has_eta && properties.has("material"))
+    const bool is_mirror = !has_eta && !has_k && lower_case(material) == "none";
+    if ((has_eta || has_k) && lower_case(material) != "none" && !properties.element().is_legacy())
         throw properties.error("material", "give a conductor's material or its eta and k, not both");
     const std::optional<ConductorIndex> named = conductor_index(material);
-    if (has_eta) {
-        bsdf.eta = properties.color("eta");
-        bsdf.k = properties.color("k");
-    } else if (named) {
-        bsdf.eta = named->eta;
-        bsdf.k = named->k;
-    } else {
+    if (!named) {
         std::string message = "unknown conductor \"" + material + "\"";
         if (const auto nearest = nearest_name(material, conductor_names()))
             message += "; did you mean \"" + *nearest + "\"?";
         throw properties.error("material", message + " (known: " + join(conductor_names()) + ")");
     }
+    bsdf.eta = has_eta ? Rgb(properties.color("eta")) : named->eta;
+    bsdf.k = has_k ? Rgb(properties.color("k")) : named->k;
     const double outside = properties.refractive_index("ext_eta");
-    // A perfect mirror stays one, whatever is around it.
-    if (has_eta || lower_case(material) != "none")
+    if (!is_mirror) // which stays one, whatever is around it
         for (Rgb *index : {&bsdf.eta, &bsdf.k})
             *index = {float(index->r / outside), float(index->g / outside), float(index->b / outside)};
     // Beyond that all is reflected, and the squares of squares in single precision are too large.

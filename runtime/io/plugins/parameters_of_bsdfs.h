@@ -16,7 +16,7 @@ ParameterList roughness_left_over();
 ParameterList parameters_of_dielectric();
 void read_dielectric(Properties &properties, Bsdf &bsdf);
 ParameterList parameters_of_plastic();
-/// And what follows from them. Kind and roughness must be known.
+/// SceneBuilder::set_coating() is for what follows from them.
 void read_plastic(Properties &properties, Bsdf &bsdf);
 ParameterList parameters_of_two_lobes();
 void read_two_lobes(Properties &properties, Bsdf &bsdf);

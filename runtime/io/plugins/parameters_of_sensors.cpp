@@ -1,8 +1,10 @@
 #include "runtime/io/plugins/parameters_of_sensors.h"
 
 #include "runtime/io/text.h"
+#include "runtime/scene/instances.h"
 
 #include <cmath>
+#include <numbers>
 
 namespace gradus {
 
@@ -30,7 +32,7 @@ double fov_of_lens(Properties &properties) {
     if (!millimetres || *millimetres <= 0)
         throw properties.error("focal_length", "\"focal_length\" needs a length like 50mm, not \"" + text + "\"");
     const double half_diagonal = std::hypot(36.0, 24.0) / 2;
-    return 2 * std::atan(half_diagonal / *millimetres) * (180 / 3.14159265358979323846);
+    return 2 * std::atan(half_diagonal / *millimetres) * (180 / std::numbers::pi);
 }
 
 } // namespace
@@ -58,7 +60,7 @@ ParameterList parameters_of_field_of_view() {
 
 void read_camera(Properties &properties, Camera &camera) {
     camera.to_world = properties.transform("to_world");
-    if (!(std::fabs(determinant(camera.to_world)) > 1e-30))
+    if (!is_invertible(camera.to_world))
         throw properties.error("to_world", "the camera's to_world has no inverse");
     camera.near_clip = properties.number("near_clip");
     camera.far_clip = properties.number("far_clip");

@@ -46,4 +46,9 @@ PendingMesh pending_shape_mesh(Properties &properties, std::function<SerializedM
     return mesh;
 }
 
+void turn_texcoords_over(Mesh &mesh) {
+    for (auto &[u, v] : mesh.texcoords)
+        v = 1 - v;
+}
+
 } // namespace gradus

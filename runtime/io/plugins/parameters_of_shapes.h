@@ -16,4 +16,7 @@ BuiltMesh build_shape_mesh(Properties &properties, Mesh mesh, MeshOptions option
 /// The same of a mesh that is read later.
 PendingMesh pending_shape_mesh(Properties &properties, std::function<SerializedMesh()> read);
 
+/// v becomes 1 - v.
+void turn_texcoords_over(Mesh &mesh);
+
 } // namespace gradus

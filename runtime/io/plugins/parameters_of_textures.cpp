@@ -21,6 +21,20 @@ void read_to_uv(Properties &properties, Texture &texture) {
                      float(v_scale * map.m[4]), float(v_scale * map.m[5]), float(v_scale * map.m[7] + v_offset)};
 }
 
+Parameter parameter_gamma() {
+    return Parameter{"gamma", Takes::number, nullptr, "1: 8 and 16 bits are linear; all else: sRGB"}.of_before_2();
+}
+
+bool is_linear_by_gamma(Properties &properties, bool otherwise) {
+    if (!properties.has("gamma"))
+        return otherwise;
+    const double gamma = properties.number("gamma");
+    if (gamma > 0 && gamma != 1)
+        properties.diagnostics().warn(properties.location_of("gamma"),
+                                      "a gamma other than 1 is read as the curve of sRGB");
+    return gamma == 1;
+}
+
 Texture one_color(const Rgb &color, float scale) {
     Texture texture;
     texture.kind = Texture::Kind::checkerboard;

@@ -3,6 +3,7 @@
 #include "runtime/io/plugins/plugin.h"
 
 #include <cmath>
+#include <numbers>
 
 namespace gradus {
 
@@ -25,7 +26,7 @@ ShapeGeometry shape_cylinder(Properties &properties, SceneBuilder &) {
     // A prism of the cylinder's area, with the cylinder's normals: its surface departs by 5e-5 of the radius, to either
     // side.
     constexpr std::uint32_t sides = 256;
-    constexpr double turn = 2 * 3.14159265358979323846 / sides;
+    constexpr double turn = 2 * std::numbers::pi / sides;
     const double outer = turn / 2 / std::sin(turn / 2) * radius;
     const Double3 along = normalize(axis);
     // Where angles are counted from: as Mitsuba's frames have it (Duff et al. 2017).

@@ -3,6 +3,7 @@
 #include "runtime/io/plugins/plugin.h"
 
 #include <cmath>
+#include <numbers>
 
 namespace gradus {
 
@@ -15,7 +16,7 @@ Declaration declare_shape_disk() {
 ShapeGeometry shape_disk(Properties &properties, SceneBuilder &) {
     // A regular polygon of the disk's area: its edge departs from the circle by 5e-5 of the radius, to either side.
     constexpr std::uint32_t corners = 256;
-    constexpr double turn = 2 * 3.14159265358979323846 / corners;
+    constexpr double turn = 2 * std::numbers::pi / corners;
     const double radius = std::sqrt(turn / std::sin(turn));
     Mesh mesh;
     for (std::uint32_t i = 0; i < corners; ++i) {

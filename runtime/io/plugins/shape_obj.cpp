@@ -23,10 +23,11 @@ FacesOf faces_of(Properties &properties) {
         if (!properties.has(name))
             continue;
         faces.others = std::string(name) != "usemtl";
-        std::string names = properties.string(name);
-        for (std::size_t end; (end = names.find(between)) != std::string::npos; names.erase(0, end + 1))
-            faces.materials.insert(names.substr(0, end));
-        faces.materials.insert(names);
+        const std::string names = properties.string(name);
+        std::size_t begin = 0;
+        for (std::size_t end; (end = names.find(between, begin)) != std::string::npos; begin = end + 1)
+            faces.materials.insert(names.substr(begin, end - begin));
+        faces.materials.insert(names.substr(begin));
     }
     return faces;
 }
@@ -109,7 +110,8 @@ ShapeGroup shapes_by_material(const Element &shape, bool loads, MeshFile &file, 
         libraries = read_libraries(names, file, shape.location, builder);
     std::vector<std::string> others;
     for (const std::string &material : names.materials) {
-        if (const auto found = libraries.find(material); found != libraries.end())
+        // One without a name is nobody's: the faces of "" have no material.
+        if (const auto found = libraries.find(material); found != libraries.end() && !material.empty())
             named.insert({material, &found->second});
         if (!named.contains(material))
             others.push_back(material);
@@ -153,7 +155,8 @@ Declaration declare_shape_obj() {
                      Parameter{"usemtl", Takes::string, nullptr, "the faces of this material alone"}.or_else("all"),
                      Parameter{"usemtl_other_than", Takes::string, nullptr, "the faces of all others"}.or_else("all")},
                     parameters_of_meshes(),
-                    meaningless({"collapse", "shape_index"})})};
+                    // The first: which of an OBJ file's groups alone, in 0.6.
+                    meaningless({"shape_index", "collapse"})})};
 }
 
 ShapeGeometry shape_obj(Properties &properties, SceneBuilder &builder) {
@@ -163,6 +166,9 @@ ShapeGeometry shape_obj(Properties &properties, SceneBuilder &builder) {
         return builder.is_bsdf(child) && name_of(child).empty();
     });
     const bool loads = properties.boolean("load_materials") && !is_for_all;
+    if (properties.has("shape_index"))
+        properties.diagnostics().warn(properties.location_of("shape_index"),
+                                      "shape_index of an OBJ file is not read: the shape is all of the file");
     const FacesOf faces = faces_of(properties);
     const bool is_part = !faces.materials.empty();
     // In later versions names of BSDFs say nothing, and a second one is an error, which the scene builder tells.
@@ -182,8 +188,7 @@ ShapeGeometry shape_obj(Properties &properties, SceneBuilder &builder) {
             check(faces, file->obj(), path, location);
         Mesh mesh = is_part ? file->obj().mesh(faces) : parse_obj(file->bytes(), path, file->place());
         if (flip)
-            for (auto &[u, v] : mesh.texcoords)
-                v = 1 - v;
+            turn_texcoords_over(mesh);
         return SerializedMesh{std::move(mesh)};
     });
 }

@@ -20,12 +20,11 @@ ShapeGeometry shape_ply(Properties &properties, SceneBuilder &builder) {
     return pending_shape_mesh(properties, [file, flip, is_srgb, attributes = builder.wanted_attributes()] {
         Mesh mesh = parse_ply(file->bytes(), file->path().string(), attributes);
         if (flip)
-            for (auto &[u, v] : mesh.texcoords)
-                v = 1 - v;
+            turn_texcoords_over(mesh);
         for (MeshAttribute &attribute : mesh.attributes)
             if (is_srgb && attribute.name.ends_with("color"))
                 for (float &value : attribute.values)
-                    value = float(srgb_to_linear(value));
+                    value = float(srgb_to_linear_value(value));
         return SerializedMesh{std::move(mesh)};
     });
 }

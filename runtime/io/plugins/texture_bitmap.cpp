@@ -38,9 +38,7 @@ Declaration declare_texture_bitmap() {
                  Parameter{"wrap_mode_u", Takes::choice, nullptr, "along u"}.as("wrap_mode").of(wraps).of_before_2(),
                  Parameter{"wrap_mode_v", Takes::choice, nullptr, "along v"}.as("wrap_mode_u").of(wraps).of_before_2(),
                  {"raw", Takes::boolean, "false", "8 and 16 bits are linear, not sRGB"},
-                 Parameter{"gamma", Takes::number, nullptr, "1 is as raw, all else as sRGB"}
-                     .or_else("by raw")
-                     .of_before_2(),
+                 parameter_gamma().or_else("by raw"),
                  Parameter{"channel", Takes::choice, "all", "that one alone"}
                      .of({"all", "rgb", "r", "g", "b", "a"})
                      .of_before_2()},
@@ -50,14 +48,7 @@ Declaration declare_texture_bitmap() {
 
 Picture read_picture(Properties &properties, SceneBuilder &builder) {
     Picture picture;
-    picture.is_linear = properties.boolean("raw");
-    if (properties.has("gamma")) {
-        const double gamma = properties.number("gamma");
-        picture.is_linear = gamma == 1;
-        if (gamma > 0 && gamma != 1)
-            properties.diagnostics().warn(properties.location_of("gamma"),
-                                          "a gamma other than 1 is read as the curve of sRGB");
-    }
+    picture.is_linear = is_linear_by_gamma(properties, properties.boolean("raw"));
     const std::string channel = properties.choice("channel");
     picture.channel = channel == "all" || channel == "rgb" ? "" : channel;
     picture.path = builder.find_file(properties);
