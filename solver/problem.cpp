@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace gradus::solver {
 
@@ -22,13 +21,13 @@ void Problem::allocate() {
     valid_dy_ = make.planes("valid_dy", grid, 1);
 }
 
-void Problem::import_planes(Kernel &kernel, std::uint32_t planes, const Buffer &packed, const Buffer &imported,
-                            std::uint32_t columns, std::uint32_t rows) {
+void Problem::import_plane(Kernel &kernel, std::uint32_t plane, const Buffer &packed, const Buffer &imported,
+                           std::uint32_t columns, std::uint32_t rows) {
     kernel.set("edge_columns", columns);
     kernel.set("edge_rows", rows);
     kernel.bind("packed", packed);
     kernel.bind("imported", imported);
-    workspace_.grid().launch(kernel, {0, planes});
+    workspace_.grid().launch(kernel, {plane, 1});
 }
 
 double Problem::import_image(const Buffer &packed, const Buffer &imported, const Buffer &valid, std::uint32_t columns,
@@ -36,7 +35,7 @@ double Problem::import_image(const Buffer &packed, const Buffer &imported, const
     Kernel &kernel = workspace_.any_kernels().import_image;
     kernel.bind("valid", valid);
     workspace_.sums.bind_parts(kernel, 1);
-    import_planes(kernel, 1, packed, imported, columns, rows);
+    import_plane(kernel, 0, packed, imported, columns, rows);
     workspace_.sums.sum(workspace_.any_kernels(), slot_sum, {0, 1});
     return workspace_.sums.read(slot_sum, 0);
 }
@@ -44,15 +43,15 @@ double Problem::import_image(const Buffer &packed, const Buffer &imported, const
 double Problem::mean_variance(const Buffer &packed, std::uint32_t planes, const Buffer &variance, std::uint32_t columns,
                               std::uint32_t rows) {
     Kernel &kernel = workspace_.any_kernels().import_variance;
-    workspace_.sums.bind_parts(kernel, 2 * planes);
-    kernel.set("planes", planes);
-    import_planes(kernel, planes, packed, variance, columns, rows);
-    workspace_.sums.sum_two(workspace_.any_kernels(), slot_sum, slot_second_sum, {0, planes});
-    const auto total = [&](Slot slot) {
-        const std::vector<double> sums = workspace_.sums.read(slot);
-        return std::accumulate(sums.begin(), sums.begin() + planes, 0.0);
-    };
-    return total(slot_sum) / std::max(double(columns) * rows * planes - total(slot_second_sum), 1.0);
+    double sum = 0, count = double(columns) * rows * planes;
+    for (std::uint32_t plane = 0; plane < planes; ++plane) { // parts of all would take memory
+        workspace_.sums.bind_parts(kernel, 2);
+        import_plane(kernel, plane, packed, variance, columns, rows);
+        workspace_.sums.sum_two(workspace_.any_kernels(), slot_sum, slot_second_sum, {0, 1});
+        sum += workspace_.sums.read(slot_sum, 0);
+        count -= workspace_.sums.read(slot_second_sum, 0);
+    }
+    return sum / std::max(count, 1.0);
 }
 
 void Problem::import(const Inputs &images, PoissonReport &report) {

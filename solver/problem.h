@@ -71,9 +71,9 @@ class Problem {
     const Buffer &right_side();
 
   private:
-    /// With kernel import_image or import_variance, which is launched on `planes` planes.
-    void import_planes(Kernel &kernel, std::uint32_t planes, const Buffer &packed, const Buffer &imported,
-                       std::uint32_t columns, std::uint32_t rows);
+    /// Launches kernel import_image or import_variance on one plane.
+    void import_plane(Kernel &kernel, std::uint32_t plane, const Buffer &packed, const Buffer &imported,
+                      std::uint32_t columns, std::uint32_t rows);
     /// Returns how many pixels or differences are missing.
     double import_image(const Buffer &packed, const Buffer &imported, const Buffer &valid, std::uint32_t columns,
                         std::uint32_t rows);

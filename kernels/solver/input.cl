@@ -22,18 +22,18 @@ SOLVE import_image(GRID, uint edge_columns, uint edge_rows, uint partials, __glo
     partial[tile * SOLVER_TILE + item] = missing;
 }
 
-/* A plane of variances, of `planes`, -1 where one is missing, as those below 0 are; and the parts of two sums: of those
- * that are there, and how many are not. */
-SOLVE import_variance(GRID, uint planes, uint edge_columns, uint edge_rows, uint partials, __global const float *packed,
+/* A plane of variances, -1 where one is missing, as those below 0 are; and the parts of two sums: of those that are
+ * there, and how many are not. */
+SOLVE import_variance(GRID, uint edge_columns, uint edge_rows, uint partials, __global const float *packed,
                       __global real *imported, __global real *partial) {
     SOLVER_PLACE
     const bool inside = x < edge_columns && y < edge_rows;
     const real value = inside ? packed[PACKED_AT(channel)] : 0.0f;
     const bool is_there = is_finite(value) && value >= R(0);
     imported[GRID_AT(channel, x, y)] = is_there ? value : R(-1);
-    const size_t part = channel * partials + tile * SOLVER_TILE + item;
+    const size_t part = tile * SOLVER_TILE + item;
     partial[part] = is_there ? value : R(0);
-    partial[planes * partials + part] = is_there ? R(0) : R(1);
+    partial[partials + part] = is_there ? R(0) : R(1);
 }
 
 /* gradient_x = Gx - Dx I0 and gradient_y likewise, 0 where Gx or Gy is missing. */
