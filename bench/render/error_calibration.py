@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How right the layer `error` and the estimated relMSE are, against references of another renderer.
 
-    python3 bench/render/error_calibration.py [SCENE ...] [--spp 16 64 256] [--seeds 3] [--variants gpt:l1 pt:mean ...]
+    python3 bench/render/error_calibration.py [SCENE ...] [--spp 16 64 256] [--seeds 5] [--variants gpt:l1 pt:mean ...]
 
 SCENE as in convergence.py, of those with references; the default are six of them. A variant is METHOD:RECONSTRUCTION;
 mean is that of pt. Printed are, as medians over the seeds, the shares of values that are wrong by at most once and

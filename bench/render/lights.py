@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What a light tree gains over a choice of lights by power: relMSE at equal time.
 
-    python3 bench/render/lights.py [FILE.xml ...] [--lamps 2 8 32 128] [--methods pt gpt] [--spp 16] [--seeds 3]
+    python3 bench/render/lights.py [FILE.xml ...] [--lamps 2 8 32 128] [--methods pt gpt] [--spp 16] [--seeds 5]
 
 Files, and courts of so many small lamps that are written here: which number of lights a tree pays from. The reference is
 a long render of `pt` with another seed. For each method: seconds and relMSE of the tree over those of the choice by

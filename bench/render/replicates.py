@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What variances of path tracing cost and how right they are.
 
-    python3 bench/render/replicates.py [SCENE ...] [--spp 16 64 256] [--seeds 4] [--method pt] [--gradus build/gradus]
+    python3 bench/render/replicates.py [SCENE ...] [--spp 16 64 256] [--seeds 5] [--method pt] [--gradus build/gradus]
 
 SCENE is a name in tests/references. For each and for each number of samples: relMSE of images that tell their variance
 over that of images that do not, whose samples are one sequence; and relMSE as the layer `variance` tells it over the
