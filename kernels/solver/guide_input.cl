@@ -59,8 +59,8 @@ SOLVE guide_prepare(GRID, __global const real *smoothed, __global const real *va
     certainty[GRID_AT(GUIDE_TRUST, x, y)] = counts ? R(1) / r_sqrt(doubt) : R(0);
 }
 
-/* Features, each in units of the difference that sets two pixels apart; of the depth, times `depth_scale`, its logarithm.
- * What is missing is as far as nothing. */
+/* Features, each in units of the difference that sets two pixels apart; of the depth, times `depth_scale`, its
+ * logarithm. What is missing is as far as nothing. */
 SOLVE guide_import_features(GRID, real albedo_unit, real normal_unit, real depth_unit, real depth_scale,
                             __global const float *packed, __global real *features) {
     SOLVER_PLACE_OF_ALL_CHANNELS
@@ -70,6 +70,7 @@ SOLVE guide_import_features(GRID, real albedo_unit, real normal_unit, real depth
         const real given = inside ? packed[PACKED_AT(c)] : 0.0f;
         const real value = is_finite(given) ? given : R(0);
         const real unit = c < 3 ? albedo_unit : c < 6 ? normal_unit : depth_unit;
-        features[GRID_AT(c, x, y)] = (c < 6 ? value : approx_log(r_clamp(value * depth_scale, R(1e-6), R(1e30)))) * unit;
+        features[GRID_AT(c, x, y)] =
+            (c < 6 ? value : approx_log(r_clamp(value * depth_scale, R(1e-6), R(1e30)))) * unit;
     }
 }
