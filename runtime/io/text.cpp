@@ -106,8 +106,8 @@ std::optional<std::vector<double>> parse_numbers(std::string_view text) {
 }
 
 namespace {
-/// Levenshtein's distance, row by row.
-std::size_t edit_distance(const std::string &a, const std::string &b) {
+/// Levenshtein's distance, row by row; `enough` or more where it is not less than that.
+std::size_t edit_distance(const std::string &a, const std::string &b, std::size_t enough) {
     std::vector<std::size_t> row(b.size() + 1);
     std::iota(row.begin(), row.end(), std::size_t(0));
     for (std::size_t i = 1; i <= a.size(); ++i) {
@@ -118,6 +118,8 @@ std::size_t edit_distance(const std::string &a, const std::string &b) {
             row[j] = std::min({row[j] + 1, row[j - 1] + 1, diagonal + (lower(a[i - 1]) != lower(b[j - 1]))});
             diagonal = above;
         }
+        if (*std::min_element(row.begin(), row.end()) >= enough)
+            return enough;
     }
     return row[b.size()];
 }
@@ -131,9 +133,10 @@ std::optional<std::string> nearest_name(const std::string &name, const std::vect
     // A third of the letters may differ: a guess further off than that misleads.
     std::size_t best = name.size() / 3 + 2;
     for (const std::string &candidate : candidates) {
-        if (candidate.size() > 2 * name.size() + 2)
+        // The lengths alone may differ by more.
+        if (candidate.size() >= name.size() + best || name.size() >= candidate.size() + best)
             continue;
-        const std::size_t distance = edit_distance(name, candidate);
+        const std::size_t distance = edit_distance(name, candidate, best);
         if (distance < best) {
             best = distance;
             nearest = candidate;
