@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 #include <unordered_set>
+#include <utility>
 #include <vector>
 
 namespace gradus {
@@ -19,7 +20,8 @@ std::string located(const Location &location, const std::string &message);
 /// of them together.
 class SceneError : public std::runtime_error {
   public:
-    SceneError(const Location &location, const std::string &message) : std::runtime_error(located(location, message)) {}
+    SceneError(const Location &location, const std::string &message, std::string cause = {})
+        : std::runtime_error(located(location, message)), cause(std::move(cause)) {}
     /// Of a file that the scene names: the same error, which says where. Once for all places that name it.
     SceneError named_at(const Location &location) const;
 

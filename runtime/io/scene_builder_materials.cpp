@@ -76,12 +76,11 @@ std::uint32_t SceneBuilder::boundary_material() {
 }
 
 void SceneBuilder::check_blended(std::uint64_t more, const Location &location) const {
-    if (scene_.blended.size() + more <= limits_.blended)
-        return;
-    SceneError error(location, "the blends up to this one hold more than " + std::to_string(limits_.blended) +
-                                   " BSDFs" + limits_hint);
-    error.cause = "blended";
-    throw error;
+    if (scene_.blended.size() + more > limits_.blended)
+        throw SceneError(location,
+                         "the blends up to this one hold more than " + std::to_string(limits_.blended) + " BSDFs" +
+                             limits_hint,
+                         "blended");
 }
 
 Bsdf SceneBuilder::blend(const Bsdf &first, const Bsdf &second, const Number &weight, const Location &location) {

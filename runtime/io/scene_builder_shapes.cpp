@@ -21,13 +21,6 @@ constexpr std::uint64_t most_line_bytes = 256u << 20;
 constexpr std::uint64_t most_kept_bytes = 64u << 20;
 constexpr std::size_t most_kept_files = 16;
 
-/// Of a sum, which every further shape is beyond: told once.
-SceneError too_much(const char *cause, const Location &location, const std::string &message) {
-    SceneError error(location, message);
-    error.cause = cause;
-    return error;
-}
-
 /// A surface that all light passes as if it were not there.
 bool is_never_met(const Material &material) {
     return material.opacity == 0.0f || (material.front.kind == BsdfKind::null && !material.two_sided);
@@ -95,17 +88,19 @@ std::shared_ptr<MeshFile> SceneBuilder::shared_mesh_file(const std::filesystem::
 void SceneBuilder::count_mesh_bytes(std::uint64_t bytes, const Location &location) {
     mesh_bytes_ += std::min(bytes, limits_.mesh_bytes + 1);
     if (mesh_bytes_ > limits_.mesh_bytes)
-        throw too_much("mesh bytes", location,
-                       "the shapes up to this one read more than " + std::to_string(limits_.mesh_bytes >> 20) +
-                           " MiB of meshes" + limits_hint);
+        throw SceneError(location,
+                         "the shapes up to this one read more than " + std::to_string(limits_.mesh_bytes >> 20) +
+                             " MiB of meshes" + limits_hint,
+                         "mesh bytes");
 }
 
 void SceneBuilder::count_geometry(std::uint64_t bytes, const Location &location) {
     geometry_bytes_ += bytes;
     if (geometry_bytes_ > limits_.geometry_bytes)
-        throw too_much("geometry bytes", location,
-                       "the meshes up to this one have more than " + std::to_string(limits_.geometry_bytes >> 20) +
-                           " MiB of vertices and triangles" + limits_hint);
+        throw SceneError(location,
+                         "the meshes up to this one have more than " + std::to_string(limits_.geometry_bytes >> 20) +
+                             " MiB of vertices and triangles" + limits_hint,
+                         "geometry bytes");
 }
 
 /// Where media are not to be ignored, an error at each, else a warning.

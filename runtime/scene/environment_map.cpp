@@ -7,6 +7,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <numbers>
 
 // After TBB, which has template parameters of the names of its macros.
 #include "kernels/lib/environment.h"
@@ -15,7 +16,7 @@ namespace gradus {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+constexpr double pi = std::numbers::pi;
 constexpr std::uint32_t strip_length = environment_strip;
 /// Where the largest number of a map is put within [2^-31, 2^33): all that may be far below it is to be told, too.
 constexpr int largest_exponent = 31;

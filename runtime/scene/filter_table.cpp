@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 
 namespace gradus {
 
@@ -12,7 +13,7 @@ using namespace lib_float;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+constexpr double pi = std::numbers::pi;
 
 /// Mitchell and Netravali (1988), equation 8.
 double mitchell(double x, double b, double c) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <utility>
 
@@ -13,7 +14,7 @@ namespace gradus {
 using namespace lib_float;
 
 namespace {
-constexpr double pi = 3.14159265358979323846;
+constexpr double pi = std::numbers::pi;
 }
 
 LightBuilder::LightBuilder(const Scene &scene, SceneTables &tables, bool has_textures)

@@ -9,12 +9,13 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numbers>
 #include <span>
 
 namespace gradus {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+constexpr double pi = std::numbers::pi;
 constexpr double steps = 65535;           // of a coordinate
 constexpr std::uint32_t most_levels = 10; // a million leaves
 constexpr double lights_of_leaf = 1;      // in the mean; two gave half as much variance again

@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <utility>
 
 namespace gradus {
@@ -25,7 +26,7 @@ using namespace lib_float;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+constexpr double pi = std::numbers::pi;
 constexpr double tracer_error = GRADUS_TRACER_ERROR, least_slant = GRADUS_LEAST_SLANT, most_slant = GRADUS_MOST_SLANT;
 
 Vector3 operator-(Vector3 a, Vector3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }

@@ -177,8 +177,7 @@ TEST_P(MissingPixels, InABlockLieBetweenTheirSurroundings) {
 TEST_P(MissingPixels, AllTakeTheOnlyValue) {
     constexpr std::uint32_t wide = 601, high = 423, x = 130, y = 400;
     PoissonProblem problem = make_poisson_problem(wide, high, 3, 9);
-    for (std::vector<float> *plane : {&problem.primal, &problem.dx, &problem.dy})
-        std::fill(plane->begin(), plane->end(), nan);
+    blot(problem, 0, 0, wide, high);
     for (std::uint32_t c = 0; c < 3; ++c)
         problem.primal[problem.at(c, x, y)] = 0.7f + float(c);
     const Solution solution = solve(problem, options());
@@ -192,8 +191,7 @@ TEST_P(MissingPixels, OfRingsHaveTheMeanOfTheRingBefore) {
     // One row: 0 at one end and 6 at the other; between them three pixels from each side, and one that has both.
     constexpr std::uint32_t wide = 9;
     PoissonProblem problem = make_poisson_problem(wide, 1, 3, 10);
-    for (std::vector<float> *plane : {&problem.primal, &problem.dx, &problem.dy})
-        std::fill(plane->begin(), plane->end(), nan);
+    blot(problem, 0, 0, wide, 1);
     for (std::uint32_t c = 0; c < 3; ++c) {
         problem.primal[problem.at(c, 0, 0)] = 0;
         problem.primal[problem.at(c, wide - 1, 0)] = 6;
