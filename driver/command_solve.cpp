@@ -4,6 +4,7 @@
 #include "driver/number_checks.h"
 #include "driver/reconstruction_options.h"
 #include "driver/solve_job.h"
+#include "driver/word_option.h"
 #include "runtime/error.h"
 
 #include <CLI/CLI.hpp>
@@ -163,12 +164,10 @@ void add_problem_options(CLI::App &command, SolveRequest &request) {
                          options.alpha_from_variances = !alpha;
                          options.alpha = alpha.value_or(options.alpha);
                      });
-    command
-        .add_option_function<std::string>(
-            "--weights", [&options](const std::string &name) { options.weigh_by_variance = name == "variance"; },
-            "Of the equations, L2 only: uniform, or variance: by inverse variance, and the mean is not kept")
-        ->check(CLI::IsMember({"uniform", "variance"}))
-        ->default_str("uniform")
+    add_word_option<bool>(
+        command, "--weights", {{"uniform", false}, {"variance", true}}, options.weigh_by_variance,
+        [&options](bool by_variance) { options.weigh_by_variance = by_variance; },
+        "Of the equations, L2 only: uniform, or variance: by inverse variance, and the mean is not kept")
         ->group(group);
     command
         .add_flag_callback(

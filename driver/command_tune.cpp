@@ -1,9 +1,11 @@
 #include "driver/commands.h"
 #include "driver/device_options.h"
+#include "driver/memory_check.h"
 #include "driver/scene_request.h"
 #include "driver/standard_streams.h"
 #include "driver/tuning_store.h"
 #include "runtime/error.h"
+#include "runtime/scene/own_origin.h"
 #include "runtime/scene/own_scale.h"
 
 #include <CLI/CLI.hpp>
@@ -39,7 +41,11 @@ int run_tune(const TuneRequest &request, const Services &services) {
     Scene scene = load_requested_scene(request.scene, services, [](const std::string &warning) {
         print_message("gradus: warning: " + warning + "\n");
     });
+    bring_to_own_origin(scene);
     bring_to_own_scale(scene);
+    RenderOptions of_renders;
+    of_renders.threads = request.threads;
+    check_memory(scene, "pt", of_renders, bytes_left(request.threads));
     TuningOptions options;
     options.threads = request.threads;
     options.on_trial = print_trial;

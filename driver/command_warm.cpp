@@ -5,7 +5,9 @@
 #include "driver/scene_request.h"
 #include "driver/standard_streams.h"
 #include "runtime/error.h"
+#include "runtime/scene/own_origin.h"
 #include "runtime/scene/own_scale.h"
+#include "runtime/seconds_since.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -15,6 +17,7 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <system_error>
 
 namespace gradus {
@@ -46,19 +49,22 @@ int run_warm(const WarmRequest &request, const Services &services) {
     Scene scene = load_requested_scene(for_method(request.scene, request.method.method), services, warn);
     for (const std::string &sentence : unread_options(request.method, request.method.method))
         warn(sentence);
+    bring_to_own_origin(scene);
     bring_to_own_scale(scene);
-    check_memory(scene, request.method.method, request.method.options);
+    const std::uint64_t left = bytes_left(request.method.options.threads);
+    check_memory(scene, request.method.method, request.method.options, left);
     RenderOptions options = request.method.options;
     options.on_compiled = [](const std::string &kernel, std::size_t ready, std::size_t total, double seconds) {
         print_message(fmt::format("{:8.3f} s  {} ({} of {})\n", seconds, kernel, ready, total));
     };
     const PreparedMethod prepared = services.prepare(request.method.method, request.method.device, scene, options);
+    if (const std::optional<MethodChoice> choice = prepared.method->statistics().choice)
+        check_memory_of_choice(scene, choice->method, request.method.options, left);
     // Some implementations compile a kernel when it first runs, and once for each shape of its grid: a batch as a
     // render has it meets them all.
     prepared.method->render_batch();
     prepared.method->image(); // and what makes an image of it
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    print_message(fmt::format("{:8.3f} s  in all, on {}\n", seconds, prepared.description.name));
+    print_message(fmt::format("{:8.3f} s  in all, on {}\n", seconds_since(start), prepared.description.name));
     if (services.programs_not_kept() > 0)
         throw Error(ExitCode::output, fmt::format("not all kernels could be kept in '{}': is the disk full?",
                                                   services.cache_folder().string()));

@@ -85,6 +85,13 @@ std::string list_of(const Layers &layers) {
 
 [[noreturn]] void fail_to_read(const std::string &message) { throw Error(ExitCode::image, message); }
 
+/// Whether the channels outside of any layer are the image, in a file that was given for it. Beside layers they are
+/// what was rendered, and neither its differences nor their variances.
+bool is_plain_image(GradientLayer layer, const Layers &layers) {
+    const bool is_rendered = layer == GradientLayer::primal || layer == GradientLayer::direct;
+    return layers.count("") > 0 && (is_rendered || layers.size() == 1);
+}
+
 /// Where the image is in a file: the layer's name, or nothing. `alone`: the file was given for this image.
 std::optional<std::string> find_layer(const Image &image, const Layers &layers, GradientLayer layer,
                                       const GradientSources &sources, bool alone) {
@@ -100,7 +107,7 @@ std::optional<std::string> find_layer(const Image &image, const Layers &layers, 
         if (first_part == usual && layers.count(""))
             return "";
     }
-    return alone && layers.count("") ? std::optional<std::string>("") : std::nullopt;
+    return alone && is_plain_image(layer, layers) ? std::optional<std::string>("") : std::nullopt;
 }
 
 /// One image as it was found.

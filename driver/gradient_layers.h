@@ -106,8 +106,8 @@ struct GradientImages {
 /// direct where there is one, and features where they are asked for: albedo has colours, normal X, Y and Z, depth Z.
 ///
 /// In a file an image is the layer that the sources name, or else the first layer of one of its usual names in any
-/// case, or else, in a file of its own, the channels outside of any layer. Colours are the channels R, G and B, or Y
-/// where it stands alone; alpha is ignored.
+/// case, or else, in a file of its own, the channels outside of any layer, where there are no layers beside them or it
+/// is primal or direct. Colours are the channels R, G and B, or Y where it stands alone; alpha is ignored.
 ///
 /// Throws Error(ExitCode::usage) where an image has neither file nor layer, Error(ExitCode::image) for files that
 /// cannot be read, layers that are missing, and sizes or channels that differ.

@@ -3,10 +3,13 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
+#include <ctime>
 
 namespace gradus {
 namespace {
@@ -25,22 +28,40 @@ const std::array<bool, watched_count> was_ignored = [] {
     return at_start;
 }();
 
-volatile std::sig_atomic_t interrupted = 0;
+/// Nanoseconds of the clock when the first signal came; 0: none did.
+std::atomic<std::int64_t> first_signal{0};
+static_assert(std::atomic<std::int64_t>::is_always_lock_free, "a handler may not wait for a lock");
+
 const char *volatile answer_line = nullptr;
 struct sigaction before[watched_count];
 
-// Gives the default action back to every signal but those that were ignored, so that the next one ends the process.
-void on_signal(int) {
+/// One wish to stop may come as several signals: `timeout` sends one to its child and then one to the whole group, and
+/// who forwards a signal sends it once more. Nobody asks for a second time so soon.
+constexpr std::int64_t same_wish = 300'000'000; // nanoseconds
+
+std::int64_t nanoseconds_now() {
+    struct timespec now = {};
+    clock_gettime(CLOCK_MONOTONIC, &now); // which a handler may call
+    return std::int64_t(now.tv_sec) * 1'000'000'000 + now.tv_nsec;
+}
+
+// Only calls that a handler may make.
+void on_signal(int number) {
     const int error = errno; // of the code that it came between
-    interrupted = 1;
-    const char *const line = answer_line;
-    if (line && write(STDERR_FILENO, line, std::strlen(line)) < 0)
-        answer_line = nullptr; // nobody reads it
-    struct sigaction standard = {};
-    standard.sa_handler = SIG_DFL;
-    for (std::size_t i = 0; i < watched_count; ++i)
-        if (!was_ignored[i])
-            sigaction(watched[i], &standard, nullptr);
+    const std::int64_t now = nanoseconds_now();
+    std::int64_t first = 0;
+    if (first_signal.compare_exchange_strong(first, now)) {
+        const char *const line = answer_line;
+        if (line && write(STDERR_FILENO, line, std::strlen(line)) < 0)
+            answer_line = nullptr; // nobody reads it
+    } else if (number != SIGHUP && now - first > same_wish) {
+        // Comes as soon as this handler returns, and ends the process. A terminal that goes sends SIGHUP by the shell
+        // and by the kernel, at any distance, and nobody is there who would be impatient.
+        struct sigaction standard = {};
+        standard.sa_handler = SIG_DFL;
+        sigaction(number, &standard, nullptr);
+        raise(number);
+    }
     errno = error;
 }
 
@@ -55,7 +76,7 @@ void ignore_what_was_ignored() {
 }
 
 InterruptWatch::InterruptWatch() {
-    interrupted = 0;
+    first_signal = 0;
     answer_line = nullptr;
     struct sigaction action = {};
     action.sa_handler = on_signal;
@@ -74,7 +95,7 @@ InterruptWatch::~InterruptWatch() {
         sigaction(watched[i], &before[i], nullptr);
 }
 
-bool InterruptWatch::requested() const { return interrupted != 0; }
+bool InterruptWatch::requested() const { return first_signal != 0; }
 
 void InterruptWatch::answer(const char *line) { answer_line = line; }
 

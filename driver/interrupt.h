@@ -7,9 +7,10 @@ namespace gradus {
 /// OpenCL implementation takes them for itself when it is loaded.
 void ignore_what_was_ignored();
 
-/// While an object of it lives, the first SIGINT, SIGTERM or SIGHUP only sets a flag; the second ends the process at
-/// once, as it would without the object. Signals that the process was started to ignore stay ignored (nohup, a shell's
-/// background jobs). One object at a time.
+/// While an object of it lives, the first SIGINT, SIGTERM or SIGHUP only sets a flag. What follows within 0.3 s belongs
+/// to the same wish and does nothing; later a second SIGINT or SIGTERM ends the process at once, as it would without
+/// the object, and a SIGHUP still does nothing. Signals that the process was started to ignore stay ignored (nohup, a
+/// shell's background jobs). One object at a time.
 class InterruptWatch {
   public:
     InterruptWatch();

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <malloc.h>
@@ -25,13 +26,13 @@ namespace {
 constexpr std::uint64_t unlimited = std::numeric_limits<std::uint64_t>::max();
 
 /// The number in a file that has one; `unlimited` for all others ("max").
-std::uint64_t number_in(const char *path) {
+std::uint64_t number_in(const std::filesystem::path &path) {
     std::uint64_t number = 0;
     return std::ifstream(path) >> number ? number : unlimited;
 }
 
 /// The number that follows a name at the beginning of a line; nothing where there is none.
-std::optional<std::uint64_t> number_of(const char *path, const std::string &wanted) {
+std::optional<std::uint64_t> number_of(const std::filesystem::path &path, const std::string &wanted) {
     std::ifstream file(path);
     std::uint64_t number = 0;
     for (std::string name, line; file >> name >> number; std::getline(file, line))
@@ -47,14 +48,35 @@ std::uint64_t system_bytes() {
     return available || swap ? (available.value_or(0) + swap.value_or(0)) << 10 : unlimited;
 }
 
-std::uint64_t container_bytes() {
-    const std::uint64_t most = number_in("/sys/fs/cgroup/memory.max"),
-                        used = number_in("/sys/fs/cgroup/memory.current");
+/// Of version 2 of control groups (cgroups), which has one tree for all, and of version 1, which has one for memory.
+struct GroupFiles {
+    const char *controllers; ///< as the list of a process's groups names the tree
+    const char *folder;      ///< of the tree, in that of all
+    const char *most, *used, *inactive_files;
+};
+constexpr GroupFiles versions_of_groups[] = {
+    {"", "", "memory.max", "memory.current", "inactive_file"},
+    {"memory", "memory", "memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"},
+};
+
+/// The path of a process's group in a tree; empty where it has none there.
+std::filesystem::path group_in(const std::filesystem::path &groups, const std::string &controllers) {
+    std::ifstream file(groups);
+    std::string number, named, path; // of a line 4:memory:/user.slice
+    while (std::getline(file, number, ':') && std::getline(file, named, ':') && std::getline(file, path))
+        if (named == controllers)
+            return path;
+    return {};
+}
+
+/// What one group has left, those below it counted in.
+std::uint64_t group_bytes(const std::filesystem::path &group, const GroupFiles &files) {
+    const std::uint64_t most = number_in(group / files.most), used = number_in(group / files.used);
     if (most == unlimited || used == unlimited)
         return unlimited;
     // Files that were read, those of the scene too, are kept as long as nobody needs the room.
-    const std::uint64_t files = number_of("/sys/fs/cgroup/memory.stat", "inactive_file").value_or(0);
-    return most - std::min(most, used - std::min(used, files));
+    const std::uint64_t cached = number_of(group / "memory.stat", files.inactive_files).value_or(0);
+    return most - std::min(most, used - std::min(used, cached));
 }
 
 /// Of the process; `unlimited` where there is none.
@@ -118,17 +140,47 @@ std::uint64_t least_render_bytes(const Scene &scene, const std::string &method, 
            std::uint64_t(width) * height * of_pixel;
 }
 
-void check_memory(const Scene &scene, const std::string &method, const RenderOptions &options) {
+std::uint64_t container_bytes(const std::filesystem::path &groups, const std::filesystem::path &trees) {
+    std::uint64_t left = unlimited;
+    for (const GroupFiles &files : versions_of_groups) {
+        std::filesystem::path group = group_in(groups, files.controllers).relative_path();
+        // The root too: within a container it may be the container's own group, and the path the host's.
+        for (bool is_root = false; !is_root; group = group.parent_path()) {
+            is_root = group.empty();
+            left = std::min(left, group_bytes(trees / files.folder / group, files));
+        }
+    }
+    return left;
+}
+
+std::uint64_t bytes_left(int threads) {
+    return std::min({system_bytes(), container_bytes(), address_space_bytes(threads)});
+}
+
+namespace {
+
+void check_room(const Scene &scene, const std::string &method, const RenderOptions &options, std::uint64_t left,
+                const std::string &by, const char *advice) {
     const std::uint64_t needed = least_render_bytes(scene, method, options);
-    const std::uint64_t there = std::min({system_bytes(), container_bytes(), address_space_bytes(options.threads)});
-    if (needed <= there)
+    if (needed <= left)
         return;
     const auto [width, height] = image_size(scene.film);
-    throw Error(
-        ExitCode::device,
-        fmt::format("not enough memory: rendering {}x{} pixels takes {} MB at the least, and {} MB are left; try "
-                    "a smaller --size, or a --crop",
-                    width, height, (needed + (1 << 20) - 1) >> 20, there >> 20));
+    throw Error(ExitCode::device,
+                fmt::format("not enough memory: rendering {}x{} pixels{} takes {} MB at the least, and {} MB are left; "
+                            "try {}a smaller --size, or a --crop",
+                            width, height, by, (needed + (1 << 20) - 1) >> 20, left >> 20, advice));
+}
+
+} // namespace
+
+void check_memory(const Scene &scene, const std::string &method, const RenderOptions &options, std::uint64_t left) {
+    check_room(scene, method, options, left, "", "");
+}
+
+void check_memory_of_choice(const Scene &scene, const std::string &method, const RenderOptions &options,
+                            std::uint64_t left) {
+    if (method != "pt") // as little as any
+        check_room(scene, method, options, left, fmt::format(" by {}, which was chosen,", method), "--method pt, ");
 }
 
 void spare_address_space() {

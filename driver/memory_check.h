@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 
 namespace gradus {
@@ -18,9 +19,22 @@ std::uint64_t bytes_of_pixel(const std::string &method, const RenderOptions &opt
 /// needs come to that. On other devices than the host's processor a part of it lies there.
 std::uint64_t least_render_bytes(const Scene &scene, const std::string &method, const RenderOptions &options);
 
-/// Throws Error(ExitCode::device) where the machine, a container's limit or the process's address space have not as
-/// much left.
-void check_memory(const Scene &scene, const std::string &method, const RenderOptions &options);
+/// Bytes that the control groups of this process let it still take: its own and those that this is in, of either
+/// version. The largest number where nothing limits them. `groups`: the process's; `trees`: the folder that they are
+/// found in.
+std::uint64_t container_bytes(const std::filesystem::path &groups = "/proc/self/cgroup",
+                              const std::filesystem::path &trees = "/sys/fs/cgroup");
+
+/// Bytes that the machine, a container's limit and the address space of a process of so many threads (0: one for each
+/// core) have left.
+std::uint64_t bytes_left(int threads);
+
+/// Throws Error(ExitCode::device) where rendering takes more than is left.
+void check_memory(const Scene &scene, const std::string &method, const RenderOptions &options, std::uint64_t left);
+
+/// The same for the method that `auto` chose, of which nothing was known before. `left`: before it was prepared.
+void check_memory_of_choice(const Scene &scene, const std::string &method, const RenderOptions &options,
+                            std::uint64_t left);
 
 /// Before threads start: where the address space is limited none of them reserves a part of it for its own use.
 void spare_address_space();

@@ -1,6 +1,7 @@
 #include "driver/photon_options.h"
 
 #include "driver/number_checks.h"
+#include "driver/word_option.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -37,14 +38,11 @@ void add_photon_options(CLI::App &command, RenderOptions &options) {
         ->check(number_between(0, 1))
         ->capture_default_str()
         ->group(group);
-    command
-        .add_option_function<std::string>(
-            "--direct", [&options](const std::string &name) { options.direct_photons = name == "photons"; },
-            "How the light that comes directly to a gather point is found: sample, by sampling lights as pt does, or "
-            "by "
-            "photons")
-        ->check(CLI::IsMember({"sample", "photons"}))
-        ->default_str("sample")
+    add_word_option<bool>(
+        command, "--direct", {{"sample", false}, {"photons", true}}, options.direct_photons,
+        [&options](bool by_photons) { options.direct_photons = by_photons; },
+        "How the light that comes directly to a gather point is found: sample, by sampling lights as pt does, or by "
+        "photons")
         ->group(group);
     command
         .add_flag("--only-chains", options.only_chains,

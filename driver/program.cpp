@@ -83,6 +83,18 @@ void keep_standard_descriptors() {
             open("/dev/null", O_RDONLY); // takes the least number that is free
 }
 
+/// An empty value is that of a variable that is not set. What it was to say would be lost, or become something else, as
+/// an empty folder is the working one.
+void refuse_empty_values(CLI::App &app) {
+    const auto complaint = [](const std::string &value) {
+        return std::string(value.empty() ? "must not be empty" : "");
+    };
+    for (CLI::App *command : app.get_subcommands([](const CLI::App *) { return true; }))
+        for (CLI::Option *option : command->get_options())
+            if (option->get_items_expected_max() > 0) // no flag
+                option->check(complaint);
+}
+
 } // namespace
 
 const char *version() { return GRADUS_VERSION; }
@@ -91,6 +103,9 @@ int run_program(int argc, const char *const *argv, const Services &services) {
     // A file over the size limit and a reader that went away shall be errors of the call, not the end of the process.
     std::signal(SIGXFSZ, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);
+    // Where the process was started to ignore it, nobody who starts others, as PoCL does its linker, learns how they
+    // end.
+    std::signal(SIGCHLD, SIG_DFL);
     spare_address_space();
     keep_standard_descriptors();
 
@@ -109,6 +124,7 @@ int run_program(int argc, const char *const *argv, const Services &services) {
         add_solve_command(app, services, chosen);
         add_warm_command(app, services, chosen);
         add_tune_command(app, services, chosen);
+        refuse_empty_values(app);
         try {
             app.parse(argc, argv);
         } catch (const CLI::ParseError &error) {

@@ -1,5 +1,7 @@
 #include "driver/progress.h"
 
+#include "runtime/seconds_since.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -136,12 +138,11 @@ void Progress::update(const ProgressState &state) {
     if (mode_ == Mode::quiet)
         return;
     const std::lock_guard lock(mutex_);
-    const auto now = std::chrono::steady_clock::now();
     const double interval = mode_ == Mode::terminal ? redraw_interval : plain_interval_;
-    if (started_ && std::chrono::duration<double>(now - last_).count() < interval)
+    if (started_ && seconds_since(last_) < interval)
         return;
     started_ = true;
-    last_ = now;
+    last_ = std::chrono::steady_clock::now();
     draw(state);
 }
 

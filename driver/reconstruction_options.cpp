@@ -24,12 +24,8 @@ void add_reconstruction_option(CLI::App &command, const char *group, Reconstruct
             "weighted by its variance, and without bias: two halves of the samples judge each other; guided: the "
             "same, and a filtered image where that has less error, by place: consistent, the least error")
             ->group(group);
-    command
-        .add_option_function<std::string>(
-            "--norm",
-            [set](const std::string &name) { set(name.back() == '1' ? Reconstruction::l1 : Reconstruction::l2); },
-            "The old name of --reconstruction l1 and l2")
-        ->check(CLI::IsMember({"L1", "L2"}, CLI::ignore_case))
+    add_word_option<Reconstruction>(command, "--norm", {{"L1", Reconstruction::l1}, {"L2", Reconstruction::l2}},
+                                    standard, set, "The old name of --reconstruction l1 and l2", CLI::ignore_case)
         ->excludes(reconstruction)
         ->group(group);
 }

@@ -13,6 +13,7 @@
 #include "runtime/error.h"
 #include "runtime/io/image_io.h"
 #include "runtime/io/picture_library.h"
+#include "runtime/scene/own_origin.h"
 #include "runtime/scene/own_scale.h"
 #include "runtime/seconds_since.h"
 
@@ -91,10 +92,12 @@ class RenderJob {
         check_distinct(output_list(request_.outputs), files_read_);
         check_counts(scene);
         warn_of_unread_options(request_.method.method);
-        check_memory(scene, request_.method.method, request_.method.options);
+        const std::uint64_t left = bytes_left(request_.method.options.threads);
+        check_memory(scene, request_.method.method, request_.method.options, left);
         if (!is_limited_by_samples())
             scene.settings.samples_per_pixel =
                 request_.until_error > 0 ? ErrorWatch::most_samples : endless_samples_per_pixel;
+        bring_to_own_origin(scene);
         own_scale_ = bring_to_own_scale(scene);
         crop_ = scene.film.crop_width > 0 ? fmt::format("{},{},{},{}", scene.film.crop_x, scene.film.crop_y,
                                                         scene.film.crop_width, scene.film.crop_height)
@@ -131,6 +134,7 @@ class RenderJob {
             pilot_seconds_ = choice->pilot_seconds;
             progress_.message(fmt::format("method {}: {}", choice->method, choice->reason));
             warn_of_unread_options(choice->method);
+            check_memory_of_choice(scene, choice->method, request_.method.options, left);
         }
         std::string aim = is_limited_by_samples() ? fmt::format("{} samples a pixel", scene.settings.samples_per_pixel)
                           : request_.time_limit > 0 ? fmt::format("{} s", request_.time_limit)

@@ -2,6 +2,7 @@
 
 #include "driver/limits_option.h"
 #include "driver/number_checks.h"
+#include "driver/word_option.h"
 #include "runtime/error.h"
 
 #include <CLI/CLI.hpp>
@@ -87,13 +88,12 @@ void add_scene_options(CLI::App &command, SceneRequest &request) {
         .add_flag("--ignore-media", request.ignore_media,
                   "Render a scene with participating media as if these were empty")
         ->group(group);
-    command
-        .add_option("--instances", request.instances,
-                    "Instances of groups: as shapes of their own where that is small, always (copies; so does gpm by "
-                    "default), never (kept)")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, InstanceChoice>{
-            {"auto", InstanceChoice::automatic}, {"copies", InstanceChoice::copies}, {"kept", InstanceChoice::kept}}))
-        ->option_text("auto|copies|kept [auto]")
+    add_word_option<InstanceChoice>(
+        command, "--instances",
+        {{"auto", InstanceChoice::automatic}, {"copies", InstanceChoice::copies}, {"kept", InstanceChoice::kept}},
+        request.instances, [&request](InstanceChoice choice) { request.instances = choice; },
+        "Instances of groups: as shapes of their own where that is small, always (copies; so does gpm by default), "
+        "never (kept)")
         ->group(group);
     CLI::Option *const confined =
         command

@@ -9,6 +9,7 @@
 #include "runtime/io/image_io.h"
 #include "runtime/seconds_since.h"
 #include "runtime/wavefront/sample_parts.h"
+#include "solver/brightness.h"
 #include "solver/halves.h"
 
 #include <fmt/format.h>
@@ -71,6 +72,7 @@ class SolveJob {
         warn_of_what_is_not_read();
         images_ = read_gradient_images(request_.sources);
         warn_of_other_reconstruction();
+        warn_of_brightness();
         if (request_.sources.variances)
             check_variances();
         if (request_.sources.features && images_.channels.size() != 3)
@@ -129,6 +131,16 @@ class SolveJob {
         if (request_.options.alpha_from_variances && above_zero == 0)
             warn(fmt::format("all variances are 0, as of one sample a pixel: they tell no alpha, so it is {}",
                              request_.options.alpha));
+    }
+
+    void warn_of_brightness() const {
+        const std::size_t values = std::size_t(images_.width) * images_.height * images_.channels.size();
+        std::string note;
+        for (const GradientLayer layer : {GradientLayer::primal, GradientLayer::primal_even})
+            if (const float *plane = images_.find(layer); plane && note.empty())
+                note = note_of_brightness({{plane, values}});
+        if (!note.empty())
+            warn(note);
     }
 
     void solve() {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -39,14 +40,33 @@ std::vector<std::string> options_of(const CLI::App &command) {
     return names;
 }
 
-/// The first word that no command takes, an option before others: what follows it may be its value.
-std::string of_unknown_words(const CLI::App &command, const std::vector<std::string> &words) {
+bool has_option(const CLI::App &command, const std::string &name) {
+    const std::vector<std::string> options = options_of(command);
+    return std::find(options.begin(), options.end(), name) != options.end();
+}
+
+std::vector<std::string> commands_with(const CLI::App &app, const std::string &option) {
+    std::vector<std::string> names;
+    for (const CLI::App *command : app.get_subcommands([](const CLI::App *) { return true; }))
+        if (has_option(*command, option))
+            names.push_back(command->get_name());
+    return names;
+}
+
+std::string of_unknown_option(const CLI::App &app, const CLI::App &command, const std::string &name) {
+    if (has_option(command, name))
+        return fmt::format("{} comes after --, where no word is an option", name);
+    const std::vector<std::string> others = commands_with(app, name);
+    return fmt::format("{} is not an option of {}{}", name, command.get_display_name(),
+                       others.empty() ? guess(name, options_of(command))
+                                      : fmt::format(", but of {}", fmt::join(others, ", ")));
+}
+
+/// The first word that the command does not take, an option before others: what follows it may be its value.
+std::string of_unknown_words(const CLI::App &app, const CLI::App &command, const std::vector<std::string> &words) {
     for (const std::string &word : words)
-        if (is_option(word)) {
-            const std::string name = word.substr(0, word.find('='));
-            return fmt::format("{} is not an option of {}{}", name, command.get_display_name(),
-                               guess(name, options_of(command)));
-        }
+        if (is_option(word))
+            return of_unknown_option(app, command, word.substr(0, word.find('=')));
     return fmt::format("{} takes no more, but was given: {}", command.get_display_name(), fmt::join(words, " "));
 }
 
@@ -63,7 +83,7 @@ std::string usage_message(const CLI::App *app, const CLI::Error &error) {
                    : fmt::format("{} is no command{} The commands are {}\n", word, guess(word, commands, "."),
                                  fmt::join(commands, ", "));
     } else if (dynamic_cast<const CLI::ExtrasError *>(&error) && !chosen.empty()) {
-        text = of_unknown_words(*chosen.front(), app->remaining(true)) +
+        text = of_unknown_words(*app, *chosen.front(), app->remaining(true)) +
                fmt::format("\nRun gradus {} --help for more information.\n", chosen.front()->get_name());
     }
     return "gradus: error: " + text;

@@ -10,7 +10,8 @@ class Error;
 
 namespace gradus {
 
-/// The error's own words; of commands and options that do not exist, which ones and what may have been meant.
+/// The error's own words; of commands and options that do not exist, which ones and what may have been meant, or which
+/// commands have the option.
 std::string usage_message(const CLI::App *app, const CLI::Error &error);
 
 } // namespace gradus

@@ -4,13 +4,16 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <cstdint>
 #include <cstdlib>
+#include <mutex>
 #include <string>
+#include <utility>
 
 namespace gradus {
 
@@ -97,10 +100,26 @@ class PrivateFolder {
     }
     const fs::path &path() const { return path_; }
 
+    /// Makes the folder again where it was deleted, by the same name. Returns how often that was so.
+    unsigned renew() {
+        const std::lock_guard lock(mutex_);
+        struct stat folder = {};
+        if (lock_ < 0 || fstat(lock_, &folder) != 0 || folder.st_nlink > 0)
+            return renewals_;
+        mkdir(path_.c_str(), S_IRWXU); // which PoCL may have done, too
+        const int lock_of_new = locked_folder(path_);
+        if (lock_of_new < 0)
+            return renewals_;
+        close(std::exchange(lock_, lock_of_new));
+        return ++renewals_;
+    }
+
   private:
     fs::path path_;
-    int lock_ = -1;
+    int lock_ = -1; ///< the open folder
     pid_t owner_ = getpid();
+    std::mutex mutex_;
+    unsigned renewals_ = 0;
 };
 
 } // namespace
@@ -108,15 +127,24 @@ class PrivateFolder {
 fs::path program_cache_folder() {
     if (const char *chosen = std::getenv("GRADUS_CACHE_DIR")) {
         const std::string folder = chosen;
-        return folder.empty() || folder == "off" ? fs::path() : fs::absolute(folder);
+        std::error_code ignored; // the working folder may be gone: then nothing is kept
+        return folder.empty() || folder == "off" ? fs::path() : fs::absolute(folder, ignored);
     }
     const fs::path cache = user_cache_folder();
     return cache.empty() ? fs::path() : cache / "gradus" / "programs";
 }
 
-fs::path private_folder() {
-    static const PrivateFolder folder(folder_for_code());
-    return folder.path();
+namespace {
+
+PrivateFolder &folder_of_process() {
+    static PrivateFolder folder(folder_for_code());
+    return folder;
 }
+
+} // namespace
+
+fs::path private_folder() { return folder_of_process().path(); }
+
+unsigned renewals_of_private_folder() { return folder_of_process().renew(); }
 
 } // namespace gradus

@@ -13,4 +13,8 @@ std::filesystem::path program_cache_folder();
 /// What processes that were killed left behind goes when the next one makes its own.
 std::filesystem::path private_folder();
 
+/// Makes that folder again, empty, where somebody deleted it, as systemd does with all that a user has in /dev/shm when
+/// his last session ends (RemoveIPC), renders under nohup or not. Returns how often that was so.
+unsigned renewals_of_private_folder();
+
 } // namespace gradus

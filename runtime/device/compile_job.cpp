@@ -7,6 +7,7 @@
 #include "runtime/device/pocl_linker.h"
 #include "runtime/device/pocl_stub.h"
 #include "runtime/error.h"
+#include "runtime/seconds_since.h"
 
 #include <poll.h>
 #include <unistd.h>
@@ -105,7 +106,11 @@ CompileAnswer compile(const CompileJob &job, std::optional<OpenDevice> &opened) 
 } // namespace
 
 int run_compile_worker(int socket) {
-    std::signal(SIGINT, SIG_IGN); // Ctrl-C is for the other process, which may still need kernels for its last image
+    // Ctrl-C is for the other process, which may still need kernels for its last image. Once LLVM is loaded it has a
+    // handler of its own here, which gives back what was there and sends itself the signal once more: so it is ignored
+    // all the same.
+    std::signal(SIGINT, SIG_IGN);
+    std::signal(SIGCHLD, SIG_DFL); // or PoCL would not learn how its linker ends
     // Nobody waits for what is compiled when the other process is gone. (PR_SET_PDEATHSIG would end this one with the
     // thread that began it.)
     std::thread([socket] {
@@ -124,7 +129,7 @@ int run_compile_worker(int socket) {
         } catch (const std::exception &error) {
             answer = {CompileAnswer::Kind::no_code, error.what(), 0};
         }
-        answer.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        answer.seconds = seconds_since(start);
         if (!send_message(socket, to_bytes(answer)))
             break;
     }

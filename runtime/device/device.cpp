@@ -49,36 +49,44 @@ DeviceDescription describe(const cl::Platform &platform, const cl::Device &devic
     return d;
 }
 
-std::string list_of(const std::vector<FoundDevice> &found) {
+std::string list_of(const std::vector<DeviceDescription> &found) {
     std::string text;
     for (std::size_t i = 0; i < found.size(); ++i)
-        text += fmt::format("\n  {}: {} ({})", i, found[i].description.name, found[i].description.platform);
+        text += fmt::format("\n  {}: {} ({})", i, found[i].name, found[i].platform);
     return text;
 }
 
-std::size_t choose(const std::vector<FoundDevice> &found, const std::string &selector) {
+} // namespace
+
+std::size_t chosen_device(const std::vector<DeviceDescription> &found, const std::string &selector) {
     if (found.empty())
         throw Error(ExitCode::device,
                     "no OpenCL device was found; install one, for example PoCL for the CPU: "
                     "apt install pocl-opencl-icd, and POCL_CACHE_DIR, where it can write nowhere else");
     if (selector.empty()) {
         for (std::size_t i = 0; i < found.size(); ++i)
-            if (is_pocl_cpu(found[i].description))
+            if (is_pocl_cpu(found[i]))
                 return i;
         return 0;
     }
-    if (std::all_of(selector.begin(), selector.end(), [](unsigned char c) { return std::isdigit(c); })) {
+    const bool is_number =
+        std::all_of(selector.begin(), selector.end(), [](unsigned char c) { return std::isdigit(c); });
+    if (is_number) {
         const unsigned long number = selector.size() < 6 ? std::stoul(selector) : found.size();
         if (number < found.size())
             return number;
     }
-    for (std::size_t i = 0; i < found.size(); ++i)
-        if (lower(found[i].description.platform + " " + found[i].description.name).find(lower(selector)) !=
-            std::string::npos)
+    // Longer numbers are parts of names ("3060"); so short ones are in most of them.
+    constexpr std::size_t longest_number = 2;
+    const bool may_be_name = !is_number || selector.size() > longest_number;
+    for (std::size_t i = 0; may_be_name && i < found.size(); ++i)
+        if (lower(found[i].platform + " " + found[i].name).find(lower(selector)) != std::string::npos)
             return i;
     throw Error(ExitCode::device,
                 fmt::format("no OpenCL device matches \"{}\"; there are:{}", selector, list_of(found)));
 }
+
+namespace {
 
 /// PoCL unpacks programs that it gets as code into its folder. Processes that share one can disturb each other (pocl
 /// #430), so each has one of its own, which need not be on a disk. A folder that the user chose stays.
@@ -131,16 +139,22 @@ bool is_pocl_5_or_6_cpu(const DeviceDescription &d) {
 
 bool is_oclgrind(const DeviceDescription &d) { return d.platform == "Oclgrind"; }
 
-std::vector<DeviceDescription> list_devices() {
+namespace {
+
+std::vector<DeviceDescription> descriptions_of(const std::vector<FoundDevice> &found) {
     std::vector<DeviceDescription> descriptions;
-    for (const FoundDevice &found : find_devices())
-        descriptions.push_back(found.description);
+    for (const FoundDevice &one : found)
+        descriptions.push_back(one.description);
     return descriptions;
 }
 
+} // namespace
+
+std::vector<DeviceDescription> list_devices() { return descriptions_of(find_devices()); }
+
 Device::Device(const std::string &selector, int threads) : implementation_(std::make_unique<Implementation>()) {
     const std::vector<FoundDevice> found = find_devices(threads);
-    const FoundDevice &chosen = found[choose(found, selector)];
+    const FoundDevice &chosen = found[chosen_device(descriptions_of(found), selector)];
     implementation_->description = chosen.description;
     implementation_->device = chosen.device;
     implementation_->store = ProgramStore(program_cache_folder());

@@ -1,6 +1,7 @@
 // OpenCL: choosing a device. runtime/device is the only place that includes OpenCL headers.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -28,12 +29,17 @@ struct DeviceDescription {
 /// Every OpenCL device of every platform, in a stable order; empty where there is none.
 std::vector<DeviceDescription> list_devices();
 
+/// The number of the device that a selector (of Device) names among these. Throws Error(ExitCode::device) with the list
+/// of what there is.
+std::size_t chosen_device(const std::vector<DeviceDescription> &found, const std::string &selector);
+
 /// One OpenCL device with its context and in-order queue.
 class Device {
   public:
     /// `selector`: empty (PoCL's CPU device, else the first one), a number from list_devices(), or a part of the
-    /// platform's or device's name in any case. `threads`: how many cores a CPU device may use, 0 for all; takes
-    /// effect only for the first device of a process. Throws Error with the list of what there is.
+    /// platform's or device's name in any case; one or two digits are a number only. `threads`: how many cores a CPU
+    /// device may use, 0 for all; takes effect only for the first device of a process. Throws Error with the list of
+    /// what there is.
     explicit Device(const std::string &selector = "", int threads = 0);
     /// A caller's cl_context and cl_command_queue; both are retained. Everything is enqueued on that queue, so it comes
     /// after what the caller enqueued there before. Without CL_QUEUE_PROFILING_ENABLE kernel times are 0. Throws

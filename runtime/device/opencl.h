@@ -43,6 +43,9 @@ struct Device::Implementation {
     ProgramStore store;                            ///< what other processes built
     std::atomic<std::size_t> compiled{0};          ///< programs that were not taken from there
     LaunchObserver observer;                       ///< empty: none
+    std::mutex restoring;
+    unsigned renewals = 0;             ///< of the private folder, after which code was unpacked there again
+    std::vector<cl::Program> restored; ///< for that
 
     ~Implementation() { finish_quietly(); } // threads of the implementation must not outlive the program's memory
     /// Waits for all that is queued, where nobody could do anything about an error.

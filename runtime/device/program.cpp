@@ -119,6 +119,7 @@ void Kernel::Handle::enqueue(std::size_t groups, std::size_t lines, std::size_t 
     for (const auto &[argument, index] : arguments)
         if (!is_set[index])
             throw std::logic_error("kernel " + request.name + ": argument " + argument + " was not set");
+    restore_code(*device);
     const bool profiles = device->profiles;
     opencl_call("launching " + request.name, [&] {
         cl::Event event;

@@ -1,5 +1,6 @@
 #include "runtime/device/program_builder.h"
 
+#include "runtime/device/cache_folder.h"
 #include "runtime/device/compile_workers.h"
 #include "runtime/device/hash.h"
 #include "runtime/device/needed_source.h"
@@ -121,6 +122,8 @@ class Builder {
         } catch (const cl::Error &) {
             return false;
         }
+        program->key = task.key;
+        program->options = sources_[task.index].options;
         finish(task, std::move(*program), seconds);
         return true;
     }
@@ -259,8 +262,30 @@ std::shared_ptr<CompileWorkers> compile_workers(Device::Implementation &device) 
     return workers;
 }
 
+void restore_code(Device::Implementation &device) {
+    if (!device.store.is_on())
+        return; // there is no such folder
+    const std::lock_guard lock(device.restoring);
+    const unsigned renewals = renewals_of_private_folder();
+    if (std::exchange(device.renewals, renewals) == renewals || !is_pocl_cpu(device.description))
+        return;
+    const std::lock_guard programs_lock(device.built.mutex);
+    for (const auto &[name, program] : device.built.programs) {
+        if (program.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+            continue; // who makes it unpacks it
+        try {
+            const BuiltProgram &built = *program.get();
+            if (const std::optional<ProgramImage> image = device.store.find(built.key))
+                device.restored.push_back(load_image(device.context, device.device, *image, built.options).program);
+        } catch (const std::exception &) {
+            // It is as it was before.
+        }
+    }
+}
+
 std::vector<Shared> obtain_programs(Device::Implementation &device, const std::vector<ProgramSource> &sources,
                                     std::uint32_t work_group_size, const ProgramReady &ready) {
+    restore_code(device); // what is compiled goes there, too
     return Builder(device, sources, work_group_size, ready).build();
 }
 

@@ -17,6 +17,7 @@ struct ProgramSource {
 struct BuiltProgram {
     cl::Program program;
     KernelArguments kernels;
+    std::string key{}, options{}; ///< in the store, where it is there, and those that it is loaded with
 };
 
 /// Throws Error with the compiler's log.

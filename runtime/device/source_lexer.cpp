@@ -34,8 +34,11 @@ bool SourceLexer::begins_line() {
 
 std::string_view SourceLexer::rest_of_line() {
     const std::size_t start = at_;
+    bool is_comment = false;
     for (; at_ < text_.size() && text_[at_] != '\n'; ++at_) {
-        if (text_.substr(at_, 2) == "/*")
+        if (text_.substr(at_, 2) == "//")
+            is_comment = true; // what begins in it is none
+        else if (text_.substr(at_, 2) == "/*" && !is_comment)
             skip_comment();
         else if (text_.substr(at_, 2) == "\\\n") {
             ++at_;

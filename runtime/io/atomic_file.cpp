@@ -30,7 +30,9 @@ fs::path resolve_target(const std::string &path) {
     if (path.empty())
         fail(path, "the name is empty");
     std::error_code failure;
-    fs::path target = fs::absolute(path);
+    fs::path target = fs::absolute(path, failure);
+    if (failure)
+        fail(path, fmt::format("the working folder: {}", failure.message()));
     // By hand, as the library does not follow a link to a file that is not there yet.
     constexpr int most_links = 40;
     for (int i = 0; i < most_links && fs::is_symlink(fs::symlink_status(target, failure)); ++i) {

@@ -87,16 +87,20 @@ void SceneBuilder::index(const Element &element, int depth) {
     }
 }
 
-/// nullptr where nothing has the id.
-const Element *SceneBuilder::find_by_id(std::string name) const {
-    auto found = by_id_.find(name);
-    for (std::size_t i = 0; found == by_id_.end() && i < longest_alias; ++i) {
+/// What a name stands for, through names that stand for names, as far as they are followed.
+std::string SceneBuilder::without_aliases(std::string name) const {
+    for (std::size_t i = 0; i < longest_alias && !by_id_.contains(name); ++i) {
         const auto alias = aliases_.find(name);
         if (alias == aliases_.end())
             break;
         name = alias->second;
-        found = by_id_.find(name);
     }
+    return name;
+}
+
+/// nullptr where nothing has the id.
+const Element *SceneBuilder::find_by_id(const std::string &name) const {
+    const auto found = by_id_.find(without_aliases(name));
     return found == by_id_.end() ? nullptr : found->second;
 }
 
@@ -105,6 +109,11 @@ const Element &SceneBuilder::resolve(const Element &reference) {
     if (!id)
         throw SceneError(reference.location, "<ref> needs id");
     const Element *const found = find_by_id(*id);
+    if (!found && aliases_.contains(without_aliases(*id)))
+        throw SceneError(reference.location,
+                         fmt::format("nothing has the id \"{}\" after {} names that stand for names; "
+                                     "do they go in a circle?",
+                                     *id, longest_alias));
     if (!found) {
         std::vector<std::string> known; // not for the thousandth time: there may be as many ids
         for (auto at = by_id_.begin(); at != by_id_.end() && !diagnostics_.is_full(); ++at)

@@ -132,7 +132,8 @@ class SceneBuilder {
     TextureRange range_of(const Texture &texture);
     TextureRange unclamped_range_of(Texture texture);
     void check_children(const Element &element);
-    const Element *find_by_id(std::string name) const;
+    std::string without_aliases(std::string name) const;
+    const Element *find_by_id(const std::string &name) const;
     const Element &resolve(const Element &reference);
     std::unordered_set<const Element *> used_objects() const;
     void build_sensor(const Element &element);

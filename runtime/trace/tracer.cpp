@@ -1,5 +1,6 @@
 #include "runtime/trace/tracer.h"
 
+#include "runtime/seconds_since.h"
 #include "runtime/trace/embree_scene.h"
 #include "runtime/trace/flush_denormals.h"
 #include "runtime/trace/ray_packets.h"
@@ -33,8 +34,6 @@ constexpr std::size_t beam_limit = 256;
 /// Of a triangle's barycentrics. On an edge, both triangles are as near, and which one is found depends on the order in
 /// which a packet visits them, and so on its other rays. Rays so near to an edge are traced again, each by itself.
 constexpr float edge = 1e-4f;
-
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 /// A bit for each of the first `lanes`.
 std::uint32_t lanes_near_edges(const RTCRayHit16 &packet, int lanes) {
@@ -258,12 +257,12 @@ Replayed Tracer::replay(ReplayedAs as) {
     for (const auto &call : im.recorded) {
         for (const RecordedRays &rays : call)
             result.rays += rays.count();
-        const double start = now();
+        const auto start = std::chrono::steady_clock::now();
         im.run(call.size(), [&](std::size_t task) {
             trace_again(im.scene.handle(), call[task], extension_beams || (as_traced && call[task].of_camera),
                         shadow_beams, as == ReplayedAs::single);
         });
-        result.seconds += now() - start;
+        result.seconds += seconds_since(start);
     }
     return result;
 }

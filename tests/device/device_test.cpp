@@ -40,6 +40,18 @@ TEST(Device, SaysWhatThereIsWhereNoneMatches) {
         }
 }
 
+TEST(Device, IsNoPartOfANameWhereANumberIsMeant) {
+    DeviceDescription first, second;
+    first.name = "AMD Ryzen 9 5950X 16-Core Processor";
+    second.name = "NVIDIA GeForce RTX 3060";
+    const std::vector<DeviceDescription> found = {first, second};
+    EXPECT_EQ(chosen_device(found, "1"), 1u);
+    EXPECT_EQ(chosen_device(found, "3060"), 1u);
+    EXPECT_EQ(chosen_device(found, "ryzen 9"), 0u);
+    for (const char *beyond : {"2", "6", "16", "9"})
+        EXPECT_THROW(chosen_device(found, beyond), Error) << beyond;
+}
+
 TEST(Device, IsAProcessorUnlessToldOtherwise) {
     const Device device("");
     EXPECT_EQ(device.description().type, "cpu");

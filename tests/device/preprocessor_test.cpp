@@ -126,6 +126,8 @@ TEST(Preprocessor, DecidesConditions) {
     EXPECT_EQ(result_of("#if 0\na\n#elif 1\nb\n#elif 1\nc\n#else\nd\n#endif"), "b");
     EXPECT_EQ(result_of("#if 0\n#if 1\na\n#else\nb\n#endif\n#error no\n#define x y\n'\n#else\nx\n#endif"), "x");
     EXPECT_EQ(result_of("#if 0\na /* it's\n#endif */\n#endif\nb"), "b");
+    EXPECT_EQ(result_of("#if 0\na // b /* c\n#endif\nd /* */"), "d");
+    EXPECT_EQ(result_of("#if 0 // no /*\na\n#endif // /*\nb /* */"), "b");
     EXPECT_EQ(result_of("#ifdef ONE\na\n#endif\n#ifndef ONE\nb\n#endif", {"ONE"}), "a");
 }
 

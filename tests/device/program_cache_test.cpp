@@ -248,6 +248,15 @@ TEST_F(ProgramCache, CompilesItselfWhereNoWorkerDoes) {
     }
 }
 
+/// PoCL waits for its linker, and would not learn how that ends: neither here nor in a worker.
+TEST_F(ProgramCache, IsFilledWhereTheEndsOfProcessesAreIgnored) {
+    const auto before = std::signal(SIGCHLD, SIG_IGN);
+    const Outcome outcome = build_and_run(32);
+    std::signal(SIGCHLD, before);
+    EXPECT_EQ(entries().size(), is_pocl_cpu(Device().description()) ? 1u : entries().size());
+    EXPECT_THAT(outcome.result, right);
+}
+
 // One says nothing at all; the other stops within its answer.
 TEST_F(ProgramCache, CompilesItselfWhereAWorkerHangs) {
     if (!is_pocl_cpu(Device().description()))
@@ -271,6 +280,25 @@ TEST_F(ProgramCache, CompilesItselfWhereAWorkerHangs) {
                   does.empty())
             << said;
     }
+}
+
+/// As at the end of a user's last session, with a kernel that was launched before, one that was not, and one to come.
+TEST_F(ProgramCache, IsUnpackedAgainWhereItsFolderIsDeleted) {
+    Device device;
+    if (!is_pocl_cpu(device.description()))
+        GTEST_SKIP() << "only PoCL has such a folder";
+    fs::remove_all(private_folder()); // with the code of other tests
+    const auto kernels = KernelLibrary(device, {}).build({scan_of(4), scan_of(8)});
+    EXPECT_THAT(run_scan(device, kernels[0]), right);
+    const std::size_t unpacked = pocl_libraries();
+    fs::remove_all(private_folder());
+    for (const Kernel &kernel : kernels)
+        EXPECT_THAT(run_scan(device, kernel), right);
+    // Of some kernels PoCL makes the code anew where it misses it; for others it ends the process.
+    EXPECT_EQ(pocl_libraries(), unpacked);
+    fs::remove_all(private_folder());
+    EXPECT_THAT(run_scan(device, KernelLibrary(device, {}).build({scan_of(2)})[0]), right);
+    EXPECT_THAT(run_scan(device, KernelLibrary(device, {}).build({scan_of(16)})[0]), right);
 }
 
 std::vector<pid_t> children() {

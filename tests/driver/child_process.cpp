@@ -43,7 +43,7 @@ ChildProcess::ChildProcess(const std::vector<std::string> &arguments, const fs::
     if (process_ != 0)
         return;
     // The test may itself run where these are ignored.
-    for (const int number : {SIGINT, SIGTERM, SIGHUP})
+    for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGCHLD})
         std::signal(number, number == ignored ? SIG_IGN : SIG_DFL);
     const int out = ::open(out_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     const int err = ::open(err_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);

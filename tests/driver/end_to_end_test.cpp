@@ -98,6 +98,33 @@ TEST_F(EndToEnd, ASignalThatWasIgnoredAtTheStartStaysIgnored) {
     EXPECT_EQ(read_image(at("out.exr")).metadata.at("partial"), "false");
 }
 
+/// PoCL waits for its linker, and would not learn how that ends. In workers and in the program itself.
+TEST_F(EndToEnd, CompilesWhereTheEndsOfProcessesAreIgnored) {
+    const char *const chosen = std::getenv("GRADUS_CACHE_DIR");
+    const std::string before = chosen ? chosen : "";
+    for (const std::string &cache : {at("cache"), std::string("off")}) {
+        setenv("GRADUS_CACHE_DIR", cache.c_str(), 1);
+        ChildProcess process({"render", scene, "-o", "out.exr", "--method", "pt", "--spp", "1", "--size", "4x4"},
+                             folder, 0, 0, SIGCHLD);
+        const Outcome outcome = process.wait();
+        EXPECT_EQ(outcome.exit_code, 0) << cache << outcome.err;
+        EXPECT_THAT(outcome.err, HasSubstr("compiled ")) << cache;
+    }
+    if (chosen)
+        setenv("GRADUS_CACHE_DIR", before.c_str(), 1);
+    else
+        unsetenv("GRADUS_CACHE_DIR");
+}
+
+/// A cache is never an error.
+TEST_F(EndToEnd, DoesWithoutACacheWhereTheFolderThatItIsInIsGone) {
+    const std::string command =
+        fmt::format("cd '{}' && mkdir gone && cd gone && rmdir ../gone && GRADUS_CACHE_DIR=some "
+                    "'{}' devices >/dev/null",
+                    folder.string(), GRADUS_PROGRAM);
+    EXPECT_EQ(std::system(command.c_str()), 0);
+}
+
 /// Of methods that reconstruct their images.
 class EndToEndLayers : public EndToEnd, public ::testing::WithParamInterface<const char *> {
   protected:

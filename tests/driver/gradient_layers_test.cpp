@@ -207,6 +207,30 @@ TEST_F(GradientLayers, APartOfAFileIsALayer) {
     expect_colours(images, GradientLayer::dy, 300);
 }
 
+/// As an image of ours with --aov: its R, G and B are neither variances nor differences, its layer `variance` is that
+/// of primal and direct image together.
+TEST_F(GradientLayers, AFileWithLayersOfOtherNamesIsNoVarianceAndNoDifference) {
+    const std::string rendered =
+        write("rendered.exr", counting_image(3, 2, layers({{"", 1}, {"albedo", 2}, {"variance", 3}})));
+    GradientSources sources = layered(write_layers("all.exr"));
+    sources.variances = true;
+    for (const GradientLayer layer :
+         {GradientLayer::primal_variance, GradientLayer::dx_variance, GradientLayer::dy_variance})
+        sources.files[layer] = write_colours("plain.exr", 500);
+    expect_colours(read_gradient_images(sources), GradientLayer::primal_variance, 500);
+    sources.files[GradientLayer::primal_variance] = rendered;
+    expect_error(sources, ExitCode::image,
+                 AllOf(HasSubstr("rendered.exr' has no layer for primal_variance"),
+                       HasSubstr("Name it with --layer primal_variance=NAME")));
+    sources.names[GradientLayer::primal_variance] = ""; // and so it may be asked for
+    expect_colours(read_gradient_images(sources), GradientLayer::primal_variance, 1);
+    sources = three_files();
+    sources.files[GradientLayer::primal] = sources.files[GradientLayer::direct] = rendered;
+    expect_colours(read_gradient_images(sources), GradientLayer::primal, 1);
+    sources.files[GradientLayer::dx] = rendered;
+    expect_error(sources, ExitCode::image, HasSubstr("rendered.exr' has no layer for dx"));
+}
+
 TEST_F(GradientLayers, GreyFilesHaveOneChannel) {
     GradientSources sources = layered(
         write("grey.exr", counting_image(3, 2, {{"primal.Y", 100}, {"primal.A", 1}, {"dx.Y", 200}, {"dy.Y", 300}})));

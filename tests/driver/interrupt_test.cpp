@@ -13,6 +13,9 @@ namespace {
 
 using ::testing::ElementsAre;
 
+/// Milliseconds after which a signal is no longer taken for one with the signal before.
+constexpr int past_one_wish = 400;
+
 void sleep_ms(int milliseconds) { std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds)); }
 
 class Interrupt : public ProgramTest {
@@ -81,13 +84,43 @@ TEST_F(Interrupt, ASecondSignalEndsAtOnce) {
     ASSERT_TRUE(wait_for_file("out.exr"));
     sleep_ms(100);
     process.send(SIGINT);
-    sleep_ms(100);
+    sleep_ms(past_one_wish);
     const auto start = std::chrono::steady_clock::now();
     process.send(SIGINT);
     const Outcome outcome = process.wait();
     EXPECT_EQ(outcome.signal, SIGINT);
     EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 0.8);
     expect_valid_partial_image();
+}
+
+/// As of `timeout`, which sends one to the program and then one to its group.
+TEST_F(Interrupt, SignalsThatComeTogetherAreOne) {
+    for (const int wait : {0, 1, 10}) { // ms
+        ChildProcess process(endless(), folder);
+        ASSERT_TRUE(wait_for_file("out.exr"));
+        for (const int number : {SIGTERM, SIGTERM, SIGINT}) {
+            process.send(number);
+            sleep_ms(wait);
+        }
+        const Outcome outcome = process.wait();
+        EXPECT_EQ(outcome.exit_code, 130) << outcome.err;
+        expect_valid_partial_image();
+        std::filesystem::remove(at("out.exr"));
+    }
+}
+
+/// A shell and the kernel send one each when a terminal goes.
+TEST_F(Interrupt, ATerminalThatGoesTwiceLosesNothing) {
+    ChildProcess process({"render", "scene.xml", "-o", "out.exr", "--spp", "1", "-D", "image_ms=1500"}, folder);
+    process.wait_until_it_hears(SIGHUP);
+    sleep_ms(500);
+    for (int i = 0; i < 2; ++i) {
+        process.send(SIGHUP);
+        sleep_ms(past_one_wish);
+    }
+    const Outcome outcome = process.wait();
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(read_image(at("out.exr")).metadata.at("partial"), "false");
 }
 
 /// All samples are done: one signal loses nothing and is answered at once, a second one ends the program.
@@ -98,7 +131,7 @@ TEST_F(Interrupt, ASignalWhileTheImageIsMadeIsAnswered) {
         sleep_ms(500);
         for (int i = 0; i < signals; ++i) {
             process.send(SIGINT);
-            sleep_ms(100);
+            sleep_ms(past_one_wish);
         }
         const Outcome outcome = process.wait();
         EXPECT_THAT(outcome.err, ::testing::HasSubstr("the image is being made: a second time loses it"));

@@ -7,8 +7,13 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
 #include <memory>
 #include <ostream>
+#include <string>
 
 namespace gradus::testing {
 namespace {
@@ -87,6 +92,57 @@ INSTANTIATE_TEST_SUITE_P(Full, BytesOfPixel,
                                            MemoryCase{"sppm", Reconstruction::weighted, true, false, 4, false},
                                            MemoryCase{"gpm", Reconstruction::l1}, MemoryCase{"gpm"},
                                            MemoryCase{"gpm", Reconstruction::guided}));
+
+class ContainerBytes : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        std::string name = (std::filesystem::temp_directory_path() / "gradus-groups-XXXXXX").string();
+        ASSERT_NE(mkdtemp(name.data()), nullptr);
+        folder = name;
+    }
+    void TearDown() override { std::filesystem::remove_all(folder); }
+    void write(const std::string &file, const std::string &text) const {
+        std::filesystem::create_directories((folder / file).parent_path());
+        std::ofstream(folder / file) << text << '\n';
+    }
+    std::uint64_t left() const { return container_bytes(folder / "groups", folder / "trees"); }
+
+    std::filesystem::path folder;
+    const std::uint64_t unlimited = std::numeric_limits<std::uint64_t>::max();
+};
+
+TEST_F(ContainerBytes, AreTheLeastOfAllGroupsThatTheProcessIsIn) {
+    EXPECT_EQ(left(), unlimited) << "no group at all";
+    write("groups", "4:cpu:/a/b\n0::/user.slice/job.scope/step");
+    EXPECT_EQ(left(), unlimited);
+    write("trees/user.slice/memory.max", "5000");
+    write("trees/user.slice/memory.current", "1000");
+    EXPECT_EQ(left(), 4000u);
+    write("trees/user.slice/job.scope/memory.max", "3000");
+    write("trees/user.slice/job.scope/memory.current", "900");
+    write("trees/user.slice/job.scope/memory.stat", "anon 300\ninactive_file 500\nactive_file 100");
+    EXPECT_EQ(left(), 2600u) << "without the files that were read";
+    write("trees/user.slice/job.scope/step/memory.max", "max");
+    write("trees/user.slice/job.scope/step/memory.current", "10");
+    EXPECT_EQ(left(), 2600u);
+    write("trees/a/b/memory.max", "1");
+    write("trees/a/b/memory.current", "1");
+    EXPECT_EQ(left(), 2600u) << "of others";
+    write("trees/memory.max", "2000");
+    write("trees/memory.current", "1900");
+    EXPECT_EQ(left(), 100u) << "the root of a container is a group as others are";
+}
+
+TEST_F(ContainerBytes, AreToldByTheFirstVersionOfGroupsToo) {
+    write("groups", "4:memory:/slurm/job\n0::/");
+    write("trees/memory/slurm/job/memory.limit_in_bytes", "9223372036854771712");
+    write("trees/memory/slurm/job/memory.usage_in_bytes", "1000");
+    EXPECT_GT(left(), 1u << 30);
+    write("trees/memory/slurm/memory.limit_in_bytes", "3000");
+    write("trees/memory/slurm/memory.usage_in_bytes", "2000");
+    write("trees/memory/slurm/memory.stat", "inactive_file 1\ntotal_inactive_file 700");
+    EXPECT_EQ(left(), 1700u);
+}
 
 } // namespace
 } // namespace gradus::testing

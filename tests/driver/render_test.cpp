@@ -1,4 +1,5 @@
 // `gradus render`: what it writes, and what it does where it cannot.
+#include "driver/memory_check.h"
 #include "runtime/error.h"
 #include "runtime/io/image_io.h"
 #include "tests/driver/child_process.h"
@@ -7,11 +8,15 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <cstdlib>
 #include <fcntl.h>
 #include <fstream>
 #include <memory>
 #include <sys/file.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 namespace gradus {
@@ -337,6 +342,29 @@ TEST_F(Render, MemoryIsCheckedBeforeTheRender) {
     EXPECT_EQ(outcome.exit_code, 4);
     EXPECT_THAT(outcome.err, HasSubstr("not enough memory: rendering 65536x65536 pixels takes 983040 MB"));
     EXPECT_THAT(files(), ElementsAre("scene.xml"));
+}
+
+/// Of gpt, which takes far more than pt, nobody knows before that it is to be the one.
+TEST_F(Render, MemoryIsCheckedAgainForTheMethodThatWasChosen) {
+    const double side = std::min(std::sqrt(double(bytes_left(0)) / 100), 65536.0); // pt takes 28 bytes a pixel, gpt 330
+    const auto with = [&](const char *choice) {
+        return render({"-o", "out.exr", "--method", "auto", "--size", fmt::format("{0:.0f}x{0:.0f}", side), "-D",
+                       std::string("choice=") + choice, "-D", "fail=memory"});
+    };
+    const Outcome chosen = with("gpt");
+    EXPECT_EQ(chosen.exit_code, 4);
+    EXPECT_THAT(chosen.err, HasSubstr(" pixels by gpt, which was chosen, takes "));
+    EXPECT_THAT(chosen.err, HasSubstr("try --method pt, "));
+    EXPECT_THAT(with("pt").err, HasSubstr("out of memory")) << "it was to begin";
+    EXPECT_THAT(files(), ElementsAre("scene.xml"));
+}
+
+TEST_F(Render, ThatStartsWhereNoFolderIsAnyMoreIsAnErrorOfItsOutput) {
+    const std::string command = fmt::format("cd '{0}' && mkdir gone && cd gone && rmdir ../gone && '{1}' render "
+                                            "'{0}/scene.xml' -o out.exr 2>'{0}/said'",
+                                            folder.string(), GRADUS_PROGRAM);
+    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 5);
+    EXPECT_THAT(text_of("said"), HasSubstr("gradus: error: cannot write 'out.exr': the working folder: "));
 }
 
 TEST_F(Render, WhatWasRenderedIsSavedWhereMemoryOrTheDeviceFails) {

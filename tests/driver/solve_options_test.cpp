@@ -216,6 +216,17 @@ TEST_F(SolveOptions, AnImageOfAnotherKindThanTheRendersIsTold) {
     EXPECT_EQ(run({path, "-o", at("out.exr")}).err, "");
 }
 
+TEST_F(SolveOptions, ValuesWithoutSquaresAreTold) {
+    const std::string path = write_with_variances();
+    Image layers = read_image(path);
+    for (Channel &channel : layers.channels)
+        for (float &value : channel.values)
+            value *= 1e-18f;
+    write_image(layers, at("dark.exr"));
+    EXPECT_THAT(run({at("dark.exr"), "-o", at("out.exr")}).err,
+                ::testing::HasSubstr("make the lights brighter or darker"));
+}
+
 TEST_F(SolveOptions, VariancesAreReadWhereTheyAreUsed) {
     const std::string path = write_with_variances();
     ASSERT_EQ(run({path, "-o", at("out.exr")}).exit_code, 0);

@@ -3,6 +3,8 @@
 #include "runtime/io/properties.h"
 #include "tests/io/scene_text.h"
 
+#include <fmt/format.h>
+
 namespace gradus {
 namespace {
 
@@ -262,6 +264,25 @@ TEST(References, WithOrWithoutNameNestedAndAliased) {
     EXPECT_FALSE(loaded.scene.materials[loaded.scene.shapes[1].material].two_sided);
     EXPECT_EQ(loaded.scene.shapes[1].material, loaded.scene.shapes[2].material);
     EXPECT_EQ(loaded.scene.materials[0].name, "outer");
+}
+
+TEST(References, NamesThatStandForNamesEndSomewhere) {
+    const auto scene_with = [](int aliases) {
+        std::string text = "<bsdf type=\"diffuse\" id=\"a0\"/>";
+        for (int i = 0; i < aliases; ++i)
+            text += fmt::format("<alias id=\"a{}\" as=\"a{}\"/>", i, i + 1);
+        text += fmt::format("<shape type=\"cube\"><ref id=\"a{}\"/></shape>\n<emitter type=\"constant\"/>", aliases);
+        return scene_around(text, "3.0.0", "");
+    };
+    EXPECT_EQ(load_text(scene_with(16)).scene.shapes.size(), 1u);
+    const std::string too_many = error_of_text(scene_with(17));
+    EXPECT_THAT(too_many, HasSubstr("nothing has the id \"a17\" after 16 names that stand for names"));
+    EXPECT_THAT(too_many, testing::Not(HasSubstr("did you mean")));
+    EXPECT_THAT(error_of_text(scene_around("<alias id=\"b\" as=\"a\"/><alias id=\"a\" as=\"b\"/>"
+                                           "<shape type=\"cube\"><ref id=\"a\"/></shape>")),
+                HasSubstr("nothing has the id \"a\" after 16 names that stand for names; do they go in a circle?"));
+    EXPECT_THAT(error_of_text(scene_around("<alias id=\"b\" as=\"a\"/><shape type=\"cube\"><ref id=\"a\"/></shape>")),
+                HasSubstr("nothing has the id \"a\""));
 }
 
 TEST(References, FilmAndSamplerOfTheScene) {

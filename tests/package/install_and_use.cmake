@@ -12,6 +12,11 @@ run("install" ${CMAKE_COMMAND} --install ${BUILD} --config "${CONFIGURATION}" --
 # A package that names the folder that it was installed to would not be found here.
 file(RENAME ${WORK}/first ${WORK}/prefix)
 
+file(GLOB_RECURSE compiler ${WORK}/prefix/gradus-compile)
+if(NOT compiler)
+  message(FATAL_ERROR "the package lacks gradus-compile, which compiles kernels for the library")
+endif()
+
 # What the renderer needs must not be asked for, nor found by a path of the build.
 set(not_needed)
 foreach(package IN ITEMS embree TBB OpenImageIO OpenEXR pugixml ZLIB CLI11 nlohmann_json GTest FFTW3)
