@@ -1,4 +1,5 @@
 // Scenes of other sizes and far from the origin.
+#include "runtime/scene/own_origin.h"
 #include "runtime/scene/own_scale.h"
 #include "tests/methods/gradient_bias.h"
 #include "tests/methods/reference_scene.h"
@@ -117,6 +118,15 @@ TEST(VeryFarAway, CornellBoxKeepsItsLight) {
     record_stability({area, far_away, "scenes/cornell-box.xml 1000 times its extent from the origin, path tracing",
                       "keeps its light; corners show that rays start some thousandths of the extent off surfaces",
                       "largest error of a block of 16 x 16 pixels, relative to the image's mean", error.largest, 0.1});
+}
+
+// Where it is rendered: what is left is what the scene itself has lost, a corner off by a unit in the last place here and
+// there.
+TEST(OwnOrigin, CornellBoxStaysAsItIs) {
+    ReferenceScene reference = moved(1000);
+    bring_to_own_origin(reference.scene);
+    expect_agreement(reference, far_away,
+                     "scenes/cornell-box.xml 1000 times its extent from the origin, and brought there");
 }
 
 // Ten times further a float keeps eleven bits for the scene. In either precision vertices have these alone, and rays

@@ -1,0 +1,13 @@
+// Scenes far from the origin, rendered near it, where positions have the bits that the scene needs.
+#pragma once
+
+#include "runtime/scene/scene.h"
+
+namespace gradus {
+
+/// Moves a scene that is more than eight times its extent from the origin to the origin: what lies there rounds by what
+/// the scene is large, not by how far away it is. Rays would start off surfaces by a share of their distance from the
+/// origin, and the tracer, which knows no double, would let them through between triangles. The picture stays as it is.
+void bring_to_own_origin(Scene &scene);
+
+} // namespace gradus
