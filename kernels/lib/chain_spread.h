@@ -65,7 +65,7 @@ GRADUS_FN vec3 walk_plane(vec3 end, vec3 end_normal, vec3 target, vec3 target_no
     const real way_squared = v3_dot(way, way);
     const real alike = r_copysign1(v3_dot(end_normal, target_normal));
     const vec3 sum = v3_mad(end_normal, alike, target_normal);
-    const real along = v3_dot(sum, way) / (way_squared + floor * floor);
+    const real along = v3_dot(sum, way) / r_max(way_squared + floor * floor, R(1e-36));
     const vec3 plane = v3_mad(sum, -along, way);
     const real squared = v3_dot(plane, plane);
     const real scale = squared > R(1e-4) ? R(1) / r_sqrt(squared > R(0) ? squared : R(1)) : R(0);

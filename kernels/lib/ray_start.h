@@ -19,6 +19,10 @@ GRADUS_FN real rounding_along(vec3 normal, vec3 size) {
     return GRADUS_ROUNDING * (r_abs(normal.x * size.x) + r_abs(normal.y * size.y) + r_abs(normal.z * size.z));
 }
 
+/* What is left of two points that are one, where rays have been traced to them: the tracer works in float whatever the
+ * precision of kernels, from origins off the surfaces. Two units in the last place of the largest coordinate. */
+GRADUS_FN real traced_rounding(vec3 a, vec3 b) { return R(2) * GRADUS_ROUNDING * r_max(v3_largest(a), v3_largest(b)); }
+
 /* How far a ray starts off a primitive's point: `of_primitive` is its record's. */
 GRADUS_FN real offset_at(vec3 position, vec3 geometric, real of_primitive) {
     return of_primitive + rounding_along(geometric, position);

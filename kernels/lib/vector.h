@@ -33,6 +33,8 @@ GRADUS_FN real v3_dot(vec3 a, vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z
 GRADUS_FN vec3 v3_cross(vec3 a, vec3 b) {
     return v3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
+/* The largest of the absolute values of its coordinates. */
+GRADUS_FN real v3_largest(vec3 a) { return r_max(r_abs(a.x), r_max(r_abs(a.y), r_abs(a.z))); }
 GRADUS_FN real v3_length_squared(vec3 a) { return v3_dot(a, a); }
 GRADUS_FN vec3 v3_normalize(vec3 a) { return v3_scale(a, R(1) / r_sqrt(v3_dot(a, a))); }
 

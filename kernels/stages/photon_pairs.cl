@@ -18,6 +18,7 @@
  * pair is done elsewhere (photon_evaluate). */
 #include "kernels/lib/gather_row.h"
 #include "kernels/lib/photon_grid.h"
+#include "kernels/lib/shift_photon.h"
 #include "kernels/shared/stage.h"
 
 /* Photons that are tested at once before any is listed. */
@@ -37,7 +38,7 @@
     ((AT(photon_sorted, position_##axis, i) - at.axis) * (AT(photon_sorted, position_##axis, i) - at.axis))
 #define COUNTS(i)                                                                                                      \
     ((SQUARED(i, x) + SQUARED(i, y) + SQUARED(i, z) <= squared) &                                                      \
-     (v3_dot(AT_V3(photon_sorted, normal, i), normal) > PHOTON_LEAST_FACING) &                                         \
+     (v3_dot(AT_V3(photon_sorted, normal, i), normal) > GRADUS_PHOTON_LEAST_FACING) &                                  \
      (AT_UINT(photon_sorted, depth, i) <= deepest) & (takes_all | (photon_line_sorted[i] == line)))
 
 STAGE photon_pairs(uint count, uint first, uint from, uint gather_rows, uint photon_rows, uint photons_sorted,

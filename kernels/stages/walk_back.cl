@@ -42,7 +42,7 @@ STAGE walk_turn_vertices(uint count, uint chain_rows, uint chain_vertices, __glo
 #endif
 }
 
-STAGE walk_return(uint count, uint chain_rows, uint chain_vertices, real walk_back_tolerance, real walk_floor,
+STAGE walk_return(uint count, uint chain_rows, uint chain_vertices, real walk_back_tolerance,
                   __global const real *chain, __global const real *chain_vertex, __global real *walked,
                   __global const real *back_walked, __global const real *back_walked_vertex) {
     const size_t row = work_item();
@@ -54,7 +54,7 @@ STAGE walk_return(uint count, uint chain_rows, uint chain_vertices, real walk_ba
     const int is_far = chain_start_is_far(AT(chain, start_offset, row));
     const vec3 measured_from = v3_select(is_far, AT_V3(chain, target, row), AT_V3(chain, start, row));
     const vec3 off = v3_sub(there, here), way = v3_sub(here, measured_from);
-    const real tolerance = walk_back_tolerance * r_sqrt(v3_dot(way, way)) + walk_floor * AT(chain, target_offset, row);
+    const real tolerance = walk_back_tolerance * r_sqrt(v3_dot(way, way)) + traced_rounding(here, there);
     const int is_back = back == walk_arrived && v3_dot(off, off) <= tolerance * tolerance;
     AT_UINT(walked, outcome, row) = outcome == walk_arrived && !is_back ? walk_back : outcome;
 }

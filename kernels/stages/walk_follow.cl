@@ -28,7 +28,7 @@ walk_follow
      uint triangle_count, __global const uint *primitive_material, __global const uint *material_back,
      __global const uint *walked_kind, __global const real *materials,
 #if LANDS
-     uint most_vertices, uint most_steps, real walk_tolerance, real walk_floor, real walk_back_tolerance,
+     uint most_vertices, uint most_steps, real walk_tolerance, real walk_rounding, real walk_back_tolerance,
      __global const real *chain, __global real *walk, __global real *walked, __global uint *walk_bin
 #else
      __global const real *walk
@@ -120,7 +120,7 @@ walk_follow
     /* Where it ends, and the step from there to the target. */
     const vec3 end = AT_V3(chain, end, number), end_normal = AT_V3(chain, end_normal, number);
     const vec3 target = AT_V3(chain, target, number), target_normal = AT_V3(chain, target_normal, number);
-    const real rounding = walk_floor * AT(chain, target_offset, number);
+    const real of_rays = traced_rounding(end, target), rounding = walk_rounding * of_rays;
     const vec3 plane = walk_plane(end, end_normal, target, target_normal, rounding);
     const real plane_cosine = v3_dot(plane, out);
     const int meets = r_abs(plane_cosine) > GRAZING;
@@ -137,9 +137,9 @@ walk_follow
     /* The first vertex is known to rounding, which the chain magnifies on the way to the end. */
     const real magnified = (v3_dot(end_s, end_s) + v3_dot(end_t, end_t)) /
                            r_max(v3_dot(first_s, first_s) + v3_dot(first_t, first_t), R(1e-30));
-    const real floor_here = rounding * r_sqrt(r_max(magnified, R(1)));
-    const real tolerance = walk_tolerance * reach + floor_here;
-    const real base_tolerance = walk_back_tolerance * reach + floor_here;
+    const real magnification = r_sqrt(r_max(magnified, R(1)));
+    const real tolerance = walk_tolerance * reach + rounding * magnification;
+    const real base_tolerance = walk_back_tolerance * reach + of_rays * magnification;
     const int lands = follows & meets & (reach > R(0)) & step.is_valid;
     const int is_nearer = miss < AT(walk, miss, row);
     const int is_base = replays ? stray <= base_tolerance * base_tolerance : 1;

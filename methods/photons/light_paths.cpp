@@ -166,7 +166,8 @@ double most_light_paths_a_pass(std::uint64_t film_pixels) { return most_paths_a_
 LightPaths::LightPaths(Session &session, Stages &consumers, const Scene &scene, const RenderOptions &options,
                        Direct direct)
     : session_(session), consumers_(consumers), wanted_(options.photons),
-      layout_(bin_layout(session, direct == Direct::left_out)), emit_(stages_.add(emit_stage(session))),
+      first_depth_(direct == Direct::left_out ? 2 : 1), layout_(bin_layout(session, direct == Direct::left_out)),
+      emit_(stages_.add(emit_stage(session))),
       paths_(session, stages_, layout_, {{"FRESH_APART", layout_.phases > 1 ? "1" : "0"}}, {"bins_of_phase", "fresh"},
              true),
       scatter_(stages_.add(scatter_stage())), scatter_first_(stages_.add(scatter_first_stage(layout_.phases > 1))),
@@ -254,9 +255,9 @@ std::uint32_t LightPaths::paths_a_pass() {
 
 std::uint32_t LightPaths::trace(std::uint64_t first_path, std::uint32_t count) {
     rows_ = vertices_ = 0;
-    light_paths_ += count;
-    if (!emit_.is_wanted() || session_.max_depth() <= 1)
+    if (!emit_.is_wanted() || session_.max_depth() <= first_depth_)
         return 0;
+    light_paths_ += count;
     if (count > own_->rows_of("photon_place")) {
         own_->grow("photon_place", count);
         own_->grow("photon_chunk", chunks_of(count));

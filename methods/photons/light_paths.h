@@ -69,6 +69,7 @@ class LightPaths {
     Session &session_;
     Stages &consumers_;
     std::uint64_t wanted_;
+    std::uint32_t first_depth_; ///< of photons: surfaces that their light has met
     BinLayout layout_;
     std::uint32_t paths_a_pass_ = 0;
     std::uint32_t rows_ = 0, vertices_ = 0; ///< rows of `photon` and records of vertices that trace() has left

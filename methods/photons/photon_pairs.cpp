@@ -22,16 +22,12 @@ constexpr std::uint32_t pair_chunk = 64;
 constexpr std::uint32_t too_many_pairs = 0x7FFFFFFF;
 // Of `pair_mark` (kernels/stages/photon_pairs.cl).
 constexpr std::uint32_t mark_columns = 3;
-// The cosine between the geometric normals of gather point and photon: walls at right angles are two surfaces, a mesh
-// of a few hundred triangles is one.
-constexpr const char *least_facing = "R(0.1)";
 
 std::map<std::string, std::string> definitions(const char *list, bool indexed) {
     return {{"LIST", list},
             {"GATHER_INDEXED", indexed ? "1" : "0"},
             {"PAIR_CHUNK", std::to_string(pair_chunk) + "u"},
-            {"PAIR_TOO_MANY", std::to_string(too_many_pairs) + "u"},
-            {"PHOTON_LEAST_FACING", least_facing}};
+            {"PAIR_TOO_MANY", std::to_string(too_many_pairs) + "u"}};
 }
 
 std::uint32_t chunks_for(std::uint32_t rows) { return (rows + pair_chunk - 1) / pair_chunk; }

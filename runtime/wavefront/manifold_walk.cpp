@@ -12,9 +12,9 @@ using namespace lib_float;
 
 namespace {
 
-/// Rounding of a position, over the offset of rays from its surface (scene_tables.cpp): in float 2^-21 of the largest
-/// coordinate, in double some bits more than that has.
-constexpr double floor_in_float = 0x1p-3, floor_in_double = 0x1p-30;
+/// What rounding does to the positions that a walk computes, over what it does to those that rays have met
+/// (kernels/lib/ray_start.h).
+constexpr double rounding_in_float = 1, rounding_in_double = 0x1p-29;
 
 const std::vector<std::string> chain_numbers = {"chain_rows", "chain_vertices"};
 
@@ -73,7 +73,8 @@ ManifoldWalk::ManifoldWalk(Session &session, Stages &stages, const WalkSettings 
         throw std::logic_error("chains of walks have between 1 and 256 vertices");
     session.reals["walk_tolerance"] = settings.tolerance;
     session.reals["walk_back_tolerance"] = settings.back_tolerance;
-    session.reals["walk_floor"] = session.options.precision == Precision::double_ ? floor_in_double : floor_in_float;
+    session.reals["walk_rounding"] =
+        session.options.precision == Precision::double_ ? rounding_in_double : rounding_in_float;
 #define GRADUS_OUTCOME_COUNT(name, text) counts_[#name] = 0;
     GRADUS_WALK_OUTCOMES(GRADUS_OUTCOME_COUNT)
 #undef GRADUS_OUTCOME_COUNT

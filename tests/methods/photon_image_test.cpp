@@ -194,6 +194,22 @@ TEST(PhotonBias, AtTheBorderGoesWithTheRadius) {
     EXPECT_NEAR(std::log2(lost[1] / lost[0]), 1, 0.15);
 }
 
+// Nor are they traced for the light of surfaces that lights see, which camera paths sample.
+TEST(PhotonImage, LightPathsThatLeaveNoPhotonAreNotTraced) {
+    Scene scene = own_scene("cornell-box.xml", 16, 12);
+    scene.settings.samples_per_pixel = 1;
+    for (const char *method : {"sppm", "gpm"})
+        for (const int depth : {1, 2, 3})
+            for (const bool direct : {false, true}) {
+                scene.settings.max_depth = depth;
+                RenderOptions options = with_radius(1, false);
+                options.direct_photons = direct;
+                const bool leave_some = depth > (direct ? 1 : 2);
+                EXPECT_EQ(render(scene, options, method).statistics.light_paths > 0, leave_some)
+                    << method << ", depth " << depth << ", direct by " << (direct ? "photons" : "sampling");
+            }
+}
+
 // With paths of so many edges at most, each kind of path by one estimator and none by two: whole images of both methods
 // are the same but for the bias, which the radius keeps small. A kind that is missing or counted twice would be some
 // percents of what its length adds.

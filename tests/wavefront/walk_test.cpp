@@ -614,7 +614,7 @@ TEST(ManifoldWalkOf, ChainsFarFromTheOriginArrive) {
             *p = *p + by;
         for (auto &vertex : chain.vertices)
             vertex.position = vertex.position + by;
-        chain.end.offset = chain.target.offset = 200 * 0x1p-18;
+        chain.end.offset = chain.target.offset = 350 * 0x1p-22; // kernels/lib/ray_start.h
         moved.push_back(chain);
     }
     const auto here = tally(near_walker.run(chains)), there = tally(walker.run(moved));
