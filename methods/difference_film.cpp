@@ -9,8 +9,6 @@
 #include "runtime/wavefront/sample_parts.h"
 #include "solver/squared_errors.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 #include <chrono>
@@ -28,9 +26,9 @@ Image mean_of(const Image &image) {
 }
 
 std::vector<std::string> film_names(std::uint32_t parts) {
-    std::vector<std::string> names = {"gradient_film"};
-    for (std::uint32_t part = 1; part < parts; ++part)
-        names.push_back(fmt::format("gradient_film_{}", part));
+    std::vector<std::string> names;
+    for (std::uint32_t part = 0; part < parts; ++part)
+        names.push_back(name_of_part("gradient_film", part));
     return names;
 }
 
@@ -42,10 +40,10 @@ DifferenceFilm::DifferenceFilm(Session &session, Stages &stages, const RenderOpt
       tells_error_(may_tell_error && has_error_layer(options, keeps_halves(options))),
       film_names_(film_names(1u << session.traits.at("TRAIT_PART_BITS"))),
       combine_(stages.add({.name = "gradient_combine", .strict = true})), film_(session, stages, tells_error_),
-      accumulate_(
-          stages.add({.name = "gradient_accumulate",
-                      .strict = true,
-                      .numbers = {"first_slot", "first_pixel", "first_above", "is_carried", "has_above", "frames"}})),
+      accumulate_(stages.add({.name = "gradient_accumulate",
+                              .strict = true,
+                              .numbers = {"first_slot", "first_pixel", "first_above", "is_carried", "has_above",
+                                          "frames", "frames_before"}})),
       carry_(stages.add({.name = "gradient_carry", .numbers = {"first_slot"}})) {
     check_guide(options);
     if (options.threads != 1)
@@ -135,18 +133,21 @@ void DifferenceFilm::add(std::uint32_t first, std::uint32_t rows, std::uint32_t 
             accumulate_.bind("gradient_film", (*tables_)[film_names_[film]]);
         for (std::uint32_t frame = first_frame; frame < frames; frame += apart * accumulated_frames) {
             const std::uint32_t together = std::min(accumulated_frames, (frames - frame + apart - 1) / apart);
+            const auto before = std::uint32_t((number + frame - first_sample_) / apart);
             accumulate_.run(width, {{"first_slot", frame * pixels},
                                     {"first_pixel", first * width},
                                     {"first_above", ((first > 0 ? first : session_.film.crop_height) - 1) * width},
                                     {"is_carried", 1},
                                     {"has_above", first > 0},
-                                    {"frames", together}});
+                                    {"frames", together},
+                                    {"frames_before", before}});
             accumulate_.run(pixels - width, {{"first_slot", frame * pixels + width},
                                              {"first_pixel", (first + 1) * width},
                                              {"first_above", first * width},
                                              {"is_carried", 0},
                                              {"has_above", 1},
-                                             {"frames", together}});
+                                             {"frames", together},
+                                             {"frames_before", before}});
         }
     }
     if (first + rows < session_.film.crop_height)
@@ -227,6 +228,7 @@ void DifferenceFilm::add_to(Statistics &statistics) const {
 void DifferenceFilm::clear(std::uint64_t first_sample) {
     edge_rays_ = 0;
     edge_seconds_ = 0;
+    first_sample_ = first_sample;
     film_.clear(first_sample);
     for (const std::string &name : film_names_)
         (*tables_)[name].clear();

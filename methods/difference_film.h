@@ -72,6 +72,7 @@ class DifferenceFilm {
     Film film_;
     Stage &accumulate_, &carry_;
     Tables *tables_ = nullptr;
+    std::uint64_t first_sample_ = 0; ///< the number of the first one
     std::vector<DirectPixel> edges_;
     std::uint32_t edge_samples_ = 0; ///< a pixel of the image that `edges_` were sampled for; 0: not yet
     std::uint64_t edge_rays_ = 0, lost_pixels_ = 0;

@@ -1,7 +1,6 @@
 #include "methods/error_layer.h"
 
 #include "runtime/error.h"
-#include "runtime/film/metrics.h"
 #include "runtime/film/outliers.h"
 
 #include <fmt/format.h>
@@ -72,17 +71,6 @@ class Neighbourhood {
     std::vector<double> taps_;
 };
 
-/// What relMSE weighs a pixel by: a firefly that were its own reference would weigh little.
-std::vector<double> relative_weights(const std::vector<float> &values, std::uint32_t width, std::uint32_t height) {
-    std::vector<double> finite(values.size());
-    for (std::size_t i = 0; i < values.size(); ++i)
-        finite[i] = std::isfinite(values[i]) ? values[i] : 0;
-    std::vector<double> weights = without_outliers(finite, width, height);
-    for (double &weight : weights)
-        weight = 1 / (weight * weight + relative_mse_epsilon);
-    return weights;
-}
-
 } // namespace
 
 void check_error(const RenderOptions &options, const char *method) {
@@ -99,7 +87,10 @@ std::optional<double> add_error_layer(Image &image, const SquaredErrors &errors)
     double sum = 0;
     std::size_t count = 0;
     for (std::size_t c = 0; c < 3; ++c) {
-        const std::vector<double> weights = relative_weights(image.channels[c].values, image.width, image.height);
+        const std::vector<float> &values = image.channels[c].values;
+        // A firefly that were its own reference would weigh little.
+        const std::vector<double> weights =
+            relative_weights(std::vector<double>(values.begin(), values.end()), image.width, image.height);
         const auto plane = errors.variance.begin() + std::ptrdiff_t(c * pixels);
         const std::vector<double> variance = near.means(std::vector<double>(plane, plane + std::ptrdiff_t(pixels)));
         // Relative, so that what is bright does not decide for what is dark beside it. A bias that is less than one

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 namespace gradus {
 
@@ -29,8 +30,9 @@ void GradientFilm::add_sums(Layer layer, std::uint32_t color, std::size_t first,
         to[i] += sums[i];
 }
 
-void GradientFilm::add_squares(Layer layer, std::uint32_t color, std::size_t first, std::size_t end, double *to) const {
-    table_.add_reals(gradient_film_square_first + 3 * layer + int(color), first, end, to);
+void GradientFilm::add_deviations(Layer layer, std::uint32_t color, std::size_t first, std::size_t end,
+                                  double *to) const {
+    table_.add_reals(gradient_film_deviation_first + 3 * layer + int(color), first, end, to);
 }
 
 std::uint64_t GradientFilms::samples() const {
@@ -59,8 +61,8 @@ void GradientFilms::for_each_block(GradientFilm::Layer layer,
     });
 }
 
-PlaneSource GradientFilms::mean(GradientFilm::Layer layer) const {
-    return [this, layer](std::uint32_t color, float *plane) {
+PlaneSource GradientFilms::mean(GradientFilm::Layer layer, float of_none) const {
+    return [this, layer, of_none](std::uint32_t color, float *plane) {
         for_each_block(layer, [&](std::size_t first, std::size_t end) {
             Values sums{};
             double weight = 0;
@@ -68,9 +70,8 @@ PlaneSource GradientFilms::mean(GradientFilm::Layer layer) const {
                 film->add_sums(layer, color, first, end, sums.data());
                 weight += film->weight(layer, first);
             }
-            const double divisor = weight > 0 ? weight : 1;
             for (std::size_t i = 0; i < end - first; ++i)
-                plane[first + i] = static_cast<float>(sums[i] / divisor);
+                plane[first + i] = weight > 0 ? static_cast<float>(sums[i] / weight) : of_none;
         });
     };
 }
@@ -103,9 +104,15 @@ PlaneSource GradientFilms::variance_of_samples(GradientFilm::Layer layer) const 
                 double n = 0;
                 Values sum{}, squares{};
                 for (std::size_t part = half; part < films_.size(); part += halves) {
-                    n += films_[part]->count(layer, first);
-                    films_[part]->add_sums(layer, color, first, end, sum.data());
-                    films_[part]->add_squares(layer, color, first, end, squares.data());
+                    const double of_part = films_[part]->count(layer, first);
+                    Values sum_of_part{};
+                    films_[part]->add_sums(layer, color, first, end, sum_of_part.data());
+                    films_[part]->add_deviations(layer, color, first, end, squares.data());
+                    n += of_part;
+                    for (std::size_t i = 0; i < pixels; ++i) {
+                        sum[i] += sum_of_part[i];
+                        squares[i] += sum_of_part[i] * sum_of_part[i] / std::max(of_part, 1.0);
+                    }
                 }
                 if (n < 2)
                     continue;
@@ -123,9 +130,10 @@ PlaneSource GradientFilms::variance_of_samples(GradientFilm::Layer layer) const 
 
 ImageSources GradientFilms::images() const {
     ImageSources images;
-    images.primal = mean(GradientFilm::primal);
-    images.dx = mean(GradientFilm::dx);
-    images.dy = mean(GradientFilm::dy);
+    constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
+    images.primal = mean(GradientFilm::primal, unknown);
+    images.dx = mean(GradientFilm::dx, unknown);
+    images.dy = mean(GradientFilm::dy, unknown);
     images.primal_variance = variance(GradientFilm::primal);
     images.dx_variance = variance(GradientFilm::dx);
     images.dy_variance = variance(GradientFilm::dy);

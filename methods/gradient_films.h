@@ -5,6 +5,7 @@
 #include "runtime/wavefront/host_table.h"
 #include "solver/poisson_solver.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -42,8 +43,8 @@ class GradientFilm {
     double weight(Layer layer, std::size_t pixel) const {
         return has_more(layer, pixel) ? weights_.with_one_more : weights_.of_frames;
     }
-    /// As add_sums(), of their squares.
-    void add_squares(Layer layer, std::uint32_t color, std::size_t first, std::size_t end, double *to) const;
+    /// As add_sums(), of their squared deviations from their mean.
+    void add_deviations(Layer layer, std::uint32_t color, std::size_t first, std::size_t end, double *to) const;
 
     static constexpr std::size_t most_at_once = 512; ///< what stays in a first-level cache
 
@@ -83,14 +84,17 @@ class GradientFilms {
     /// Of each pixel.
     std::uint64_t frames() const { return samples() / pixels(); }
 
-    /// The mean of all samples, or the variance of that mean, as they are read while this is there.
-    PlaneSource mean(GradientFilm::Layer layer) const;
+    /// The mean of all samples, or the variance of that mean, as they are read while this is there. The mean of no
+    /// sample is `of_none`.
+    PlaneSource mean(GradientFilm::Layer layer, float of_none = 0) const;
     PlaneSource variance(GradientFilm::Layer layer) const;
     /// That of samples that are independent in each half; 0 where there is but one. Of others it is mostly more than
     /// the variance.
     PlaneSource variance_of_samples(GradientFilm::Layer layer) const;
-    /// Those of all layers.
+    /// Those of all layers. Means of no sample are NaN: a solver is to take them as missing.
     ImageSources images() const;
+    /// The first so many have samples, the others none.
+    std::size_t pixels_with_samples() const { return std::size_t(std::min<std::uint64_t>(samples(), pixels())); }
 
   private:
     /// Calls work(first, end) for all pixels, at most GradientFilm::most_at_once a call, of which each film has as many

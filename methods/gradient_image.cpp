@@ -71,10 +71,15 @@ double reconstruct_from_film(PoissonSolver &solver, Image &whole, GradientFilms 
                              const std::function<void()> &films_are_read) {
     ImageSources images = films.images();
     const auto plane_of = [&whole](std::uint32_t c) { return whole.channels[c].values.data(); };
-    const std::size_t pixels = films.pixels();
+    const std::size_t pixels = films.pixels(), with_samples = films.pixels_with_samples();
     images.direct = [&](std::uint32_t c, float *plane) { std::copy_n(plane_of(c), pixels, plane); };
     const PoissonReport report = solver.solve(
-        images, poisson, [&](std::uint32_t c, const float *plane) { std::copy_n(plane, pixels, plane_of(c)); },
+        images, poisson,
+        [&](std::uint32_t c, const float *plane) {
+            std::copy_n(plane, with_samples, plane_of(c));
+            // What the solver tells of the others comes from those beside them.
+            std::fill_n(plane_of(c) + with_samples, pixels - with_samples, 0.0f);
+        },
         [&] {
             films.release();
             if (films_are_read)
@@ -168,6 +173,8 @@ Image reconstruct(Device &device, PoissonSolver &solver, Image whole, GradientFi
                   const std::vector<DirectPixel> &edges, const RenderOptions &options, bool layers,
                   const std::function<void()> &films_are_read, ReconstructionUsed &used, ErrorOfImage *error) {
     used = reconstruction_used(options, films.samples(), films.pixels());
+    if (used.note.empty())
+        used.note = note_of_colors(whole);
     take_primal_off(whole, films, edges);
     std::vector<Channel> more;
     if (layers)

@@ -19,12 +19,12 @@ PathTracer::PathTracer(Device &device, const Scene &scene, const RenderOptions &
     : options_(options), session_(device, scene, options,
                                   {{"KINDS_BY_CLASS", 1},
                                    {"TRAIT_AOV", options.all_traits || needs_features(options)},
-                                   {"TRAIT_PART_BITS", part_bits(options, keeps_halves())}}),
+                                   {"TRAIT_PART_BITS", part_bits(options, is_halved())}}),
       camera_(stages_.add(camera_stage())), far_clip_(stages_.add(far_clip_stage(session_))),
       connect_(stages_.add(connect_stage())),
       paths_(session_, stages_, {.kinds = std::uint32_t(session_.scene.kinds.size())}),
       escape_(stages_.add(escape_stage(session_))), emission_(stages_.add(emission_stage(session_))),
-      shade_(stages_.add(shade_stage(false))), film_(session_, stages_, keeps_halves()) {
+      shade_(stages_.add(shade_stage(false))), film_(session_, stages_, is_halved()) {
     check_guide(options);
     total_ = session_.pixels() * session_.settings.samples_per_pixel;
     const TableList list = joined(paths_.tables(), film_.tables());
@@ -81,10 +81,11 @@ Image PathTracer::image() {
     statistics_.estimated_error.reset();
     is_mean_ = false;
     Image image = film_.image(done_, statistics_.non_finite);
-    const bool tells_error = has_error_layer(options_, keeps_halves()) && has_halves();
+    const bool tells_error = has_error_layer(options_, is_halved()) && has_halves();
     SquaredErrors errors;
     if (is_guided()) {
         statistics_.lost_pixels = pixels_without_a_color(image);
+        statistics_.reconstruction.note = note_of_colors(image);
         guide(image, tells_error ? &errors : nullptr);
     } else if (tells_error)
         errors = errors_of_halves(half_image(0), half_image(1),
@@ -144,8 +145,8 @@ void PathTracer::guide(Image &image, SquaredErrors *errors) {
 Statistics PathTracer::statistics() const {
     Statistics s = collected(statistics_, session_, stages_);
     if (is_guided() && has_halves() && !is_mean_)
-        s.reconstruction = {reconstruction_name(Reconstruction::guided), accuracy_name(Accuracy::consistent), "",
-                            guide_name(options_.guide)};
+        s.reconstruction = {reconstruction_name(Reconstruction::guided), accuracy_name(Accuracy::consistent),
+                            statistics_.reconstruction.note, guide_name(options_.guide)};
     else
         s.reconstruction = {
             "none", accuracy_name(Accuracy::unbiased),

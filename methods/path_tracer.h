@@ -27,7 +27,8 @@ class PathTracer final : public Method {
 
   private:
     bool is_guided() const { return options_.reconstruction == Reconstruction::guided; }
-    bool keeps_halves() const { return is_guided() || options_.error; }
+    /// Whether samples are kept as two halves: of gradient-domain methods other reconstructions ask for them, too.
+    bool is_halved() const { return is_guided() || options_.error; }
     /// Whether both halves have a sample of each pixel.
     bool has_halves() const { return done_ >= 2 * session_.pixels(); }
     /// Makes of the mean of all samples one that follows a guide, and leaves its features out if they are not wanted.

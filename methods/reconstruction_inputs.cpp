@@ -1,5 +1,6 @@
 #include "methods/reconstruction_inputs.h"
 
+#include "solver/brightness.h"
 #include "solver/guide/denoiser.h"
 #include "solver/guide/feature_filter.h"
 
@@ -41,6 +42,10 @@ std::uint64_t pixels_without_a_color(const Image &image) {
         count += is_finite(0) && is_finite(1) && is_finite(2) ? 0 : 1;
     }
     return count;
+}
+
+std::string note_of_colors(const Image &image) {
+    return note_of_brightness({image.channels[0].values, image.channels[1].values, image.channels[2].values});
 }
 
 } // namespace gradus

@@ -7,6 +7,7 @@
 #include "solver/poisson_solver.h"
 
 #include <cstddef>
+#include <string>
 
 namespace gradus {
 
@@ -21,5 +22,8 @@ void check_guide(const RenderOptions &options);
 
 /// Pixels whose R, G or B, the first channels, is no finite number: a reconstruction takes them as missing.
 std::uint64_t pixels_without_a_color(const Image &image);
+
+/// note_of_brightness() of R, G and B, the first channels.
+std::string note_of_colors(const Image &image);
 
 } // namespace gradus

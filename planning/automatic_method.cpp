@@ -30,6 +30,7 @@ class ChosenMethod final : public Method {
     Image image() override { return method_->image(); }
     Image last_image() override { return method_->last_image(); }
     Image mean_image() override { return method_->mean_image(); }
+    Tracer *tracer() override { return method_->tracer(); }
     Statistics statistics() const override {
         Statistics statistics = method_->statistics();
         statistics.choice = choice_;
@@ -108,7 +109,8 @@ RowPilot assumed_pilot(const Scene &scene, const RenderOptions &options) {
 
 bool sees_only_lights(const RenderSettings &settings) { return settings.max_depth == 0 || settings.max_depth == 1; }
 
-MethodChoice choose_by_rule(const Scene &scene, const RenderOptions &options, double pixels) {
+MethodChoice choose_by_rule(const Scene &scene, const RenderOptions &options, std::uint32_t width,
+                            std::uint32_t height) {
     const RenderSettings &settings = scene.settings;
     MethodChoice choice;
     if (sees_only_lights(settings)) {
@@ -117,12 +119,13 @@ MethodChoice choose_by_rule(const Scene &scene, const RenderOptions &options, do
         return choice;
     }
     const double samples = std::max(double(settings.samples_per_pixel), 1.0);
+    const double pixels = double(width) * height;
     const bool is_gpt = gain_of(assumed_pilot(scene, options), options.reconstruction, samples, pixels) > 1;
     choice.method = is_gpt ? "gpt" : "pt";
-    choice.reason =
-        fmt::format("the render is too short for a pilot; in scenes of such surfaces and lights {} has mostly "
-                    "less error then",
-                    choice.method);
+    choice.reason = fmt::format("{} for a pilot; in scenes of such surfaces and lights {} has mostly less error then",
+                                std::min(width, height) < 2 ? "one row or column of pixels is too little"
+                                                            : "the render is too short",
+                                choice.method);
     return choice;
 }
 
@@ -179,7 +182,9 @@ PhotonChoice choose_by_photons(MethodChoice choice, const PhotonPilot &pilot, st
             ? double(options.photons)
             : std::min(double(pilot.light_paths) * photons_a_pass(pilot.film_pixels) / std::max(pilot.photons, 1.0),
                        most_light_paths_a_pass(pilot.film_pixels));
-    const double pass = options.photons > 0 ? usual : std::clamp(all / fewest_passes, double(pilot.light_paths), usual);
+    // Not std::clamp(): where pixels have many photons the usual number may be less than the pilot's.
+    const double pass =
+        options.photons > 0 ? usual : std::min(std::max(all / fewest_passes, double(pilot.light_paths)), usual);
     PhotonChoice found{choice, std::max<std::uint64_t>(1, std::uint64_t(all / pass)), std::uint64_t(pass)};
     found.choice.reason += fmt::format("; passes of {} light paths, as many as cost as much", found.light_paths);
     return found;
@@ -198,7 +203,7 @@ std::unique_ptr<Method> make_automatic_method(Device &device, const Scene &scene
     if (is_timed)
         rows = std::min(rows, rows_of_timed_pilot(width, height));
     if (rows == 0 || sees_only_lights(scene.settings)) {
-        const MethodChoice choice = choose_by_rule(scene, options, double(pixels));
+        const MethodChoice choice = choose_by_rule(scene, options, width, height);
         return chosen(choice, make_method(choice.method, device, scene, options));
     }
     auto method = std::make_unique<GradientPathTracer>(device, scene, options);

@@ -2,41 +2,44 @@
 
 #include "runtime/film/metrics.h"
 #include "runtime/film/outliers.h"
+#include "runtime/wavefront/sample_parts.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
+#include <limits>
+#include <utility>
 #include <vector>
 
 namespace gradus {
 
 namespace {
 
-/// Of the film's 64-bit sample numbers; halves differ in the upper word too, which decides where the sequence of
-/// places within the pixel starts.
-constexpr std::uint64_t first_samples[] = {std::uint64_t(1) << 62, (std::uint64_t(1) << 62) + (std::uint64_t(1) << 32)};
+/// Of the film's 64-bit sample numbers. The upper word decides where the sequence of places within the pixel starts,
+/// and halves differ in it: also once replicates have taken their bits off (kernels/lib/sample_number.h), or the places
+/// of the one would be those of the other, all as far away.
+constexpr std::uint64_t first_samples[] = {std::uint64_t(1) << 62,
+                                           (std::uint64_t(1) << 62) + (std::uint64_t(1) << (32 + replicate_bits))};
+static_assert(first_samples[0] >> replicate_bits >> 32 != first_samples[1] >> replicate_bits >> 32);
 constexpr std::uint64_t largest_part = 10; ///< one in so many samples of the render
 
 } // namespace
 
 std::vector<double> relative_weights(const ReferencePairs &references, const char *color) {
-    std::vector<double> largest, means;
+    std::vector<double> least;
     for (const auto &[first, second] : references) {
         const std::vector<float> &a = first->find(color)->values, &b = second->find(color)->values;
-        means.resize(a.size());
-        largest.resize(a.size(), 0.0);
+        std::vector<double> means(a.size());
         for (std::size_t i = 0; i < a.size(); ++i)
             means[i] = 0.5 * (double(a[i]) + b[i]);
-        const std::vector<double> usual = without_outliers(means, first->width, first->height);
+        const std::vector<double> of_pair = relative_weights(std::move(means), first->width, first->height);
+        least.resize(a.size(), std::numeric_limits<double>::infinity());
         for (std::size_t i = 0; i < a.size(); ++i)
-            largest[i] = std::max(largest[i], std::fabs(usual[i]));
+            least[i] = std::min(least[i], of_pair[i]);
     }
-    for (double &value : largest)
-        value = 1 / (value * value + relative_mse_epsilon);
-    return largest;
+    return least;
 }
 
 PilotErrors estimate_errors(const Image &first, const Image &second) {

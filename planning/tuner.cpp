@@ -46,7 +46,10 @@ class Runner {
         scene.settings.samples_per_pixel = endless_samples;
         method_ = make_method(name, device, scene, options_of(tuning, threads));
         method_->render_batch(); // what is first is slow
+        batch_ = std::uint32_t(method_->done_samples() / batches_a_pass);
     }
+    /// Paths of a batch.
+    std::uint32_t batch() const { return batch_; }
     /// Samples per second over at least so many seconds.
     double rate(double seconds) {
         const auto start = std::chrono::steady_clock::now();
@@ -59,6 +62,7 @@ class Runner {
 
   private:
     std::unique_ptr<Method> method_;
+    std::uint32_t batch_;
 };
 
 double quantile(std::vector<double> values, double share) {
@@ -98,6 +102,9 @@ class Tuner {
         return trial;
     }
 
+    /// What the method takes by default, for this scene.
+    std::uint32_t default_batch() const { return defaults_.batch(); }
+
   private:
     Device &device_;
     const std::string &method_;
@@ -121,7 +128,7 @@ TuningReport tune(Device &device, const std::string &method, const Scene &scene,
             report.chosen = tuning;
         }
     };
-    const std::uint32_t usual = default_batch_size(device);
+    const std::uint32_t usual = tuner.default_batch();
     for (const std::uint32_t batch : {usual / 16, usual / 8, usual / 4, usual / 2, usual * 2})
         consider({0, batch});
     const std::uint32_t batch = report.chosen.batch_size;

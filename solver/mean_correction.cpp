@@ -71,6 +71,7 @@ std::vector<double> MeanCorrection::add(Kernels &kernels, Problem &problem) {
     weights.set_real("smoothness", smoothness);
     weights.bind("base", problem.base());
     weights.bind("u", problem.u());
+    weights.bind("valid", problem.valid_primal());
     grid.launch(weights, {0, kernels.weight_planes});
     workspace_.multigrid.coarsen_weights(kernels);
 

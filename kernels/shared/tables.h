@@ -105,7 +105,7 @@
 
 /* More sums, only with --aov; the squares not with replicates, whose spread tells the variance (sample_number.h). */
 #define GRADUS_FEATURE_FILM_COLUMNS(REAL, UINT)                                                                        \
-    REAL(feature_film, albedo_r, "sums of the columns of `feature`")                                                   \
+    REAL(feature_film, albedo_r, "means of the columns of `feature`")                                                  \
     REAL(feature_film, albedo_g, "")                                                                                   \
     REAL(feature_film, albedo_b, "")                                                                                   \
     REAL(feature_film, normal_x, "")                                                                                   \
@@ -399,7 +399,7 @@
     REAL(gradient_film, correction_6, "")                                                                              \
     REAL(gradient_film, correction_7, "")                                                                              \
     REAL(gradient_film, correction_8, "")                                                                              \
-    REAL(gradient_film, square_first, "sums of their squares")                                                         \
+    REAL(gradient_film, deviation_first, "sums of squared deviations from their means")                                \
     REAL(gradient_film, square_1, "")                                                                                  \
     REAL(gradient_film, square_2, "")                                                                                  \
     REAL(gradient_film, square_3, "")                                                                                  \

@@ -56,16 +56,16 @@ GRADUS_FN real brightness(__global const real *base, __global const real *u, siz
 }
 
 /* The weights of the system for the correction relative to |I|: |I| of the darker pixel for edges, smoothness^2 |I| for
- * pixels. */
+ * pixels, but 0 where the primal is missing: there the correction is that of the pixels around. */
 SOLVE correction_weights(GRID, uint weight_plane, real least, real smoothness, __global const real *base,
-                         __global const real *u, __global real *weight_x, __global real *weight_y,
-                         __global real *weight_data) {
+                         __global const real *u, __global const real *valid, __global real *weight_x,
+                         __global real *weight_y, __global real *weight_data) {
     SOLVER_PLACE
     const size_t at = GRID_AT(FIRST_CHANNEL, x, y), to = channel * weight_plane + GRID_AT(0, x, y);
     const real here = BRIGHTNESS(at), right = BRIGHTNESS(at + 1), down = BRIGHTNESS(at + row);
     weight_x[to] = x + 1 < width ? r_min(here, right) : R(0);
     weight_y[to] = x < width && y + 1 < height ? r_min(here, down) : R(0);
-    weight_data[to] = x < width ? smoothness * smoothness * here : R(0);
+    weight_data[to] = x < width ? smoothness * smoothness * here * valid[GRID_AT(0, x, y)] : R(0);
 }
 
 /* right_side = smoothness^2 times -u, outliers cut by the block's bound; 0 where the primal is missing. |u| over the

@@ -1,6 +1,9 @@
 /* accumulate: adds one sample to each of `count` pixels from `first_pixel` on: slots `first_slot` on. A sample with a
  * NaN or an infinity is left out and counted. Samples of filters with negative lobes have a weight. Squares are summed
- * where the spread of the samples is to tell the variance: not where replicates do, the films of which are many. */
+ * where the spread of the samples is to tell the variance: not where replicates do, the films of which are many.
+ *
+ * Of features the film has means over the samples of a pixel, of which there are `samples_before` already: sums without
+ * corrections would lose what a sample adds, once they are large beside it. One that is left out counts as 0 there. */
 //! traits: TRAIT_AOV TRAIT_LOBE_LEVELS TRAIT_FILTER_SIGNED TRAIT_PART_BITS
 #include "kernels/lib/compensated.h"
 #include "kernels/lib/filter_weight.h"
@@ -18,8 +21,11 @@
         AT(table, correction_column, pixel) = s.correction;                                                            \
     }
 
-STAGE accumulate(uint count, uint slots, uint pixels, uint first_slot, uint first_pixel, __global const real *radiance,
-                 __global real *film
+#define ADD_FEATURE(column, x)                                                                                         \
+    AT(feature_film, column, pixel) += ((finite ? WEIGHTED(x) : R(0)) - AT(feature_film, column, pixel)) * share;
+
+STAGE accumulate(uint count, uint slots, uint pixels, uint first_slot, uint first_pixel, uint samples_before,
+                 __global const real *radiance, __global real *film
 #if TRAIT_AOV
                  ,
                  __global const real *feature, __global real *feature_film
@@ -55,12 +61,13 @@ STAGE accumulate(uint count, uint slots, uint pixels, uint first_slot, uint firs
     ADD(feature_film, square_b, square_correction_b, value.b * value.b)
 #endif
 #if TRAIT_AOV
-    AT(feature_film, albedo_r, pixel) += WEIGHTED(albedo.r);
-    AT(feature_film, albedo_g, pixel) += WEIGHTED(albedo.g);
-    AT(feature_film, albedo_b, pixel) += WEIGHTED(albedo.b);
-    AT(feature_film, normal_x, pixel) += WEIGHTED(normal.x);
-    AT(feature_film, normal_y, pixel) += WEIGHTED(normal.y);
-    AT(feature_film, normal_z, pixel) += WEIGHTED(normal.z);
-    AT(feature_film, depth, pixel) += WEIGHTED(depth);
+    const real share = R(1) / ((real)samples_before + R(1));
+    ADD_FEATURE(albedo_r, albedo.r)
+    ADD_FEATURE(albedo_g, albedo.g)
+    ADD_FEATURE(albedo_b, albedo.b)
+    ADD_FEATURE(normal_x, normal.x)
+    ADD_FEATURE(normal_y, normal.y)
+    ADD_FEATURE(normal_z, normal.z)
+    ADD_FEATURE(depth, depth)
 #endif
 }

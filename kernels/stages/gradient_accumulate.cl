@@ -1,12 +1,16 @@
 /* gradient_accumulate: adds the primal samples and gradients of a strip to the film: slots `first_slot` on, whose
  * pixels are those from `first_pixel` on, of `frames` frames, at most accumulated_frames of them, one after the other.
- * The gradient between two pixels is what the
- * one's offset path to the other gives, less what the other's to the one gives (Kettunen et al. 2015).
+ * The gradient between two pixels is what the one's offset path to the other gives, less what the other's to the one
+ * gives (Kettunen et al. 2015).
  *
  * The gradient to the pixel below belongs to the row above: so the first row of a strip finishes that of the strip
  * before, whose part is in `carry`. It has a launch of its own (`is_carried`). The pixels above are those from
  * `first_above` on; the first row of all has none, and adds nothing to the last row (`has_above` 0), where nobody else
  * adds.
+ *
+ * The film has had `frames_before` frames. Each sample adds its squared deviation from their mean, so that the sum is
+ * that from the mean of all (Welford 1962): of a sum of squares the square of the mean would be taken off, which leaves
+ * rounding where the spread is small beside it.
  *
  * TRAIT_PART_BITS: frames are those of one part of the samples, from `first_slot` on each 2^TRAIT_PART_BITS-th one. */
 //! traits: TRAIT_PART_BITS
@@ -20,19 +24,20 @@
         compensated s;                                                                                                 \
         s.sum = FILM(gradient_film_primal_r + number, to);                                                             \
         s.correction = FILM(gradient_film_correction_first + number, to);                                              \
-        real square = FILM(gradient_film_square_first + number, to);                                                   \
+        real spread = FILM(gradient_film_deviation_first + number, to);                                                \
         _Pragma("unroll") for (uint frame = 0; frame < accumulated_frames; ++frame) {                                  \
             const int is_there = frame < frames;                                                                       \
             const size_t at = slot + (is_there ? frame * NEXT_FRAME : 0u);                                             \
-            const real value = sample;                                                                                 \
+            const real value = sample, before = (real)(frames_before + frame);                                         \
+            const real deviation = value - s.sum * (R(1) / r_max(before, R(1)));                                       \
             const compensated added = compensated_add(s, value);                                                       \
             s.sum = is_there ? added.sum : s.sum;                                                                      \
             s.correction = is_there ? added.correction : s.correction;                                                 \
-            square += is_there ? value * value : R(0);                                                                 \
+            spread += is_there ? deviation * (deviation * (before / (before + R(1)))) : R(0);                          \
         }                                                                                                              \
         FILM(gradient_film_primal_r + number, to) = s.sum;                                                             \
         FILM(gradient_film_correction_first + number, to) = s.correction;                                              \
-        FILM(gradient_film_square_first + number, to) = square;                                                        \
+        FILM(gradient_film_deviation_first + number, to) = spread;                                                     \
     }
 #define FILM(column, to) gradient_film[(size_t)(column)*pixels + (to)]
 #define DIFFERENCE(j, channel, of) AT(difference, value_##channel, (size_t)(j)*slots + (of))
@@ -40,7 +45,7 @@
 #define FROM_ABOVE(channel) (is_carried ? AT(carry, value_##channel, i) : DIFFERENCE(2, channel, at - crop_width))
 
 STAGE gradient_accumulate(uint count, uint slots, uint pixels, uint first_slot, uint first_pixel, uint first_above,
-                          uint is_carried, uint has_above, uint frames, __global const real *prefix,
+                          uint is_carried, uint has_above, uint frames, uint frames_before, __global const real *prefix,
                           __global const real *difference, __global real *gradient_film, __global const real *carry,
                           STRIP_PLACE) {
     const size_t i = work_item();

@@ -119,7 +119,11 @@ STAGE read_material(uint count, uint unit, uint first, uint traced_rows, uint pa
     const sample_place sample = shared_number_at(sample_place_after(
         first_sample_low, first_sample_high, divide(AT_UINT(path, slot, base), pixels_multiplier, pixels_shift)));
     const random_bits start = random_key(seed_low, seed_high, 0xFFFFFFFDu, 0u, sample.high);
+#if TRAIT_STRATIFIED
     const real shared = random_unit(start.x + sample.low * 2654435769u);
+#else
+    const real shared = random_draw(start.x, sample.low, random_dimension_blend(0u)).a;
+#endif
     choice = depth == 0u ? shared : choice;
 #endif
 #pragma unroll

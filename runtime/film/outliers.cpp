@@ -1,7 +1,10 @@
 #include "runtime/film/outliers.h"
 
+#include "runtime/film/metrics.h"
+
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 namespace gradus {
@@ -24,6 +27,15 @@ std::vector<double> without_outliers(const std::vector<double> &plane, std::uint
         }
     }
     return result;
+}
+
+std::vector<double> relative_weights(std::vector<double> plane, std::uint32_t width, std::uint32_t height) {
+    for (double &value : plane)
+        value = std::isfinite(value) ? value : 0;
+    std::vector<double> weights = without_outliers(plane, width, height);
+    for (double &weight : weights)
+        weight = 1 / (weight * weight + relative_mse_epsilon);
+    return weights;
 }
 
 } // namespace gradus

@@ -9,4 +9,8 @@ namespace gradus {
 /// Each value of a plane, but no more than the second largest and no less than the second smallest of those around it.
 std::vector<double> without_outliers(const std::vector<double> &plane, std::uint32_t width, std::uint32_t height);
 
+/// What relMSE (metrics.h) weighs pixels by, this plane without its outliers being the reference. What is not finite
+/// counts as 0.
+std::vector<double> relative_weights(std::vector<double> plane, std::uint32_t width, std::uint32_t height);
+
 } // namespace gradus

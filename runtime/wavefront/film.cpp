@@ -5,8 +5,6 @@
 #include "runtime/wavefront/host_table.h"
 #include "runtime/wavefront/sample_parts.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <deque>
@@ -23,9 +21,6 @@ double film_sum(const HostTable &table, int color, std::size_t pixel) {
     return table.real(film_sum_r + color, pixel) + table.real(film_correction_r + color, pixel);
 }
 
-/// The table of a part of the samples.
-std::string film_name(std::uint32_t part) { return part == 0 ? "film" : fmt::format("film_{}", part); }
-
 /// The sums of all parts, on the host, and how many samples they are of.
 class FilmSums {
   public:
@@ -34,7 +29,7 @@ class FilmSums {
         : pixels_(pixels), samples_(samples) {
         const std::uint64_t frames = samples / pixels;
         for (std::uint32_t part = 0; part < parts; ++part) {
-            films_.emplace_back(tables[film_name(part)], pixels, tables.precision());
+            films_.emplace_back(tables[name_of_part("film", part)], pixels, tables.precision());
             for (const std::uint64_t more : {0, 1}) {
                 const auto count = double(count_of_part(frames + more, part, parts));
                 weights_[more].push_back(count > 0 ? weights.of_part(frames + more, part, parts) / count : 1);
@@ -42,6 +37,9 @@ class FilmSums {
         }
     }
 
+    double samples_of(std::size_t pixel) const {
+        return double(samples_ / pixels_) + (pixel < samples_ % pixels_ ? 1 : 0);
+    }
     std::uint32_t rejected(std::size_t pixel) const {
         std::uint32_t rejected = 0;
         for (const HostTable &film : films_)
@@ -86,13 +84,14 @@ double mean_of(const Replicate &all) { return all.count > 0 ? all.sum / all.coun
 
 Film::Film(Session &session, Stages &stages, bool halves)
     : session_(session), weights_(session),
-      accumulate_(stages.add({.name = "accumulate", .strict = true, .numbers = {"first_slot", "first_pixel"}})),
+      accumulate_(stages.add(
+          {.name = "accumulate", .strict = true, .numbers = {"first_slot", "first_pixel", "samples_before"}})),
       parts_(1u << part_bits(session.options, halves)) {}
 
 std::vector<std::string> Film::table_names() const {
     std::vector<std::string> names;
     for (std::uint32_t part = 0; part < parts_; ++part)
-        names.push_back(film_name(part));
+        names.push_back(name_of_part("film", part));
     names.emplace_back("feature_film");
     return names;
 }
@@ -107,7 +106,7 @@ TableList Film::tables() const {
         {.name = "feature", .rows = RowsOf::slot, .columns = with_aov(feature_columns)},
         {.name = "feature_film", .rows = RowsOf::pixel, .columns = with_aov(feature_sums)}};
     for (std::uint32_t part = 0; part < parts_; ++part)
-        list.push_back({.name = film_name(part), .rows = RowsOf::pixel, .columns = film_columns});
+        list.push_back({.name = name_of_part("film", part), .rows = RowsOf::pixel, .columns = film_columns});
     return list;
 }
 
@@ -117,6 +116,7 @@ void Film::attach(Tables &tables) {
 }
 
 void Film::clear(std::uint64_t first_sample) {
+    first_sample_ = first_sample;
     weights_.begin_at(first_sample);
     std::vector<std::string> names = table_names();
     names.emplace_back("splat_film");
@@ -131,8 +131,11 @@ void Film::add(std::uint32_t count, std::uint32_t first_pixel, std::uint64_t fir
     for (std::uint32_t slot = 0; slot < count; slot += done, first_pixel = 0, ++first_sample) {
         done = std::min(session_.pixels() - first_pixel, count - slot);
         if (parts_ > 1)
-            accumulate_.bind("film", (*tables_)[film_name(static_cast<std::uint32_t>(first_sample % parts_))]);
-        accumulate_.run(done, {{"first_slot", slot}, {"first_pixel", first_pixel}});
+            accumulate_.bind("film",
+                             (*tables_)[name_of_part("film", static_cast<std::uint32_t>(first_sample % parts_))]);
+        accumulate_.run(done, {{"first_slot", slot},
+                               {"first_pixel", first_pixel},
+                               {"samples_before", static_cast<std::uint32_t>(first_sample - first_sample_)}});
     }
 }
 
@@ -164,8 +167,9 @@ Image Film::image(std::uint64_t samples, std::uint64_t &non_finite, std::uint64_
 
     const HostTable features((*tables_)["feature_film"], count, tables_->precision());
     const char *const axes[3] = {"X", "Y", "Z"};
+    // The film has their mean over all samples; those that were left out do not count.
     const auto mean_feature = [&](int column, std::size_t pixel) {
-        return mean_of({features.real(column, pixel), films.sum(0, pixel).count});
+        return mean_of({features.real(column, pixel) * films.samples_of(pixel), films.sum(0, pixel).count});
     };
     for (int c = 0; c < 3; ++c)
         add(std::string("albedo.") + colors[c],

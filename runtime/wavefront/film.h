@@ -51,6 +51,7 @@ class Film {
     SharedWeights weights_;
     Stage &accumulate_;
     std::uint32_t parts_; ///< of the samples, each with a table of its own
+    std::uint64_t first_sample_ = 0;
     Tables *tables_ = nullptr;
 };
 

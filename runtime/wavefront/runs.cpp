@@ -57,6 +57,8 @@ TableList Runs::tables() const {
 void Runs::attach(Tables &tables) { tables_ = &tables; }
 
 void Runs::find(std::uint32_t count) {
+    if (count > tables_->rows_of(sort_.name() + "_run_begin"))
+        throw std::logic_error("more rows than the runs of " + sort_.name() + " have room for");
     rows_ = count;
     const Chunks chunks = sort_.chunks_of(count);
     count_.run(chunks.number, {{"rows", count}, {"chunk_rows", chunks.rows}});

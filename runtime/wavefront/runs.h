@@ -25,7 +25,8 @@ class Runs {
 
     /// Lists the runs of the `count` rows that were sorted last. Run r has the key `run_key`[r] and the places
     /// `run_begin`[r] to `run_end`[r] of the sort's index. Keys ascend; so what the sort counted as above the highest
-    /// is the last run. On no rows, there are none.
+    /// is the last run. On no rows, there are none. Throws std::logic_error for more rows than the sort had room for
+    /// when tables were allocated: these do not grow with it.
     void find(std::uint32_t count);
     /// Sums columns [first, first + columns) of `values`, a table of reals with `value_rows` rows, over the runs that
     /// find() found: column c of `<sort>_run_sum` at row r. Values are picked by the index and added in the order of

@@ -5,6 +5,7 @@
 #include "runtime/wavefront/session_options.h"
 
 #include <cstdint>
+#include <string>
 
 namespace gradus {
 
@@ -37,6 +38,11 @@ constexpr std::uint64_t samples_of_part(std::uint64_t samples, std::uint64_t pix
                                         std::uint32_t parts) {
     const std::uint64_t frames = samples / pixels, more = samples % pixels;
     return count_of_part(frames, part, parts) * pixels + (frames % parts == part ? more : 0);
+}
+
+/// What each part has of its own: the first one by the name itself.
+inline std::string name_of_part(const std::string &name, std::uint32_t part) {
+    return part == 0 ? name : name + '_' + std::to_string(part);
 }
 
 } // namespace gradus

@@ -245,6 +245,19 @@ TEST(ChoiceByPhotons, IsOfLessThanHalfOfTheErrorAtEqualCost) {
     EXPECT_EQ(choose(1600).choice.method, "gpt");
 }
 
+/// Where nearly all photons of the pilot are seen, the usual pass is smaller than the pilot's, and it counts.
+TEST(ChoiceByPhotons, HasNoLargerPassThanUsual) {
+    PhotonPilot pilot;
+    pilot.cost = 40;
+    pilot.light_paths = 1000;
+    pilot.photons = 8'000'000;
+    pilot.errors.gpt = 0.08;
+    pilot.errors.gpm = 0.03;
+    const PhotonChoice photons = choose_by_photons(choice_of_gpt(), pilot, 1600, {});
+    EXPECT_EQ(photons.choice.method, "gpm");
+    EXPECT_EQ(photons.light_paths, 125u) << "those of a million photons";
+}
+
 /// Pairs of rows bear what they do in the whole image, for every batch size, but for differences down to the next pair.
 /// Without roulette, for offset paths have a part in it. The sums of a base path are rounded by when its offset paths
 /// join it: some tens of roundings, 2e-6 of the largest value.
@@ -469,6 +482,26 @@ TEST(Automatic, GoesByARuleWhereThereIsNoRoomForAPilot) {
         EXPECT_EQ(rendered.statistics.choice->pilot_samples, 0u);
         EXPECT_TRUE(rendered.statistics.choice->estimates.empty());
         EXPECT_TRUE(equal_bits(rendered.image, render(scene, {}, method).image));
+    }
+}
+
+TEST(Automatic, SaysWhyThereIsNoPilot) {
+    struct Case {
+        std::uint32_t width, height;
+        const char *reason;
+    };
+    for (const auto &[width, height, reason] :
+         {Case{16, 12, "the render is too short"}, {1, 500, "one row or column of pixels"}, {500, 1, "one row"}}) {
+        Scene scene = own_scene("cornell-box.xml", width, height);
+        scene.settings.samples_per_pixel = 1'000'000;
+        if (width > 1 && height > 1)
+            scene.settings.samples_per_pixel = 16;
+        const auto method = make_method("auto", shared_device(), scene, {});
+        const Statistics statistics = method->statistics();
+        ASSERT_TRUE(statistics.choice);
+        EXPECT_EQ(statistics.choice->pilot_samples, 0u);
+        EXPECT_THAT(statistics.choice->reason, ::testing::HasSubstr(reason));
+        EXPECT_NE(method->tracer(), nullptr) << "that of the method that it took";
     }
 }
 

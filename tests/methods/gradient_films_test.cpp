@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 #include <vector>
 
@@ -37,8 +38,10 @@ struct RandomFilm {
         return at(gradient_film_primal_r + 3 * layer + color, pixel) +
                at(gradient_film_correction_first + 3 * layer + color, pixel);
     }
+    /// The film has squared deviations from the mean.
     double squares(int layer, int color, std::size_t pixel) const {
-        return at(gradient_film_square_first + 3 * layer + color, pixel);
+        return at(gradient_film_deviation_first + 3 * layer + color, pixel) +
+               std::pow(sum(layer, color, pixel), 2) / count(layer, pixel);
     }
 };
 
@@ -80,6 +83,36 @@ TEST(GradientFilms, AreSummedPixelByPixel) {
                 ASSERT_NEAR(variance[pixel], expected, 1e-6) << layer << ", pixel " << pixel;
             }
         }
+}
+
+/// A pixel whose first sample is still to come is 0 in a mean, and missing for a solver. A difference to the pixel
+/// below needs both.
+TEST(GradientFilms, WithoutASampleAreMissing) {
+    SceneMaker maker(film_width, film_height);
+    maker.floor(-1, 1, 1, maker.material(diffuse(0.5)), 0);
+    Tracer tracer(maker.scene, 2);
+    Device device;
+    const RandomFilm film(1, 3 * film_width);
+    const Buffer buffer(device, "gradient_film", film.values.data(), film.values.size() * sizeof(float));
+    GradientFilms films(tracer);
+    films.add(buffer, film_width, film_height, Precision::single, film.samples, {0, 1});
+    EXPECT_EQ(films.pixels_with_samples(), 3 * film_width);
+    const ImageSources images = films.images();
+    std::vector<float> mean(film_pixels), solved(film_pixels);
+    for (const auto &[layer, image] : {std::pair{GradientFilm::primal, images.primal},
+                                       {GradientFilm::dx, images.dx},
+                                       {GradientFilm::dy, images.dy}}) {
+        films.mean(layer)(0, mean.data());
+        image(0, solved.data());
+        for (std::size_t pixel = 0; pixel < film_pixels; ++pixel) {
+            const double expected = film.count(layer, pixel) > 0 ? film.sum(layer, 0, pixel) : 0;
+            ASSERT_FLOAT_EQ(mean[pixel], float(expected)) << layer << ", pixel " << pixel;
+            if (film.count(layer, pixel) > 0)
+                ASSERT_EQ(solved[pixel], mean[pixel]) << layer << ", pixel " << pixel;
+            else
+                ASSERT_TRUE(std::isnan(solved[pixel])) << layer << ", pixel " << pixel;
+        }
+    }
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 #include "planning/make_method.h"
 #include "tests/methods/reference_scene.h"
 #include "tests/support/render.h"
+#include "tests/support/small_scenes.h"
 #include "tests/support/test_name.h"
 
 #include <cstring>
@@ -106,6 +107,30 @@ TEST_P(GradientStrips, GiveTheirImageInTheMiddleOfAFrame) {
         }
         EXPECT_TRUE(is_partial);
         EXPECT_TRUE(equal_bits(method->image(), of_samples[3])) << "images on the way change what comes";
+    }
+}
+
+/// Rows whose first sample is still to come are black, and what is done does not know of that: of a white floor under a
+/// white sky each sample is 1, and no difference is other than 0.
+TEST(UnfinishedGradientStrips, AreAsBrightAsTheyWillBe) {
+    SceneMaker maker(64, 1);
+    maker.look({0, 1, 0}, {0, 0, 0}, 40, {0, 0, 1});
+    maker.floor(-1, 1, 1, maker.material(diffuse(1)));
+    maker.environment(1);
+    maker.scene.settings.max_depth = 2;
+    for (const auto reconstruction : {Reconstruction::l1, Reconstruction::l2}) {
+        RenderOptions options;
+        options.batch_size = 64;
+        options.reconstruction = reconstruction;
+        options.strategy = RenderOptions::Strategy::bsdf;
+        const auto method = make_method("gpt", shared_device(), maker.scene, options);
+        while (method->done_samples() < 64 * 24)
+            ASSERT_TRUE(method->render_batch());
+        const std::size_t done = method->done_samples();
+        const Image image = method->image();
+        for (const char *color : {"R", "G", "B"})
+            for (std::size_t i = 0; i < 64 * 64; ++i)
+                ASSERT_NEAR(image.find(color)->values[i], i < done ? 1 : 0, 1e-5) << i << " of " << done;
     }
 }
 

@@ -1,7 +1,9 @@
 // Gradient-domain path tracing: what it estimates. Its primal image and its differences have the means that a reference
 // of another renderer says, block by block, on every scene of ours; and its reconstruction has less noise.
+#include "methods/gradient_path_tracer.h"
 #include "tests/methods/gradient_reference.h"
 #include "tests/support/gradient_layers.h"
+#include "tests/support/small_scenes.h"
 #include "tests/support/stability.h"
 #include "tests/support/test_name.h"
 
@@ -140,6 +142,34 @@ TEST(GradientNoise, OfAPlainWallIsFarBelowThePrimals) {
         }
     std::printf("variance of dx over that of the primal, back wall: %.4f\n", gradient / primal);
     EXPECT_LT(gradient, 0.2 * primal);
+}
+
+/// Samples that differ by a thousandth of their mean: sums of squares, less the square of the mean, would be off by a
+/// tenth. The film's variance is of the same samples, in twice the precision but for the squares themselves: rounding
+/// of 2^-24 each, over 3e-6, the root of 1024 times.
+TEST(GradientNoise, IsKnownWhereItIsSmallBesideTheMean) {
+    SceneMaker maker(4, 1024);
+    maker.look({0, 4, 0}, {0, 0, 0}, 1, {0, 0, 1});
+    maker.floor(-1, 1, 1, maker.material(diffuse(0.5)));
+    maker.point_light({37, 37, 37}, {3, 4, 1});
+    maker.scene.settings.max_depth = 2;
+    RenderOptions options;
+    options.aov = true;
+    options.sampler = RenderOptions::Sampler::independent;
+    do_not_weigh(options);
+    GradientPathTracer method(shared_device(), maker.scene, options);
+    for (const std::uint64_t first : {0u, 12345u}) { // as pilots begin
+        method.restart(first, 1024);
+        while (method.render_batch()) {
+        }
+        const Image image = method.image_with_layers();
+        for (std::uint32_t y = 0; y < 4; ++y)
+            for (std::uint32_t x = 0; x < 4; ++x) {
+                const double mean = pixel(image, x, y), variance = pixel(image, x, y, "variance.G");
+                EXPECT_LT(1024 * variance, 1e-5 * mean * mean) << "the case is to be hard";
+                EXPECT_NEAR(pixel(image, x, y, "primal_variance.G") / variance, 1, 0.01) << x << ", " << y;
+            }
+    }
 }
 
 } // namespace

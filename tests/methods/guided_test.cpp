@@ -91,6 +91,24 @@ TEST_P(GuidedImages, OfOneSampleSayThatTheyAreNone) {
                       double(count_non_finite(result.image)), 0});
 }
 
+TEST_P(GuidedImages, OfLightWithoutSquaresSaySo) {
+    for (const float factor : {1.0f, 1e-17f, 1e21f}) {
+        Scene scene = scene_of(4);
+        for (Emitter &emitter : scene.emitters)
+            for (float Rgb::*channel : {&Rgb::r, &Rgb::g, &Rgb::b})
+                emitter.value.*channel *= factor;
+        for (const Reconstruction reconstruction : {Reconstruction::guided, Reconstruction::weighted}) {
+            RenderOptions options;
+            options.reconstruction = reconstruction;
+            const std::string note = render(scene, options, GetParam()).statistics.reconstruction.note;
+            const bool is_reconstructed = reconstruction == Reconstruction::guided || GetParam() == std::string("gpt");
+            EXPECT_EQ(note.find("make the lights brighter or darker") != std::string::npos,
+                      factor != 1 && is_reconstructed)
+                << factor << ": " << note;
+        }
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Methods, GuidedImages, ::testing::Values("gpt", "pt"),
                          [](const auto &info) { return std::string(info.param); });
 

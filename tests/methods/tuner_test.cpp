@@ -1,5 +1,6 @@
 // The tuner: what it tries has the same image, and it takes nothing that does not gain.
 #include "planning/tuner.h"
+#include "runtime/wavefront/table.h"
 #include "tests/methods/reference_scene.h"
 #include "tests/support/render.h"
 #include "tests/support/small_scenes.h"
@@ -18,19 +19,27 @@ TEST(FullTuner, TriesOnlyWhatHasTheSameImage) {
     TuningOptions options;
     options.turns = 3;
     options.seconds_a_turn = 0.005;
+    Scene endless = small_room();
+    endless.settings.samples_per_pixel = 1u << 30;
     std::size_t told = 0;
     options.on_trial = [&](const TuningTrial &) { ++told; };
     const TuningReport report = tune(shared_device(), "pt", small_room(), options);
     EXPECT_EQ(told, report.trials.size());
     EXPECT_GE(report.trials.size(), 5u);
-    bool is_tried = report.chosen == Tuning{};
+    const auto method = make_method("pt", shared_device(), endless, {});
+    method->render_batch();
+    const auto by_default = std::uint32_t(method->done_samples() / batches_a_pass);
+    bool is_larger_tried = false, is_tried = report.chosen == Tuning{};
     for (const TuningTrial &trial : report.trials) {
         EXPECT_TRUE(trial.failure.empty()) << name_of(trial.tuning) << ": " << trial.failure;
         EXPECT_TRUE(trial.same_image) << name_of(trial.tuning);
         EXPECT_EQ(trial.gains.size(), 3u);
+        EXPECT_NE(trial.tuning.batch_size, by_default) << "that is what it is compared with";
+        is_larger_tried = is_larger_tried || trial.tuning.batch_size > by_default;
         is_tried = is_tried || (trial.tuning == report.chosen && trial.median_gain >= 1.03);
     }
     EXPECT_TRUE(is_tried) << name_of(report.chosen);
+    EXPECT_TRUE(is_larger_tried);
 }
 
 TEST(Tuner, LeavesOutWhatTheDeviceDoesNotTake) {

@@ -149,6 +149,41 @@ TEST(MeanCorrection, TakesNothingFromMissingPixels) {
     EXPECT_LT(relative_mse(corrected.image, problem.clean), relative_mse(plain.image, problem.clean));
 }
 
+/// As of a render that ends in its first frame: what is there is brought back as far as in an image of nothing else. Of
+/// rows beside what is missing, by a hundredth: some steps of a linear solver differ.
+TEST(MeanCorrection, BringsBackWhatIsBesideMissingRows) {
+    constexpr std::uint32_t rows = 64;
+    const PoissonProblem whole = skewed_problem(6);
+    PoissonProblem missing = whole, cut = whole;
+    cut.height = rows;
+    const auto each = [&](auto work) {
+        for (auto member : {&PoissonProblem::primal, &PoissonProblem::dx, &PoissonProblem::dy})
+            for (std::uint32_t c = 0; c < 3; ++c)
+                for (std::uint32_t y = 0; y < height; ++y)
+                    for (std::uint32_t x = 0; x < width; ++x)
+                        work(member, c, x, y);
+    };
+    each([&](auto member, std::uint32_t c, std::uint32_t x, std::uint32_t y) {
+        const bool is_last_dy = member == &PoissonProblem::dy && y + 1 == rows;
+        if (y >= rows || is_last_dy)
+            (missing.*member)[whole.at(c, x, y)] = std::numeric_limits<float>::quiet_NaN();
+        if (y < rows)
+            (cut.*member)[cut.at(c, x, y)] = is_last_dy ? 0 : (whole.*member)[whole.at(c, x, y)];
+    });
+    const Pair of_missing = solve_both(missing), of_cut = solve_both(cut);
+    const auto brightness = [&](const PoissonProblem &problem, const Solution &solution) {
+        double sum = 0;
+        for (std::uint32_t c = 0; c < 3; ++c)
+            for (std::uint32_t y = rows - 8; y < rows; ++y)
+                for (std::uint32_t x = 0; x < width; ++x)
+                    sum += solution.image[problem.at(c, x, y)];
+        return sum;
+    };
+    const double expected = brightness(cut, of_cut.corrected);
+    EXPECT_LT(brightness(cut, of_cut.plain), 0.9 * expected) << "there is to be a loss";
+    EXPECT_NEAR(brightness(missing, of_missing.corrected) / expected, 1, 0.01);
+}
+
 TEST(MeanCorrection, OfTinyImages) {
     for (const auto &[w, h] : {std::pair{1u, 1u}, {2u, 1u}, {1u, 40u}, {33u, 1u}, {31u, 33u}}) {
         const PoissonProblem problem = make_poisson_problem(w, h, 3, 6);

@@ -1,4 +1,5 @@
 // Two halves that judge each other: weights from the other half's variances.
+#include "solver/brightness.h"
 #include "solver/weighted_reconstruction.h"
 #include "tests/solver/solver_fixture.h"
 #include "tests/support/stability.h"
@@ -369,6 +370,36 @@ TEST(Weighted, WhatIsMissingStaysInItsPlace) {
         std::fill((blind.*plane).begin(), (blind.*plane).end(), not_a_number);
     solve(blind, half_of(other), result);
     EXPECT_EQ(std::count_if(result.begin(), result.end(), [](float v) { return !std::isfinite(v); }), 0);
+}
+
+/// Within the brightness that is promised: of an image that is as bright as that on average, and a power of two.
+TEST(Weighted, BrightAndDarkImagesHaveTheirWeights) {
+    HostHalf first = skewed_half(40, 30, 8, 1), second = skewed_half(40, 30, 8, 2);
+    const auto scaled = [](HostHalf half, float factor) {
+        for (std::vector<float> *image : {&half.primal, &half.dx, &half.dy})
+            for (float &value : *image)
+                value *= factor;
+        for (std::vector<float> *variances : {&half.primal_variance, &half.dx_variance, &half.dy_variance})
+            for (float &value : *variances)
+                value *= factor * factor;
+        return half;
+    };
+    PoissonSolver solver(test_device(), 40, 30);
+    const auto solved = [&](float factor) {
+        Buffer result(test_device(), "result", first.primal.size() * sizeof(float));
+        const HalvedImages halves{scaled(first, factor).uploaded(8 * 1200), scaled(second, factor).uploaded(8 * 1200)};
+        WeightedReconstruction(test_device(), solver).solve(halves, result);
+        std::vector<float> image = read(result);
+        for (float &value : image)
+            value /= factor;
+        return image;
+    };
+    const std::vector<float> usual = solved(1);
+    const std::vector<double> expected(usual.begin(), usual.end());
+    EXPECT_LE(relative_error(solved(std::exp2(std::ceil(std::log2(float(darkest_mean))))), expected), 1e-5);
+    EXPECT_LE(relative_error(solved(std::exp2(std::floor(std::log2(float(brightest_mean))))), expected), 1e-5);
+    // Beyond it there is something to tell.
+    EXPECT_GT(relative_error(solved(0x1p-60f), expected), 1e-3);
 }
 
 TEST(Weighted, SmallAndFlatImagesComeBack) {

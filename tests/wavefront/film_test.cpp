@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -22,7 +23,7 @@ class FilmTest : public ::testing::Test {
     Device device;
 };
 
-/// A film with the radiance of its samples, and nothing that renders them.
+/// A film with the radiance of its samples, their features, and nothing that renders them.
 struct FilmUnderTest {
     using Sampler = SessionOptions::Sampler;
     FilmUnderTest(Device &device, std::uint32_t slots, std::uint32_t width, std::uint32_t height, bool aov,
@@ -53,6 +54,12 @@ struct FilmUnderTest {
         for (int c = 0; c < 3; ++c)
             for (std::uint32_t slot = 0; slot < count; ++slot)
                 radiance[std::size_t(radiance_value_r + c) * tables.rows().slots + slot] = float(value(slot, c));
+    }
+
+    /// Sets all features of all slots.
+    void set_features(float value) {
+        const auto view = tables["feature"].map(Access::write);
+        std::fill_n(view.as<float>(), std::size_t(feature_columns) * tables.rows().slots, value);
     }
 
     Session session;
@@ -133,6 +140,67 @@ TEST_F(FilmTest, LeavesOutAndCountsWhatIsNotFinite) {
         EXPECT_EQ(channel.values[2], 1) << channel.name;
         EXPECT_EQ(channel.values[3], 0) << channel.name;
     }
+}
+
+const char *const features[] = {"albedo.R", "albedo.G", "albedo.B", "normal.X", "normal.Y", "normal.Z", "depth.Z"};
+
+/// Their features with them, or the rest's would be divided by too few.
+TEST_F(FilmTest, LeavesOutFeaturesOfWhatIsNotFinite) {
+    FilmUnderTest test(device, 64, 2, 1, true);
+    test.set_features(0.25f);
+    test.set_radiance(8, [](std::uint32_t slot, int c) {
+        return slot % 2 == 1 && slot != 3 && c == 1 ? std::numeric_limits<double>::infinity() : 1;
+    });
+    test.film.add(8, 0);
+    std::uint64_t non_finite = 0;
+    const Image image = test.film.image(8, non_finite);
+    EXPECT_EQ(non_finite, 3u);
+    for (const char *feature : features)
+        for (int pixel = 0; pixel < 2; ++pixel)
+            EXPECT_FLOAT_EQ(image.find(feature)->values[pixel], 0.25f) << feature << " of pixel " << pixel;
+}
+
+/// What all samples see alike is their mean to the bit; plain sums of so many 0.3 are off by thousandths. Samples
+/// begin at a number of their own, as those of a pilot do.
+TEST_F(FilmTest, LosesNothingOfFeaturesToRounding) {
+    constexpr std::uint32_t slots = 8192, many = 64 * slots;
+    constexpr std::uint64_t first = (std::uint64_t(1) << 62) + 12345;
+    FilmUnderTest test(device, slots, 1, 1, true);
+    test.film.clear(first);
+    test.set_radiance(slots, [](std::uint32_t, int) { return 1; });
+    test.set_features(0.3f);
+    for (std::uint32_t done = 0; done < many; done += slots)
+        test.film.add(slots, 0, first + done);
+    std::uint64_t non_finite = 0;
+    const Image image = test.film.image(many, non_finite);
+    for (const char *feature : features)
+        EXPECT_EQ(image.find(feature)->values[0], 0.3f) << feature;
+    float plain = 0;
+    for (std::uint32_t i = 0; i < many; ++i)
+        plain += 0.3f;
+    EXPECT_GT(std::fabs(plain / double(many) - 0.3), 1e-3) << "the case is to be hard";
+}
+
+/// And what differs has the mean that sums in double tell: each rounds by 2^-25 of it at most, and counts less the more
+/// follow, sqrt(n / 3) of these in all, with four standard deviations.
+TEST_F(FilmTest, KnowsTheMeanOfFeatures) {
+    constexpr std::uint32_t count = 8192;
+    FilmUnderTest test(device, count, 1, 1, true);
+    test.set_radiance(count, [](std::uint32_t, int) { return 1; });
+    double albedo = 0;
+    test.set_features(0);
+    {
+        const auto view = test.tables["feature"].map(Access::read_write);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const float value = float(i * 7919 % 1009) / 1009;
+            view.as<float>()[std::size_t(feature_albedo_r) * count + i] = value;
+            albedo += value / double(count);
+        }
+    }
+    test.film.add(count, 0);
+    std::uint64_t non_finite = 0;
+    const Image image = test.film.image(count, non_finite);
+    EXPECT_NEAR(image.find("albedo.R")->values[0], albedo, 4 * std::sqrt(count / 3.0) * 0x1p-25 * albedo);
 }
 
 TEST_F(FilmTest, KnowsTheVarianceOfItsMean) {

@@ -125,6 +125,18 @@ class SortTest : public ::testing::Test {
     std::mt19937 engine{3};
 };
 
+/// Tables of runs do not grow with those of the sort.
+TEST_F(SortTest, RunsOfMoreRowsThanThereIsRoomForAreRefused) {
+    Device device;
+    Sorter small(device, 600);
+    small.sort.grow(2);
+    const Uints keys = random_keys(1200, 7);
+    small.sort.run(small.buffer(keys), 600, 7);
+    EXPECT_NO_THROW(small.runs.find(600));
+    small.sort.run(small.buffer(keys), 1200, 7);
+    EXPECT_THROW(small.runs.find(601), std::logic_error);
+}
+
 TEST_F(SortTest, OfNoRowsAndOfOne) {
     expect_sorted({});
     expect_sorted({0});
