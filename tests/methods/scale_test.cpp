@@ -120,8 +120,8 @@ TEST(VeryFarAway, CornellBoxKeepsItsLight) {
                       "largest error of a block of 16 x 16 pixels, relative to the image's mean", error.largest, 0.1});
 }
 
-// Where it is rendered: what is left is what the scene itself has lost, a corner off by a unit in the last place here and
-// there.
+// Where it is rendered: what is left is what the scene itself has lost, a corner off by a unit in the last place here
+// and there.
 TEST(OwnOrigin, CornellBoxStaysAsItIs) {
     ReferenceScene reference = moved(1000);
     bring_to_own_origin(reference.scene);
