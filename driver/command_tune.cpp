@@ -41,8 +41,8 @@ int run_tune(const TuneRequest &request, const Services &services) {
     Scene scene = load_requested_scene(request.scene, services, [](const std::string &warning) {
         print_message("gradus: warning: " + warning + "\n");
     });
-    bring_to_own_origin(scene);
     bring_to_own_scale(scene);
+    bring_to_own_origin(scene);
     RenderOptions of_renders;
     of_renders.threads = request.threads;
     check_memory(scene, "pt", of_renders, bytes_left(request.threads));

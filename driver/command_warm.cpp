@@ -49,8 +49,8 @@ int run_warm(const WarmRequest &request, const Services &services) {
     Scene scene = load_requested_scene(for_method(request.scene, request.method.method), services, warn);
     for (const std::string &sentence : unread_options(request.method, request.method.method))
         warn(sentence);
-    bring_to_own_origin(scene);
     bring_to_own_scale(scene);
+    bring_to_own_origin(scene);
     const std::uint64_t left = bytes_left(request.method.options.threads);
     check_memory(scene, request.method.method, request.method.options, left);
     RenderOptions options = request.method.options;
