@@ -5,8 +5,7 @@
 #include "driver/standard_streams.h"
 #include "driver/tuning_store.h"
 #include "runtime/error.h"
-#include "runtime/scene/own_origin.h"
-#include "runtime/scene/own_scale.h"
+#include "runtime/scene/own_frame.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -41,8 +40,7 @@ int run_tune(const TuneRequest &request, const Services &services) {
     Scene scene = load_requested_scene(request.scene, services, [](const std::string &warning) {
         print_message("gradus: warning: " + warning + "\n");
     });
-    bring_to_own_scale(scene);
-    bring_to_own_origin(scene);
+    bring_to_own_frame(scene);
     RenderOptions of_renders;
     of_renders.threads = request.threads;
     check_memory(scene, "pt", of_renders, bytes_left(request.threads));

@@ -5,8 +5,7 @@
 #include "driver/scene_request.h"
 #include "driver/standard_streams.h"
 #include "runtime/error.h"
-#include "runtime/scene/own_origin.h"
-#include "runtime/scene/own_scale.h"
+#include "runtime/scene/own_frame.h"
 #include "runtime/seconds_since.h"
 
 #include <CLI/CLI.hpp>
@@ -49,8 +48,7 @@ int run_warm(const WarmRequest &request, const Services &services) {
     Scene scene = load_requested_scene(for_method(request.scene, request.method.method), services, warn);
     for (const std::string &sentence : unread_options(request.method, request.method.method))
         warn(sentence);
-    bring_to_own_scale(scene);
-    bring_to_own_origin(scene);
+    bring_to_own_frame(scene);
     const std::uint64_t left = bytes_left(request.method.options.threads);
     check_memory(scene, request.method.method, request.method.options, left);
     RenderOptions options = request.method.options;

@@ -13,8 +13,7 @@
 #include "runtime/error.h"
 #include "runtime/io/image_io.h"
 #include "runtime/io/picture_library.h"
-#include "runtime/scene/own_origin.h"
-#include "runtime/scene/own_scale.h"
+#include "runtime/scene/own_frame.h"
 #include "runtime/seconds_since.h"
 
 #include <fmt/format.h>
@@ -97,8 +96,7 @@ class RenderJob {
         if (!is_limited_by_samples())
             scene.settings.samples_per_pixel =
                 request_.until_error > 0 ? ErrorWatch::most_samples : endless_samples_per_pixel;
-        own_scale_ = bring_to_own_scale(scene); // whose errors have places as the file has them
-        bring_to_own_origin(scene);
+        own_scale_ = bring_to_own_frame(scene);
         crop_ = scene.film.crop_width > 0 ? fmt::format("{},{},{},{}", scene.film.crop_x, scene.film.crop_y,
                                                         scene.film.crop_width, scene.film.crop_height)
                                           : std::string();

@@ -1,6 +1,7 @@
 #include "solver/poisson_solver.h"
 
 #include "runtime/error.h"
+#include "runtime/seconds_since.h"
 #include "solver/mean_correction.h"
 #include "solver/pieces.h"
 #include "solver/problem.h"
@@ -204,7 +205,7 @@ PoissonReport PoissonSolver::Implementation::solve(const Inputs &images, const P
     report.filled = problem.compose(kernels_for(options), images, keep_mean, result());
     finish(device);
     report.device_bytes = peak_device_bytes(device);
-    report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    report.seconds = seconds_since(begin);
     for (auto &[weights, kernels] : workspace.all_kernels())
         add_times(report.kernels, kernels->all());
     return report;

@@ -400,14 +400,14 @@
     REAL(gradient_film, correction_7, "")                                                                              \
     REAL(gradient_film, correction_8, "")                                                                              \
     REAL(gradient_film, deviation_first, "sums of squared deviations from their means")                                \
-    REAL(gradient_film, square_1, "")                                                                                  \
-    REAL(gradient_film, square_2, "")                                                                                  \
-    REAL(gradient_film, square_3, "")                                                                                  \
-    REAL(gradient_film, square_4, "")                                                                                  \
-    REAL(gradient_film, square_5, "")                                                                                  \
-    REAL(gradient_film, square_6, "")                                                                                  \
-    REAL(gradient_film, square_7, "")                                                                                  \
-    REAL(gradient_film, square_8, "")
+    REAL(gradient_film, deviation_1, "")                                                                               \
+    REAL(gradient_film, deviation_2, "")                                                                               \
+    REAL(gradient_film, deviation_3, "")                                                                               \
+    REAL(gradient_film, deviation_4, "")                                                                               \
+    REAL(gradient_film, deviation_5, "")                                                                               \
+    REAL(gradient_film, deviation_6, "")                                                                               \
+    REAL(gradient_film, deviation_7, "")                                                                               \
+    REAL(gradient_film, deviation_8, "")
 
 /* All of these: TABLE(name, columns). */
 #define GRADUS_TABLES(TABLE)                                                                                           \

@@ -35,12 +35,15 @@ double SharedWeights::weight(std::uint64_t frame, std::uint32_t start_number) co
     const random_bits start = random_key(std::uint32_t(seed), std::uint32_t(seed >> 32), 0xFFFFFFFFu, start_number,
                                          std::uint32_t(number >> 32));
     const auto low = std::uint32_t(number);
-    const point2 even = additive_sequence(start.x, start.y, low);
-    const random4 independent = random_draw(start.x, low, random_dimension_camera);
-    const bool is_even = session_.has("TRAIT_STRATIFIED");
+    point2 jitter;
+    if (session_.has("TRAIT_STRATIFIED")) {
+        jitter = additive_sequence(start.x, start.y, low);
+    } else {
+        const random4 u = random_draw(start.x, low, random_dimension_camera);
+        jitter.x = u.a, jitter.y = u.b;
+    }
     const float *camera = session_.scene.camera.data();
-    return double(filter_table_sample(camera, 1, is_even ? even.x : independent.a).weight) *
-           filter_table_sample(camera, 1, is_even ? even.y : independent.b).weight;
+    return double(filter_table_sample(camera, 1, jitter.x).weight) * filter_table_sample(camera, 1, jitter.y).weight;
 }
 
 double SharedWeights::of_part(std::uint64_t frames, std::uint32_t part, std::uint32_t parts) const {

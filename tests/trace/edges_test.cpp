@@ -69,21 +69,28 @@ Columns to_edges(const Mesh &mesh, float size) {
     return columns;
 }
 
-/// What each ray meets where they are traced in that order.
+/// What each ray meets.
+std::vector<std::uint32_t> met(Tracer &tracer, const Columns &columns) {
+    std::vector<std::uint32_t> primitives(columns[0].size(), ray_pending);
+    RayColumns ray{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        ray.origin[k] = columns[k].data();
+        ray.direction[k] = columns[3 + k].data();
+    }
+    ray.primitive = primitives.data();
+    tracer.trace(ray, primitives.size(), {}, 0);
+    return primitives;
+}
+
+/// The same where they are traced in that order.
 std::vector<std::uint32_t> met(Tracer &tracer, const Columns &columns, const std::vector<std::uint32_t> &order) {
     Columns ordered;
     for (std::size_t k = 0; k < 6; ++k)
         for (const std::uint32_t i : order)
             ordered[k].push_back(columns[k][i]);
-    std::vector<std::uint32_t> primitives(edge_rays, ray_pending), by_ray(edge_rays);
-    RayColumns ray{};
-    for (std::size_t k = 0; k < 3; ++k) {
-        ray.origin[k] = ordered[k].data();
-        ray.direction[k] = ordered[3 + k].data();
-    }
-    ray.primitive = primitives.data();
-    tracer.trace(ray, edge_rays, {}, 0);
-    for (std::size_t i = 0; i < edge_rays; ++i)
+    const std::vector<std::uint32_t> primitives = met(tracer, ordered);
+    std::vector<std::uint32_t> by_ray(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i)
         by_ray[order[i]] = primitives[i];
     return by_ray;
 }
@@ -150,14 +157,7 @@ double leaking(const Scene &scene) {
             columns[3 + k].push_back(way[k] / std::hypot(way[0], way[1], way[2]));
         }
     }
-    std::vector<std::uint32_t> primitives(rays, ray_pending);
-    RayColumns ray{};
-    for (std::size_t k = 0; k < 3; ++k) {
-        ray.origin[k] = columns[k].data();
-        ray.direction[k] = columns[3 + k].data();
-    }
-    ray.primitive = primitives.data();
-    tracer.trace(ray, rays, {}, 0);
+    const std::vector<std::uint32_t> primitives = met(tracer, columns);
     return double(std::count(primitives.begin(), primitives.end(), ray_escaped)) / double(rays);
 }
 
