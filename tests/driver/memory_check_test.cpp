@@ -40,7 +40,7 @@ RenderOptions options_of(const MemoryCase &c) {
     options.error = c.error;
     options.variance = c.variance;
     options.sampler = c.sampler;
-    options.batch_size = 2048;
+    options.batch_size = 4096;
     options.photons = 1000;
     return options;
 }

@@ -335,7 +335,7 @@ void expect_choice(const Scene &scene, const std::string &method) {
     EXPECT_EQ(automatic.statistics.samples, scene.settings.samples_per_pixel * scene.film.width * scene.film.height)
         << "the pilot's samples are not the render's";
     EXPECT_TRUE(equal_bits(automatic.image, render(scene, options, method.c_str()).image));
-    options.batch_size = 1000;
+    options.batch_size = 10'000;
     options.threads = 1;
     const Rendered again = render(scene, options, "auto");
     EXPECT_TRUE(equal_bits(automatic.image, again.image));

@@ -53,7 +53,7 @@ double block_difference(const Image &a, const Image &b) {
 // allowed.
 TEST_P(PrecisionOfKernels, DecidesFewPaths) {
     Scene scene = own_scene("cornell-box.xml", 128, 128);
-    scene.settings.samples_per_pixel = 16;
+    scene.settings.samples_per_pixel = 8;
     const Image single = image_of(scene, Precision::single), other = image_of(scene, precision());
     EXPECT_FALSE(equal_bits(single, other)) << "the arithmetic is the same";
     const double noise = block_difference(single, image_of(scene, Precision::single, 2));

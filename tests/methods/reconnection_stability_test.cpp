@@ -81,7 +81,7 @@ GradientBias bias_under_a_leaning_card(float glow) {
     const std::int32_t light = scene.emitter(Emitter::Kind::area, {50, 50, 50});
     scene.parallelogram({-4, 0.05f, -1}, {0, 0, 2}, {1, 0, 0}, scene.material(diffuse(0)), light);
     scene.look({1, 1.8, -1.8}, {1, 0, 0}, 45);
-    return gradient_bias(scene.scene, {8, 1024, 2048});
+    return gradient_bias(scene.scene, {8, 256, 2048});
 }
 
 constexpr const char *other_side = "two-sided vertices that base and offset path see from different sides by the "
@@ -147,7 +147,7 @@ void add_leaning_sheet(SceneMaker &scene, const std::vector<std::uint32_t> &stri
 TEST(ReconnectionStability, ToGlossyMetal) {
     SceneMaker scene = scene_for_bias(3);
     add_leaning_sheet(scene, {scene.material(diffuse(0.9)), scene.material(diffuse(0.1))});
-    expect_no_bias(gradient_bias(scene.scene, {8, 1024, 2048}),
+    expect_no_bias(gradient_bias(scene.scene, {8, 512, 2048}),
                    {area,
                     "glossy reconnection vertices: base and offset path would find a light from there with different "
                     "densities",

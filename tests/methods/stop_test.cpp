@@ -106,6 +106,7 @@ TEST(MeanImage, SaysWhichPixelsAReconstructionHasMadeUp) {
     const auto lost = [&](const char *name) {
         RenderOptions options;
         options.reconstruction = Reconstruction::guided;
+        options.photons = 1000;
         const std::unique_ptr<Method> method = make_method(name, shared_device(), maker.scene, options);
         while (method->render_batch()) {
         }

@@ -430,6 +430,7 @@ TEST(Blends, HaveTheMeanOfTheirParts) {
         for (const char *method : {"pt", "gpt", "sppm"}) {
             RenderOptions options;
             options.reconstruction = Reconstruction::l2;
+            options.photons = 10'000;
             const Image image = render(turned.scene, options, method).image;
             double mean = 0;
             for (std::uint32_t y = 4; y < 12; ++y)

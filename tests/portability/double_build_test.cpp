@@ -55,18 +55,20 @@ using Content = std::vector<std::vector<double>>;
 
 Content columns_of(const CapturedBuffer &buffer, const std::vector<char> &bytes, std::size_t real) {
     Content content(buffer.is_uint.size(), std::vector<double>(buffer.rows));
-    for (std::size_t c = 0; c < content.size(); ++c)
-        for (std::size_t row = 0; row < buffer.rows; ++row) {
-            const char *place = &bytes[(c * buffer.rows + row) * real];
+    for (std::size_t c = 0; c < content.size(); ++c) {
+        const bool is_uint = buffer.is_uint[c];
+        const char *place = &bytes[c * buffer.rows * real];
+        for (double &value : content[c]) {
             std::uint32_t number;
             float single;
             std::memcpy(&number, place, sizeof number);
             std::memcpy(&single, place, sizeof single);
-            double &value = content[c][row];
-            value = buffer.is_uint[c] ? number : single;
-            if (!buffer.is_uint[c] && real == sizeof value)
+            value = is_uint ? number : single;
+            if (!is_uint && real == sizeof value)
                 std::memcpy(&value, place, sizeof value);
+            place += real;
         }
+    }
     return content;
 }
 

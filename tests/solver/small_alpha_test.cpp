@@ -104,7 +104,7 @@ TEST(SmallAlpha, HasTheObjectiveOfL1) {
     constexpr double allowed = 1.05; // of 20 reweightings; lines take 40 and more (L1Objective.OfLines)
     double largest = 0;
     for (const auto &[width, height] : {std::pair{7u, 1u}, {1u, 31u}, {300u, 1u}, {3u, 3u}, {8u, 8u}, {64u, 48u}})
-        for (const std::uint64_t seed : {1u, 2u, 3u}) {
+        for (const std::uint64_t seed : {1u, 2u}) {
             const PoissonProblem problem = make_poisson_problem(width, height, 3, seed);
             for (const double alpha : {0.0, 1e-4, 1e-3, 5e-3, 2e-2}) {
                 if (alpha == 0 && std::min(width, height) == 1)
