@@ -147,7 +147,7 @@ void add_leaning_sheet(SceneMaker &scene, const std::vector<std::uint32_t> &stri
 TEST(ReconnectionStability, ToGlossyMetal) {
     SceneMaker scene = scene_for_bias(3);
     add_leaning_sheet(scene, {scene.material(diffuse(0.9)), scene.material(diffuse(0.1))});
-    expect_no_bias(gradient_bias(scene.scene, {8, 512, 2048}),
+    expect_no_bias(gradient_bias(scene.scene, {8, 1024, 2048}),
                    {area,
                     "glossy reconnection vertices: base and offset path would find a light from there with different "
                     "densities",
