@@ -15,7 +15,6 @@
 #include <iterator>
 #include <map>
 #include <memory>
-#include <regex>
 #include <set>
 #include <string>
 #include <vector>
@@ -28,11 +27,12 @@ namespace {
 std::vector<std::filesystem::path> files_of(const std::filesystem::path &scene) {
     std::ifstream in(scene);
     const std::string text{std::istreambuf_iterator<char>(in), {}};
-    const std::regex filename("name=\"filename\" value=\"([^\"]*)\"");
+    const std::string before = "name=\"filename\" value=\"";
     std::set<std::filesystem::path> files{scene};
-    for (auto found = std::sregex_iterator(text.begin(), text.end(), filename); found != std::sregex_iterator();
-         ++found)
-        files.insert(scene.parent_path() / (*found)[1].str());
+    for (std::size_t at = 0; (at = text.find(before, at)) != std::string::npos;) {
+        at += before.size();
+        files.insert(scene.parent_path() / text.substr(at, text.find('"', at) - at));
+    }
     return {files.begin(), files.end()};
 }
 

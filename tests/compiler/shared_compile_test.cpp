@@ -3,6 +3,7 @@
 #include "runtime/device/opencl.h"
 #include "runtime/device/program_code.h"
 #include "runtime/device/program_image.h"
+#include "tests/support/pattern.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +12,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <regex>
 #include <set>
 #include <string>
 #include <thread>
@@ -36,11 +36,11 @@ std::set<std::string> servers() {
         std::ifstream parts(entry->path() / "stat");
         const std::string state{std::istreambuf_iterator<char>(parts), {}};
         // The process that hands its socket over is in the session of this test, the server is the first of its own.
-        std::smatch match;
+        static const testing::Pattern of_stat("^([0-9]+) .*\\) [A-Y] [0-9]+ [0-9]+ ([0-9]+) ");
+        const std::vector<testing::Pattern::Match> fields = of_stat.all_in(state);
         if (variables.find(std::string("GRADUS_TEST_OF_COMPILERS=") + std::to_string(getpid())) != std::string::npos &&
-            std::regex_search(state, match, std::regex("^([0-9]+) .*\\) ([A-Z]) [0-9]+ [0-9]+ ([0-9]+) ")) &&
-            match[1] == match[3] && match[2] != "Z")
-            found.insert(match[1]);
+            !fields.empty() && fields[0][1] == fields[0][2])
+            found.insert(fields[0][1]);
     }
     return found;
 }

@@ -4,17 +4,18 @@
 #include "runtime/error.h"
 #include "runtime/scene/traits.h"
 #include "tests/device/stage_files.h"
+#include "tests/support/pattern.h"
 
 #include <gmock/gmock.h>
 
 #include <map>
-#include <regex>
 #include <sstream>
 
 namespace gradus {
 namespace {
 
 using ::testing::HasSubstr;
+using testing::Pattern;
 using testing::stage_files;
 
 std::vector<std::string> lines_of(const std::string &text) {
@@ -31,18 +32,17 @@ std::string code_of(const std::string &text) {
     for (const std::string &line : lines_of(text))
         if (!line.starts_with("//!"))
             code += line + "\n";
-    static const std::regex comment(R"(/\*[^*]*\*+(?:[^/*][^*]*\*+)*/|//[^\n]*)");
-    static const std::regex string(R"("[^"\n]*")");
-    return std::regex_replace(std::regex_replace(code, comment, " "), string, " ");
+    static const Pattern comment("/\\*[^*]*\\*+([^/*][^*]*\\*+)*/|//[^\n]*"), string("\"[^\"\n]*\"");
+    return string.replaced_in(comment.replaced_in(code, " "), " ");
 }
 
 std::set<std::string> traits_used_in(const std::string &text) {
-    static const std::regex name(
-        R"(\b(TRAIT_\w+|STRATEGY|SAMPLES_LIGHTS|FEW_LIGHTS|MANY_LIGHTS|SOLVER_(?:CHANNELS|WEIGHTED|JOINT))\b)");
+    static const Pattern name(
+        R"(\b(TRAIT_\w+|STRATEGY|SAMPLES_LIGHTS|FEW_LIGHTS|MANY_LIGHTS|SOLVER_(CHANNELS|WEIGHTED|JOINT))\b)");
     const std::string code = code_of(text);
     std::set<std::string> names;
-    for (std::sregex_iterator i(code.begin(), code.end(), name), end; i != end; ++i)
-        names.insert(i->str());
+    for (const Pattern::Match &match : name.all_in(code))
+        names.insert(match[0]);
     return names;
 }
 
@@ -122,16 +122,15 @@ TEST(KernelSource, HoldsEachFileOnce) {
 
 // A compiler's message names file and line by the #line directives.
 TEST(KernelSource, NumbersItsLinesAsTheirFilesDo) {
-    static const std::regex directive(R"(#line (\d+) "([^"]+)\")");
-    for (const std::string &path : stage_files()) {
+    static const Pattern directive(R"(^#line ([0-9]+) "([^"]+)" $) ");
+        for (const std::string &path : stage_files()) {
         std::vector<std::string> file;
         std::string name;
         std::size_t next = 0, checked = 0;
         for (const std::string &line : lines_of(kernel_source(path).text)) {
-            std::smatch match;
-            if (std::regex_match(line, match, directive)) {
-                next = std::stoul(match[1]);
-                name = match[2];
+            if (const std::vector<Pattern::Match> found = directive.all_in(line); !found.empty()) {
+                next = std::stoul(found[0][1]);
+                name = found[0][2];
                 for (const EmbeddedKernel &embedded : embedded_kernels())
                     if (embedded.path == name)
                         file = lines_of(embedded.text);
@@ -149,11 +148,11 @@ TEST(KernelSource, NumbersItsLinesAsTheirFilesDo) {
 
 // OpenCL C 1.2 has none (section 6.9 e), and NVIDIA's compiler refuses them; PoCL's does not say so.
 TEST(KernelSource, HasNoVariadicMacros) {
-    static const std::regex variadic(R"(^\s*#\s*define\s+\w+\([^)]*\.\.\.)");
-    ASSERT_TRUE(std::regex_search("#define F(a, ...) a", variadic)) << "the scan finds nothing";
+    static const Pattern variadic(R"(^\s*#\s*define\s+\w+\([^)]*\.\.\.)");
+    ASSERT_TRUE(variadic.is_in("#define F(a, ...) a")) << "the scan finds nothing";
     for (const EmbeddedKernel &file : embedded_kernels())
         for (const std::string &line : lines_of(file.text))
-            EXPECT_FALSE(std::regex_search(line, variadic)) << file.path << ": " << line;
+            EXPECT_FALSE(variadic.is_in(line)) << file.path << ": " << line;
 }
 
 TEST(KernelSource, OfAFileThatIsNotThereIsAnError) {
