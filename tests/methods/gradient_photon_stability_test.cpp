@@ -112,7 +112,7 @@ void look_down(SceneMaker &maker) {
 }
 
 TEST(GradientPhotonStability, AtEdgesOfMaterials) {
-    SceneMaker maker = scene_of(16);
+    SceneMaker maker = scene_of(4);
     const std::uint32_t stripes[] = {maker.material(diffuse(0.1)), maker.material(diffuse(0.9))};
     for (int i = 0; i < 12; ++i)
         maker.floor(0.17f * float(i) - 1.02f, 0.17f * float(i) - 0.85f, 2, stripes[i % 2]);
@@ -120,11 +120,11 @@ TEST(GradientPhotonStability, AtEdgesOfMaterials) {
     record_stability({area, "edges of materials: photons that count at both gather points make the difference",
                       "a floor in stripes of albedo 0.1 and 0.9, discs of three pixels",
                       "each is taken by both at half its weight", share_at_most,
-                      difference_bias(maker.scene, photon_options(1.5, 4000)).largest_share(), 0.05});
+                      difference_bias(maker.scene, photon_options(1.5, 8000)).largest_share(), 0.05});
 }
 
 TEST(GradientPhotonStability, OnSmallBalls) {
-    SceneMaker maker = scene_of(16);
+    SceneMaker maker = scene_of(4);
     add_plain_floor(maker);
     const std::uint32_t white = maker.material(diffuse(0.8));
     for (int i = 0; i < 16; ++i)
@@ -135,18 +135,18 @@ TEST(GradientPhotonStability, OnSmallBalls) {
          "curved surfaces and silhouettes: a photon's mirror image is where both gather points have it, or "
          "neither",
          "a floor of balls, the discs half as wide as they", "the shift fails for both directions alike", share_at_most,
-         difference_bias(maker.scene, photon_options(1.5, 4000)).largest_share(), 0.05});
+         difference_bias(maker.scene, photon_options(1.5, 8000)).largest_share(), 0.05});
 }
 
 TEST(GradientPhotonStability, AtSilhouettesBeforeNothing) {
-    SceneMaker maker = scene_of(16);
+    SceneMaker maker = scene_of(4);
     const std::uint32_t white = maker.material(diffuse(0.8));
     for (int i = 0; i < 9; ++i)
         maker.sphere({0.5f * float(i % 3) - 0.5f, 0.1f, 0.5f * float(i / 3) - 0.5f}, 0.2f, white);
     look_down(maker);
     record_stability({area, "silhouettes: the neighbour has no gather point",
                       "balls before nothing, a disc of three pixels", "the base photon counts for itself",
-                      share_at_most, difference_bias(maker.scene, photon_options(1.5, 8000)).largest_share(), 0.06});
+                      share_at_most, difference_bias(maker.scene, photon_options(1.5, 16'000)).largest_share(), 0.06});
 }
 
 TEST(GradientPhotonStability, OfOtherNormals) {
@@ -164,7 +164,7 @@ TEST(GradientPhotonStability, OfOtherNormals) {
 }
 
 TEST(GradientPhotonStability, OnGlossyMetal) {
-    SceneMaker maker = scene_of(64);
+    SceneMaker maker = scene_of(8);
     maker.floor(-2, 2, 2, maker.material(rough_metal(0.1)));
     maker.sphere({0, 0.3f, 0.3f}, 0.2f, maker.material(diffuse(0.8)));
     maker.look({0, 1.5, -1.5}, {0, 0, 0}, 30);
@@ -172,7 +172,7 @@ TEST(GradientPhotonStability, OnGlossyMetal) {
     record_stability({area, "gathering on glossy surfaces: lobes turn from pixel to pixel",
                       "a floor of metal of roughness 0.1 that shows a lamp",
                       "evaluates the BSDF of each photon at both gather points", share_at_most,
-                      difference_bias(maker.scene, photon_options(1.5, 4000)).largest_share(), 0.15});
+                      difference_bias(maker.scene, photon_options(1.5, 32'000)).largest_share(), 0.15});
 }
 
 /// A wall throws a caustic onto the floor. Half of it is a mirror, the other half a dark one, so that a walk that took
@@ -205,14 +205,14 @@ TEST(GradientPhotonStability, InACorner) {
 }
 
 TEST(GradientPhotonStability, WhereFewPhotonsAreSeen) {
-    for (const std::uint64_t photons : {100, 1}) {
-        SceneMaker maker = scene_of(photons == 1 ? 200 : 40);
+    for (const std::uint64_t photons : {200, 1}) {
+        SceneMaker maker = scene_of(photons == 1 ? 140 : 20);
         const std::uint32_t stripes[] = {maker.material(diffuse(0.1)), maker.material(diffuse(0.9))};
         for (int i = 0; i < 6; ++i)
             maker.floor(0.34f * float(i) - 1.02f, 0.34f * float(i) - 0.68f, 2, stripes[i % 2]);
         look_down(maker);
         record_stability({area, photons == 1 ? "one light path a pass" : "few photons seen",
-                          photons == 1 ? "200 passes of one light path" : "40 passes of 100 light paths",
+                          photons == 1 ? "140 passes of one light path" : "20 passes of 200 light paths",
                           "each photon is shifted by itself", share_at_most,
                           difference_bias(maker.scene, photon_options(3, photons)).largest_share(),
                           photons == 1 ? 0.3 : 0.06});
@@ -220,7 +220,7 @@ TEST(GradientPhotonStability, WhereFewPhotonsAreSeen) {
 }
 
 void record_under_glass(const std::string &piece) {
-    SceneMaker maker = scene_of(16);
+    SceneMaker maker = scene_of(8);
     add_floor_under_glass(maker, piece.c_str());
     const bool is_block = piece == "a block", is_smooth = piece == "a smooth lens";
     record_stability(
@@ -231,7 +231,7 @@ void record_under_glass(const std::string &piece) {
          : is_smooth ? "a floor under a ball of 90 triangles of glass, with a ball's normals"
                      : "a floor under a ball of 90 triangles of glass",
          "a walk that fails, or whose way back does not come back, is no shift; the base photon counts for itself",
-         share_at_most, difference_bias(maker.scene, photon_options(1.5, 8000)).largest_share(), 0.2});
+         share_at_most, difference_bias(maker.scene, photon_options(1.5, 16'000)).largest_share(), 0.2});
 }
 
 TEST(GradientPhotonStability, UnderGlass) { record_under_glass("a smooth lens"); }
@@ -243,13 +243,13 @@ TEST(FullGradientPhotonStability, UnderGlass) {
 
 // The same random numbers: rounding decides some paths otherwise, and nothing else may.
 TEST(GradientPhotonStability, InScenesOfAnotherSize) {
-    SceneMaker maker = scene_of(16);
+    SceneMaker maker = scene_of(4);
     add_plain_floor(maker);
     const std::uint32_t white = maker.material(diffuse(0.8));
     for (int i = 0; i < 9; ++i)
         maker.sphere({0.5f * float(i % 3) - 0.5f, 0.1f, 0.5f * float(i / 3) - 0.5f}, 0.2f, white);
     look_down(maker);
-    RenderOptions options = photon_options(1.5, 4000);
+    RenderOptions options = photon_options(1.5, 12'000);
     options.seed = seeds;
     const double shifted = shifted_photons(render(maker.scene, options, "gpm").statistics);
     for (const double factor : {1e-3, 1e4}) {

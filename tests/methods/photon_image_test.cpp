@@ -228,7 +228,7 @@ TEST_P(PathKinds, AreMadeOnceEach) {
         });
         RenderOptions options = with_radius(1, false);
         // The camera paths are most of the noise, and in the torus photons are.
-        options.photons = name == "torus-rough-glass" ? 150'000 : 50'000;
+        options.photons = name == "torus-rough-glass" ? 150'000 : is_full() ? 50'000 : 20'000;
         const auto mean = [&](const char *method, std::uint64_t samples) {
             scene.settings.samples_per_pixel = samples;
             std::vector<double> means;

@@ -21,8 +21,10 @@ void PrintTo(const Case &c, std::ostream *out) { *out << c.name; }
 
 double squared_distance(const SyntheticGatherPoint &point, const SyntheticPhoton &photon) {
     double sum = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        sum += std::pow(double(photon.position[axis]) - point.position[axis], 2);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double difference = double(photon.position[axis]) - point.position[axis];
+        sum += difference * difference;
+    }
     return sum;
 }
 
@@ -36,10 +38,12 @@ BruteForce brute_force(const std::vector<SyntheticPhoton> &photons, const std::v
     BruteForce found;
     for (std::uint32_t g = 0; g < points.size(); ++g)
         for (std::uint32_t p = 0; p < photons.size(); ++p) {
+            if (photons[p].depth > points[g].deepest)
+                continue;
             double facing = 0;
             for (std::size_t axis = 0; axis < 3; ++axis)
                 facing += double(photons[p].normal[axis]) * points[g].normal[axis];
-            if (facing <= 0.1 || photons[p].depth > points[g].deepest)
+            if (facing <= 0.1)
                 continue;
             const double ratio =
                 squared_distance(points[g], photons[p]) / (double(points[g].radius) * points[g].radius);

@@ -54,7 +54,7 @@ TEST(PhotonStability, OnMetalJustRoughEnough) {
         Scene scene = furnace(rough_metal(roughness), 4);
         scene.settings.max_depth = 4;
         Scene traced = scene;
-        traced.settings.samples_per_pixel = 64;
+        traced.settings.samples_per_pixel = 16;
         record_stability(
             {area, "gathering on glossy surfaces: few of the photons within the radius are in the lobe",
              fmt::format("a closed sphere of metal of roughness {}, direct light by photons too", roughness),
@@ -137,8 +137,8 @@ TEST(PhotonStability, OfOneLightPathAPass) {
     RenderOptions options = with_radius(0.1, true);
     options.photons = 1;
     options.direct_photons = true;
-    const Scene scene = furnace(diffuse(0.5), 800, 8);
-    record_stability({area, "one light path a pass", "a furnace, 6400 passes in all", "is as bright as it is",
+    const Scene scene = furnace(diffuse(0.5), 600, 8);
+    record_stability({area, "one light path a pass", "a furnace, 4800 passes in all", "is as bright as it is",
                       bias_at_most, largest_bias(means_of(scene, options), exactly(2)), 0.1});
 }
 
@@ -213,7 +213,7 @@ TEST(PhotonStability, AtSilhouettes) {
     maker.environment(1);
     maker.sphere({0, 0, 0}, 1, maker.material(diffuse(0.5)));
     Scene traced = maker.scene;
-    traced.settings.samples_per_pixel = 128;
+    traced.settings.samples_per_pixel = 32;
     const std::vector<Image> expected = render_seeds(traced, seeds);
     RenderOptions options = with_radius(4, false);
     options.photons = 100'000;
@@ -275,7 +275,7 @@ TEST(PhotonStability, AboveALargeGround) {
     options.radius_alpha = 0.3;
     double radius[2], seconds[2];
     for (const bool on_ground : {false, true}) {
-        SceneMaker maker(256, 8);
+        SceneMaker maker(192, 8);
         const std::uint32_t gray = maker.material(diffuse(0.5));
         maker.floor(-2, 2, 4, gray);
         maker.lamp({0, 3, 0}, 1, 1, 5, maker.material(diffuse(0)));
