@@ -21,8 +21,8 @@ constexpr std::size_t mean_seeds = 16;
 
 /// At a fixed alpha the reconstruction is linear in samples that are unbiased; at one from their variances it is not.
 TEST(GradientMean, OfL2IsUnbiased) {
-    Scene scene = own_scene("cornell-box.xml", 48, 48);
-    scene.settings.samples_per_pixel = 64;
+    Scene scene = own_scene("cornell-box.xml", 40, 40);
+    scene.settings.samples_per_pixel = 16;
     std::vector<std::vector<double>> truths;
     for (const Image &image : render_seeds(scene, mean_seeds, {}, 1 + mean_seeds, "pt"))
         truths.push_back(values_of(image));
@@ -56,7 +56,7 @@ TEST(GradientMean, OfAFilterWithNegativeLobesAndALens) {
     scene.camera.focus_distance = 3.5;
     scene.film.filter = FilmSettings::Filter::mitchell;
     scene.film.filter_radius = 2;
-    const GradientBias bias = gradient_bias(scene, {.seeds = 16, .gradient_domain = 48, .path_tracing = 96});
+    const GradientBias bias = gradient_bias(scene, {.seeds = 16, .gradient_domain = 32, .path_tracing = 64});
     std::printf("bias of the primal at most %.2g, of differences %.2g\n", bias.primal.at_most(),
                 bias.differences.at_most());
     EXPECT_TRUE(bias.primal.is_none()) << bias.primal.squared << ", standard error " << bias.primal.standard_error;

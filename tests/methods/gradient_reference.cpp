@@ -85,7 +85,7 @@ double least_seen(const std::vector<double> &planted, const std::vector<Image> &
 double expect_gradients(const ReferenceScene &reference, const std::vector<Image> &images, double samples_per_pixel,
                         RenderOptions options, const std::vector<double> &planted) {
     Scene scene = reference.scene;
-    scene.settings.samples_per_pixel = 64;
+    scene.settings.samples_per_pixel = 32;
     options.seed = 4711;
     const Image independent = render(scene, options).image;
     double score = 0;

@@ -33,7 +33,7 @@ TEST(GradientStability, AtEdgesOfDepthNormalAndAlbedo) {
     const std::int32_t light = scene.emitter(Emitter::Kind::area, {20, 20, 20});
     scene.parallelogram({1, 1, -3}, {0, -0.5f, 0}, {0.5f, 0, 0}, light_grey, light);
     scene.look({0, 0, -3}, {0, 0, 0}, 18);
-    expect_no_bias(gradient_bias(scene.scene, {8, 16, 256}),
+    expect_no_bias(gradient_bias(scene.scene, {8, 16, 64}),
                    {area, "dipoles at edges of depth, normal and texture: base and offset path have little in common",
                     "tilted cards of two greys before a wall, each four or five pixels wide",
                     "shifts fail or weigh little there; primal and differences are unbiased", 0.1});
@@ -49,7 +49,7 @@ TEST(GradientStability, FromATinyBrightLight) {
     scene.parallelogram({0.6f, 0, -0.05f}, {0.002f, 0, 0}, {0, 0.002f, 0}, grey, light);
     scene.parallelogram({-0.6f, -1, -1}, {0, 0, 1}, {0, 2, 0}, grey); // what is found there lights the wall
     scene.look({0.1, 0, -3}, {0.1, 0, 0}, 15);
-    expect_no_bias(gradient_bias(scene.scene, {8, 32, 256}),
+    expect_no_bias(gradient_bias(scene.scene, {8, 16, 256}),
                    {area, "tiny bright lights: BSDF sampling finds them once in a million paths, with a firefly",
                     "a lamp of 2 mm and radiance 1e6, 5 cm from a wall",
                     "light sampling, weighted against BSDF sampling of base and offset path; unbiased", 0.09});
@@ -66,7 +66,7 @@ TEST(GradientStability, UnderASunOfOneTexel) {
     scene.parallelogram({-0.5f, -0.3f, -0.4f}, {0.1f, 0.6f, 0.1f}, {0.3f, 0, -0.1f}, grey);
     scene.environment_map(64, 33, [](std::uint32_t x, std::uint32_t y) { return x == 5 && y == 10 ? 1e5 : 0.1; });
     scene.look({0.2, 0.1, -3}, {0, 0, 0}, 22);
-    expect_no_bias(gradient_bias(scene.scene, {8, 16, 128}),
+    expect_no_bias(gradient_bias(scene.scene, {8, 16, 64}),
                    {area, "tiny bright pixels of an environment: BSDF sampling finds them seldom, with a firefly",
                     "a map of 64 x 33 texels of which one is a million times as bright, a card and a rough metal ball",
                     "directions are sampled by the bilinear map itself, weighted against BSDF sampling; unbiased",
@@ -96,7 +96,7 @@ TEST(GradientStability, AtTheRimOfASpot) {
     scene.spot({5, 4, 3}, {0.1f, 0.2f, -1.5f}, {0, 0, 1}, 12, 12);
     scene.spot({1, 2, 4}, {-0.1f, -0.4f, -1.2f}, {0, 0.1961161f, 0.9805807f}, 5, 16);
     scene.look({0, 0, -3}, {0, 0, 0}, 20);
-    expect_no_bias(gradient_bias(scene.scene, {8, 16, 256}),
+    expect_no_bias(gradient_bias(scene.scene, {8, 16, 64}),
                    {area, "a spot's rim: the light sample of one pixel is none of its neighbour's",
                     "two spots on two walls, one without a soft rim",
                     "beyond the rim there is no light sample, as behind a lamp; unbiased", 0.14});
@@ -110,7 +110,7 @@ TEST(GradientStability, InACaustic) {
     scene.sphere({0, 0.6f, 0}, 0.4f, scene.material(glass(1.5)));
     scene.lamp({0, 2.5f, 0}, 1.4f, 1.4f, 6, grey);
     scene.look({0, 1.3, -2.6}, {0, 0.15, 0}, 30);
-    expect_no_bias(gradient_bias(scene.scene, {8, 64, 256}),
+    expect_no_bias(gradient_bias(scene.scene, {8, 48, 96}),
                    {area, "caustics: reconnecting to a Dirac vertex carries nothing",
                     "a glass ball over a floor, and what lies behind it",
                     "copies half vectors along the chain, between rough vertices too; unbiased", 0.4});
@@ -134,7 +134,7 @@ constexpr const char *tests_both = "tests both paths; who does not see the light
 TEST(GradientStability, AtTheHardShadowOfAPointLight) {
     SceneMaker scene = shadow();
     scene.point_light({30, 30, 30}, {0, 0, -2});
-    expect_no_bias(gradient_bias(scene.scene, {8, 16, 256}),
+    expect_no_bias(gradient_bias(scene.scene, {8, 16, 64}),
                    {area, one_sees, "a card's shadow on a wall, by a point light", tests_both, 0.1});
 }
 
@@ -143,7 +143,7 @@ TEST(GradientStability, AtTheShadowOfALamp) {
     const std::int32_t light = scene.emitter(Emitter::Kind::area, {8000, 8000, 8000});
     // Its front is towards the wall.
     scene.parallelogram({-0.03f, -0.03f, -2}, {0.06f, 0, 0}, {0, 0.06f, 0}, 0, light);
-    expect_no_bias(gradient_bias(scene.scene, {8, 16, 256}),
+    expect_no_bias(gradient_bias(scene.scene, {8, 16, 64}),
                    {area, one_sees, "a card's shadow on a wall, by a lamp", tests_both, 0.15});
 }
 
@@ -155,7 +155,7 @@ TEST(GradientStability, UnderAnEnvironmentAlone) {
     scene.parallelogram({-0.5f, -0.3f, -0.4f}, {0.1f, 0.6f, 0.1f}, {0.3f, 0, -0.1f}, 0);
     scene.environment(1);
     scene.look({0.2, 0.1, -3}, {0, 0, 0}, 22);
-    expect_no_bias(gradient_bias(scene.scene, {8, 16, 128}),
+    expect_no_bias(gradient_bias(scene.scene, {8, 16, 64}),
                    {area, "an environment alone: half of the paths leave the scene at once",
                     "a wall, a card and a rough metal ball, the same light from everywhere",
                     "paths that leave copy their direction; light and BSDF sampling are weighted for both; unbiased",
@@ -186,7 +186,7 @@ TEST(GradientStability, AtEdgesOfTexturesAndOpacity) {
     const std::int32_t light = scene.emitter(Emitter::Kind::area, {20, 20, 20});
     scene.parallelogram({1, 1, -3}, {0, -0.5f, 0}, {0.5f, 0, 0}, scene.material(diffuse(0.5)), light);
     scene.look({0, 0, -3}, {0, 0, 0}, 18);
-    expect_no_bias(gradient_bias(scene.scene, {8, 16, 256}),
+    expect_no_bias(gradient_bias(scene.scene, {8, 16, 64}),
                    {area, "edges of textures and of opacity: no geometry tells them",
                     "a wall in tiles of two pixels and a card with holes of three, by textures",
                     "each offset path reads its own place, and passes what is open there; unbiased", 0.1});
@@ -220,7 +220,7 @@ TEST_P(NormalMapStability, IsUnbiased) {
     scene.lamp({0.5f, 2, 0}, 0.8f, 0.8f, 6, scene.material(diffuse(0)));
     scene.look({0, 1.3, -2.6}, {0, 0.3, 0}, 30);
     expect_no_bias(
-        gradient_bias(scene.scene, {8, 32, 256}),
+        gradient_bias(scene.scene, {8, 32, 128}),
         is_mirror ? GradientRow{area, "bump beside a mirror: base and offset path are mirrored far apart",
                                 "a ball that mirrors under a bump map, on a floor under a normal map",
                                 "each copies the half vector in the frame that its own place has; unbiased", 0.4}

@@ -58,7 +58,7 @@ TEST(HalfVectorStability, ThroughClearGlass) {
     scene.parallelogram({corner.x + side, corner.y, corner.z}, {0, side, 0}, {0, 0, side}, clear);
     scene.parallelogram({corner.x, corner.y + side, corner.z}, {0, 0, side}, {side, 0, 0}, clear);
     scene.parallelogram(corner, {side, 0, 0}, {0, 0, side}, clear);
-    expect_no_bias(gradient_bias(scene.scene, {8, 32, 256}),
+    expect_no_bias(gradient_bias(scene.scene, {8, 16, 64}),
                    row("total internal reflection on one side only, silhouettes: the offset path has another event",
                        "a ball and a block of clear glass", 0.3));
 }
@@ -90,7 +90,7 @@ void expect_no_bias_at_roughness(double alpha) {
     scene.parallelogram({-0.9f, -0.8f, 0.4f}, {1.2f, 0, 0}, {0, 1.5f, 0.1f}, pane);
     scene.sphere({0.5f, -0.3f, -0.2f}, 0.4f, metal);
     expect_no_bias(
-        gradient_bias(scene.scene, {8, 32, 256}),
+        gradient_bias(scene.scene, {8, 32, 64}),
         row("roughness 1e-4 to 1: densities over many orders of magnitude, transmitted half vectors near the "
             "surface",
             fmt::format("a pane and a metal ball of roughness {}", alpha), 0.3, 0.022));
@@ -125,7 +125,7 @@ TEST(HalfVectorStability, AtIndexRatiosNearOne) {
         ++i;
     }
     scene.sphere({0.65f, 0, 0}, 0.2f, scene.material(rough_glass(0.02, 1.001)));
-    expect_no_bias(gradient_bias(scene.scene, {8, 16, 128}),
+    expect_no_bias(gradient_bias(scene.scene, {8, 16, 32}),
                    row("an index ratio near 1: refraction has no half vector",
                        "balls of smooth glass, index 1 to 1.02, and one of nearly smooth", 0.15));
 }

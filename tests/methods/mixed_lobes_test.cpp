@@ -38,7 +38,7 @@ TEST(MixedLobes, AreUnbiasedWhereTheyThrowACaustic) {
     scene.parallelogram({-1, -1, 1}, {0, 2, 0}, {2, 0, 0}, grey);
     scene.lamp({0.1f, -0.5f, 0.5f}, 0.7f, 0.5f, 6, grey);
     scene.look({0, 0.3, -3}, {0, -0.3, 0}, 36);
-    expect_no_bias(gradient_bias(scene.scene, {8, 64, 256}),
+    expect_no_bias(gradient_bias(scene.scene, {8, 64, 64}),
                    {"Half-vector copy", "a surface that mirrors and scatters: base and offset path take other lobes",
                     "strips of plastic and mirror below a lamp",
                     "the lobe is part of the path; where a way back is missing both fail; unbiased", 0.15});

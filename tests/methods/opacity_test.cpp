@@ -139,7 +139,7 @@ TEST(GradientStability, ThroughSurfacesThatAreHalfOpen) {
     const std::int32_t light = scene.emitter(Emitter::Kind::area, {20, 20, 20});
     scene.parallelogram({0.6f, 1, -2}, {0, -0.5f, 0}, {0.5f, 0, 0}, grey, light);
     scene.look({0, 0, -3}, {0, 0, 0}, 22);
-    expect_no_bias(gradient_bias(scene.scene, {16, 48, 512}),
+    expect_no_bias(gradient_bias(scene.scene, {16, 48, 128}),
                    {"Gradients", "opacity by chance: base and offset path meet a surface or pass it each on its own",
                     "half open cards before a wall, in the way of light and of the camera",
                     "visibility by a hash of each ray; unbiased", 0.1});

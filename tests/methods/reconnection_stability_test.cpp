@@ -35,7 +35,7 @@ TEST(ReconnectionStability, InACreaseOfTwoWalls) {
     const std::int32_t light = scene.emitter(Emitter::Kind::area, {5, 5, 5});
     scene.parallelogram({3, 0, -3}, {0, 0, 6}, {0, height, 0}, wall, light);
     scene.look({1, std::tan(10 * std::numbers::pi / 180), 0}, {0, 0, 0}, 5);
-    expect_no_bias(gradient_bias(scene.scene, {8, 32, 256}),
+    expect_no_bias(gradient_bias(scene.scene, {8, 32, 128}),
                    {area, "very short edges: the distance in the Jacobian goes to 0, its square's ratio to infinity",
                     "a crease of 20 degrees, pixels a fifth of the distance between its walls", unbiased, 0.3});
 }
@@ -48,7 +48,7 @@ TEST(ReconnectionStability, InACornerOfThreeWalls) {
     scene.parallelogram({0, 0, 0}, {0, 2, 0}, {0, 0, 2}, scene.material(two_sided(diffuse(0.3))));
     scene.lamp({1.5f, 2, 1.5f}, 0.7f, 0.7f, 10, scene.material(diffuse(0.5)));
     scene.look({1, 1.1, 1.2}, {0, 0, 0}, 6);
-    expect_no_bias(gradient_bias(scene.scene, {8, 16, 256}),
+    expect_no_bias(gradient_bias(scene.scene, {8, 16, 64}),
                    {area, "corners: short edges and a change of wall from pixel to pixel",
                     "a corner of three walls in the middle of the image", unbiased, 0.15});
 }
@@ -63,7 +63,7 @@ TEST(ReconnectionStability, ToPlatesSeenFromTheBack) {
         scene.parallelogram({0.05f * float(i), 0, -1}, {0, 0.1f, 0}, {0, 0, 2}, one_sided);
     scene.lamp({1, 2, 0.3f}, 1, 1, 10, scene.material(diffuse(0.5)));
     scene.look({0.1, 3, 0.4}, {0, 0, 0}, 9);
-    expect_no_bias(gradient_bias(scene.scene, {8, 32, 512}),
+    expect_no_bias(gradient_bias(scene.scene, {8, 32, 128}),
                    {area, "back-facing: the offset path would meet the second vertex from its other side",
                     "a floor with thin one-sided plates, one for three or four pixels",
                     "the shift fails for both directions alike; primal and differences are unbiased", 0.15});
@@ -126,7 +126,7 @@ TEST(ReconnectionStability, ToALightOnAnEdge) {
     scene.parallelogram({0, 0, -1}, {0, 0.2f, 0}, {0, 0, 2}, white, light);
     scene.floor(0.5f, 1, 1, white, 0.4f); // out of sight; it sends light back to the floor
     scene.look({0, 2, 0}, {0, 0, 0}, 6, {0, 0, 1});
-    expect_no_bias(gradient_bias(scene.scene, {8, 96, 256}),
+    expect_no_bias(gradient_bias(scene.scene, {8, 32, 128}),
                    {area, "a light on an edge: distances to it go to 0 and it turns from front to back",
                     "a lamp that stands on the floor, seen along its plane", unbiased, 0.12});
 }
@@ -179,7 +179,7 @@ TEST(ReconnectionStability, FromChalkBesideBlack) {
         scene.floor(0.1f * float(i), 0.1f * float(i + 1), 1, stripes[(i + 8) % 4]);
     scene.lamp({0, 0.5f, 0}, 2, 2, 3, scene.material(diffuse(0)));
     scene.look({0, 0.45, -0.9}, {0, 0, 0}, 60);
-    expect_no_bias(gradient_bias(scene.scene, {8, 32, 128}),
+    expect_no_bias(gradient_bias(scene.scene, {8, 32, 32}),
                    {area, "black beside white: the offset path is worth nothing, but its sampler finds the light",
                     "stripes of chalk, soot and black metal under a wide lamp", unbiased, 0.1});
 }
@@ -189,7 +189,7 @@ TEST(ReconnectionStability, FromChalkBesideMirrors) {
     SceneMaker scene = scene_for_bias();
     const std::uint32_t chalk = scene.material(two_sided(diffuse(0.7))), polished = scene.material(mirror());
     add_striped_room(scene, {chalk, polished}, chalk);
-    expect_no_bias(gradient_bias(scene.scene, {8, 16, 256}),
+    expect_no_bias(gradient_bias(scene.scene, {8, 16, 64}),
                    {area, "very rough next to specular: a path of densities becomes one of a Dirac lobe",
                     "a floor of chalk and mirrors in stripes of three pixels",
                     "never mixes them: the shift fails for both directions alike; unbiased", 0.3});

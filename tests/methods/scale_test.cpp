@@ -24,7 +24,7 @@ double extent(const Scene &scene) {
     return length(subtract(high, low));
 }
 
-constexpr std::uint64_t placed_samples = 16; // a pixel
+constexpr std::uint64_t placed_samples = 8; // a pixel
 constexpr const char *area = "Numbers";
 constexpr const char *other_size = "scenes of another size: distances below any fixed epsilon, or areas out of range";
 constexpr const char *far_away = "far from the origin positions lose the bits that the scene needs";
@@ -67,12 +67,12 @@ TEST_P(OwnScale, CornellBoxStaysAsItIs) {
 INSTANTIATE_TEST_SUITE_P(Numbers, OwnScale, ::testing::Values(1e-10, 1e10));
 
 /// The scene moved away from the origin by so many times its extent, along the diagonal.
-ReferenceScene moved(double extents) {
+ReferenceScene moved(double extents, std::uint64_t samples = placed_samples) {
     ReferenceScene reference = own_reference("cornell-box");
     reference.name = fmt::format("cornell-box-{}-extents-away", extents);
     const double offset = extents * extent(reference.scene) / std::sqrt(3.0);
     place(reference.scene, 1, {offset, -offset, offset});
-    reference.scene.settings.samples_per_pixel = placed_samples;
+    reference.scene.settings.samples_per_pixel = samples;
     return reference;
 }
 
@@ -91,8 +91,9 @@ struct BlockError {
 };
 
 BlockError block_error(const std::vector<Image> &images, const ReferenceScene &reference) {
-    const BlockTest blocks = block_z_test(images, reference.mean, reference.variance, double(placed_samples),
-                                          reference.samples_per_pixel, 16);
+    const BlockTest blocks =
+        block_z_test(images, reference.mean, reference.variance, double(reference.scene.settings.samples_per_pixel),
+                     reference.samples_per_pixel, 16);
     EXPECT_EQ(blocks.non_finite, 0u);
     const std::size_t per_channel = blocks.z.size() / blocks.channels.size();
     BlockError error{compare_means(mean_image(images), reference.mean).ratio, 0, 0};
@@ -109,7 +110,7 @@ BlockError block_error(const std::vector<Image> &images, const ReferenceScene &r
 // A float has 24 bits: at a thousand extents 14 are left for the scene itself, and rays start off surfaces by some
 // thousandths of its extent. Corners and the edges of blocks show that; it is no more than stated here.
 TEST(VeryFarAway, CornellBoxKeepsItsLight) {
-    const ReferenceScene reference = moved(1000);
+    const ReferenceScene reference = moved(1000, 2 * placed_samples);
     const std::vector<Image> images = render_seeds(reference.scene, 8); // fails on values that are not finite
     const BlockError error = block_error(images, reference);
     fmt::print("1000 extents away: mean ratio {:.4f}, largest error of a block {:.2f} % of the mean\n",
@@ -135,7 +136,7 @@ TEST(OwnOrigin, CornellBoxStaysAsItIs) {
 TEST(FullVeryFarAway, DoubleIsNoWorseThanFloat) {
     if (!shared_device().description().has_double)
         GTEST_SKIP() << shared_device().description().name << " has no double precision";
-    const ReferenceScene reference = moved(10'000);
+    const ReferenceScene reference = moved(10'000, 2 * placed_samples);
     RenderOptions options;
     const std::vector<Image> single = render_seeds(reference.scene, 8, options);
     options.precision = Precision::double_;
@@ -168,7 +169,7 @@ TEST_P(GradientsElsewhere, AreThoseOfTheSceneInPlace) {
     const double offset = extents * extent(scene) / std::sqrt(3.0);
     place(elsewhere, factor, {offset, -offset, offset});
     expect_no_bias(
-        gradient_bias(elsewhere, scene, {8, 16, 64}),
+        gradient_bias(elsewhere, scene, {8, 8, 32}),
         {area, extents > 0 ? far_away : other_size,
          extents > 0
              ? fmt::format("scenes/cornell-box.xml {} times its extent from the origin, gradient-domain", extents)
