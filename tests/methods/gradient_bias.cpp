@@ -98,6 +98,14 @@ SceneMaker scene_for_bias(int max_depth) {
     return scene;
 }
 
+void hide_all_kinds(SceneMaker &scene, float z) {
+    const Material hidden[] = {two_sided(diffuse(0.5)), material_of(mirror()), material_of(glass(1.5)),
+                               material_of(rough_metal(0.3)), material_of(rough_glass(0.3, 1.5))};
+    float x = 0;
+    for (const Material &material : hidden)
+        scene.sphere({x++, 0, z}, 0.1f, scene.material(material));
+}
+
 GradientBias gradient_bias(const Scene &scene, const GradientSamples &samples) {
     return gradient_bias(scene, scene, samples);
 }

@@ -63,6 +63,10 @@ struct GradientSamples {
 /// The beginning of a small scene, of 32 x 32 pixels; gradient_bias() sets its samples.
 SceneMaker scene_for_bias(int max_depth = 6);
 
+/// Adds small balls, from (0, 0, z) on to the right, of the kinds that scenes of copies and reconnections have, each of
+/// some: with all of them they need the same kernels, which are compiled once.
+void hide_all_kinds(SceneMaker &scene, float z = -20);
+
 /// Renders a scene with both methods. What the camera sees of lights counts as primal.
 GradientBias gradient_bias(const Scene &scene, const GradientSamples &samples);
 /// Another scene, of the same size, for the path tracer: one that must look the same.

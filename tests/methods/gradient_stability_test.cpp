@@ -109,6 +109,7 @@ TEST(GradientStability, InACaustic) {
     scene.floor(-2, 2, 2, grey);
     scene.sphere({0, 0.6f, 0}, 0.4f, scene.material(glass(1.5)));
     scene.lamp({0, 2.5f, 0}, 1.4f, 1.4f, 6, grey);
+    hide_all_kinds(scene);
     scene.look({0, 1.3, -2.6}, {0, 0.15, 0}, 30);
     expect_no_bias(gradient_bias(scene.scene, {8, 48, 96}),
                    {area, "caustics: reconnecting to a Dirac vertex carries nothing",

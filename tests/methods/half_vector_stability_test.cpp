@@ -22,9 +22,7 @@ SceneMaker room() {
     scene.floor(-1, 1, 1, white, -1);
     scene.parallelogram({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}, white);
     scene.lamp({0, 0.99f, 0}, 1.6f, 1.6f, 3, white);
-    const Bsdf hidden[] = {mirror(), glass(1.5), rough_metal(0.3), rough_glass(0.3, 1.5)};
-    for (int i = 0; i < 4; ++i)
-        scene.sphere({float(i), 0, -20}, 0.1f, scene.material(hidden[i]));
+    hide_all_kinds(scene);
     scene.look({0.1, 0.05, -3}, {0, 0, 0}, 36);
     return scene;
 }

@@ -8,6 +8,7 @@
 namespace gradus::testing {
 
 /// A closed box of two metres with a lamp inside, seen from outside. `between`: the walls' thickness; 0: one sheet.
+/// A ball in it is two-sided, so that walls of one side and of both have the same kernels.
 inline Scene thin_walls(double between, bool both_sides) {
     SceneMaker maker(24, 2);
     maker.look({0, 0, -6}, {0, 0, 0}, 30);
@@ -15,6 +16,7 @@ inline Scene thin_walls(double between, bool both_sides) {
     const std::uint32_t gray = maker.material(both_sides ? two_sided(diffuse(0.7)) : material_of(diffuse(0.7)));
     maker.cube(gray, -1, true);
     maker.sphere({0, 0, 0}, 0.2f, gray, maker.emitter(Emitter::Kind::area, {10, 10, 10}));
+    maker.sphere({0, 0.5f, 0}, 0.1f, maker.material(two_sided(diffuse(0.7))));
     if (between > 0) {
         maker.cube(gray);
         const float factor = float(1 + between);

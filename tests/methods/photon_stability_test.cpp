@@ -63,14 +63,46 @@ TEST(PhotonStability, OnMetalJustRoughEnough) {
     }
 }
 
-/// A floor under a lamp, whose light is found by photons alone: the mean of its image.
-double light_of_floor(const Scene &parts, const Material &material, const char *method) {
+/// What floors are made of: materials of a scene's parts.
+struct FloorParts {
+    Scene scene;
+    Material plain, mask, textured_mask, blend;
+};
+
+/// A mask of opacity 0.25, as a number and as a texture, and a blend of a diffuse part with a mirror that reflects
+/// nothing.
+FloorParts floor_parts() {
+    FloorParts parts;
+    parts.scene.textures.resize(1);
+    Texture &checks = parts.scene.textures[0];
+    checks.kind = Texture::Kind::checkerboard;
+    checks.color_0 = {0.2f, 0.2f, 0.2f};
+    checks.color_1 = {0.3f, 0.3f, 0.3f};
+    checks.to_uv = {40, 0, 0, 0, 40, 0};
+    Bsdf black = mirror(), blend;
+    black.specular_reflectance = {0, 0, 0};
+    parts.scene.blended = {diffuse(0.5), black};
+    parts.scene.blends = {{0, 1, 0.5f}};
+    blend.blend = 0;
+    parts.blend = material_of(blend);
+    parts.plain = parts.mask = material_of(diffuse(0.5));
+    parts.mask.opacity = 0.25f;
+    parts.textured_mask = parts.mask;
+    parts.textured_mask.opacity.texture = 0;
+    return parts;
+}
+
+/// A floor under a lamp, whose light is found by photons alone: the mean of its image. All parts lie on the lamp's
+/// back, where there is no light, so that all floors have the same kernels.
+double light_of_floor(const FloorParts &parts, const Material &material, const char *method) {
     SceneMaker maker(16, 16);
-    maker.scene.textures = parts.textures;
-    maker.scene.blended = parts.blended;
-    maker.scene.blends = parts.blends;
+    maker.scene.textures = parts.scene.textures;
+    maker.scene.blended = parts.scene.blended;
+    maker.scene.blends = parts.scene.blends;
     maker.floor(-4, 4, 4, maker.material(material));
     maker.lamp({0, 3, 0}, 4, 4, 1, maker.material(diffuse(0)));
+    for (const Material &hidden : {parts.plain, parts.mask, parts.textured_mask, parts.blend})
+        maker.floor(-0.1f, 0.1f, 0.1f, maker.material(hidden), 3.1f);
     maker.look({0, 1, -1}, {0, 0, 0}, 40);
     maker.scene.settings.max_depth = 2;
     RenderOptions options = with_radius(0.03, true); // the floor is lit evenly
@@ -83,21 +115,12 @@ double light_of_floor(const Scene &parts, const Material &material, const char *
 // A mask of opacity 0.25 is met by a quarter of the photons and of the camera paths: 0.25 of the light, and not a
 // sixteenth.
 TEST(PhotonStability, OnMasks) {
-    Material mask = material_of(diffuse(0.5));
-    mask.opacity = 0.25f;
-    Scene painted;
-    painted.textures.resize(1);
-    painted.textures[0].kind = Texture::Kind::checkerboard;
-    painted.textures[0].color_0 = {0.2f, 0.2f, 0.2f};
-    painted.textures[0].color_1 = {0.3f, 0.3f, 0.3f};
-    painted.textures[0].to_uv = {40, 0, 0, 0, 40, 0};
-    Material textured = mask;
-    textured.opacity.texture = 0;
+    const FloorParts parts = floor_parts();
     double off = 0;
     for (const char *method : {"sppm", "gpm"}) {
-        const double light = light_of_floor({}, material_of(diffuse(0.5)), method);
-        for (const auto &[scene, material] : {std::pair{Scene(), mask}, std::pair{painted, textured}})
-            off = worse(off, std::fabs(light_of_floor(scene, material, method) / light / 0.25 - 1));
+        const double light = light_of_floor(parts, parts.plain, method);
+        for (const Material &mask : {parts.mask, parts.textured_mask})
+            off = worse(off, std::fabs(light_of_floor(parts, mask, method) / light / 0.25 - 1));
     }
     record_stability({area, "what is met by chance: photons and camera paths each meet a mask with its opacity",
                       "a floor of opacity 0.25, as a number and as a texture, sppm and gpm",
@@ -107,18 +130,13 @@ TEST(PhotonStability, OnMasks) {
 
 // The same of a blend, half of which is a mirror that reflects nothing.
 TEST(PhotonStability, OnBlends) {
-    Scene parts;
-    Bsdf black = mirror(), blend;
-    black.specular_reflectance = {0, 0, 0};
-    parts.blended = {diffuse(0.5), black};
-    parts.blends = {{0, 1, 0.5f}};
-    blend.blend = 0;
-    const double light = light_of_floor({}, material_of(diffuse(0.5)), "sppm");
+    const FloorParts parts = floor_parts();
+    const double light = light_of_floor(parts, parts.plain, "sppm");
     record_stability({area, "what is met by chance: light and camera paths each draw a part of a blend",
                       "a floor of half a mirror and half a diffuse part, sppm",
                       "photons are kept wherever a part gathers, whichever part the light path draws",
                       "relative error of the light",
-                      std::fabs(light_of_floor(parts, material_of(blend), "sppm") / light / 0.5 - 1), 0.04});
+                      std::fabs(light_of_floor(parts, parts.blend, "sppm") / light / 0.5 - 1), 0.04});
 }
 
 // The radius goes by the pass and not by the photons that a pixel has seen, so there is nothing that few of them bias.

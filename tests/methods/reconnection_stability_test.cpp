@@ -178,6 +178,7 @@ TEST(ReconnectionStability, FromChalkBesideBlack) {
     for (int i = -8; i < 8; ++i)
         scene.floor(0.1f * float(i), 0.1f * float(i + 1), 1, stripes[(i + 8) % 4]);
     scene.lamp({0, 0.5f, 0}, 2, 2, 3, scene.material(diffuse(0)));
+    hide_all_kinds(scene);
     scene.look({0, 0.45, -0.9}, {0, 0, 0}, 60);
     expect_no_bias(gradient_bias(scene.scene, {8, 32, 32}),
                    {area, "black beside white: the offset path is worth nothing, but its sampler finds the light",
@@ -189,6 +190,7 @@ TEST(ReconnectionStability, FromChalkBesideMirrors) {
     SceneMaker scene = scene_for_bias();
     const std::uint32_t chalk = scene.material(two_sided(diffuse(0.7))), polished = scene.material(mirror());
     add_striped_room(scene, {chalk, polished}, chalk);
+    hide_all_kinds(scene);
     expect_no_bias(gradient_bias(scene.scene, {8, 16, 64}),
                    {area, "very rough next to specular: a path of densities becomes one of a Dirac lobe",
                     "a floor of chalk and mirrors in stripes of three pixels",
