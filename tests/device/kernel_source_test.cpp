@@ -122,8 +122,8 @@ TEST(KernelSource, HoldsEachFileOnce) {
 
 // A compiler's message names file and line by the #line directives.
 TEST(KernelSource, NumbersItsLinesAsTheirFilesDo) {
-    static const Pattern directive(R"(^#line ([0-9]+) "([^"]+)" $) ");
-        for (const std::string &path : stage_files()) {
+    static const Pattern directive("^#line ([0-9]+) \"([^\"]+)\"$");
+    for (const std::string &path : stage_files()) {
         std::vector<std::string> file;
         std::string name;
         std::size_t next = 0, checked = 0;
