@@ -183,9 +183,11 @@ TEST(FullTexturedLights, AreSeenAsTheyAre) {
     EXPECT_GT(contrast, 0.3);
 }
 
-/// A wall that a projector lights head on has the picture's colours, from wherever they are seen.
+/// A wall that a projector lights head on has the picture's colours, from wherever they are seen, by paths and by
+/// photons alone.
 TEST(Projector, PaintsAWallWithItsPicture) {
-    SceneMaker maker(16, 256);
+    constexpr std::uint32_t size = 16;
+    SceneMaker maker(size, 256);
     maker.look({0, 0, 4}, {0, 0, 0}, 20); // sees less than the picture
     maker.scene.settings.max_depth = 2;
     maker.parallelogram({-3, -3, 0}, {6, 0, 0}, {0, 6, 0}, maker.material(diffuse(1)));
@@ -203,17 +205,24 @@ TEST(Projector, PaintsAWallWithItsPicture) {
     options.reconstruction = Reconstruction::l2;
     const Image image = render(maker.scene, options, "gpt").image;
     const double half = 4 * std::tan(10 * std::numbers::pi / 180);
-    for (std::uint32_t y = 0; y < 16; ++y)
-        for (std::uint32_t x = 0; x < 16; ++x) {
+    double mean = 0;
+    for (std::uint32_t y = 0; y < size; ++y)
+        for (std::uint32_t x = 0; x < size; ++x) {
             double expected = 0;
             for (int i = 0; i < 64; ++i) {
-                const double across = half * (2 * (x + (i % 8 + 0.5) / 8) / 16 - 1);
-                const double down = half * (2 * (y + (i / 8 + 0.5) / 8) / 16 - 1);
+                const double across = half * (2 * (x + (i % 8 + 0.5) / 8) / size - 1);
+                const double down = half * (2 * (y + (i / 8 + 0.5) / 8) / size - 1);
                 expected += texture_value(maker.scene.textures[0], 0.5 + across / 2, 0.5 + down / 1.6)[1] / 64;
             }
             // A texel is 4.5 pixels wide: values within a pixel differ by a quarter, with 256 samples a sixteenth.
             EXPECT_NEAR(pixel(image, x, y), expected, 5 * 0.25 / 16 / std::sqrt(12.0)) << x << ", " << y;
+            mean += expected / (size * size);
         }
+    // Some 60,000 photons are seen in all, and discs of a pixel's radius reach over the image's border.
+    maker.scene.settings.samples_per_pixel = 4;
+    options.direct_photons = true;
+    options.photons = 25'000;
+    EXPECT_NEAR(spread_of(render(maker.scene, options, "sppm").image, "G").mean, mean, 0.03 * mean);
 }
 
 /// Nothing leaves a projector beside its picture or behind it.
