@@ -305,15 +305,17 @@ TEST_P(GradientPhotonsFrom, HaveDifferencesOfThePrimal) {
 INSTANTIATE_TEST_SUITE_P(Image, GradientPhotonsFrom, ::testing::Values("a_sun", "pictures"), name_of_scene);
 INSTANTIATE_TEST_SUITE_P(Full, GradientPhotonsFrom, ::testing::Values("a_map", "all_around", "a_spot"), name_of_scene);
 
-/// Seen straight from above, a floor in the sun has no differences but for rounding: each photon is shared, or moved to
-/// where it is worth the same. A few, within rounding of a disc's border, have no shift.
-TEST(GradientPhotonImage, HasNoDifferencesWhereASunShinesOnAFloor) {
+/// Seen straight from above, a floor in the sun and under a projector that throws nothing but white has no differences
+/// but for rounding: each photon is shared, or moved to where it is worth the same. A few, within rounding of a disc's
+/// border, have no shift.
+TEST(GradientPhotonImage, HasNoDifferencesWhereASunAndAProjectorShineOnAFloor) {
     SceneMaker maker(16, 1);
     maker.look({0, 1, 0}, {0, 0, 0}, 40, {0, 0, 1});
     maker.scene.camera.kind = Camera::Kind::orthographic; // the same radius everywhere
     maker.scene.settings.max_depth = 2;
     maker.floor(-3, 3, 3, maker.material(diffuse(0.6)));
     maker.directional_light({4, 4, 4}, {0.3f, -1, 0.1f});
+    maker.picture(Emitter::Kind::projector, {9, 9, 9}, 0, {0.1f, 2, -0.2f}, 3, 3).texture = no_texture;
     RenderOptions options = few_photons(true);
     options.photons = 50'000;
     do_not_weigh(options);
