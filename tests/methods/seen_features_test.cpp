@@ -21,6 +21,13 @@ class SeenFeatures : public ::testing::TestWithParam<const char *> {
         maker.parallelogram({-9, -9, -2}, {18, 0, 0}, {0, 18, 0}, maker.material(diffuse(0.3)));
         maker.parallelogram({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.material(surface));
         maker.environment(1);
+        // Out of sight: surfaces of all kinds here, so that all cases need the same kernels.
+        Bsdf hole, pane;
+        hole.kind = BsdfKind::null;
+        pane.kind = BsdfKind::thindielectric;
+        float left = 50;
+        for (const Bsdf &hidden : {mirror(), rough_metal(0.3), hole, pane})
+            maker.parallelogram({left++, 0, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}, maker.material(hidden));
         if (clipped) {
             maker.parallelogram({-1, -1, 3.5}, {0, 2, 0}, {2, 0, 0}, maker.material(diffuse(0.1)));
             maker.scene.camera.near_clip = 1;

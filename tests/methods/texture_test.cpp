@@ -328,21 +328,24 @@ Image wall_of_classes(bool pictures, const char *method) {
     return render(scene, RenderOptions(), method).image;
 }
 
+class TexturesOfClasses : public ::testing::TestWithParam<const char *> {};
+std::string name_of_method(const ::testing::TestParamInfo<const char *> &info) { return info.param; }
+
 /// In pt those that shade, in sppm those of the stage `material`.
-TEST(Textures, KernelsReadThoseOfTheirClass) {
-    for (const char *method : {"pt", "sppm"}) {
-        const Image constants = wall_of_classes(false, method), read = wall_of_classes(true, method);
-        double largest = 0;
-        for (int c = 0; c < 3; ++c)
-            for (std::size_t i = 0; i < size * size; ++i) {
-                const double expected = constants.find(colors[c])->values[i];
-                ASSERT_NEAR(read.find(colors[c])->values[i], expected, rounding * (1 + expected))
-                    << method << ", " << colors[c] << " of pixel " << i;
-                largest = worse(largest, expected);
-            }
-        EXPECT_GT(largest, 0.5) << method;
-    }
+TEST_P(TexturesOfClasses, KernelsReadThoseOfTheirClass) {
+    const Image constants = wall_of_classes(false, GetParam()), read = wall_of_classes(true, GetParam());
+    double largest = 0;
+    for (int c = 0; c < 3; ++c)
+        for (std::size_t i = 0; i < size * size; ++i) {
+            const double expected = constants.find(colors[c])->values[i];
+            ASSERT_NEAR(read.find(colors[c])->values[i], expected, rounding * (1 + expected))
+                << colors[c] << " of pixel " << i;
+            largest = worse(largest, expected);
+        }
+    EXPECT_GT(largest, 0.5);
 }
+INSTANTIATE_TEST_SUITE_P(Methods, TexturesOfClasses, ::testing::Values("pt"), name_of_method);
+INSTANTIATE_TEST_SUITE_P(Full, TexturesOfClasses, ::testing::Values("sppm"), name_of_method);
 
 /// Strips of a wall of rough plastics: two whose roughness is a picture share a kind and an index, one has others, and
 /// of one only the base is a picture. `pictures`: of one texel, in place of constants.
@@ -391,25 +394,30 @@ Image wall_of_coats(bool pictures, const char *method) {
     return render(maker.scene, RenderOptions(), method).image;
 }
 
+class TexturesOfCoats : public ::testing::TestWithParam<const char *> {};
+
 /// What a coat lets pass is known of some roughnesses, and linear between: as near as the polynomials that it is made
 /// of.
-TEST(Textures, OfRoughnessVaryWhatACoatLetsPass) {
+TEST_P(TexturesOfCoats, VaryWhatACoatLetsPass) {
     constexpr double between = 2e-3;
-    for (const char *method : {"pt", "gpt"}) {
-        const Image constants = wall_of_coats(false, method), read = wall_of_coats(true, method);
-        double largest = 0;
-        for (std::size_t i = 0; i < size * size; ++i) {
-            const double expected = constants.find("R")->values[i];
-            ASSERT_NEAR(read.find("R")->values[i], expected, between * expected) << method << ", pixel " << i;
-            largest = worse(largest, expected);
-        }
-        EXPECT_GT(largest, 0.3) << method;
+    const Image constants = wall_of_coats(false, GetParam()), read = wall_of_coats(true, GetParam());
+    double largest = 0;
+    for (std::size_t i = 0; i < size * size; ++i) {
+        const double expected = constants.find("R")->values[i];
+        ASSERT_NEAR(read.find("R")->values[i], expected, between * expected) << "pixel " << i;
+        largest = worse(largest, expected);
     }
+    EXPECT_GT(largest, 0.3);
 }
+INSTANTIATE_TEST_SUITE_P(Methods, TexturesOfCoats, ::testing::Values("pt"), name_of_method);
+INSTANTIATE_TEST_SUITE_P(Full, TexturesOfCoats, ::testing::Values("gpt"), name_of_method);
+
+class BlendsBy : public ::testing::TestWithParam<const char *> {};
 
 /// A sphere of half mirror, half wall, under light from everywhere, has the radiance of its mean albedo, however the
 /// parts are nested, and from both sides. (Mitsuba 3.9 is no judge of it: it weighs a Dirac part by densities.)
-TEST(Blends, HaveTheMeanOfTheirParts) {
+TEST_P(BlendsBy, HaveTheMeanOfTheirParts) {
+    const std::string method = GetParam();
     SceneMaker maker(16, 256);
     maker.look({0, 0, 4}, {0, 0, 0}, 24);
     maker.environment(1);
@@ -427,21 +435,21 @@ TEST(Blends, HaveTheMeanOfTheirParts) {
     for (const bool from_behind : {false, true}) {
         SceneMaker turned = maker;
         turned.sphere({0, 0, 0}, 1, turned.material(two_sided(both, both)), -1, from_behind);
-        for (const char *method : {"pt", "gpt", "sppm"}) {
-            RenderOptions options;
-            options.reconstruction = Reconstruction::l2;
-            options.photons = 10'000;
-            const Image image = render(turned.scene, options, method).image;
-            double mean = 0;
-            for (std::uint32_t y = 4; y < 12; ++y)
-                for (std::uint32_t x = 4; x < 12; ++x)
-                    mean += pixel(image, x, y) / 64;
-            // A sample of pt is 1, 0.8 or 0: a deviation of 0.45 over the root of 16384. Of gpt all pixels choose
-            // alike: an even sequence of 256 numbers is off by some 2 in 256.
-            EXPECT_NEAR(mean, expected, std::string(method) == "gpt" ? 3.0 / 256 : 5 * 0.45 / 128) << method;
-        }
+        RenderOptions options;
+        options.reconstruction = Reconstruction::l2;
+        options.photons = 10'000;
+        const Image image = render(turned.scene, options, method.c_str()).image;
+        double mean = 0;
+        for (std::uint32_t y = 4; y < 12; ++y)
+            for (std::uint32_t x = 4; x < 12; ++x)
+                mean += pixel(image, x, y) / 64;
+        // A sample of pt is 1, 0.8 or 0: a deviation of 0.45 over the root of 16384. Of gpt all pixels choose alike: an
+        // even sequence of 256 numbers is off by some 2 in 256.
+        EXPECT_NEAR(mean, expected, method == "gpt" ? 3.0 / 256 : 5 * 0.45 / 128);
     }
 }
+INSTANTIATE_TEST_SUITE_P(Methods, BlendsBy, ::testing::Values("pt", "gpt"), name_of_method);
+INSTANTIATE_TEST_SUITE_P(Full, BlendsBy, ::testing::Values("sppm"), name_of_method);
 
 /// Where the weight is a texture, the value at a place is that of both parts in its proportion.
 TEST(Blends, TakeTheirWeightFromATexture) {
