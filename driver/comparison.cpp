@@ -152,6 +152,12 @@ void run_tests(const CompareRequest &request, const std::vector<Image> &images, 
                request.threshold <= 0, result);
 }
 
+std::string error_layer_line(const ErrorCalibration &error) {
+    return fmt::format("  error layer: {:.1f} % of the errors within it, {:.1f} % within twice that{}\n",
+                       100 * error.within, 100 * error.within_twice,
+                       error.relative_mse ? fmt::format("; estimated relMSE {:.4e}", *error.relative_mse) : "");
+}
+
 std::string figures_line(const Comparison::Figures &figures) {
     return fmt::format(
                "{}\n  relMSE {:.4e}   trimmed {:.4e}   PSNR {:.2f} dB   mean ratio {}   bias {:+.3e}{}\n", figures.name,
@@ -161,12 +167,7 @@ std::string figures_line(const Comparison::Figures &figures) {
                figures.non_finite > 0
                    ? fmt::format("\n  {} values are NaN or infinite; their pixels are left out", figures.non_finite)
                    : "") +
-           (figures.error_layer
-                ? fmt::format("  error layer: {:.1f} % of the errors within it, {:.1f} % within twice that; estimated "
-                              "relMSE {:.4e}\n",
-                              100 * figures.error_layer->within, 100 * figures.error_layer->within_twice,
-                              figures.error_layer->relative_mse)
-                : "");
+           (figures.error_layer ? error_layer_line(*figures.error_layer) : "");
 }
 
 std::string test_line(const char *name, const BlockTest &test) {
@@ -192,10 +193,11 @@ nlohmann::json figures_json(const Comparison::Figures &figures) {
                         {"mean_ratio", figures.mean.ratio},
                         {"bias", figures.mean.bias},
                         {"non_finite", figures.non_finite}};
-    if (figures.error_layer)
-        json["error_layer"] = {{"within", figures.error_layer->within},
-                               {"within_twice", figures.error_layer->within_twice},
-                               {"relative_mse", figures.error_layer->relative_mse}};
+    if (const auto &error = figures.error_layer) {
+        json["error_layer"] = {{"within", error->within}, {"within_twice", error->within_twice}};
+        if (error->relative_mse)
+            json["error_layer"]["relative_mse"] = *error->relative_mse;
+    }
     return json;
 }
 

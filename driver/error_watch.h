@@ -29,7 +29,8 @@ class ErrorWatch {
     bool is_reached();
 
     double aim() const { return aim_; }
-    /// Of the last look, and the samples of each pixel that it was at.
+    /// Of the last look, and the samples of each pixel that it was at; before the first no estimate, and
+    /// samples() says nothing.
     std::optional<double> estimate() const { return estimate_; }
     std::uint64_t samples() const { return next_ / 2; }
     /// The samples of all pixels together at which it looks again.

@@ -93,12 +93,13 @@ PlaneSource GradientFilms::variance(GradientFilm::Layer layer) const {
 
 PlaneSource GradientFilms::variance_of_samples(GradientFilm::Layer layer) const {
     return [this, layer](std::uint32_t color, float *plane) {
-        const std::size_t halves = has_halves_ ? 2 : 1;
         for_each_block(layer, [&](std::size_t first, std::size_t end) {
             const std::size_t pixels = end - first;
             double count = 0;
             for (const auto &film : films_)
                 count += film->count(layer, first);
+            // A half of one sample tells no variance, while samples of both halves are independent of each other.
+            const std::size_t halves = has_halves_ && count >= 4 ? 2 : 1;
             Values variance{};
             for (std::size_t half = 0; half < halves; ++half) {
                 double n = 0;

@@ -88,8 +88,8 @@ class GradientFilms {
     /// sample is `of_none`.
     PlaneSource mean(GradientFilm::Layer layer, float of_none = 0) const;
     PlaneSource variance(GradientFilm::Layer layer) const;
-    /// That of samples that are independent in each half; 0 where there is but one. Of others it is mostly more than
-    /// the variance.
+    /// That of samples that are independent, in each half or, of two or three, in both together; 0 of but one. Of
+    /// others it is mostly more than the variance.
     PlaneSource variance_of_samples(GradientFilm::Layer layer) const;
     /// Those of all layers. Means of no sample are NaN: a solver is to take them as missing.
     ImageSources images() const;

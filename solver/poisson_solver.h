@@ -65,10 +65,11 @@ struct PoissonOptions {
     /// alpha^2 = (mean variance of dx and dy) / (mean variance of primal) instead (Kettunen et al. 2015, supplement,
     /// eq. 12). Needs the variances; where all are 0, as of one sample, they tell nothing and `alpha` stands.
     bool alpha_from_variances = false;
-    /// L2: each equation is weighted by its inverse variance, relative to the mean variance of its image, instead of
-    /// equally (after Rousselle et al. 2016). Needs the variances. The mean of I0 is then not kept.
+    /// L2: each equation is weighted by its inverse variance, relative to the scale of its image's, instead of equally
+    /// (after Rousselle et al. 2016). Needs the variances. The mean of I0 is then not kept. The scale is (mean of the
+    /// fourth roots)^4, for alpha_from_variances, too, so that a firefly is not all of it.
     bool weigh_by_variance = false;
-    /// Then an equation with a variance far below the mean still counts no more than so many times the average.
+    /// Then an equation with a variance far below that scale still counts no more than so many times as much as at it.
     /// 1 to 1e9.
     double largest_weight = 100;
     LinearMethod method = LinearMethod::automatic;

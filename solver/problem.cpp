@@ -41,8 +41,9 @@ double Problem::import_image(const Buffer &packed, const Buffer &imported, const
 }
 
 double Problem::mean_variance(const Buffer &packed, std::uint32_t planes, const Buffer &variance, std::uint32_t columns,
-                              std::uint32_t rows) {
+                              std::uint32_t rows, bool of_roots) {
     Kernel &kernel = workspace_.any_kernels().import_variance;
+    kernel.set("of_roots", of_roots);
     double sum = 0, count = double(columns) * rows * planes;
     for (std::uint32_t plane = 0; plane < planes; ++plane) { // parts of all would take memory
         workspace_.sums.bind_parts(kernel, 2);
@@ -89,19 +90,21 @@ void Problem::import_variances(const Inputs &images, bool keep) {
             *variance = u_; // which nothing is in yet
         else if (!variance->valid() || variance->bytes() < bytes)
             *variance = workspace_.make.planes("variance", workspace_.grid(), planes);
-    const double x = mean_variance(images.dx_variance(), planes, dx_variance_, w - 1, h);
-    const double y = mean_variance(images.dy_variance(), planes, dy_variance_, w, h - 1);
-    mean_primal_variance_ = mean_variance(images.primal_variance(), planes, primal_variance_, w, h);
+    const double x = mean_variance(images.dx_variance(), planes, dx_variance_, w - 1, h, keep);
+    const double y = mean_variance(images.dy_variance(), planes, dy_variance_, w, h - 1, keep);
     const double horizontal = double(w - 1) * h, vertical = double(w) * (h - 1);
-    gradient_variance_ = (x * horizontal + y * vertical) / std::max(horizontal + vertical, 1.0);
+    const double power = keep ? 4 : 1;
+    primal_variance_scale_ =
+        std::pow(mean_variance(images.primal_variance(), planes, primal_variance_, w, h, keep), power);
+    gradient_variance_scale_ = std::pow((x * horizontal + y * vertical) / std::max(horizontal + vertical, 1.0), power);
     if (!keep)
         primal_variance_ = dx_variance_ = dy_variance_ = Buffer();
 }
 
 double Problem::alpha_from_variances(double otherwise) const {
-    if (mean_primal_variance_ > 0)
-        return std::sqrt(std::max(gradient_variance_, 0.0) / mean_primal_variance_);
-    return gradient_variance_ > 0 ? 1 : otherwise;
+    if (primal_variance_scale_ > 0)
+        return std::sqrt(std::max(gradient_variance_scale_, 0.0) / primal_variance_scale_);
+    return gradient_variance_scale_ > 0 ? 1 : otherwise;
 }
 
 void Problem::make_base_weights(Kernels &kernels, bool by_variance, double largest_weight) {
@@ -127,8 +130,8 @@ void Problem::make_base_weights(Kernels &kernels, bool by_variance, double large
     kernel.set("variance_plane", variance_plane_);
     kernel.set("by_variances", by_variance);
     kernel.set_real("largest_weight", largest_weight);
-    kernel.set_real("mean_gradient_variance", gradient_variance_);
-    kernel.set_real("mean_primal_variance", mean_primal_variance_);
+    kernel.set_real("mean_gradient_variance", gradient_variance_scale_);
+    kernel.set_real("mean_primal_variance", primal_variance_scale_);
     kernel.bind(valid_primal_);
     kernel.bind(valid_dx_);
     kernel.bind(valid_dy_);
@@ -243,6 +246,7 @@ void Problem::find_held(Kernels &kernels) {
         held_ = workspace_.make.planes("valid", grid, 1);
     Kernel &kernel = kernels.mark_held;
     workspace_.system().bind(kernel);
+    bind(kernel);
     workspace_.sums.bind_parts(kernel, 1);
     kernel.bind("valid", held_);
     grid.launch(kernel, {0, 1});

@@ -18,18 +18,21 @@ class Problem {
 
     /// Reads I0, Gx and Gy. What is NaN or infinite is missing: I0 is filled from its neighbours there, and counted.
     void import(const Inputs &images, PoissonReport &report);
-    /// Reads the variances for their means, and where weights ask for them keeps them. A variance that is missing or
-    /// below zero removes its equation from weighted problems.
+    /// Reads the variances for their scales, and where weights ask for them keeps them. A variance that is missing or
+    /// below zero removes its equation from weighted problems. Their scale is the mean (Kettunen et al. 2015,
+    /// supplement); for weights (mean of fourth roots)^4: a firefly is most of a mean, and all that is less noisy than
+    /// a thousandth of it would weigh alike.
     void import_variances(const Inputs &images, bool keep);
     /// Kettunen et al. 2015, supplement, eq. 12; `otherwise` where all variances are 0.
     double alpha_from_variances(double otherwise) const;
     /// With that alpha, and weights by variance: what the noise of a channel of the solution is expected to have of
-    /// <e, A e>. The weights are gradient_variance_ / variance, and the inverse of A times that is its covariance.
-    double noise() const { return gradient_variance_ * workspace_.grid().width * workspace_.grid().height; }
+    /// <e, A e>. The weights are gradient_variance_scale_ / variance, and the inverse of A times that is its
+    /// covariance.
+    double noise() const { return gradient_variance_scale_ * workspace_.grid().width * workspace_.grid().height; }
 
     bool anything_missing() const { return anything_missing_; }
     /// Weights of the equations before any norm: 0 for what is missing, else 1 or by inverse variance, at most
-    /// `largest_weight` times that of the mean variance.
+    /// `largest_weight` times that of the variances' scale.
     void make_base_weights(Kernels &kernels, bool by_variance, double largest_weight = 1);
     /// Sets the finest system to the base weights, those of the data term times alpha^2.
     void use_least_squares_weights(Kernels &kernels, double alpha);
@@ -77,9 +80,9 @@ class Problem {
     /// Returns how many pixels or differences are missing.
     double import_image(const Buffer &packed, const Buffer &imported, const Buffer &valid, std::uint32_t columns,
                         std::uint32_t rows);
-    /// Of those that are there.
+    /// Of those that are there, or of their fourth roots.
     double mean_variance(const Buffer &packed, std::uint32_t planes, const Buffer &variance, std::uint32_t columns,
-                         std::uint32_t rows);
+                         std::uint32_t rows, bool of_roots);
     /// u += image - the sum in slot_mean times mean_factor.
     void add_to_u(Kernels &kernels, const Buffer &image, double mean_factor);
     const Buffer &zero();
@@ -96,7 +99,7 @@ class Problem {
     Buffer zero_, held_;
     bool anything_missing_ = false, held_is_known_ = false;
     std::uint64_t not_held_ = 0;
-    double gradient_variance_ = 0, mean_primal_variance_ = 0;
+    double gradient_variance_scale_ = 0, primal_variance_scale_ = 0;
 };
 
 } // namespace gradus::solver

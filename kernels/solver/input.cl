@@ -23,16 +23,17 @@ SOLVE import_image(GRID, uint edge_columns, uint edge_rows, uint partials, __glo
 }
 
 /* A plane of variances, -1 where one is missing, as those below 0 are; and the parts of two sums: of those that are
- * there, and how many are not. */
-SOLVE import_variance(GRID, uint edge_columns, uint edge_rows, uint partials, __global const float *packed,
-                      __global real *imported, __global real *partial) {
+ * there, or of their fourth roots, and how many are not. */
+SOLVE import_variance(GRID, uint edge_columns, uint edge_rows, uint of_roots, uint partials,
+                      __global const float *packed, __global real *imported, __global real *partial) {
     SOLVER_PLACE
     const bool inside = x < edge_columns && y < edge_rows;
     const real value = inside ? packed[PACKED_AT(channel)] : 0.0f;
     const bool is_there = is_finite(value) && value >= R(0);
     imported[GRID_AT(channel, x, y)] = is_there ? value : R(-1);
     const size_t part = tile * SOLVER_TILE + item;
-    partial[part] = is_there ? value : R(0);
+    const real there = is_there ? value : R(0);
+    partial[part] = of_roots ? r_sqrt(r_sqrt(there)) : there;
     partial[partials + part] = is_there ? R(0) : R(1);
 }
 

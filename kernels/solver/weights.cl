@@ -137,14 +137,15 @@ SOLVE extrapolate(GRID, real factor, __global real *u, __global real *previous) 
     previous[at] = now;
 }
 
-/* valid = 1 where an equation is left that holds the pixel. */
-SOLVE mark_held(GRID, uint weight_plane, uint partials, __global const real *inverse_diagonal, __global real *valid,
-                __global real *partial) {
+/* valid = 1 where an equation is left that holds the pixel. That of its own data does even where alpha is 0, which
+ * leaves nothing of it on the diagonal. */
+SOLVE mark_held(GRID, uint weight_plane, uint partials, __global const real *inverse_diagonal,
+                __global const real *base_data, __global real *valid, __global real *partial) {
     SOLVER_PLACE_OF_ALL_CHANNELS
     const size_t at = GRID_AT(0, x, y);
     bool held = true;
     for (size_t c = 0; c < SOLVER_WEIGHT_PLANES; ++c)
-        held = held && inverse_diagonal[c * weight_plane + at] > R(0);
+        held = held && inverse_diagonal[c * weight_plane + at] + base_data[c * weight_plane + at] > R(0);
     valid[at] = held ? R(1) : R(0);
     partial[tile * SOLVER_TILE + item] = x < width && y < height && !held ? R(1) : R(0);
 }

@@ -28,8 +28,8 @@ std::optional<ErrorCalibration> error_calibration(const Image &image, const Imag
         return std::nullopt;
     calibration.within /= double(count);
     calibration.within_twice /= double(count);
-    const auto stated = image.metadata.find("estimated_error");
-    calibration.relative_mse = stated == image.metadata.end() ? 0 : std::strtod(stated->second.c_str(), nullptr);
+    if (const auto stated = image.metadata.find("estimated_error"); stated != image.metadata.end())
+        calibration.relative_mse = std::strtod(stated->second.c_str(), nullptr);
     return calibration;
 }
 

@@ -11,8 +11,8 @@ struct ErrorCalibration {
     /// Shares of the values whose true error is at most once and twice as large as the layer says; of normal errors
     /// 0.683 and 0.954 are.
     double within = 0, within_twice = 0;
-    /// The image's metadata `estimated_error`: the relMSE that it takes itself to have. 0 where it has none.
-    double relative_mse = 0;
+    /// The image's metadata `estimated_error`: the relMSE that it takes itself to have.
+    std::optional<double> relative_mse;
 };
 
 /// Over channels R, G, B; nothing where the image has no such layer or no value is finite. `variance`: of the reference

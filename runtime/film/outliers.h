@@ -6,7 +6,8 @@
 
 namespace gradus {
 
-/// Each value of a plane, but no more than the second largest and no less than the second smallest of those around it.
+/// Each value of a plane, but no more than the second largest and no less than the second smallest of the eight around
+/// it. Beyond an edge is what is nearest within, but not the pixel itself.
 std::vector<double> without_outliers(const std::vector<double> &plane, std::uint32_t width, std::uint32_t height);
 
 /// What relMSE (metrics.h) weighs pixels by, this plane without its outliers being the reference. What is not finite

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace gradus {
 
@@ -132,33 +133,70 @@ std::optional<DocumentType> document_type(std::string_view text) {
     return type;
 }
 
+/// A text with entities in their places, those in the values of others too.
+class Expansion {
+  public:
+    Expansion(const Entities &entities, std::size_t most_bytes) : entities_(entities), most_bytes_(most_bytes) {}
+
+    /// False where texts and values, as often as they are read, come to more than `most_bytes`.
+    bool append(std::string_view text) {
+        constexpr std::size_t bytes_a_reference = 64; // what looking one up is worth: many may stand for nothing
+        bytes_ += text.size() + bytes_a_reference;
+        if (bytes_ > most_bytes_)
+            return false;
+        for (std::size_t at = 0; at < text.size();) {
+            const std::size_t ampersand = std::min(text.find('&', at), text.size());
+            result_.append(text, at, ampersand - at);
+            at = ampersand;
+            if (at == text.size())
+                break;
+            // Each of many ampersands ends the search of another.
+            const std::size_t end = text.find_first_of(";&", at + 1);
+            const std::string *const value =
+                end == std::string::npos || text[end] == '&' ? nullptr : value_of(text.substr(at + 1, end - at - 1));
+            if (!value) {
+                result_ += text[at++];
+                continue;
+            }
+            at = end + 1;
+            open_.push_back(value);
+            if (!append(*value))
+                return false;
+            open_.pop_back();
+        }
+        return true;
+    }
+
+    std::string take() { return std::move(result_); }
+
+  private:
+    /// nullptr: it stays as it is, for nothing declares it, or it is within itself, or within too many others.
+    const std::string *value_of(std::string_view name) const {
+        constexpr std::size_t deepest = 32;
+        const auto found = entities_.find(name);
+        if (found == entities_.end() || open_.size() == deepest ||
+            std::ranges::find(open_, &found->second) != open_.end())
+            return nullptr;
+        return &found->second;
+    }
+
+    const Entities &entities_;
+    const std::size_t most_bytes_;
+    std::size_t bytes_ = 0;
+    std::string result_;
+    std::vector<const std::string *> open_; ///< values that the text lies in
+};
+
 } // namespace
 
 std::string with_entities(std::string text, std::size_t most_bytes) {
     const std::optional<DocumentType> type = document_type(text);
     if (!type)
         return text;
-    std::string result = text.substr(0, type->end);
-    for (std::size_t at = type->end; at < text.size();) {
-        const std::size_t ampersand = std::min(text.find('&', at), text.size());
-        result.append(text, at, ampersand - at);
-        at = ampersand;
-        if (at == text.size())
-            break;
-        const std::size_t end = text.find_first_of(";&", at + 1); // each of many ampersands ends the search of another
-        const auto found = end == std::string::npos || text[end] == '&'
-                               ? type->entities.end()
-                               : type->entities.find(std::string_view(text).substr(at + 1, end - at - 1));
-        if (found == type->entities.end()) {
-            result += text[at++];
-            continue;
-        }
-        result += found->second;
-        at = end + 1;
-        if (result.size() > most_bytes)
-            return text;
-    }
-    return result;
+    Expansion expansion(type->entities, most_bytes);
+    if (!expansion.append(std::string_view(text).substr(type->end)))
+        return text;
+    return text.substr(0, type->end) + expansion.take();
 }
 
 } // namespace gradus

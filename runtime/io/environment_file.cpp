@@ -50,7 +50,7 @@ Channel *channel_named(Image &image, const std::string &name) {
 using Planes = std::vector<Channel *>;
 
 /// The pictures that an image may stand for: the file's own R, G and B, or those of its layers ("Layer.R"), or else a Y
-/// of either, or its only channel.
+/// of either, or its only channel. A Y beside X and Z is no gray.
 std::vector<Planes> pictures_in(Image &image) {
     std::vector<std::string> layers = {""};
     for (const Channel &channel : image.channels)
@@ -62,7 +62,8 @@ std::vector<Planes> pictures_in(Image &image) {
                               channel_named(image, layer + "b")};
         if (std::ranges::count(color, nullptr) == 0)
             colors.push_back(color);
-        if (Channel *const luminance = channel_named(image, layer + "y"))
+        Channel *const luminance = channel_named(image, layer + "y");
+        if (luminance && !(channel_named(image, layer + "x") && channel_named(image, layer + "z")))
             grays.push_back({luminance});
         if (layer.empty() && !colors.empty())
             return colors;
@@ -89,7 +90,8 @@ std::shared_ptr<const EnvironmentMap> read_environment(const OpenFile &file, std
                                                path, image.width, image.height, most_environment_texels >> 20));
     const std::vector<Planes> pictures = pictures_in(image);
     if (pictures.empty())
-        throw SceneError(location, fmt::format("of the {} channels of the environment map {} none are R, G, B or Y",
+        throw SceneError(location, fmt::format("of the {} channels of the environment map {} none are R, G, B or Y; "
+                                               "X, Y and Z are not read: save it as R, G and B",
                                                image.channels.size(), path));
     const Planes &planes = pictures.front();
     if (pictures.size() > 1)

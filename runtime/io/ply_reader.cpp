@@ -4,6 +4,7 @@
 #include "runtime/io/ply_attributes.h"
 #include "runtime/io/text.h"
 
+#include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -127,6 +128,9 @@ class PlyReader {
                     for (const Property &property : element.properties)
                         skip(property);
         }
+        if (!mesh_.positions.empty() &&
+            std::ranges::find(elements_, "face", &ElementDeclaration::name) == elements_.end())
+            fail_without_faces();
         for (const auto &triangle : mesh_.triangles)
             for (std::uint32_t index : triangle)
                 if (index >= mesh_.positions.size())
@@ -139,6 +143,7 @@ class PlyReader {
     [[noreturn]] void fail(const std::string &message) const {
         throw SceneError({std::make_shared<const std::string>(file_name_), line_}, message);
     }
+    [[noreturn]] void fail_without_faces() const;
     std::string_view header_line();
     void read_header();
     double value(Scalar type);
@@ -157,6 +162,15 @@ class PlyReader {
     std::vector<ElementDeclaration> elements_;
     Mesh mesh_;
 };
+
+void PlyReader::fail_without_faces() const {
+    std::vector<std::string> skipped;
+    for (const ElementDeclaration &element : elements_)
+        if (element.name != "vertex")
+            skipped.push_back(fmt::format("\"{}\"", element.name));
+    fail(fmt::format("the file has vertices but no element \"face\"{}{}",
+                     skipped.empty() ? "" : "; not read: ", shortened(join(skipped), 80)));
+}
 
 std::string_view PlyReader::header_line() {
     ++line_;

@@ -130,6 +130,8 @@ void SceneBuilder::put_in_line(const Element &element, bool in_group, std::vecto
                                                    " shapes, as often as shapes contain them" + limits_hint);
         if (std::find(parents.begin(), parents.end(), &element) != parents.end())
             throw SceneError(element.location, "a shape contains itself through a <ref>");
+        if (in_group && type_of(element) == "shapegroup")
+            throw SceneError(element.location, "a shapegroup in a shapegroup is not supported");
         check_media(element);
         shape.geometry = build_object<ShapeGeometry>(element);
         if (const auto *group = std::get_if<ShapeGroup>(&shape.geometry); group && group->instanced && in_group)

@@ -145,9 +145,22 @@ std::optional<std::string> nearest_name(const std::string &name, const std::vect
     return nearest;
 }
 
+namespace {
+/// Of UTF-8.
+bool is_inside_a_letter(char c) { return (c & 0xc0) == 0x80; }
+} // namespace
+
 std::string quoted_excerpt(std::string_view text) {
+    constexpr std::size_t longest = 24;
+    // A terminal obeys control characters.
+    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+    std::size_t end = 0;
+    while (end < std::min(text.size(), longest) && !is_control(text[end]))
+        ++end;
+    while (end > 0 && end < text.size() && is_inside_a_letter(text[end]))
+        --end;
     std::string result("\"");
-    result.append(text.substr(0, 24));
+    result.append(text.substr(0, end));
     result.append("\"");
     return result;
 }
@@ -155,11 +168,10 @@ std::string quoted_excerpt(std::string_view text) {
 std::string shortened(std::string_view text, std::size_t most) {
     if (text.size() <= most)
         return std::string(text);
-    const auto inside_a_letter = [&](std::size_t at) { return (text[at] & 0xc0) == 0x80; }; // of UTF-8
     std::size_t head = most * 3 / 4, tail = text.size() - most / 4;
-    while (head > 0 && inside_a_letter(head))
+    while (head > 0 && is_inside_a_letter(text[head]))
         --head;
-    while (tail < text.size() && inside_a_letter(tail))
+    while (tail < text.size() && is_inside_a_letter(text[tail]))
         ++tail;
     return std::string(text.substr(0, head)) + "..." + std::string(text.substr(tail));
 }

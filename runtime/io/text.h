@@ -31,7 +31,8 @@ std::optional<std::vector<double>> parse_numbers(std::string_view text);
 
 /// The candidate closest to the name by edit distance, if it is close enough to be meant.
 std::optional<std::string> nearest_name(const std::string &name, const std::vector<std::string> &candidates);
-/// The beginning of the text between double quotes, for messages.
+/// The beginning of the text between double quotes, for messages: up to 24 bytes, and none from the first control
+/// character on.
 std::string quoted_excerpt(std::string_view text);
 /// The text, or its beginning and its end with "..." between them where it has more than `most` bytes: what a file says
 /// may be of any length, a message not.

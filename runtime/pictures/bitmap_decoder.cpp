@@ -82,7 +82,8 @@ int channel_named(const OIIO::ImageSpec &spec, const std::string &name) {
 }
 
 /// The channels to take: one or three.
-std::vector<int> channels_of(const std::string &path, const OIIO::ImageSpec &spec, const std::string &asked) {
+std::vector<int> channels_of(const std::string &path, const OIIO::ImageSpec &spec, const BitmapRequest &request) {
+    const std::string &asked = request.channel;
     if (!asked.empty()) {
         int channel = asked == "a" && spec.alpha_channel >= 0 ? spec.alpha_channel : channel_named(spec, asked);
         if (channel < 0 && (asked == "r" || asked == "g" || asked == "b")) // all that gray has is its one channel
@@ -94,7 +95,14 @@ std::vector<int> channels_of(const std::string &path, const OIIO::ImageSpec &spe
     const int r = channel_named(spec, "R"), g = channel_named(spec, "G"), b = channel_named(spec, "B");
     if (r >= 0 && g >= 0 && b >= 0)
         return {r, g, b};
-    if (const int y = channel_named(spec, "Y"); y >= 0)
+    const int x = channel_named(spec, "X"), y = channel_named(spec, "Y"), z = channel_named(spec, "Z");
+    if (x >= 0 && y >= 0 && z >= 0) {
+        if (request.is_linear) // a vector
+            return {x, y, z};
+        refuse(path, "its channels are X, Y and Z, colours of CIE XYZ or vectors: save colours as R, G and B; vectors "
+                     "are read with raw set to true");
+    }
+    if (y >= 0)
         return {y};
     if (spec.nchannels <= 2)
         return {0};
@@ -133,7 +141,7 @@ ReadBitmap decode_bitmap(const OpenFile &file, const BitmapRequest &request) {
     OIIO::ImageInput &input = *opened.input;
     const OIIO::ImageSpec spec = input.spec();
     check_size(file, spec, request.limits);
-    const std::vector<int> channels = channels_of(path, spec, request.channel);
+    const std::vector<int> channels = channels_of(path, spec, request);
     const bool is_alpha = channels.size() == 1 && channels[0] == spec.alpha_channel;
     ReadBitmap read;
     const Bitmap::Format stored = format_of(spec);

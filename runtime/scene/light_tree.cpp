@@ -74,11 +74,11 @@ struct Sum {
 
 class Builder {
   public:
-    Builder(LightTree &tree, std::vector<TreeLight> &lights) : tree_(tree), lights_(lights) {
+    Builder(LightTree &tree, std::vector<TreeLight> &lights, double scene_extent) : tree_(tree), lights_(lights) {
         Extent box;
         for (const TreeLight &light : lights)
             box.add(light.low, light.high);
-        double size = std::max({box.size(0), box.size(1), box.size(2)});
+        double size = std::max({box.size(0), box.size(1), box.size(2), 1e-6 * scene_extent});
         for (const double coordinate : {box.low[0], box.low[1], box.low[2]})
             size = std::max(size, 1e-6 * std::fabs(coordinate));
         size = size > 0 ? size : 1; // a lamp at the origin
@@ -267,11 +267,11 @@ void add_leaf(LightTree &tree, std::uint32_t leaf, std::span<const std::uint32_t
 } // namespace
 
 LightTree make_light_tree(std::vector<TreeLight> lights, const std::vector<std::uint32_t> &far,
-                          const std::vector<double> &far_weights, std::uint32_t light_count) {
+                          const std::vector<double> &far_weights, std::uint32_t light_count, double scene_extent) {
     LightTree tree;
     tree.leaf.assign(light_count + 1, 0); // the last is the black light's
     tree.probability.assign(light_count, 0);
-    Builder builder(tree, lights);
+    Builder builder(tree, lights, scene_extent);
     builder.build();
     tree.slots.reserve((lights.size() + far.size()) * light_slot_words);
     tree.leaves.push_back(0);

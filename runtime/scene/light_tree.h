@@ -28,9 +28,11 @@ struct LightTree {
 };
 
 /// Lights at infinity are in a leaf of their own, chosen by `far_weights`, which are by `far`. light_count: of all.
+/// scene_extent: the longest side of what light is sent to; places further away than a million times the lights' box
+/// would leave the range of the tree's units.
 /// Splits are those of the least cost by power, orientation and size (Conty Estevez and Kulla 2018), as far as the
 /// halves then fit into the levels below. Takes time O(n log n), on all cores, and is always the same tree.
 LightTree make_light_tree(std::vector<TreeLight> lights, const std::vector<std::uint32_t> &far,
-                          const std::vector<double> &far_weights, std::uint32_t light_count);
+                          const std::vector<double> &far_weights, std::uint32_t light_count, double scene_extent);
 
 } // namespace gradus

@@ -88,6 +88,14 @@ TEST_F(Compare, SaysHowRightAnErrorLayerIs) {
     write_image(make_gray(side, side, std::vector<float>(side * side, 0.0064f)), at("variance.exr"));
     EXPECT_NEAR(compare(0.06f, {"--variance", "variance.exr"}).at("within").get<double>(), 0.683, 0.022);
     EXPECT_THAT(run({"compare", "image.exr", "reference.exr"}).out, ::testing::Not(HasSubstr("error layer")));
+    // Other programs' images say no estimate.
+    Image unstated = read_image(at("layered.exr"));
+    unstated.metadata.erase("estimated_error");
+    write_image(unstated, at("unstated.exr"));
+    const std::string text = run({"compare", "unstated.exr", "reference.exr", "--json", "out.json"}).out;
+    EXPECT_THAT(text, ::testing::AllOf(HasSubstr("error layer: "), ::testing::Not(HasSubstr("estimated"))));
+    EXPECT_FALSE(
+        nlohmann::json::parse(text_of("out.json")).at("images").at(0).at("error_layer").contains("relative_mse"));
 }
 
 TEST_F(Compare, PrintsFiguresOfOneImage) {

@@ -1,6 +1,7 @@
 #include "runtime/film/metrics.h"
 
 #include "runtime/error.h"
+#include "runtime/film/outliers.h"
 #include "tests/film/make_image.h"
 
 #include <gmock/gmock.h>
@@ -136,6 +137,24 @@ TEST(Metrics, ErrorPictureIsRedWhereTooBrightAndBlueWhereTooDark) {
     EXPECT_THAT(at(2), ElementsAre(0.75f, 0.75f, 1));
     EXPECT_THAT(at(3), ElementsAre(1, 0, 0));
     EXPECT_THAT(at(4), ElementsAre(1, 1, 0));
+}
+
+/// Wherever it is, and in images in which all pixels are at an edge.
+TEST(Outliers, OfOnePixelAreNotTheirOwnReference) {
+    for (const auto &[width, height] : {std::pair{5u, 4u}, {1u, 6u}, {6u, 1u}, {2u, 2u}, {1u, 2u}})
+        for (std::size_t at = 0; at < std::size_t(width) * height; ++at)
+            for (const double outlier : {1000.0, -1000.0}) {
+                std::vector<double> plane(std::size_t(width) * height, 2);
+                plane[at] = outlier;
+                EXPECT_EQ(without_outliers(plane, width, height)[at], 2) << width << " x " << height << ", " << at;
+            }
+    EXPECT_EQ(without_outliers({7}, 1, 1), std::vector<double>{7}) << "nothing is around it";
+}
+
+TEST(Outliers, AreHeldToTheSecondOfThoseAround) {
+    EXPECT_EQ(without_outliers({1, 2, 3, 4, 90, 5, 6, 7, 8}, 3, 3)[4], 7);
+    EXPECT_EQ(without_outliers({1, 2, 3, 4, -90, 5, 6, 7, 8}, 3, 3)[4], 2);
+    EXPECT_EQ(without_outliers({1, 2, 3, 4, 4.5, 5, 6, 7, 8}, 3, 3)[4], 4.5);
 }
 
 TEST(Metrics, MeanImage) {

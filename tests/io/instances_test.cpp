@@ -129,6 +129,15 @@ TEST(KeptInstances, OfASingularMapAreErrorsWithTheirLine) {
                 HasSubstr("scene.xml:5"));
 }
 
+TEST(KeptInstances, OfAGroupInAGroupAreErrors) {
+    const std::string inner = "\n<shape type=\"shapegroup\" id=\"i\"><shape type=\"cube\"/></shape>";
+    const std::string message =
+        error_of_text(scene_around(group_of("<shape type=\"cube\"/>" + inner) + instance_of("")));
+    EXPECT_THAT(message, HasSubstr("scene.xml:4: a shapegroup in a shapegroup is not supported"));
+    EXPECT_THAT(error_of_text(scene_around(inner + group_of("<ref id=\"i\"/>") + instance_of(""))),
+                HasSubstr("a shapegroup in a shapegroup"));
+}
+
 TEST(KeptInstances, CountAgainstTheLimits) {
     LoadOptions options;
     options.instances = InstanceChoice::copies;

@@ -163,6 +163,11 @@ TEST(Obj, Errors) {
     EXPECT_THAT(obj_error(head + "f a b c\n"), HasSubstr("\"a b c"));
     EXPECT_THAT(obj_error(head + "f 1,2 2 3\n"), HasSubstr("m.obj:4: a face corner"));
     EXPECT_THAT(obj_error("v 0 zero 0\n"), HasSubstr("m.obj:1: \"zero 0"));
+    EXPECT_EQ(obj_error("v 0 \x1b[2Jzero\n"), "m.obj:1: \"\" is not a number");
+    EXPECT_EQ(obj_error("v 0 zero\x7f 0\n"), "m.obj:1: \"zero\" is not a number");
+    EXPECT_EQ(obj_error("v 0 abcdefghijklmnopqrstuvw\u00e9\n"), "m.obj:1: \"abcdefghijklmnopqrstuvw\" is not a number");
+    EXPECT_EQ(obj_error("v 0 abcdefghijklmnopqrstuv\u00e9s\n"),
+              "m.obj:1: \"abcdefghijklmnopqrstuv\u00e9\" is not a number");
     EXPECT_THAT(obj_error("v 0 0\n"), HasSubstr("three numbers"));
     EXPECT_THAT(obj_error(head + "f 1 2 99999999999999999999999\n"), HasSubstr("out of range"));
 }
@@ -202,6 +207,12 @@ TEST(Ply, Errors) {
     EXPECT_THAT(ply_error(head + "0 0 0\n3 0 0 1\n"), HasSubstr("index 1 is out of range: there are 1"));
     EXPECT_THAT(ply_error(head + "0 0 0\n3 0 0 -1\n"), HasSubstr("out of range"));
     EXPECT_THAT(ply_error(head + "0 0 x\n3 0 0 0\n"), HasSubstr("\"x"));
+    EXPECT_EQ(ply_error(head + "0 0 x\n3 0 0 0\n"), "m.ply: \"x\" is not a number");
+    const std::string points = head.substr(0, head.find("element face"));
+    EXPECT_EQ(ply_error(points + "end_header\n0 0 0\n"), "m.ply: the file has vertices but no element \"face\"");
+    EXPECT_EQ(ply_error(points + "element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n3 0 0 "
+                                 "0\n"),
+              "m.ply: the file has vertices but no element \"face\"; not read: \"tristrips\"");
     EXPECT_THAT(ply_error("ply\nformat binary_little_endian 1.0\nelement vertex 1000000000000\nproperty float "
                           "x\nproperty float y\nproperty float z\nend_header\n"),
                 HasSubstr("1000000000000"));

@@ -758,6 +758,12 @@ TEST(EmitterPlugin, EnvironmentMap) {
     expect_vector(turned.scene.emitters[0].axes[0], 0, 0, 1);
     expect_vector(turned.scene.emitters[0].axes[1], 0, 1, 0);
     expect_vector(turned.scene.emitters[0].axes[2], 1, 0, 0);
+    // Of three digits.
+    const LoadedScene rounded = load_with_map(
+        "<emitter type=\"envmap\">" + sky_file +
+        "<transform name=\"to_world\"><matrix value=\".707 0 .707 0 0 1 0 0 -.707 0 .707 0 0 0 0 1\"/></transform>"
+        "</emitter>");
+    expect_vector(rounded.scene.emitters.at(0).axes[0], std::sqrt(0.5), 0, -std::sqrt(0.5));
 }
 
 /// Of an environment of one texel with such channels, each of which is worth its place: 1, 2, 3...
@@ -788,8 +794,9 @@ TEST(EmitterPlugin, EnvironmentMapsOfLayers) {
                 ElementsAre(HasSubstr("2 layers that could be meant; it is that of the channel a.R")));
     EXPECT_THAT(expect_channels({"A", "Y"}, 2, 2, 2), IsEmpty());
     EXPECT_THAT(expect_channels({"light"}, 1, 1, 1), IsEmpty());
+    EXPECT_THAT(expect_channels({"N.X", "N.Y", "N.Z", "Y"}, 4, 4, 4), IsEmpty());
     for (const std::vector<std::string> &names :
-         {std::vector<std::string>{"X", "Z"}, {"R", "G"}, {"a.R", "b.G", "c.B"}})
+         {std::vector<std::string>{"X", "Z"}, {"X", "Y", "Z"}, {"R", "G"}, {"a.R", "b.G", "c.B"}})
         try {
             load_with_channels(names);
             ADD_FAILURE() << names[0];

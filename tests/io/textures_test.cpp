@@ -28,12 +28,14 @@ class TexturePlugin : public ::testing::Test {
         write_values(name, 2, 2, channels, type, values.data());
     }
     void write_values(const std::string &name, int width, int height, int channels, OIIO::TypeDesc type,
-                      const void *values) {
+                      const void *values, const std::vector<std::string> &channel_names = {}) {
         const std::string path = (folder_.path() / name).string();
         const auto output = OIIO::ImageOutput::create(path);
         OIIO::ImageSpec spec(width, height, channels, type);
         spec.attribute("oiio:UnassociatedAlpha", 1);
         spec.attribute("CompressionQuality", 100);
+        if (!channel_names.empty())
+            spec.channelnames = channel_names;
         ASSERT_TRUE(output && output->open(path, spec) && output->write_image(type, values) && output->close());
     }
     LoadedScene load(const std::string &texture, const std::string &version = "3.0.0",
@@ -307,6 +309,16 @@ TEST_F(TexturePlugin, RoughnessCountsWithItsLeast) {
     EXPECT_FLOAT_EQ(bsdf.alpha_u.value, 1e-4f);
 }
 
+TEST_F(TexturePlugin, RoughnessOfPhongCountsWithItsLeast) {
+    const LoadedScene loaded = load("<texture type=\"checkerboard\"><float name=\"color0\" value=\"0\"/><float "
+                                    "name=\"color1\" value=\"9998\"/></texture>",
+                                    "0.6.0", "exponent", "phong");
+    const Bsdf &bsdf = loaded.scene.materials.at(0).front;
+    EXPECT_EQ(bsdf.exponent.texture, 0);
+    EXPECT_FLOAT_EQ(bsdf.alpha_u.value, std::sqrt(2 / 1e4f));
+    EXPECT_FLOAT_EQ(bsdf.alpha_v.value, std::sqrt(2 / 1e4f));
+}
+
 TEST_F(TexturePlugin, IsReadOnce) {
     write<std::uint8_t>("a.png", 3, OIIO::TypeDesc::UINT8, 255);
     const std::string inside = "<string name=\"filename\" value=\"a.png\"/></texture>";
@@ -349,6 +361,16 @@ TEST_F(TexturePlugin, Errors) {
 }
 
 // Of 32 bits in OpenEXR: no shares of the largest.
+TEST_F(TexturePlugin, ChannelsXYZAreNoGray) {
+    const float values[] = {0.25f, 0.5f, 0.75f, 1};
+    write_values("xyz.exr", 1, 1, 3, OIIO::TypeDesc::FLOAT, values, {"X", "Y", "Z"});
+    EXPECT_THAT(error(bitmap_text("xyz.exr")), AllOf(HasSubstr("xyz.exr"), HasSubstr("save colours as R, G and B")));
+    const Texture raw = texture(bitmap_text("xyz.exr", "<boolean name=\"raw\" value=\"true\"/>"));
+    EXPECT_EQ(texel(raw, 0, 0), (std::array<double, 3>{0.25, 0.5, 0.75}));
+    write_values("yz.exr", 1, 1, 2, OIIO::TypeDesc::FLOAT, values, {"Y", "Z"});
+    EXPECT_EQ(texel(texture(bitmap_text("yz.exr")), 0, 0), (std::array<double, 3>{0.25, 0.25, 0.25}));
+}
+
 TEST_F(TexturePlugin, WholeNumbersOfOpenExrAreWhatTheySay) {
     write<std::uint32_t>("u.exr", 3, OIIO::TypeDesc::UINT32, 16);
     const Texture found = load(bitmap_text("u.exr")).scene.textures.at(0);

@@ -91,6 +91,23 @@ TEST(Entities, AreThoseThatTheTypeDeclares) {
                 HasSubstr("not \"&r;\""));
 }
 
+TEST(Entities, StandInTheValuesOfOthers) {
+    const LoadedScene loaded = load_text(
+        with_type("<!ENTITY ball \"<shape type='sphere'>&size;</shape>\"> <!ENTITY size \"<float name='radius' "
+                  "value='&r;'/>\"> <!ENTITY r '0.25'>",
+                  "&ball;"));
+    EXPECT_THAT(loaded.warnings, IsEmpty());
+    EXPECT_FLOAT_EQ(loaded.scene.spheres.at(0).radius, 0.25f);
+    EXPECT_THAT(load_text(with_type("<!ENTITY a '&b;'> <!ENTITY b '&a;'>", "&a;<shape type=\"cube\"/>")).warnings,
+                ElementsAre(HasSubstr("stray text \"&a;")));
+    // Two to the power of sixty references, of nothing at the end.
+    std::string nested = "<!ENTITY e0 ''>";
+    for (int i = 1; i <= 30; ++i)
+        nested += fmt::format("<!ENTITY e{0} '&e{1};&e{1};&e{1};&e{1};'>", i, i - 1);
+    EXPECT_THAT(load_text(with_type(nested, "&e30;<shape type=\"cube\"/>")).warnings,
+                ElementsAre(HasSubstr("stray text \"&e30;")));
+}
+
 /// Of ten thousand entities, each of a million characters, none is put in its place.
 TEST(Entities, DoNotFillTheMemory) {
     std::string many;

@@ -85,6 +85,40 @@ TEST(GradientFilms, AreSummedPixelByPixel) {
         }
 }
 
+/// A half of one sample tells no variance; two or three samples are as independent of each other as any.
+TEST(GradientFilms, OfFewSamplesTellTheVarianceOfAll) {
+    SceneMaker maker(film_width, film_height);
+    maker.floor(-1, 1, 1, maker.material(diffuse(0.5)), 0);
+    Tracer tracer(maker.scene, 2);
+    Device device;
+    // From three samples of each pixel to two: the odd half has one, and the even one perhaps one more.
+    RandomFilm even(1, film_pixels + 700), odd(2, film_pixels);
+    for (int deviation = gradient_film_deviation_first; deviation < gradient_film_deviation_first + 9; ++deviation)
+        for (std::size_t pixel = 0; pixel < film_pixels; ++pixel) { // one sample has none
+            odd.values[std::size_t(deviation) * film_pixels + pixel] = 0;
+            const int layer = (deviation - gradient_film_deviation_first) / 3;
+            if (even.count(layer, pixel) == 1)
+                even.values[std::size_t(deviation) * film_pixels + pixel] = 0;
+        }
+    GradientFilms films(tracer, true);
+    std::vector<Buffer> buffers;
+    for (const RandomFilm *film : {&even, &odd})
+        buffers.emplace_back(device, "gradient_film", film->values.data(), film->values.size() * sizeof(float));
+    films.add(buffers[0], film_width, film_height, Precision::single, even.samples, {1, 2});
+    films.add(buffers[1], film_width, film_height, Precision::single, odd.samples, {1, 2});
+    std::vector<float> variance(film_pixels);
+    for (const auto layer : {GradientFilm::primal, GradientFilm::dx, GradientFilm::dy}) {
+        films.variance(layer)(0, variance.data());
+        for (std::size_t pixel = 0; pixel < film_pixels; ++pixel) {
+            const double n = even.count(layer, pixel) + odd.count(layer, pixel);
+            const double mean = (even.sum(layer, 0, pixel) + odd.sum(layer, 0, pixel)) / n;
+            const double squares = even.squares(layer, 0, pixel) + odd.squares(layer, 0, pixel);
+            const double expected = (squares - n * mean * mean) / (n * (n - 1));
+            ASSERT_NEAR(variance[pixel], expected, 1e-5 * (1 + mean * mean)) << layer << ", pixel " << pixel;
+        }
+    }
+}
+
 /// A pixel whose first sample is still to come is 0 in a mean, and missing for a solver. A difference to the pixel
 /// below needs both.
 TEST(GradientFilms, WithoutASampleAreMissing) {

@@ -57,6 +57,16 @@ TEST(Variances, OfIndependentSamplesAreTheirs) {
     expect_right_for_gradients(32, 1, options);
 }
 
+/// Of three one half has but one, which tells nothing by itself.
+TEST(Variances, OfThreeIndependentSamplesAreTheirs) {
+    RenderOptions options = with_aov();
+    options.sampler = RenderOptions::Sampler::independent;
+    const std::vector<Image> images = render_seeds(smooth_wall(3), 40, options, 1, "gpt");
+    for (const char *layer : {"primal", "dx", "dy"})
+        expect_right(told_over_true(images, layer, std::string(layer) + "_variance", 1), 1,
+                     std::string("gpt: ") + layer);
+}
+
 /// Blocks of 4 x 4 pixels of pairs of seeds: (a - b) over the root of both variances is normal but for what 96 degrees
 /// of freedom leave, 96 / 94 of its square.
 TEST(Variances, MakeScoresOfUnitSpread) {

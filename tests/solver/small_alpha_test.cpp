@@ -122,5 +122,40 @@ TEST(SmallAlpha, HasTheObjectiveOfL1) {
                       allowed - 1});
 }
 
+/// With alpha 0 a pixel's own datum is an equation that no diagonal has. One beside it that has not even that is
+/// filled.
+TEST(SmallAlpha, LeavesThePixelsThatNothingJoinsToOthers) {
+    constexpr std::uint32_t width = 33, height = 9;
+    constexpr std::uint32_t alone[][2] = {{0, 0}, {12, 5}, {width - 1, 3}, {20, 4}}, empty = 3;
+    PoissonProblem problem = make_poisson_problem(width, height, 3, 3);
+    for (const auto &[x, y] : alone) {
+        const std::size_t at = problem.at(1, x, y); // what lacks one channel lacks all
+        problem.dx[at] = problem.dy[at] = nan;
+        if (x > 0)
+            problem.dx[at - 1] = nan;
+        if (y > 0)
+            problem.dy[at - width] = nan;
+        for (std::uint32_t c = 0; c < 3; ++c)
+            problem.primal[problem.at(c, x, y)] = 50 + float(x);
+    }
+    problem.primal[problem.at(1, alone[empty][0], alone[empty][1])] = nan;
+    for (const PoissonNorm norm : {PoissonNorm::l2, PoissonNorm::l1}) {
+        PoissonOptions options;
+        options.norm = norm;
+        options.alpha = 0;
+        options.keep_mean = false;
+        const Solution solution = solve(problem, options);
+        EXPECT_EQ(solution.report.filled, 1u);
+        for (std::uint32_t c = 0; c < 3; ++c)
+            for (std::uint32_t i = 0; i < 4; ++i) {
+                const std::size_t at = problem.at(c, alone[i][0], alone[i][1]);
+                if (i != empty)
+                    EXPECT_FLOAT_EQ(solution.image[at], problem.primal[at]);
+                else
+                    EXPECT_LT(solution.image[at], 50) << "the mean of its neighbours";
+            }
+    }
+}
+
 } // namespace
 } // namespace gradus::testing

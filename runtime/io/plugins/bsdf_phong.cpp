@@ -18,9 +18,10 @@ Material bsdf_phong(Properties &properties, SceneBuilder &) {
     Bsdf &bsdf = material.front;
     bsdf.kind = BsdfKind::phong;
     read_two_lobes(properties, bsdf);
-    bsdf.exponent = properties.textured_number("exponent");
-    // Of Beckmann's microfacets whose lobe is as wide.
-    bsdf.alpha_u = bsdf.alpha_v = std::sqrt(2 / (bsdf.exponent + 2));
+    float most = 0;
+    bsdf.exponent = properties.textured_number("exponent", &most);
+    // Of Beckmann's microfacets whose lobe is as wide, where it is the least rough.
+    bsdf.alpha_u = bsdf.alpha_v = std::sqrt(2 / (most + 2));
     return material;
 }
 

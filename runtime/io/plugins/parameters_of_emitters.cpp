@@ -5,8 +5,9 @@
 namespace gradus {
 
 namespace {
-constexpr double tolerance = 1e-4;
-}
+/// As uniform_scale() has it: files carry few digits.
+constexpr double tolerance = 1e-3;
+} // namespace
 
 Vector3 place_of(Properties &properties, const std::string &parameter, const Double3 &point) {
     for (const double number : point)

@@ -5,8 +5,9 @@
 namespace gradus {
 
 Declaration declare_shape_shapegroup() {
-    return {"shapes that are seen where instances of the group are; emitters among them shine from each",
-            {{"shape", Takes::objects, nullptr, "any number"}}};
+    return {
+        "shapes that are seen where instances of the group are; emitters among them shine from each. None in groups",
+        {{"shape", Takes::objects, nullptr, "any number"}}};
 }
 
 ShapeGeometry shape_shapegroup(Properties &, SceneBuilder &) { return ShapeGroup(); }

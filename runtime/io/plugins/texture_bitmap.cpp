@@ -37,7 +37,7 @@ Declaration declare_texture_bitmap() {
                      .of(wraps),
                  Parameter{"wrap_mode_u", Takes::choice, nullptr, "along u"}.as("wrap_mode").of(wraps).of_before_2(),
                  Parameter{"wrap_mode_v", Takes::choice, nullptr, "along v"}.as("wrap_mode_u").of(wraps).of_before_2(),
-                 {"raw", Takes::boolean, "false", "8 and 16 bits are linear, not sRGB"},
+                 {"raw", Takes::boolean, "false", "8 and 16 bits are linear, not sRGB; X, Y and Z are read, too"},
                  parameter_gamma().or_else("by raw"),
                  Parameter{"channel", Takes::choice, "all", "that one alone"}
                      .of({"all", "rgb", "r", "g", "b", "a"})
