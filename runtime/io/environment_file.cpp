@@ -88,6 +88,10 @@ std::shared_ptr<const EnvironmentMap> read_environment(const OpenFile &file, std
     if (std::uint64_t(image.width) * image.height > most_environment_texels)
         throw SceneError(location, fmt::format("the environment map {} has {} x {} texels; {} million are possible",
                                                path, image.width, image.height, most_environment_texels >> 20));
+    if (image.height > most_environment_rows(image.width))
+        throw SceneError(location, fmt::format("the environment map {} has {} x {} texels; so narrow a one may have {} "
+                                               "rows",
+                                               path, image.width, image.height, most_environment_rows(image.width)));
     const std::vector<Planes> pictures = pictures_in(image);
     if (pictures.empty())
         throw SceneError(location, fmt::format("of the {} channels of the environment map {} none are R, G, B or Y; "

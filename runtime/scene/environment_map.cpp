@@ -49,6 +49,8 @@ float importance_at(const EnvironmentMap &map, std::uint32_t row, std::uint32_t 
     return lib_float::environment_number(map.texels[2 * texel + 1] >> 16);
 }
 
+std::uint32_t strips_of_row(std::uint32_t columns) { return columns / strip_length + (columns % strip_length != 0); }
+
 /// The entries of a strip whose cells have these weights, by Vose's method in fixed point: the threshold of a cell that
 /// keeps all that is drawn is out of reach of 24 bits, so its alias is itself.
 void make_strip(const std::array<float, strip_length> &weights, double total, std::uint32_t *entries) {
@@ -130,7 +132,7 @@ EnvironmentMap make_environment_map(std::uint32_t width, std::uint32_t height, s
             integral[c] += sums[row][c] * row_share(row, map.rows) / map.columns * map.unit;
     map.integral = {float(integral[0]), float(integral[1]), float(integral[2])};
 
-    const std::uint32_t strips_a_row = (map.columns + strip_length - 1) / strip_length;
+    const std::uint32_t strips_a_row = strips_of_row(map.columns);
     const std::size_t strips = std::size_t(strips_a_row) * map.rows;
     map.cells.resize(strips * strip_length);
     std::vector<double> weights(strips);
@@ -167,6 +169,14 @@ EnvironmentMap make_environment_map(std::uint32_t width, std::uint32_t height, s
         map.strips[2 * i + 1] = alias.alias[i];
     }
     return map;
+}
+
+std::uint64_t most_environment_rows(std::uint32_t width) {
+    constexpr std::uint64_t of_any = std::uint64_t(1) << 18, most_strips = (std::uint64_t(1) << 22) - 1;
+    const std::uint64_t strips_a_row = strips_of_row(width);
+    // Strips of a quarter of their length at least.
+    const std::uint64_t of_texels = most_environment_texels / std::max<std::uint64_t>(width, 1);
+    return width < strip_length / 4 ? of_any : std::min(of_texels, most_strips / strips_a_row);
 }
 
 std::size_t environment_bytes(const EnvironmentMap &map) {

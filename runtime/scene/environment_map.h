@@ -21,8 +21,12 @@ struct EnvironmentMap {
     Rgb integral;                      ///< of radiance over all directions, W m^-2
 };
 
-/// The largest number of texels, which keeps every index within 32 bits and every strip's number within 22.
+/// The largest number of texels, which keeps every index within 32 bits.
 inline constexpr std::uint64_t most_environment_texels = std::uint64_t(1) << 29;
+
+/// The most rows of a map so wide. Each row has strips of its own, 256 cells that take 1 KiB: narrow maps would take
+/// far more than their texels, and a strip's number is to be within 22 bits.
+std::uint64_t most_environment_rows(std::uint32_t width);
 
 /// Of an image of width x height texels, row by row from +y (the top) down. The planes hold linear radiance, finite and
 /// not negative. Numbers are rounded to 11 bits, which loses nothing of half floats and RGBE. A row alone counts as

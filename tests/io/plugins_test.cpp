@@ -767,12 +767,13 @@ TEST(EmitterPlugin, EnvironmentMap) {
 }
 
 /// Of an environment of one texel with such channels, each of which is worth its place: 1, 2, 3...
-LoadedScene load_with_channels(const std::vector<std::string> &names) {
+LoadedScene load_with_channels(const std::vector<std::string> &names, std::uint32_t rows = 1) {
     TemporaryFolder folder;
     Image image;
-    image.width = image.height = 1;
+    image.width = 1;
+    image.height = rows;
     for (const std::string &name : names)
-        image.channels.push_back({name, {float(image.channels.size() + 1)}});
+        image.channels.push_back({name, std::vector<float>(rows, float(image.channels.size() + 1))});
     write_image(image, (folder.path() / "sky.exr").string());
     return load_scene(folder.write("scene.xml", scene_around("<emitter type=\"envmap\">" + sky_file + "</emitter>")));
 }
@@ -826,6 +827,23 @@ TEST(EmitterPlugin, EnvironmentMapsThatCannotBe) {
     for (const char *type : {"sky", "sun", "sunsky"})
         EXPECT_THAT(error_of_text(scene_around("<emitter type=\"" + std::string(type) + "\"/>")),
                     HasSubstr("bake it into an image"));
+}
+
+// A file of a megabyte would take one of a gigabyte.
+TEST(EmitterPlugin, EnvironmentMapsOfManyShortRows) {
+    for (const std::uint32_t width : {1u, 63u, 64u, 256u, 257u, 1u << 20}) {
+        const std::uint64_t rows = most_environment_rows(width), strips = rows * ((width + 255) / 256);
+        EXPECT_LT(strips, 1u << 22) << width;
+        EXPECT_LE(strips * 1024, std::max<std::uint64_t>(1u << 28, 16 * rows * width)) << width;
+    }
+    for (const std::uint32_t width : {512u, 8192u, 32768u}) // twice as wide as high, and square
+        EXPECT_GE(most_environment_rows(width), std::min(std::uint64_t(width), most_environment_texels / width));
+    try {
+        load_with_channels({"Y"}, 262'145);
+        ADD_FAILURE();
+    } catch (const Error &error) {
+        EXPECT_THAT(error.what(), HasSubstr("sky.exr has 1 x 262145 texels; so narrow a one may have 262144 rows"));
+    }
 }
 
 TEST(EmitterPlugin, EnvironmentMapsWithBadTexels) {
