@@ -113,21 +113,20 @@ class SolveJob {
 
     /// What is NaN, infinite or below 0 is no variance: its equation would be left out.
     void check_variances() const {
-        const std::size_t pixels = std::size_t(images_.width) * images_.height;
         std::size_t values = 0, missing = 0, above_zero = 0;
         for (const GradientLayer layer :
              {GradientLayer::primal_variance, GradientLayer::dx_variance, GradientLayer::dy_variance}) {
-            const float *plane = images_.find(layer);
+            const float *row = images_.find(layer);
             // Beyond the last column and row are no differences.
             const std::size_t columns = images_.width - (layer == GradientLayer::dx_variance ? 1 : 0);
             const std::size_t rows = images_.height - (layer == GradientLayer::dy_variance ? 1 : 0);
-            for (std::size_t i = 0; i < pixels * images_.channels.size(); ++i) {
-                if (i % images_.width >= columns || i % pixels / images_.width >= rows)
-                    continue;
-                ++values;
-                missing += std::isfinite(plane[i]) && plane[i] >= 0 ? 0 : 1;
-                above_zero += std::isfinite(plane[i]) && plane[i] > 0 ? 1 : 0;
-            }
+            values += columns * rows * images_.channels.size();
+            for (std::size_t c = 0; c < images_.channels.size(); ++c)
+                for (std::size_t y = 0; y < images_.height; ++y, row += images_.width)
+                    for (std::size_t x = 0; x < columns && y < rows; ++x) {
+                        missing += std::isfinite(row[x]) && row[x] >= 0 ? 0 : 1;
+                        above_zero += std::isfinite(row[x]) && row[x] > 0 ? 1 : 0;
+                    }
         }
         if (missing == values)
             throw Error(ExitCode::image, "no variance is a number of at least 0");

@@ -80,24 +80,24 @@ void Problem::import(const Inputs &images, PoissonReport &report) {
     grid.launch(kernel, {0, workspace_.channels});
 }
 
-void Problem::import_variances(const Inputs &images, bool keep) {
+void Problem::import_variances(const Inputs &images, bool for_weights) {
     const std::uint32_t w = workspace_.grid().width, h = workspace_.grid().height;
     const std::uint32_t planes = images.one_variance ? 1 : workspace_.channels;
     variance_plane_ = images.one_variance ? 0 : workspace_.grid().plane;
     const std::size_t bytes = std::size_t(workspace_.grid().plane) * planes * real_bytes(workspace_.make.precision());
     for (Buffer *variance : {&primal_variance_, &dx_variance_, &dy_variance_})
-        if (!keep)
+        if (!for_weights)
             *variance = u_; // which nothing is in yet
         else if (!variance->valid() || variance->bytes() < bytes)
             *variance = workspace_.make.planes("variance", workspace_.grid(), planes);
-    const double x = mean_variance(images.dx_variance(), planes, dx_variance_, w - 1, h, keep);
-    const double y = mean_variance(images.dy_variance(), planes, dy_variance_, w, h - 1, keep);
+    const double x = mean_variance(images.dx_variance(), planes, dx_variance_, w - 1, h, for_weights);
+    const double y = mean_variance(images.dy_variance(), planes, dy_variance_, w, h - 1, for_weights);
     const double horizontal = double(w - 1) * h, vertical = double(w) * (h - 1);
-    const double power = keep ? 4 : 1;
-    primal_variance_scale_ =
-        std::pow(mean_variance(images.primal_variance(), planes, primal_variance_, w, h, keep), power);
-    gradient_variance_scale_ = std::pow((x * horizontal + y * vertical) / std::max(horizontal + vertical, 1.0), power);
-    if (!keep)
+    const double primal = mean_variance(images.primal_variance(), planes, primal_variance_, w, h, for_weights);
+    const auto scale_of = [&](double mean) { return for_weights ? std::pow(mean, 4) : mean; };
+    primal_variance_scale_ = scale_of(primal);
+    gradient_variance_scale_ = scale_of((x * horizontal + y * vertical) / std::max(horizontal + vertical, 1.0));
+    if (!for_weights)
         primal_variance_ = dx_variance_ = dy_variance_ = Buffer();
 }
 
@@ -130,8 +130,8 @@ void Problem::make_base_weights(Kernels &kernels, bool by_variance, double large
     kernel.set("variance_plane", variance_plane_);
     kernel.set("by_variances", by_variance);
     kernel.set_real("largest_weight", largest_weight);
-    kernel.set_real("mean_gradient_variance", gradient_variance_scale_);
-    kernel.set_real("mean_primal_variance", primal_variance_scale_);
+    kernel.set_real("gradient_variance_scale", gradient_variance_scale_);
+    kernel.set_real("primal_variance_scale", primal_variance_scale_);
     kernel.bind(valid_primal_);
     kernel.bind(valid_dx_);
     kernel.bind(valid_dy_);

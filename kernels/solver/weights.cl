@@ -3,16 +3,16 @@
 #include "kernels/solver/grid.h"
 
 /* A variance below zero, or one that is missing, tells nothing: its equation is left out. */
-GRADUS_FN real by_variance(real variance, real mean, real largest) {
-    return variance < R(0) ? R(0) : mean > R(0) ? mean / (variance + mean / largest) : R(1);
+GRADUS_FN real by_variance(real variance, real scale, real largest) {
+    return variance < R(0) ? R(0) : scale > R(0) ? scale / (variance + scale / largest) : R(1);
 }
 
 GRADUS_FN real together(real sum, real variance) { return sum < R(0) || variance < R(0) ? R(-1) : sum + variance; }
 
 /* The base weights: 0 for what is missing, else 1 or by inverse variance. `variance_plane`: from a channel's variances
  * to the next; 0 where all share one. */
-SOLVE base_weights(GRID, uint weight_plane, uint variance_plane, uint by_variances, real mean_gradient_variance,
-                   real mean_primal_variance, real largest_weight, __global const real *valid_primal,
+SOLVE base_weights(GRID, uint weight_plane, uint variance_plane, uint by_variances, real gradient_variance_scale,
+                   real primal_variance_scale, real largest_weight, __global const real *valid_primal,
                    __global const real *valid_dx, __global const real *valid_dy, __global const real *primal_variance,
                    __global const real *dx_variance, __global const real *dy_variance, __global real *base_x,
                    __global real *base_y, __global real *base_data) {
@@ -29,9 +29,9 @@ SOLVE base_weights(GRID, uint weight_plane, uint variance_plane, uint by_varianc
             vy = together(vy, share * dy_variance[c * variance_plane + at]);
             vd = together(vd, share * primal_variance[c * variance_plane + at]);
         }
-        wx = by_variance(vx, mean_gradient_variance, largest_weight);
-        wy = by_variance(vy, mean_gradient_variance, largest_weight);
-        wd = by_variance(vd, mean_primal_variance, largest_weight);
+        wx = by_variance(vx, gradient_variance_scale, largest_weight);
+        wy = by_variance(vy, gradient_variance_scale, largest_weight);
+        wd = by_variance(vd, primal_variance_scale, largest_weight);
     }
     base_x[to] = valid_dx[at] * wx;
     base_y[to] = valid_dy[at] * wy;

@@ -146,9 +146,7 @@ void LightBuilder::grow_tree(const std::vector<double> &weights) {
             near.push_back(tree_light(i));
         }
     }
-    const Double3 across = subtract(tables_.bounds.upper, tables_.bounds.lower);
-    LightTree tree = make_light_tree(std::move(near), far, far_weights, tables_.light_count,
-                                     std::max({across[0], across[1], across[2]}));
+    LightTree tree = make_light_tree(std::move(near), far, far_weights, tables_.light_count, tables_.bounds.extent());
     const double share = far_weight / all;
     for (std::uint32_t i = 0; i < powers_.size(); ++i)
         tables_.lights[std::size_t(i) * light_stride + light_probability] =

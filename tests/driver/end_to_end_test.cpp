@@ -2,6 +2,7 @@
 #include "runtime/film/metrics.h"
 #include "runtime/io/image_io.h"
 #include "tests/driver/child_process.h"
+#include "tests/support/test_name.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -192,8 +193,7 @@ TEST_P(EndToEndLayers, HaveBothHalvesForTheWeightedReconstruction) {
     EXPECT_THAT(none.err, ::testing::HasSubstr("primal_even"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, EndToEndLayers, ::testing::Values("gpt", "gpm"),
-                         [](const auto &info) { return std::string(info.param); });
+INSTANTIATE_TEST_SUITE_P(Methods, EndToEndLayers, ::testing::Values("gpt", "gpm"), testing::name_of_method);
 
 class EndToEndGuided : public EndToEndLayers {};
 
@@ -216,8 +216,7 @@ TEST_P(EndToEndGuided, LayersMakeTheImageAgain) {
     EXPECT_THAT(unguided.err, ::testing::HasSubstr("--reconstruction guided"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, EndToEndGuided, ::testing::Values("pt", "gpt", "gpm"),
-                         [](const auto &info) { return std::string(info.param); });
+INSTANTIATE_TEST_SUITE_P(Methods, EndToEndGuided, ::testing::Values("pt", "gpt", "gpm"), testing::name_of_method);
 
 TEST_F(EndToEnd, TheImageDependsOnTheSeedAndNotOnThreadsOrBatches) {
     ASSERT_EQ(run(render("first.exr", {"--spp", "4", "--seed", "3"})).exit_code, 0);
@@ -375,8 +374,7 @@ TEST_F(EndToEnd, ABatchThatDoesNotEndIsGivenUp) {
     EXPECT_FALSE(std::filesystem::exists(at("out.exr")));
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, EndToEndOf, ::testing::Values("pt", "gpt", "sppm", "gpm"),
-                         [](const auto &info) { return std::string(info.param); });
+INSTANTIATE_TEST_SUITE_P(Methods, EndToEndOf, ::testing::Values("pt", "gpt", "sppm", "gpm"), testing::name_of_method);
 
 /// A ball before the camera, of a BSDF and with a light or without one.
 class EndToEndPhotons : public EndToEnd {

@@ -360,7 +360,6 @@ TEST_F(TexturePlugin, Errors) {
     EXPECT_THAT(error("<texture type=\"bitmap\"/>"), HasSubstr("bitmap needs a filename"));
 }
 
-// Of 32 bits in OpenEXR: no shares of the largest.
 TEST_F(TexturePlugin, ChannelsXYZAreNoGray) {
     const float values[] = {0.25f, 0.5f, 0.75f, 1};
     write_values("xyz.exr", 1, 1, 3, OIIO::TypeDesc::FLOAT, values, {"X", "Y", "Z"});
@@ -371,6 +370,7 @@ TEST_F(TexturePlugin, ChannelsXYZAreNoGray) {
     EXPECT_EQ(texel(texture(bitmap_text("yz.exr")), 0, 0), (std::array<double, 3>{0.25, 0.25, 0.25}));
 }
 
+// Of 32 bits in OpenEXR: no shares of the largest.
 TEST_F(TexturePlugin, WholeNumbersOfOpenExrAreWhatTheySay) {
     write<std::uint32_t>("u.exr", 3, OIIO::TypeDesc::UINT32, 16);
     const Texture found = load(bitmap_text("u.exr")).scene.textures.at(0);

@@ -3,6 +3,7 @@
 #include "tests/methods/reference_scene.h"
 #include "tests/support/render.h"
 #include "tests/support/stability.h"
+#include "tests/support/test_name.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -109,8 +110,7 @@ TEST_P(GuidedImages, OfLightWithoutSquaresSaySo) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, GuidedImages, ::testing::Values("gpt", "pt"),
-                         [](const auto &info) { return std::string(info.param); });
+INSTANTIATE_TEST_SUITE_P(Methods, GuidedImages, ::testing::Values("gpt", "pt"), name_of_method);
 
 } // namespace
 } // namespace gradus::testing

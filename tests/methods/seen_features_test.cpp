@@ -1,6 +1,7 @@
 // Albedo, normal and depth as images have them: what the camera sees through mirrors, glass and holes.
 #include "tests/support/render.h"
 #include "tests/support/small_scenes.h"
+#include "tests/support/test_name.h"
 
 #include <string>
 
@@ -91,8 +92,7 @@ TEST_P(SeenFeatures, CountTheWayFromTheCameraAndNotFromItsNearPlane) {
                 1e-4 * plain.statistics.first_radii.sum);
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, SeenFeatures, ::testing::Values("pt", "sppm"),
-                         [](const auto &info) { return std::string(info.param); });
+INSTANTIATE_TEST_SUITE_P(Methods, SeenFeatures, ::testing::Values("pt", "sppm"), name_of_method);
 
 } // namespace
 } // namespace gradus::testing

@@ -4,6 +4,7 @@
 #include "tests/support/gradient_layers.h"
 #include "tests/support/render.h"
 #include "tests/support/small_scenes.h"
+#include "tests/support/test_name.h"
 #include "tests/support/textures.h"
 #include "tests/support/worse.h"
 
@@ -329,7 +330,6 @@ Image wall_of_classes(bool pictures, const char *method) {
 }
 
 class TexturesOfClasses : public ::testing::TestWithParam<const char *> {};
-std::string name_of_method(const ::testing::TestParamInfo<const char *> &info) { return info.param; }
 
 /// In pt those that shade, in sppm those of the stage `material`.
 TEST_P(TexturesOfClasses, KernelsReadThoseOfTheirClass) {

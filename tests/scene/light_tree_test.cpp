@@ -70,7 +70,9 @@ class Maker {
     std::mt19937 engine_;
 };
 
-ChosenLights chosen(const std::vector<TreeLight> &lights, std::size_t far = 0, double scene_extent = 20) {
+constexpr double scene_extent = 20;
+
+ChosenLights chosen(const std::vector<TreeLight> &lights, std::size_t far = 0) {
     ChosenLights result;
     result.near = lights.size();
     result.far = far;
@@ -240,16 +242,16 @@ TEST(LightTree, HasMuchLessVarianceThanPower) {
 
 // Nearly at the origin, too, where their coordinates are rounding: places in the scene stay in the tree's range.
 TEST(LightTree, HoldsLampsThatAreAllAtOnePlace) {
-    for (const double x : {1e4, 0.0, 5.5e-17, 1e-8}) {
+    for (const Double3 &place : {Double3{1e4, 2, 3}, {0, 0, 0}, {5.5e-17, 0, 0}, {1e-8, 0, 0}}) {
         std::vector<TreeLight> lights;
         for (std::uint32_t i = 0; i < 500; ++i)
-            lights.push_back({{x, 0, 0}, {x, 0, 0}, {}, std::numbers::pi, 1.0 + i, i});
+            lights.push_back({place, place, {}, std::numbers::pi, 1.0 + i, i});
         const ChosenLights c = chosen(lights);
-        for (const double away : {0.0, 2.0, 20.0}) {
+        for (const double away : {0.0, 2.0, scene_extent}) {
             double sum = 0;
             for (std::size_t i = 0; i < lights.size(); ++i)
-                sum += c.probability(i, c.receiver({x + away, 0, 0}, {0, 0, 1}));
-            EXPECT_NEAR(sum, 1, 3e-6) << "at " << x << ", from " << away << " away";
+                sum += c.probability(i, c.receiver(add(place, {away, 0, 0}), {0, 0, 1}));
+            EXPECT_NEAR(sum, 1, 3e-6) << "at " << place[0] << ", from " << away << " away";
         }
     }
 }
@@ -259,7 +261,7 @@ TEST(LightTree, IsTheSameOnAnyNumberOfCores) {
     LightTree trees[2];
     for (const int threads : {1, 2}) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
-        trees[threads - 1] = make_light_tree(lights, {}, {}, std::uint32_t(lights.size()), 20);
+        trees[threads - 1] = make_light_tree(lights, {}, {}, std::uint32_t(lights.size()), scene_extent);
     }
     EXPECT_EQ(trees[0].nodes, trees[1].nodes);
     EXPECT_EQ(trees[0].slots, trees[1].slots);
@@ -274,7 +276,7 @@ TEST(LightTree, OfAQuarterOfAMillionLights) {
     for (const int i : {0, 1}) {
         lights = Maker(2).lamps(i == 0 ? 62'500 : 250'000, 1000);
         const auto start = std::chrono::steady_clock::now();
-        tree = make_light_tree(lights, {}, {}, std::uint32_t(lights.size()), 20);
+        tree = make_light_tree(lights, {}, {}, std::uint32_t(lights.size()), scene_extent);
         seconds[i] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
     std::printf("trees of 62,500 and 250,000 lights: %.2f s, %.2f s; %u levels\n", seconds[0], seconds[1], tree.levels);

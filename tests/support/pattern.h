@@ -34,7 +34,7 @@ class Pattern {
         });
         return found;
     }
-    bool is_in(const std::string &text) const { return !all_in(text).empty(); }
+    bool is_in(const std::string &text) const { return regexec(&compiled_, text.c_str(), 0, nullptr, 0) == 0; }
     std::string replaced_in(const std::string &text, const std::string &with) const {
         std::string result;
         std::size_t copied = 0;
