@@ -62,6 +62,7 @@ STAGE join(uint count, uint unit, uint first, uint capacity, uint slots, uint ro
 #endif
     const rgb throughput = AT_RGB(path, throughput, row);
     real brightest = rgb_max(throughput);
+    int has_offset = 0;
 #pragma unroll
     for (uint j = 0; j < 4; ++j) {
         const size_t at = (size_t)j * capacity + row;
@@ -69,6 +70,7 @@ STAGE join(uint count, uint unit, uint first, uint capacity, uint slots, uint ro
         const rgb so_far = AT_RGB(offset, value, at);
         /* Selected, not scaled: where there is no offset path, its direction is anything. */
         const int is_there = ratio >= R(0);
+        has_offset |= is_there;
         int is_own = 0;
 #if TRAIT_APART
         is_own = is_there & (AT_UINT(offset, state, at) < connection_recent);
@@ -160,9 +162,12 @@ STAGE join(uint count, uint unit, uint first, uint capacity, uint slots, uint ro
      * them. */
     const real inverse_survival = R(1) / (alive ? survival : R(1));
     /* Where all are connected, the row's throughput counts from 1 from here on, but for its size, which roulette goes
-     * by; the slot has the rest. */
+     * by; the slot has the rest. Without offset paths the row keeps its own, for the colour of what it may have been
+     * seen through (kernels/lib/seen_features.h). */
+    const rgb own = rgb_scale(throughput, alive ? inverse_survival : R(0));
     const real inverse = R(1) / (alive ? brightest : R(1));
-    rgb left = rgb_gray(alive ? brightest / survival : R(0));
+    rgb left = rgb_select(has_offset, rgb_gray(alive ? brightest / survival : R(0)), own);
+    const rgb before = rgb_select(has_offset, rgb_scale(throughput, inverse), rgb_gray(R(1)));
 #if TRAIT_APART
     left = rgb_select(keeps != 0u, rgb_scale(throughput, inverse_survival), left);
     if (keeps) {
@@ -175,7 +180,7 @@ STAGE join(uint count, uint unit, uint first, uint capacity, uint slots, uint ro
     if (!keeps)
 #endif
     {
-        SET_RGB(prefix, throughput, slot, rgb_scale(throughput, inverse));
+        SET_RGB(prefix, throughput, slot, before);
 #pragma unroll
         for (uint j = 0; j < 4; ++j) {
             const int to = (int)(j * slots) + slot;

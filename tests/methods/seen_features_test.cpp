@@ -92,6 +92,26 @@ TEST_P(SeenFeatures, CountTheWayFromTheCameraAndNotFromItsNearPlane) {
                 1e-4 * plain.statistics.first_radii.sum);
 }
 
+/// Of three coloured mirrors one after the other, and of a pixel beside which there is none: no offset path follows.
+TEST(SeenFeaturesOfGradients, HaveTheColourOfAllMirrorsWhereNoOffsetPathFollows) {
+    SceneMaker maker(1, 1);
+    maker.look({-3, 0, 1}, {0, 0, 0}, 1); // to and fro between z = 0 and z = 2, falling by 1 in 3
+    Bsdf tinted = mirror();
+    tinted.specular_reflectance = {0.9f, 0.6f, 0.3f};
+    const std::uint32_t material = maker.material(tinted);
+    maker.parallelogram({-1, -2, 0}, {20, 0, 0}, {0, 4, 0}, material);
+    maker.parallelogram({3, -2, 2}, {0, 4, 0}, {20, 0, 0}, material);
+    maker.parallelogram({15, -2, 0}, {0, 0, 2}, {0, 4, 0}, maker.material(diffuse(0.8)));
+    maker.environment(1);
+    RenderOptions options;
+    options.aov = true;
+    do_not_weigh(options);
+    const Image image = render(maker.scene, options, "gpt").image;
+    EXPECT_NEAR(pixel(image, 0, 0, "albedo.R"), 0.8 * 0.9 * 0.9 * 0.9, 1e-6);
+    EXPECT_NEAR(pixel(image, 0, 0, "albedo.G"), 0.8 * 0.6 * 0.6 * 0.6, 1e-6);
+    EXPECT_NEAR(pixel(image, 0, 0, "albedo.B"), 0.8 * 0.3 * 0.3 * 0.3, 1e-6);
+}
+
 INSTANTIATE_TEST_SUITE_P(Methods, SeenFeatures, ::testing::Values("pt", "sppm"), name_of_method);
 
 } // namespace
