@@ -187,7 +187,7 @@ PoissonReport PoissonSolver::Implementation::solve(const Inputs &images, const P
     workspace.set_any_kernels(weights_for(options, false));
     problem.import(images, report);
     if (options.alpha_from_variances || options.weigh_by_variance)
-        problem.import_variances(images, options.weigh_by_variance);
+        problem.import_variances(images, options);
     if (all_read)
         all_read();
     report.alpha = options.alpha_from_variances ? problem.alpha_from_variances(options.alpha) : options.alpha;

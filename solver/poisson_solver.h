@@ -62,12 +62,12 @@ struct PoissonOptions {
     /// 0 or above; with L1 0, or at least least_alpha_of_absolute_values. With 0, I0 decides the mean of each
     /// channel and nothing else.
     double alpha = 0.2;
-    /// alpha^2 = (mean variance of dx and dy) / (mean variance of primal) instead (Kettunen et al. 2015, supplement,
-    /// eq. 12). Needs the variances; where all are 0, as of one sample, they tell nothing and `alpha` stands.
+    /// alpha^2 = (variance of dx and dy) / (variance of primal) instead (Kettunen et al. 2015, supplement, eq. 12), of
+    /// L2 the means; of L1 and of weights (mean of fourth roots)^4, so that a firefly is not all of it. Needs the
+    /// variances; where all are 0, as of one sample, they tell nothing and `alpha` stands.
     bool alpha_from_variances = false;
     /// L2: each equation is weighted by its inverse variance, relative to the scale of its image's, instead of equally
-    /// (after Rousselle et al. 2016). Needs the variances. The mean of I0 is then not kept. The scale is (mean of the
-    /// fourth roots)^4, for alpha_from_variances, too, so that a firefly is not all of it.
+    /// (after Rousselle et al. 2016). Needs the variances. The mean of I0 is then not kept.
     bool weigh_by_variance = false;
     /// Then an equation with a variance far below that scale still counts no more than so many times as much as at it.
     /// 1 to 1e9.

@@ -80,7 +80,8 @@ void Problem::import(const Inputs &images, PoissonReport &report) {
     grid.launch(kernel, {0, workspace_.channels});
 }
 
-void Problem::import_variances(const Inputs &images, bool for_weights) {
+void Problem::import_variances(const Inputs &images, const PoissonOptions &options) {
+    const bool for_weights = options.weigh_by_variance, of_roots = for_weights || options.norm == PoissonNorm::l1;
     const std::uint32_t w = workspace_.grid().width, h = workspace_.grid().height;
     const std::uint32_t planes = images.one_variance ? 1 : workspace_.channels;
     variance_plane_ = images.one_variance ? 0 : workspace_.grid().plane;
@@ -90,11 +91,11 @@ void Problem::import_variances(const Inputs &images, bool for_weights) {
             *variance = u_; // which nothing is in yet
         else if (!variance->valid() || variance->bytes() < bytes)
             *variance = workspace_.make.planes("variance", workspace_.grid(), planes);
-    const double x = mean_variance(images.dx_variance(), planes, dx_variance_, w - 1, h, for_weights);
-    const double y = mean_variance(images.dy_variance(), planes, dy_variance_, w, h - 1, for_weights);
+    const double x = mean_variance(images.dx_variance(), planes, dx_variance_, w - 1, h, of_roots);
+    const double y = mean_variance(images.dy_variance(), planes, dy_variance_, w, h - 1, of_roots);
     const double horizontal = double(w - 1) * h, vertical = double(w) * (h - 1);
-    const double primal = mean_variance(images.primal_variance(), planes, primal_variance_, w, h, for_weights);
-    const auto scale_of = [&](double mean) { return for_weights ? std::pow(mean, 4) : mean; };
+    const double primal = mean_variance(images.primal_variance(), planes, primal_variance_, w, h, of_roots);
+    const auto scale_of = [&](double mean) { return of_roots ? std::pow(mean, 4) : mean; };
     primal_variance_scale_ = scale_of(primal);
     gradient_variance_scale_ = scale_of((x * horizontal + y * vertical) / std::max(horizontal + vertical, 1.0));
     if (!for_weights)

@@ -19,10 +19,11 @@ class Problem {
     /// Reads I0, Gx and Gy. What is NaN or infinite is missing: I0 is filled from its neighbours there, and counted.
     void import(const Inputs &images, PoissonReport &report);
     /// Reads the variances for their scales, and keeps them for weights. A variance that is missing or below zero
-    /// removes its equation from weighted problems. Their scale is the mean (Kettunen et al. 2015, supplement); for
-    /// weights (mean of fourth roots)^4: a firefly is most of a mean, and all that is less noisy than a thousandth of
-    /// it would weigh alike.
-    void import_variances(const Inputs &images, bool for_weights);
+    /// removes its equation from weighted problems. Of uniform L2 their scale is the mean (Kettunen et al. 2015,
+    /// supplement), which tells its squared error. Else it is (mean of fourth roots)^4, for a firefly is most of a mean:
+    /// all that is less noisy than a thousandth of it would weigh alike, and L1, which leaves outliers where they are,
+    /// would go by them (docs/design.md, 'Reconstruction').
+    void import_variances(const Inputs &images, const PoissonOptions &options);
     /// Kettunen et al. 2015, supplement, eq. 12; `otherwise` where all variances are 0.
     double alpha_from_variances(double otherwise) const;
     /// With that alpha, and weights by variance: what the noise of a channel of the solution is expected to have of
