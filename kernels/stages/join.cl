@@ -164,12 +164,12 @@ STAGE join(uint count, uint unit, uint first, uint capacity, uint slots, uint ro
     /* Where all are connected, the row's throughput counts from 1 from here on, but for its size, which roulette goes
      * by; the slot has the rest. Without offset paths the row keeps its own, for the colour of what it may have been
      * seen through (kernels/lib/seen_features.h). */
-    const rgb own = rgb_scale(throughput, alive ? inverse_survival : R(0));
+    const rgb own = rgb_scale(throughput, inverse_survival);
     const real inverse = R(1) / (alive ? brightest : R(1));
-    rgb left = rgb_select(has_offset, rgb_gray(alive ? brightest / survival : R(0)), own);
     const rgb before = rgb_select(has_offset, rgb_scale(throughput, inverse), rgb_gray(R(1)));
+    rgb left = rgb_select(has_offset, rgb_gray(alive ? brightest / survival : R(0)), own);
 #if TRAIT_APART
-    left = rgb_select(keeps != 0u, rgb_scale(throughput, inverse_survival), left);
+    left = rgb_select(keeps != 0u, own, left);
     if (keeps) {
 #pragma unroll
         for (uint j = 0; j < 4; ++j) {
