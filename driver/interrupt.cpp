@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <cstring>
 #include <ctime>
+#include <system_error>
+#include <thread>
 
 namespace gradus {
 namespace {
@@ -73,6 +75,22 @@ void ignore_what_was_ignored() {
     for (std::size_t i = 0; i < watched_count; ++i)
         if (was_ignored[i])
             sigaction(watched[i], &ignore, nullptr);
+}
+
+void take_signals_in_a_thread() {
+    try {
+        std::thread([] {
+            for (;;)
+                pause();
+        }).detach();
+    } catch (const std::system_error &) {
+        return;
+    }
+    sigset_t blocked;
+    sigemptyset(&blocked);
+    for (const int signal : watched)
+        sigaddset(&blocked, signal);
+    pthread_sigmask(SIG_BLOCK, &blocked, nullptr);
 }
 
 InterruptWatch::InterruptWatch() {

@@ -1,6 +1,7 @@
 #include "driver/program.h"
 
 #include "driver/commands.h"
+#include "driver/interrupt.h"
 #include "driver/memory_check.h"
 #include "driver/standard_streams.h"
 #include "driver/usage_message.h"
@@ -107,6 +108,7 @@ int run_program(int argc, const char *const *argv, const Services &services) {
     // end.
     std::signal(SIGCHLD, SIG_DFL);
     spare_address_space();
+    take_signals_in_a_thread();
     keep_standard_descriptors();
 
     std::function<int()> chosen;

@@ -73,6 +73,8 @@ class RenderJob {
             [&] { return prepared_.method->mean_image(); });
         watch_->answer(nullptr);
         write_results(image);
+        if (statistics_failure_)
+            std::rethrow_exception(statistics_failure_);
         if (black_pixels_ > 0)
             return static_cast<int>(ExitCode::failure);
         return static_cast<int>(record_.interrupted ? ExitCode::interrupted : ExitCode::success);
@@ -127,7 +129,8 @@ class RenderJob {
             progress_.message("gradus: warning: " + prepared_.warning);
         for (const Phases::Time &time : phases_.times())
             record_.phase_seconds.emplace_back(time.name.key, time.seconds);
-        if (const std::optional<MethodChoice> choice = prepared_.method->statistics().choice) {
+        statistics_ = prepared_.method->statistics();
+        if (const std::optional<MethodChoice> choice = statistics_.choice) {
             record_.method = choice->method;
             pilot_seconds_ = choice->pilot_seconds;
             progress_.message(fmt::format("method {}: {}", choice->method, choice->reason));
@@ -304,6 +307,19 @@ class RenderJob {
         }
     }
 
+    /// For these the method asks the device. Where that fails the image is there all the same, and goes with what was
+    /// told before.
+    void take_statistics() {
+        try {
+            statistics_ = prepared_.method->statistics();
+            statistics_failure_ = nullptr;
+        } catch (const std::exception &error) {
+            statistics_failure_ = std::current_exception();
+            progress_.message(
+                fmt::format("gradus: warning: the image is written without its statistics: {}", error.what()));
+        }
+    }
+
     /// Radii are the only lengths there.
     Statistics in_units_of_the_scene(Statistics statistics) const {
         for (double *sum : {&statistics.radius_sum, &statistics.first_radii.sum, &statistics.last_radii.sum})
@@ -313,11 +329,12 @@ class RenderJob {
 
     /// An image as it is to be written: in the scene's own units, without what is no number, and with what made it.
     Image described(Image image, bool partial) {
+        take_statistics();
         for (Channel &channel : image.channels)
             if (own_scale_ != 1 && channel.name == "depth.Z")
                 for (float &value : channel.values)
                     value = float(value / own_scale_);
-        black_pixels_ = std::max(settle_values(image).pixels, prepared_.method->statistics().lost_pixels);
+        black_pixels_ = std::max(settle_values(image).pixels, statistics_.lost_pixels);
         const std::uint64_t done = prepared_.method->done_samples();
         const double pixels = double(image.width) * double(image.height);
         record_.samples_per_pixel = pixels > 0 ? double(done) / pixels : 0;
@@ -327,7 +344,7 @@ class RenderJob {
         image.metadata["precision"] = record_.precision;
         image.metadata["sampler"] = record_.sampler;
         image.metadata["seed"] = std::to_string(record_.seed);
-        const ReconstructionUsed used = prepared_.method->statistics().reconstruction;
+        const ReconstructionUsed &used = statistics_.reconstruction;
         image.metadata["reconstruction"] = used.name;
         if (!used.guide.empty())
             image.metadata["guide"] = used.guide;
@@ -338,7 +355,7 @@ class RenderJob {
         image.metadata["spp"] = fmt::format("{}", record_.samples_per_pixel);
         image.metadata["device"] = record_.device.name;
         image.metadata["seconds"] = fmt::format("{:.3f}", seconds_since(render_start_));
-        if (const std::optional<double> error = prepared_.method->statistics().estimated_error)
+        if (const std::optional<double> error = statistics_.estimated_error)
             image.metadata["estimated_error"] = fmt::format("{:.6g}", *error);
         image.metadata["partial"] = partial ? "true" : "false";
         if (!crop_.empty())
@@ -347,8 +364,11 @@ class RenderJob {
     }
 
     void write_results(const Image &image) {
-        const Statistics statistics = in_units_of_the_scene(prepared_.method->statistics());
-        write_outputs(request_.outputs, image, image, [&] {
+        const Statistics statistics = in_units_of_the_scene(statistics_);
+        OutputFiles files = request_.outputs;
+        if (statistics_failure_)
+            files.statistics.clear();
+        write_outputs(files, image, image, [&] {
             record_.wall_seconds = seconds_since(job_start_);
             return statistics_to_json(record_, statistics);
         });
@@ -386,9 +406,11 @@ class RenderJob {
     std::optional<ErrorWatch> error_watch_;
     std::string crop_;
     std::vector<std::string> files_read_;
-    std::uint64_t black_pixels_ = 0; ///< of the last image
-    double pilot_seconds_ = 0;       ///< of the method auto
-    double own_scale_ = 1;           ///< of the scene's lengths, while it renders
+    std::uint64_t black_pixels_ = 0;        ///< of the last image
+    Statistics statistics_;                 ///< the last that the method told
+    std::exception_ptr statistics_failure_; ///< why they are not of the last image
+    double pilot_seconds_ = 0;              ///< of the method auto
+    double own_scale_ = 1;                  ///< of the scene's lengths, while it renders
 };
 
 } // namespace

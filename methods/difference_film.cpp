@@ -36,7 +36,7 @@ std::vector<std::string> film_names(std::uint32_t parts) {
 
 DifferenceFilm::DifferenceFilm(Session &session, Stages &stages, const RenderOptions &options, const char *counts,
                                bool may_tell_error)
-    : session_(session), options_(options), counts_(counts),
+    : session_(session), stages_(stages), options_(options), counts_(counts),
       tells_error_(may_tell_error && has_error_layer(options, keeps_halves(options))),
       film_names_(film_names(1u << session.traits.at("TRAIT_PART_BITS"))),
       combine_(stages.add({.name = "gradient_combine", .strict = true})), film_(session, stages, tells_error_),
@@ -45,10 +45,13 @@ DifferenceFilm::DifferenceFilm(Session &session, Stages &stages, const RenderOpt
                               .numbers = {"first_slot", "first_pixel", "first_above", "is_carried", "has_above",
                                           "frames", "frames_before"}})),
       carry_(stages.add({.name = "gradient_carry", .numbers = {"first_slot"}})) {
+    session.reals["weights_before"] = session.reals["squares_before"] = 0; // add() says them
     check_guide(options);
     if (options.threads != 1)
         compilers_ = keep_compilers(session.device);
 }
+
+DifferenceFilm::~DifferenceFilm() { is_going_ = true; }
 
 TableList DifferenceFilm::tables() const {
     TableList list = joined(film_.tables(),
@@ -71,7 +74,11 @@ void DifferenceFilm::begin() {
         solver_compiled_ =
             std::async(options_.threads == 1 ? std::launch::deferred : std::launch::async,
                        [this, compilers = std::exchange(compilers_, nullptr)]() mutable {
-                           compile_reconstruction(session_.device, options_, session_.settings.samples_per_pixel);
+                           compile_reconstruction(session_.device, options_, session_.settings.samples_per_pixel,
+                                                  [this](const std::string &, std::size_t, std::size_t, double) {
+                                                      if (is_going_)
+                                                          throw Stopped();
+                                                  });
                            compilers.reset();
                        });
 }
@@ -134,6 +141,11 @@ void DifferenceFilm::add(std::uint32_t first, std::uint32_t rows, std::uint32_t 
         for (std::uint32_t frame = first_frame; frame < frames; frame += apart * accumulated_frames) {
             const std::uint32_t together = std::min(accumulated_frames, (frames - frame + apart - 1) / apart);
             const auto before = std::uint32_t((number + frame - first_sample_) / apart);
+            if (film_.weights().are_there()) {
+                const SharedWeights::Sums weighed = film_.weights().sums(number + frame - first_sample_, film, apart);
+                stages_.set_real("weights_before", weighed.weights);
+                stages_.set_real("squares_before", weighed.squares);
+            }
             accumulate_.run(width, {{"first_slot", frame * pixels},
                                     {"first_pixel", first * width},
                                     {"first_above", ((first > 0 ? first : session_.film.crop_height) - 1) * width},
@@ -201,9 +213,14 @@ GradientFilms DifferenceFilm::films(std::uint64_t samples) const {
     const auto parts = std::uint32_t(film_names_.size());
     const std::uint64_t frames = samples / session_.pixels();
     for (std::uint32_t part = 0; part < parts; ++part) {
+        const SharedWeights &shared = film_.weights();
+        const auto weight = [&](std::uint64_t of_frames) {
+            const double squares = shared.sums(of_frames, part, parts).squares;
+            const double first = shared.sums(std::min<std::uint64_t>(of_frames, part + 1), part, parts).squares;
+            return GradientFilm::Weight{shared.of_part(of_frames, part, parts), squares, squares - first};
+        };
         // A frame more for the upper pixels is one of a single part.
-        const GradientFilm::Weights weights{film_.weights().of_part(frames, part, parts),
-                                            film_.weights().of_part(frames + 1, part, parts)};
+        const GradientFilm::Weights weights{weight(frames), weight(frames + 1)};
         films.add((*tables_)[film_names_[part]], session_.film.crop_width, session_.film.crop_height,
                   options_.precision, samples_of_part(samples, session_.pixels(), part, parts), weights);
     }

@@ -8,6 +8,7 @@
 #include "runtime/wavefront/film.h"
 #include "solver/poisson_solver.h"
 
+#include <atomic>
 #include <future>
 #include <memory>
 #include <optional>
@@ -23,6 +24,8 @@ class DifferenceFilm {
     /// for methods whose error is more than halves know.
     DifferenceFilm(Session &session, Stages &stages, const RenderOptions &options, const char *counts,
                    bool may_tell_error = true);
+    /// What is still being compiled ends with the kernel that is ready next: there will be no image.
+    ~DifferenceFilm();
 
     /// By slot `direct`, `prefix` and `difference`, which the method fills; and the sums.
     TableList tables() const;
@@ -64,6 +67,7 @@ class DifferenceFilm {
     std::vector<float> direct_variance(std::uint64_t samples, const std::vector<DirectPixel> &edges) const;
 
     Session &session_;
+    Stages &stages_;
     const RenderOptions &options_;
     const std::string counts_;
     const bool tells_error_;                    ///< whether an image says its error
@@ -82,7 +86,8 @@ class DifferenceFilm {
     std::optional<double> relative_error_; ///< estimated, of the last image
     std::unique_ptr<PoissonSolver> solver_;
     std::shared_ptr<void> compilers_;   ///< from before the stages' kernels are compiled until the solver's are
-    std::future<void> solver_compiled_; ///< while the first samples render
+    std::atomic<bool> is_going_{false}; ///< asked after each of the solver's kernels
+    std::future<void> solver_compiled_; ///< while the first samples render; waits for that at the end
 };
 
 } // namespace gradus

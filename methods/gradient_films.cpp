@@ -68,7 +68,7 @@ PlaneSource GradientFilms::mean(GradientFilm::Layer layer, float of_none) const 
             double weight = 0;
             for (const auto &film : films_) {
                 film->add_sums(layer, color, first, end, sums.data());
-                weight += film->weight(layer, first);
+                weight += film->weight(layer, first).of_mean;
             }
             for (std::size_t i = 0; i < end - first; ++i)
                 plane[first + i] = weight > 0 ? static_cast<float>(sums[i] / weight) : of_none;
@@ -84,7 +84,8 @@ PlaneSource GradientFilms::variance(GradientFilm::Layer layer) const {
             std::vector<Replicate> replicates(films_.size());
             for (std::size_t pixel = first; pixel < end; ++pixel) {
                 for (std::size_t part = 0; part < films_.size(); ++part)
-                    replicates[part] = {films_[part]->sum(layer, color, pixel), films_[part]->weight(layer, pixel)};
+                    replicates[part] = {films_[part]->sum(layer, color, pixel),
+                                        films_[part]->weight(layer, pixel).of_mean};
                 plane[pixel] = static_cast<float>(variance_of_mean(replicates));
             }
         });
@@ -95,33 +96,42 @@ PlaneSource GradientFilms::variance_of_samples(GradientFilm::Layer layer) const 
     return [this, layer](std::uint32_t color, float *plane) {
         for_each_block(layer, [&](std::size_t first, std::size_t end) {
             const std::size_t pixels = end - first;
-            double count = 0;
-            for (const auto &film : films_)
+            double count = 0, weight = 0;
+            for (const auto &film : films_) {
                 count += film->count(layer, first);
+                weight += film->weight(layer, first).of_mean;
+            }
             // A half of one sample tells no variance, while samples of both halves are independent of each other.
             const std::size_t halves = has_halves_ && count >= 4 ? 2 : 1;
             Values variance{};
             for (std::size_t half = 0; half < halves; ++half) {
-                double n = 0;
-                Values sum{}, squares{};
+                GradientFilm::Weight of_half{};
+                Values sum{}, deviations{};
                 for (std::size_t part = half; part < films_.size(); part += halves) {
-                    const double of_part = films_[part]->count(layer, first);
+                    const GradientFilm &film = *films_[part];
+                    if (film.count(layer, first) == 0)
+                        continue;
+                    const GradientFilm::Weight &of_part = film.weight(layer, first);
                     Values sum_of_part{};
-                    films_[part]->add_sums(layer, color, first, end, sum_of_part.data());
-                    films_[part]->add_deviations(layer, color, first, end, squares.data());
-                    n += of_part;
+                    film.add_sums(layer, color, first, end, sum_of_part.data());
+                    film.add_deviations(layer, color, first, end, deviations.data());
+                    // Two means are apart by so much of the samples' variance (Chan et al. 1983, where weights are 1).
+                    const double apart = of_part.squares * of_half.of_mean * of_half.of_mean +
+                                         of_half.squares * of_part.of_mean * of_part.of_mean;
                     for (std::size_t i = 0; i < pixels; ++i) {
+                        const double off = sum_of_part[i] * of_half.of_mean - sum[i] * of_part.of_mean;
+                        deviations[i] += apart > 0 ? off * off / apart : 0;
                         sum[i] += sum_of_part[i];
-                        squares[i] += sum_of_part[i] * sum_of_part[i] / std::max(of_part, 1.0);
                     }
+                    of_half.of_deviations += of_part.of_deviations + (apart > 0 ? 1 : 0);
+                    of_half.of_mean += of_part.of_mean;
+                    of_half.squares += of_part.squares;
                 }
-                if (n < 2)
+                if (of_half.of_deviations <= 0)
                     continue;
-                const double share = n / count, of_mean = share * share / (n - 1);
-                for (std::size_t i = 0; i < pixels; ++i) {
-                    const double mean = sum[i] / n, spread = squares[i] / n - mean * mean;
-                    variance[i] += of_mean * (spread > 0 ? spread : 0);
-                }
+                const double of_mean = of_half.squares / (of_half.of_deviations * weight * weight);
+                for (std::size_t i = 0; i < pixels; ++i)
+                    variance[i] += of_mean * deviations[i];
             }
             for (std::size_t i = 0; i < pixels; ++i)
                 plane[first + i] = static_cast<float>(variance[i]);

@@ -161,12 +161,13 @@ PoissonOptions poisson_options(const RenderOptions &options, std::uint64_t frame
     return poisson;
 }
 
-void compile_reconstruction(Device &device, const RenderOptions &options, std::uint64_t frames) {
+void compile_reconstruction(Device &device, const RenderOptions &options, std::uint64_t frames,
+                            const KernelLibrary::Progress &progress) {
     if (needs_halves(options.reconstruction) && halves_have_variances(frames, 1))
-        options.reconstruction == Reconstruction::guided ? GuidedReconstruction::compile(device)
-                                                         : WeightedReconstruction::compile(device);
+        options.reconstruction == Reconstruction::guided ? GuidedReconstruction::compile(device, progress)
+                                                         : WeightedReconstruction::compile(device, 3, progress);
     else
-        PoissonSolver::compile(device, poisson_options(options, frames));
+        PoissonSolver::compile(device, poisson_options(options, frames), 3, Precision::single, progress);
 }
 
 Image reconstruct(Device &device, PoissonSolver &solver, Image whole, GradientFilms films,

@@ -3,6 +3,7 @@
 
 #include "methods/gradient_films.h"
 #include "methods/method.h"
+#include "runtime/device/program.h"
 #include "runtime/direct_light/direct_light.h"
 #include "runtime/film/image.h"
 #include "solver/poisson_solver.h"
@@ -30,7 +31,8 @@ Image reconstruct(Device &device, PoissonSolver &solver, Image whole, GradientFi
                   const std::function<void()> &films_are_read, ReconstructionUsed &used, ErrorOfImage *error = nullptr);
 
 /// Compiles what reconstructing so many frames needs; as PoissonSolver::compile().
-void compile_reconstruction(Device &device, const RenderOptions &options, std::uint64_t frames);
+void compile_reconstruction(Device &device, const RenderOptions &options, std::uint64_t frames,
+                            const KernelLibrary::Progress &progress = {});
 
 /// What options ask of the solver.
 PoissonOptions poisson_options(const RenderOptions &options, std::uint64_t frames);

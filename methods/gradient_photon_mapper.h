@@ -9,9 +9,9 @@
 // the same where a surface is smooth, but fails where an event differs or light is totally reflected.)
 //
 // A photon that counts at both gather points stays; one that does not is mirrored, and its last vertex sends it there
-// anew (kernels/lib/shift_photon.h); where that is specular, a manifold walk brings the chain of such vertices there.
-// Who has no such shift counts for himself: where light comes from afar on its last or only a specular way, or the
-// gather points are of different BSDF kinds.
+// anew (kernels/lib/shift_photon.h); where that is too smooth to, specular or glossy, a manifold walk brings the chain of
+// such vertices there. Who has no such shift counts for himself, where gather points are of different BSDF kinds, say
+// (docs/design.md, 'Gradients of photons', lists them).
 #pragma once
 
 #include "methods/difference_film.h"

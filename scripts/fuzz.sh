@@ -24,6 +24,7 @@ failed=0
 for name in "$@"; do
     found=build-fuzz/corpus/$name
     mkdir -p "$found"
+    touch "build-fuzz/$name.begun" # what broke it is newer
     # Leaks are looked for at the end: after each run that failed it takes far longer than the run. And
     # without entropic scheduling, which takes a quarter of the time.
     options=(-detect_leaks=0 -entropic=0 -max_total_time="$seconds" -timeout=120 -rss_limit_mb=4096 -max_len=16384
@@ -36,7 +37,8 @@ for name in "$@"; do
         echo "$name: $(sed -n 's/^stat::number_of_executed_units: *//p' "build-fuzz/$name.log") runs, nothing found"
     else
         tail -n 40 "build-fuzz/$name.log"
-        echo "$name: broken by $(ls -t build-fuzz/"$name"-* | head -n 1)"
+        broken=$(find build-fuzz -maxdepth 1 -name "$name-*" -newer "build-fuzz/$name.begun" | head -n 1)
+        echo "$name: broken by ${broken:-no input of its own, see build-fuzz/$name.log}"
         failed=1
     fi
 done

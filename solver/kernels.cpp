@@ -66,7 +66,8 @@ constexpr Entry entries[] = {
 
 } // namespace
 
-Kernels::Kernels(Device &device, Precision precision, std::uint32_t channels, Weights weights)
+Kernels::Kernels(Device &device, Precision precision, std::uint32_t channels, Weights weights,
+                 const KernelLibrary::Progress &progress)
     : weights(weights), channels(channels), weight_planes(weights == Weights::per_channel ? channels : 1) {
     KernelLibrary library(device,
                           {{"SOLVER_CHANNELS", static_cast<int>(channels)},
@@ -85,7 +86,7 @@ Kernels::Kernels(Device &device, Precision precision, std::uint32_t channels, We
                             entry.entry ? entry.entry : entry.name,
                             std::string_view(entry.file) == "cycle" ? tiles : std::map<std::string, std::string>()});
     }
-    std::vector<Kernel> built = library.build(requests);
+    std::vector<Kernel> built = library.build(requests, progress);
     for (std::size_t i = 0; i < wanted.size(); ++i)
         this->*wanted[i]->kernel = std::move(built[i]);
 }

@@ -15,7 +15,8 @@ enum class Weights {
 };
 
 struct Kernels {
-    Kernels(Device &device, Precision precision, std::uint32_t channels, Weights weights);
+    Kernels(Device &device, Precision precision, std::uint32_t channels, Weights weights,
+            const KernelLibrary::Progress &progress = {});
 
     const Weights weights;
     const std::uint32_t channels;

@@ -1,5 +1,6 @@
 #include "solver/poisson_solver.h"
 
+#include "runtime/device/program.h"
 #include "runtime/error.h"
 #include "runtime/seconds_since.h"
 #include "solver/mean_correction.h"
@@ -63,6 +64,8 @@ void check(const PoissonImages<Planes> &images, const PoissonOptions &options) {
         usage(fmt::format("damping is {}; it must be above 0 and at most 1", options.damping));
     if (!(options.tolerance >= 0))
         usage(fmt::format("tolerance is {}; it must be 0 or larger", options.tolerance));
+    if (!(options.noise_share >= 0))
+        usage(fmt::format("the share of the noise is {}; it must be 0 or larger", options.noise_share));
     if (options.iterations < 0 || options.inner_iterations < 1)
         usage("counts of iterations must be above 0 (or 0 for the default)");
     const bool variances = images.primal_variance && images.dx_variance && images.dy_variance;
@@ -288,6 +291,8 @@ PoissonReport PoissonSolver::solve(const BufferSources &images, const PoissonOpt
 PoissonReport PoissonSolver::solve(const ImageSources &images, const PoissonOptions &options, const PlaneSink &result,
                                    const std::function<void()> &all_read) {
     check(images, options);
+    if (!result)
+        throw Error(ExitCode::usage, "a reconstruction needs a function that takes its planes");
     return run([&](Implementation &i) {
         using Input = std::function<const Buffer &()>;
         const auto inputs = converted<Input>(images, [&i](const PlaneSource &source) {
@@ -316,10 +321,10 @@ PoissonReport PoissonSolver::solve(const HostImages &images, const PoissonOption
     });
 }
 
-void PoissonSolver::compile(Device &device, const PoissonOptions &options, std::uint32_t channels,
-                            Precision precision) {
+void PoissonSolver::compile(Device &device, const PoissonOptions &options, std::uint32_t channels, Precision precision,
+                            const KernelLibrary::Progress &progress) {
     // The device keeps the programs, which is what takes the time.
-    Kernels(device, precision, channels, weights_for(options, false));
+    Kernels(device, precision, channels, weights_for(options, false), progress);
 }
 
 } // namespace gradus

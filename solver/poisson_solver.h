@@ -153,9 +153,12 @@ class PoissonSolver {
     std::uint32_t channels() const;
 
     /// Compiles the kernels of a solve, so that the first one finds them. Uses no queue, so another thread may do it
-    /// while this one works on the device.
-    static void compile(Device &device, const PoissonOptions &options, std::uint32_t channels = 3,
-                        Precision precision = Precision::single);
+    /// while this one works on the device. `progress`: called after each kernel, with its name, how many are there, of
+    /// how many, and the seconds that it took; what it throws ends this.
+    static void
+    compile(Device &device, const PoissonOptions &options, std::uint32_t channels = 3,
+            Precision precision = Precision::single,
+            const std::function<void(const std::string &, std::size_t, std::size_t, double)> &progress = {});
 
     struct Implementation;
 

@@ -32,14 +32,14 @@ constexpr VarianceSmoother::Smoothing smoothings[] = {{1, 0.07}, {1, 0.5}, {2, 0
 constexpr auto smoothing_kernels = {"mean_of_channels", "smooth_image", "smooth_and_add", "geometric_mean"};
 
 /// Kernels of one program: to build one of them is to compile all.
-std::vector<Kernel> weighted_kernels(Device &device, std::uint32_t channels,
-                                     std::initializer_list<const char *> names) {
+std::vector<Kernel> weighted_kernels(Device &device, std::uint32_t channels, std::initializer_list<const char *> names,
+                                     const KernelLibrary::Progress &progress = {}) {
     KernelLibrary library(
         device, {{"SOLVER_CHANNELS", static_cast<int>(channels)}, {"SOLVER_WEIGHTED", 0}, {"SOLVER_JOINT", 1}});
     std::vector<KernelRequest> requests;
     for (const char *name : names)
         requests.push_back({name, "kernels/solver/smooth_variance.cl", name, {}});
-    return library.build(requests);
+    return library.build(requests, progress);
 }
 
 std::vector<float> values_of(const Buffer &image) {
@@ -156,9 +156,9 @@ PoissonOptions WeightedReconstruction::options() {
     return options;
 }
 
-void WeightedReconstruction::compile(Device &device, std::uint32_t channels) {
-    weighted_kernels(device, channels, smoothing_kernels);
-    PoissonSolver::compile(device, options(), channels);
+void WeightedReconstruction::compile(Device &device, std::uint32_t channels, const KernelLibrary::Progress &progress) {
+    weighted_kernels(device, channels, smoothing_kernels, progress);
+    PoissonSolver::compile(device, options(), channels, Precision::single, progress);
 }
 
 PoissonReport WeightedReconstruction::solve_half(const HalfImages &half, const HalfImages &judge, Buffer &result) {

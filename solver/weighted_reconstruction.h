@@ -87,7 +87,7 @@ class WeightedReconstruction {
     /// What a half asks of the solver.
     static PoissonOptions options();
     /// As PoissonSolver::compile().
-    static void compile(Device &device, std::uint32_t channels = 3);
+    static void compile(Device &device, std::uint32_t channels = 3, const KernelLibrary::Progress &progress = {});
 
   private:
     Device &device_;

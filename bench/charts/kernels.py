@@ -26,13 +26,16 @@ def functions_of(results):
 
 
 def kernels_of(results):
-    """{kernel: its entry of the longest queue}; empty where the file holds none."""
+    """{kernel: its entry of the longest queue}; empty where the file holds none. Kernels of one name have their file
+    beside it."""
     longest = {}
     for entry in results.get("throughput") or [] if isinstance(results, dict) else []:
-        name = entry["kernel"]
-        if name not in longest or entry["queue"] > longest[name]["queue"]:
-            longest[name] = entry
-    return longest
+        place = entry["kernel"], entry.get("file", "")
+        if place not in longest or entry["queue"] > longest[place]["queue"]:
+            longest[place] = entry
+    names = [name for name, _ in longest]
+    return {name if names.count(name) == 1 else f"{name} ({file.removeprefix('kernels/')})": entry
+            for (name, file), entry in longest.items()}
 
 
 def foot(results, text):
@@ -114,5 +117,5 @@ def draw_throughput(pyplot, results):
     handles.append(pyplot.Line2D([], [], color=plotting.BLUE, linewidth=1.2))
     plotting.frame(figure, f"Relaxed kernels: {gains(ratios)}" if ratios else "Kernels in other arithmetic", handles,
                    ["relaxed", "double", "float = 1"],
-                   foot(results, "the longest queue measured; no bar: bytes not counted"), 3)
+                   foot(results, "the longest queue measured; no bar: bytes not known"), 3)
     return figure

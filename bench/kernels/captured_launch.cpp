@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <set>
 
 namespace gradus::bench {
 
@@ -57,6 +58,72 @@ constexpr int disturbances = 2;
 /// Of tables of more lines than these (`link`: connections to lights, then steps), each so many are a column of their
 /// own.
 constexpr std::size_t lines_at_once = 4;
+
+/// Tables of their own of one whole number an item.
+const std::set<std::string> lists = {"index",
+                                     "bin",
+                                     "offsets_state",
+                                     "gather_bin",
+                                     "gather_index",
+                                     "moved_bin",
+                                     "moved_index",
+                                     "pair_gather",
+                                     "pair_photon",
+                                     "photon_key",
+                                     "photon_line_of",
+                                     "photon_line_sorted",
+                                     "photon_sort_index",
+                                     "photon_sort_key",
+                                     "sort_from",
+                                     "sort_index",
+                                     "sort_index_next",
+                                     "sort_key",
+                                     "sort_key_next"};
+
+/// What a session makes of the scene (runtime/wavefront/session.cpp), which is not counted.
+const std::set<std::string> scene_records = {"triangles",
+                                             "triangle_normals",
+                                             "triangle_tangents",
+                                             "triangle_texcoords",
+                                             "spheres",
+                                             "sphere_axes",
+                                             "primitive_material",
+                                             "primitive_light",
+                                             "primitive_bin",
+                                             "primitive_back_bin",
+                                             "materials",
+                                             "material_back",
+                                             "material_class",
+                                             "material_gathers",
+                                             "material_keeps",
+                                             "material_kind",
+                                             "material_lookups",
+                                             "material_textures",
+                                             "bin_of_material",
+                                             "leaving_bin",
+                                             "record_kind",
+                                             "blends",
+                                             "blend_weights",
+                                             "normal_maps",
+                                             "bump_scales",
+                                             "textures",
+                                             "texels",
+                                             "texture_reals",
+                                             "lights",
+                                             "light_kinds",
+                                             "light_alias",
+                                             "light_nodes",
+                                             "light_leaves",
+                                             "light_slots",
+                                             "light_leaf",
+                                             "light_textures",
+                                             "light_pictures",
+                                             "emissions",
+                                             "emission_alias",
+                                             "environment_texels",
+                                             "environment_cells",
+                                             "environment_strips",
+                                             "camera"};
 
 void disturb(char *column, std::size_t rows, bool is_uint, bool is_table, std::size_t taken_row, int way) {
     if (is_uint) {
@@ -144,19 +211,42 @@ CapturedLaunch::CapturedLaunch(Device &device, const Launch &launch)
 CapturedLaunch::~CapturedLaunch() { restore(); }
 
 void CapturedLaunch::lay_out(CapturedBuffer &captured, const TableLayout &layout) const {
-    captured.rows = layout.rows({uint_argument("capacity"), uint_argument("slots"), uint_argument("pixels"),
-                                 uint_argument("crop_width"), uint_argument("own_rows"), uint_argument("photon_rows"),
-                                 uint_argument("pair_rows"), uint_argument("gather_rows"), uint_argument("chain_rows"),
-                                 uint_argument("chain_vertices")});
+    captured.rows = layout.rows({.capacity = uint_argument("capacity"),
+                                 .slots = uint_argument("slots"),
+                                 .pixels = uint_argument("pixels"),
+                                 .crop_width = uint_argument("crop_width"),
+                                 .own_rows = uint_argument("own_rows"),
+                                 .photon_rows = uint_argument("photon_rows"),
+                                 .new_photon_rows = uint_argument("new_photon_rows"),
+                                 .pair_rows = uint_argument("pair_rows"),
+                                 .gather_rows = uint_argument("gather_rows"),
+                                 .chain_rows = uint_argument("chain_rows"),
+                                 .chain_vertices = uint_argument("chain_vertices"),
+                                 .traced_rows = uint_argument("traced_rows")});
     if (captured.rows == 0)
         return;
     for (const TableColumn &column : layout.columns)
         captured.is_uint.push_back(column.is_uint);
     captured.is_uint.resize(std::min(captured.is_uint.size(), captured.content.size() / (captured.rows * float_bytes)));
-    captured.lines = layout.rows({1, 1, 1, 1, uint_argument("at_first") ? 1u : 4u});
     const std::string &name = captured.arguments.front();
-    captured.line_rows =
-        name == "link" || name == "offset_ray" ? uint_argument("stride") : captured.rows / captured.lines;
+    // An item has one of the photons that move, and one half of the passes; a chain has any number of vertices.
+    captured.lines = name == "moved" || name == "radius_bias"
+                         ? 1
+                         : layout.rows({.capacity = 1,
+                                        .slots = 1,
+                                        .pixels = 1,
+                                        .crop_width = 1,
+                                        .own_rows = uint_argument("at_first") ? 1u : 4u,
+                                        .photon_rows = 1,
+                                        .new_photon_rows = 1,
+                                        .pair_rows = 1,
+                                        .gather_rows = 1,
+                                        .chain_rows = 1,
+                                        .chain_vertices = 0,
+                                        .traced_rows = 1});
+    if (captured.lines > 0)
+        captured.line_rows =
+            name == "link" || name == "offset_ray" ? uint_argument("stride") : captured.rows / captured.lines;
 }
 
 std::size_t CapturedLaunch::pixels_of_tiles() const {
@@ -217,7 +307,19 @@ Replay CapturedLaunch::replay(Precision precision, const std::map<std::string, s
     return replay;
 }
 
-double CapturedLaunch::table_bytes_an_item() {
+bool CapturedLaunch::has_known_rows() const {
+    // With this argument an item looks at gather points of several paths.
+    if (arguments_.contains("strip_pixels") && arguments_.contains("gather"))
+        return false;
+    return std::all_of(buffers_.begin(), buffers_.end(), [](const CapturedBuffer &captured) {
+        const std::string &name = captured.arguments.front();
+        return captured.rows > 0 ? captured.lines > 0 : lists.contains(name) || scene_records.contains(name);
+    });
+}
+
+std::optional<double> CapturedLaunch::table_bytes_an_item() {
+    if (!has_known_rows())
+        return std::nullopt;
     restore();
     Replay launch = replay(Precision::single);
     launch.run();
@@ -235,7 +337,7 @@ double CapturedLaunch::table_bytes_an_item() {
     for (std::size_t b = 0; b < buffers_.size(); ++b) {
         const CapturedBuffer &captured = buffers_[b];
         const std::string &name = captured.arguments.front();
-        const bool is_list = name == "index" || name == "bin" || name == "offsets_state";
+        const bool is_list = lists.contains(name);
         if (!is_list && captured.rows == 0)
             continue;
         const std::size_t rows = is_list ? captured.content.size() / float_bytes : captured.rows;

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,7 @@ struct CapturedBuffer {
     bool is_real = true;            ///< else uint
     std::size_t rows = 0;           ///< of a table of kernels/shared/tables.h; 0 for anything else
     std::vector<bool> is_uint = {}; ///< by column of a table, as many as the buffer holds
-    std::size_t lines = 1;          ///< rows for each work-item: 4 where there is one for each offset path
+    std::size_t lines = 1;          ///< rows for each work-item: 4 where there is one for each offset path; 0: unknown
     std::size_t line_rows = 0;      ///< how far they are apart
 };
 
@@ -77,15 +78,18 @@ class CapturedLaunch {
     Replay replay(Precision precision, const std::map<std::string, std::string> &definitions = {});
 
     /// Bytes that one item has to read and write, in float: every column of a table that the launch touches, once; the
-    /// items of several planes share them.
+    /// items of several planes share them. Nothing where they are not known: where the launch has a buffer that is
+    /// neither a table of kernels/shared/tables.h nor a list of one number an item nor of the scene, or where an item
+    /// takes several rows of a table.
     ///
     /// Found by experiment: a column is read if the launch leaves something else once its values are changed, and
     /// written if the launch leaves it changed. Records of the scene are not counted, for they stay in caches.
-    double table_bytes_an_item();
+    std::optional<double> table_bytes_an_item();
 
   private:
     std::size_t uint_argument(const std::string &name) const; ///< 0 where there is none
     void lay_out(CapturedBuffer &captured, const TableLayout &layout) const;
+    bool has_known_rows() const; ///< whether it is known how many rows of each buffer an item takes
     std::vector<std::vector<char>> contents() const;
     void restore() const;
 

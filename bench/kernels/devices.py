@@ -22,12 +22,12 @@ TURNS = 3
 
 
 def measure(arguments, environment, device, folder):
-    """{(kernel, queue): what was measured}."""
+    """{(kernel, queue, file): what was measured}."""
     record = pathlib.Path(folder) / "kernels.json"
     command = [arguments.bench, "--parts", "throughput", "--queue-bits", "10,14" if arguments.quick else "10,14,18",
                "--device", device, "--repeats", arguments.repeats, "--no-vectoriser", "--json", record]
     renders.run(*command, *(["--quick"] if arguments.quick else []), environment=environment)
-    return {(row["kernel"], row["queue"]): row for row in json.loads(record.read_text())["throughput"]}
+    return {(row["kernel"], row["queue"], row["file"]): row for row in json.loads(record.read_text())["throughput"]}
 
 
 def main():
@@ -51,7 +51,7 @@ def main():
         ratio = curves.spread(two_devices.ratios(rates))
         print(f"{key[0]:<34} {key[1]:>8} {statistics.median(rates[first]) / 1e6:>15.2f} "
               f"{statistics.median(rates[second]) / 1e6:>12.2f} {ratio['median']:>13.2f}", flush=True)
-        results.append({"kernel": key[0], "queue": key[1], "items_per_second": rates, "ratio": ratio})
+        results.append({"kernel": key[0], "file": key[2], "queue": key[1], "items_per_second": rates, "ratio": ratio})
     if arguments.json:
         arguments.json.write_text(json.dumps(results, indent=2) + "\n")
 

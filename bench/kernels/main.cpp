@@ -24,7 +24,7 @@ struct Arguments : gradus::bench::ProgramOptions {
     std::set<std::string> parts{all_parts.begin(), all_parts.end()};
     std::string scene = GRADUS_SCENES "/cornell-box.xml";
     std::vector<int> queue_bits = {10, 14, 18};
-    std::vector<std::string> kinds = gradus::all_bsdf_kinds(), methods = gradus::method_names();
+    std::vector<std::string> kinds = gradus::all_bsdf_kinds(), methods = {"pt", "gpt", "sppm", "gpm"};
     int repeats = 5;
     std::uint32_t cases = 200'000;
     bool quick = false, no_vectoriser = false;
@@ -37,6 +37,7 @@ void run(const Arguments &arguments) {
     const std::shared_ptr<void> compilers = keep_compilers(device); // kernels are built one by one
     const bool quick = arguments.quick;
     Settings settings{device,
+                      arguments.threads,
                       arguments.scene,
                       arguments.repeats,
                       {},
@@ -99,9 +100,11 @@ int main(int argc, char **argv) {
     app.add_option("--kinds", arguments.kinds, "BSDF kinds")
         ->check(CLI::IsMember(gradus::all_bsdf_kinds()))
         ->delimiter(',');
-    app.add_option("--methods", arguments.methods, "Rendering methods whose kernels are measured")
+    app.add_option("--methods", arguments.methods,
+                   "Rendering methods whose kernels are measured; those of photons with kinds that gather some")
         ->check(CLI::IsMember(gradus::method_names()))
-        ->delimiter(',');
+        ->delimiter(',')
+        ->capture_default_str();
     app.add_option("--queue-bits", arguments.queue_bits, "Base-2 logarithms of the queues' sizes, even numbers")
         ->check(CLI::IsMember({6, 8, 10, 12, 14, 16, 18, 20, 22}))
         ->delimiter(',')

@@ -14,6 +14,7 @@ namespace gradus::bench {
 /// What all measurements share.
 struct Settings {
     Device &device;
+    int threads;       ///< of the processor; 0: all
     std::string scene; ///< a file; see throughput.cpp
     int repeats = 5;
     std::vector<std::uint32_t> queue_sizes; ///< squares of powers of two
@@ -24,7 +25,7 @@ struct Settings {
     bool asks_vectoriser = true; ///< whether PoCL vectorised a kernel
 };
 
-/// Every kernel of a render and of a solve in its builds, over queue sizes.
+/// The kernels of renders and of a solve in their builds, over queue sizes.
 nlohmann::json measure_throughput(const Settings &settings);
 
 /// Has PoCL's compiler make its remarks on each of these kernels; see vector_width.h.
@@ -36,7 +37,7 @@ nlohmann::json measure_accuracy(const Settings &settings);
 /// The sort of runtime/wavefront, sums over runs of equal keys, and splats.
 nlohmann::json measure_sort(const Settings &settings);
 
-/// Gathering of photons over a triad of its bytes, and manifold walks, in the methods that have them.
+/// Gathering of photons over a triad of its bytes, and manifold walks, in the methods that have them, by stages' times.
 nlohmann::json measure_photons(const Settings &settings);
 
 /// What the work-group and batch size that a tuner chose gain.

@@ -1,5 +1,5 @@
 // Gathering and manifold walks as methods launch them, by the times of their stages: pairs of gather point and photon a
-// second over those that a triad's bandwidth would allow, and nanoseconds a step of a walk, kernels and Embree.
+// second over those that a triad's bandwidth would allow, and nanoseconds of the walks' kernels a ray, without Embree.
 #include "bench/kernels/interleaved.h"
 #include "bench/kernels/measurements.h"
 #include "bench/spread.h"

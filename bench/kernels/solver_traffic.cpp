@@ -16,7 +16,7 @@ const std::map<std::string, double> values_of_item = {
     {"descend", 3.25},                         // right side, inverse diagonal; smoothed, a quarter of a coarse pixel
     {"ascend", 5},                             // u, right side, inverse diagonal; what it adds to, twice
     {"prolong", 8 / 2 + 16 + 16},              // coarse, each of its rows for two fine ones; u twice
-    {"direction", 4},                          // z, old direction; direction, image
+    {"direction", 4.125},                      // z, old direction; direction, image, an eighth of a sum's parts
     {"advance", 6},                            // direction, image, u, residual; u, residual
     {"reduce_products", SOLVER_REDUCTION + 1}, // <r, r>, which is the first that a solve asks for
 };

@@ -1,6 +1,7 @@
 // The sort of runtime/wavefront, the sums over runs and the splats: wall nanoseconds a row, waiting for the device
 // included, against std::stable_sort of pairs of key and row on one thread, and a triad of the 12 bytes a row that any
-// sort reads and writes. Keys are random; half of the splats are on a hundredth of the pixels.
+// sort reads and writes, whose nanoseconds are the device's alone. Keys are random; half of the splats are on a
+// hundredth of the pixels.
 #include "bench/kernels/interleaved.h"
 #include "bench/kernels/measurements.h"
 #include "bench/spread.h"

@@ -1,11 +1,13 @@
-// Every kernel that a render by pt and gpt and a solve launch, measured in the render itself: where a kernel is about
+// The kernels that a render by each method and a solve launch on more than one item, the solver's main ones alone
+// (bench/kernels/solver_traffic.cpp), measured in the render itself: where a kernel is about
 // to be launched on the most items that it gets in this render, the render is held, what the launch was given is kept,
 // and the kernel runs on it again and again, in its float, relaxed and double builds, before the render goes on. So
 // tables, arguments and specialisation are those of a real batch, whatever stages a method has.
 //
 // The scene is a room, scenes/cornell-box.xml, whose surfaces are all of one BSDF kind and all but one emit: then each
 // stage gets a queue about as long as the batch. It is rendered once for each kind; a kernel that does not depend on
-// the kind is measured with the first. A queue of n items is a film of n pixels with one sample each in batches of n
+// the kind is measured with the first. Methods of photons are left out where the kind is too smooth to gather any. A
+// queue of n items is a film of n pixels with one sample each in batches of n
 // paths.
 //
 // Google Benchmark runs the builds of a kernel in random order, interleaved, and takes the device's own clock. Between
@@ -20,6 +22,7 @@
 #include "planning/make_method.h"
 #include "runtime/error.h"
 #include "runtime/io/load_scene.h"
+#include "runtime/scene/roughness.h"
 #include "runtime/scene/traits.h"
 #include "solver/poisson_solver.h"
 #include "tests/support/poisson_problem.h"
@@ -35,6 +38,9 @@
 namespace gradus::bench {
 
 namespace {
+
+/// They throw where there is nothing to gather photons at.
+const std::set<std::string> photon_methods = {"sppm", "gpm"};
 
 constexpr int depth = 5; // a stage is at its most long before
 
@@ -67,6 +73,8 @@ Scene room(const std::string &path, const std::string &kind, std::uint32_t queue
     return scene;
 }
 
+KernelPlace place_of(const KernelRequest &request) { return {request.file, request.name}; }
+
 class Throughput {
   public:
     explicit Throughput(const Settings &settings) : settings_(settings), device_(settings.device) {}
@@ -91,12 +99,16 @@ class Throughput {
             known_.clear();
             for (const std::string &kind : settings_.kinds) {
                 const Scene scene = room(settings_.scene, kind, queue);
-                for (const std::string &method : settings_.methods)
-                    measure_launches(queue, [&] {
-                        RenderOptions options;
-                        options.batch_size = queue;
-                        make_method(method, device_, scene, options)->render_batch();
-                    });
+                for (const std::string &method : settings_.methods) {
+                    RenderOptions options;
+                    options.batch_size = queue;
+                    if (photon_methods.contains(method) &&
+                        gathering_surfaces(scene, options.gather_roughness).gathered.empty()) {
+                        fmt::print("  {} without {}: too smooth to gather photons at\n", method, kind);
+                        continue;
+                    }
+                    measure_launches(queue, [&] { make_method(method, device_, scene, options)->render_batch(); });
+                }
             }
             measure_solver(queue);
         }
@@ -107,7 +119,7 @@ class Throughput {
         struct Largest {
             std::size_t items = 0, ordinal = 0, seen = 0;
         };
-        std::map<std::string, Largest> launches;
+        std::map<KernelPlace, Largest> launches;
         const auto with_observer = [&](const LaunchObserver &observer) {
             observe_launches(device_, observer);
             work();
@@ -116,20 +128,20 @@ class Throughput {
         with_observer([&](const Launch &launch) {
             if (is_empty(launch))
                 return;
-            Largest &largest = launches[launch.request.name];
+            Largest &largest = launches[place_of(launch.request)];
             if (launch.items > largest.items)
                 largest = {launch.items, largest.seen, largest.seen};
             ++largest.seen;
         });
-        for (auto &[name, largest] : launches)
+        for (auto &[place, largest] : launches)
             largest.seen = 0;
         with_observer([&](const Launch &launch) {
             if (is_empty(launch))
                 return;
-            Largest &largest = launches.at(launch.request.name);
+            Largest &largest = launches.at(place_of(launch.request));
             // A launch of one item ends a sum.
             if (largest.seen++ != largest.ordinal || launch.items == 1 || !is_wanted(launch) ||
-                !known_.insert(launch.request.file + launch.request.name).second)
+                !known_.insert(place_of(launch.request)).second)
                 return;
             CapturedLaunch captured(device_, launch);
             if (is_remarking_)
@@ -173,9 +185,10 @@ class Throughput {
         if (device_.description().has_double)
             replays["double"] = launch.replay(Precision::double_);
         // By experiment once, at the smallest queue: the columns are the same at every size.
-        if (!bytes_.contains(launch.name()))
-            bytes_[launch.name()] = bytes_an_item(launch);
-        const std::optional<double> bytes = bytes_.at(launch.name());
+        const KernelPlace place{launch.file(), launch.name()};
+        if (!bytes_.contains(place))
+            bytes_[place] = bytes_an_item(launch);
+        const std::optional<double> bytes = bytes_.at(place);
 
         std::map<std::string, std::function<double()>> builds;
         for (auto &[name, replay] : replays) {
@@ -203,8 +216,8 @@ class Throughput {
 
     static void print_heading() {
         fmt::print(
-            "Kernels: M items/s of the float build, its time over those of the others, its bytes over a triad of "
-            "as many bytes\n  {:<32} {:>8} {:>9} {:>8} {:>8} {:>7} {:>7} {:>7}\n",
+            "Kernels: M items/s of the float build, its time over those of the others, its bytes an item over a triad "
+            "of as many, -: not known\n  {:<32} {:>8} {:>9} {:>8} {:>8} {:>7} {:>7} {:>7}\n",
             "kernel", "items", "M items/s", "relaxed", "double", "bytes", "/triad", "vector");
     }
 
@@ -235,7 +248,7 @@ class Throughput {
         row["float_over_relaxed"] = 1 / *ratio("relaxed");
         if (const auto wide = ratio("double"))
             row["float_over_double"] = 1 / *wide;
-        const auto width = widths_.find(launch.name());
+        const auto width = widths_.find({launch.file(), launch.name()});
         if (width != widths_.end())
             row["vector_width"] = width->second;
         const auto text = [](std::optional<double> value, const char *format) {
@@ -254,9 +267,9 @@ class Throughput {
     const Settings &settings_;
     Device &device_;
     bool is_remarking_ = false;
-    std::set<std::string> known_; ///< files and names of kernels that this queue size has been measured for
-    std::map<std::string, std::optional<double>> bytes_;
-    std::map<std::string, int> widths_; ///< of vectors
+    std::set<KernelPlace> known_; ///< that this queue size has been measured for
+    std::map<KernelPlace, std::optional<double>> bytes_;
+    std::map<KernelPlace, int> widths_; ///< of vectors
     nlohmann::json rows_ = nlohmann::json::array();
 };
 

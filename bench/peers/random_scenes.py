@@ -6,8 +6,9 @@
 Scene N is made from the number N alone: shapes (some of them instances), BSDFs of every kind that both renderers have
 with textures, blends, masks and maps, emitters of every kind, a sensor, a depth. Means over blocks of the image and
 over all of it are compared, by the spread over seeds of both renderers. A difference beyond 5 standard errors is looked
-at again with fresh seeds and four times the samples, and counts where it is there again. Exits with 1 where one does;
-the scene is kept in the folder, whose files both renderers read.
+at again with fresh seeds and four times the samples, and counts where it is there again. Exits with 1 where one does,
+and the scene is kept in the folder, whose files both renderers read; and where no scene was compared, or more than a
+third had no answer.
 
 Left out is what Mitsuba is known to do in another way (docs/scene-format.md): axes of rotation that are no unit
 vectors, blends with smooth parts or rough glass, masks within blends and maps, checkerboards as numbers, short paths
@@ -20,6 +21,7 @@ import argparse
 import json
 import pathlib
 import random
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -35,6 +37,7 @@ SEEDS, SPP = 8, 128
 SUSPECTED, CONFIRMED = 5, 4.5  # standard errors
 FLIP = '<boolean name="flip_normals" value="true"/>'
 LEAST_DIFFERENCE = 0.003  # of the brighter mean: less is what float and its limits may make
+MOST_WITHOUT_ANSWER = 1 / 3  # of the scenes, lest nothing is compared and nothing said: some end Mitsuba's process
 PHOTON_METHODS = {"sppm", "gpm"}
 RADIUS_BIAS = 0.05  # the same of photons, which radii of some pixels spread over the edges of blocks
 
@@ -403,7 +406,7 @@ def main():
         print(f"skipped: {mitsuba_setup.HOW_TO_GET}")
         return 0
     folder = pathlib.Path(arguments.keep or tempfile.mkdtemp(prefix="gradus-scenes-"))
-    records, differing = [], 0
+    records, differing, compared = [], 0, 0
     for number in range(arguments.first, arguments.first + arguments.scenes):
         # A process each: some scenes end Mitsuba's.
         command = [python, __file__, "--one", "--first", str(number), "--keep", str(folder), "--gradus",
@@ -415,12 +418,21 @@ def main():
         found = json.loads(done.stdout.strip().splitlines()[-1])
         records.append({"scene": number, "found": found})
         differing += any(found.values())
+        compared += any(difference is not None for difference in found.values())
         for method, difference in found.items():
             outcome = "left out: photons alone find some of its light" if difference is None else difference or "agrees"
             print(f"scene {number}: {method}: {outcome}", flush=True)
-    print(f"{differing} of {len(records)} scenes differ; they are in {folder}")
+    print(f"{differing} of {compared} scenes differ")
     if arguments.json:
         pathlib.Path(arguments.json).write_text(json.dumps(records, indent=1), encoding="utf-8")
+    if differing or arguments.keep:
+        print(f"they are in {folder}")
+    else:
+        shutil.rmtree(folder)
+    without_answer = arguments.scenes - len(records)
+    if compared == 0 or without_answer > MOST_WITHOUT_ANSWER * arguments.scenes:
+        print(f"too little was compared: {compared} of {arguments.scenes} scenes, {without_answer} without an answer")
+        return 1
     return 1 if differing else 0
 
 

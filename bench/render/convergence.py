@@ -76,7 +76,7 @@ class Measurement:
         """Fills the kernel caches."""
         for method in methods:
             image, _ = self.render(method, ("samples", 4), 0)
-            renders.reconstruction_seconds(self.arguments.gradus, image, renders.split_variant(method)[1])
+            renders.reconstruction_seconds(self.arguments.gradus, image)
         if denoised:
             self.render("pt", ("samples", 1), 0, aov=True)
 
@@ -91,8 +91,7 @@ class Measurement:
                         continue
                     image, record = self.render(method, budget, seed)
                     if (method, budget) not in reconstruction:
-                        reconstruction[method, budget] = renders.reconstruction_seconds(
-                            self.arguments.gradus, image, renders.split_variant(method)[1])
+                        reconstruction[method, budget] = renders.reconstruction_seconds(self.arguments.gradus, image)
                     self.add(method, f"{budget[1]} {budget[0]}", record["spp"], seed,
                              record["render_seconds"] + reconstruction[method, budget], image,
                              render_seconds=record["render_seconds"],
@@ -145,13 +144,14 @@ def find_rivals(arguments, samples):
 
 
 def print_summary(summaries):
-    print(f"\n{'scene':<20} {'method':<9} {'slope':>6} {'time of pt':>11} {'at relMSE':>10} {'error of pt':>12} "
+    width = max(9, *(len(entry["method"]) for entry in summaries), 0)
+    print(f"\n{'scene':<20} {'method':<{width}} {'slope':>6} {'time of pt':>11} {'at relMSE':>10} {'error of pt':>12} "
           f"{'at s':>7}  error against denoised")
     for entry in summaries:
         slope = "" if entry["slope"] is None else f"{entry['slope']:.2f}"
         time, equal = entry.get("time"), entry.get("equal_time")
         at_least = ">" if time and time["at_least"] else ""
-        print(f"{entry['scene']:<20} {entry['method']:<9} {slope:>6} "
+        print(f"{entry['scene']:<20} {entry['method']:<{width}} {slope:>6} "
               + (f"{at_least}{time['ratio']:.2f} x".rjust(11) + f" {time['error']:10.2g}" if time else " " * 22)
               + (f" {equal['ratio']:10.2f} x {equal['seconds']:7.2g}" if equal else " " * 21)
               + f"  {entry.get('against_denoised', '')}")

@@ -66,7 +66,7 @@ class Renderer:
             seconds += json.loads(renders.run(sys.executable, HERE.parent / "peers" / "denoise.py",
                                               "--clean-features", output, made).splitlines()[-1])[0]
             return made, seconds
-        return output, seconds + renders.reconstruction_seconds(self.arguments.gradus, output, options)
+        return output, seconds + renders.reconstruction_seconds(self.arguments.gradus, output)
 
     def all_methods(self):
         """By method: image, samples, seconds; all of the time of gpt's."""

@@ -40,6 +40,9 @@ def main():
     parser.add_argument("--variants", nargs="+", default=VARIANTS)
     parser.add_argument("--gradus", default=renders.ROOT / "build" / "gradus")
     arguments = parser.parse_args()
+    variants = [variant.split(":") for variant in arguments.variants]
+    if any(len(variant) != 2 for variant in variants):
+        parser.error("a variant is METHOD:RECONSTRUCTION")
     known = renders.scene_names()
     print(f"{'scene':24} {'spp':>4} {'variant':14} {'within':>6} {'twice':>6} {'estimated/true':>14} {'relMSE':>8}")
     with tempfile.TemporaryDirectory() as folder:
@@ -50,12 +53,12 @@ def main():
                 continue
             scene = renders.find_scene(name)
             for samples in arguments.spp:
-                for variant in arguments.variants:
-                    method, reconstruction = variant.split(":")
+                for variant in variants:
+                    method, reconstruction = variant
                     runs = [calibration(arguments, scene, method, reconstruction, samples, seed, image)
                             for seed in range(1, arguments.seeds + 1)]
                     within, twice, ratio, true = (statistics.median(run[i] for run in runs) for i in range(4))
-                    print(f"{scene.name:24} {samples:4} {variant:14} {within:6.3f} {twice:6.3f} {ratio:14.2f} "
+                    print(f"{scene.name:24} {samples:4} {':'.join(variant):14} {within:6.3f} {twice:6.3f} {ratio:14.2f} "
                           f"{true:8.5f}", flush=True)
 
 

@@ -61,7 +61,7 @@ nlohmann::json measure_floor(const Settings &settings, const Job &job) {
     RenderOptions options;
     options.threads = settings.threads;
     // One render is recorded and kept; its time does not count, as recording costs time.
-    const std::unique_ptr<Method> recorder = make_tracer(settings, job, options);
+    const std::unique_ptr<Method> recorder = method_of(settings, job, options);
     const std::uint64_t batches = (recorder->total_samples() + (1u << 16) - 1) >> 16;
     const int depth = job.scene.settings.max_depth < 0 ? 16 : job.scene.settings.max_depth;
     recorder->tracer()->record(record_interval(batches * static_cast<std::uint64_t>(depth)));

@@ -40,9 +40,8 @@ def render(arguments, scene, method, seed, samples, folder):
 
 def reconstruction_seconds(arguments, scene, folder):
     image = pathlib.Path(folder) / "layers.exr"
-    renders.render(arguments.gradus, scene, "gpt", 1, image, samples=arguments.spp, aov=True)
-    name = "weighted" if arguments.spp >= 4 else "l1"
-    return renders.reconstruction_seconds(arguments.gradus, image, ["--reconstruction", name])
+    renders.render(arguments.gradus, scene, "gpt", 1, image, samples=arguments.spp)
+    return renders.reconstruction_seconds(arguments.gradus, image)
 
 
 def equal_process_time(pt, gpt, samples):
@@ -50,6 +49,12 @@ def equal_process_time(pt, gpt, samples):
     by sample, relMSE, ..., seconds of the process), medians."""
     other_seconds = pt[-1] - pt[0] * samples  # of pt's process, beside rendering
     return pt[1] * samples / ((gpt[-1] - other_seconds) / pt[0]) / gpt[1]
+
+
+def median_gain(choices):
+    """Of the gains that runs of auto expected; None where none knew its own."""
+    gains = [choice["gain"] for choice in choices if choice["gain"] is not None]
+    return statistics.median(gains) if gains else None
 
 
 def main():
@@ -83,13 +88,14 @@ def main():
             choices = [turn[2] for turn in turns["auto"]]
             pick = statistics.mode(choice["method"] for choice in choices)
             agreed = sum(choice["method"] == pick for choice in choices)
-            expected = statistics.median(choice["gain"] or 0 for choice in choices)
+            expected = median_gain(choices)
             solving = reconstruction_seconds(arguments, scene, folder) / arguments.spp
             pt_seconds = statistics.median(turn[0] for turn in turns["pt"])
             regret = (error["auto"] * (cost_auto * pt_seconds + (solving if pick == "gpt" else 0))
                       / min(error["pt"] * pt_seconds, error["gpt"] * (cost * pt_seconds + solving)))
             print(f"{name:<20} {cost:6.2f} {error['pt']:11.3e} {error['gpt']:11.3e} {gain:14.2f} {gain / cost:11.2f}"
-                  f" {process:11.2f} {pick:>5} {agreed}/{len(choices)} {expected:9.2f} {regret:7.2f}", flush=True)
+                  f" {process:11.2f} {pick:>5} {agreed}/{len(choices)}"
+                  f" {'-' if expected is None else f'{expected:.2f}':>9} {regret:7.2f}", flush=True)
             results.append({"scene": name, "cost": cost, "relmse": error, "equal_samples": gain,
                             "equal_time": gain / cost, "equal_process_time": process, "turns": turns,
                             "auto": {"pick": pick, "agreed": agreed, "expected": expected, "regret": regret}})

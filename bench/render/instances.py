@@ -162,16 +162,7 @@ def run(program, folder, path, choice, spp):
     return json.loads(statistics.read_text())
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", default=ROOT / "build" / "gradus")
-    parser.add_argument("--folder", type=pathlib.Path, help="where the scenes go and stay")
-    parser.add_argument("--scale", type=float, default=1, help="of all counts")
-    parser.add_argument("--only", nargs="*", default=["field", "quarter", "million", "twice"])
-    parser.add_argument("--spp", type=int, default=16)
-    arguments = parser.parse_args()
-    folder = arguments.folder or pathlib.Path(tempfile.mkdtemp(prefix="gradus-instances-"))
-    folder.mkdir(parents=True, exist_ok=True)
+def measure(arguments, folder):
     scaled = lambda count: max(2, int(count * arguments.scale))  # noqa: E731
     made = {
         "field": lambda: (write_field(folder, "field", scaled(4000), 4), ["copies", "kept"]),
@@ -190,6 +181,23 @@ def main():
             memory, spent = statistics["memory"]["peak_host_bytes"], statistics["phase_seconds"]
             line = f"{name:9}{choice:>8}{memory / 2**20:7.0f} MiB{statistics['render_seconds']:9.2f}"
             print(line + "".join(f"{spent.get(phase, 0):8.2f}" for phase in phases), flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", default=ROOT / "build" / "gradus")
+    parser.add_argument("--folder", type=pathlib.Path, help="where the scenes go and stay")
+    parser.add_argument("--scale", type=float, default=1, help="of all counts")
+    names = ["field", "quarter", "million", "twice"]
+    parser.add_argument("--only", nargs="*", choices=names, default=names)
+    parser.add_argument("--spp", type=int, default=16)
+    arguments = parser.parse_args()
+    if arguments.folder:
+        arguments.folder.mkdir(parents=True, exist_ok=True)
+        measure(arguments, arguments.folder)
+    else:
+        with tempfile.TemporaryDirectory(prefix="gradus-instances-") as folder:
+            measure(arguments, pathlib.Path(folder))
     return 0
 
 

@@ -62,7 +62,7 @@ double Render::stage_seconds(const std::string &name) const {
     return 0;
 }
 
-std::unique_ptr<Method> make_tracer(const Settings &settings, const Job &job, const RenderOptions &options) {
+std::unique_ptr<Method> method_of(const Settings &settings, const Job &job, const RenderOptions &options) {
     return make_method(settings.method, settings.device, job.scene, options);
 }
 
@@ -70,7 +70,7 @@ Render render(const Settings &settings, const Job &job, const RenderOptions &opt
               const std::function<void(Method &)> &prepare) {
     RenderOptions own = options;
     own.threads = settings.threads;
-    const std::unique_ptr<Method> method = make_tracer(settings, job, own);
+    const std::unique_ptr<Method> method = method_of(settings, job, own);
     if (prepare)
         prepare(*method);
     while (method->render_batch()) {

@@ -45,7 +45,7 @@ struct Render {
 };
 
 /// The method of the settings.
-std::unique_ptr<Method> make_tracer(const Settings &settings, const Job &job, const RenderOptions &options);
+std::unique_ptr<Method> method_of(const Settings &settings, const Job &job, const RenderOptions &options);
 
 /// Renders all samples. `prepare` is called before the first batch. Throws Error where a sample was not finite: such
 /// a render is no measurement.

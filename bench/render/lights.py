@@ -83,6 +83,8 @@ def main():
     parser.add_argument("--seeds", type=int, default=5)
     parser.add_argument("--gradus", default=ROOT / "build" / "gradus")
     arguments = parser.parse_args()
+    if not arguments.files and not arguments.lamps:
+        parser.error("nothing to measure: give files or --lamps")
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         for file in arguments.files:

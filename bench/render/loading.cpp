@@ -23,7 +23,8 @@ namespace gradus::bench {
 
 namespace {
 
-/// What the scene's file names that lies beside it, and itself.
+/// What the scene's file names that lies beside it, and itself. Throws Error where a file is not there, or its name has
+/// a parameter, which is not looked up here.
 std::vector<std::filesystem::path> files_of(const std::filesystem::path &scene) {
     std::ifstream in(scene);
     const std::string text{std::istreambuf_iterator<char>(in), {}};
@@ -33,6 +34,11 @@ std::vector<std::filesystem::path> files_of(const std::filesystem::path &scene) 
         at += before.size();
         files.insert(scene.parent_path() / text.substr(at, text.find('"', at) - at));
     }
+    for (const std::filesystem::path &file : files)
+        if (!std::filesystem::exists(file))
+            throw Error(ExitCode::scene,
+                        fmt::format("{}: there is no file {}; files named by parameters cannot be measured",
+                                    scene.string(), file.string()));
     return {files.begin(), files.end()};
 }
 
@@ -111,7 +117,7 @@ nlohmann::json measure_loading(const Settings &settings, const std::string &path
         RenderOptions options;
         options.threads = settings.threads;
         options.phases = &phases;
-        make_tracer(settings, job, options);
+        method_of(settings, job, options);
         double seconds = 0;
         for (const Phases::Time &time : phases.times())
             if (const std::string key = time.name.key;

@@ -7,8 +7,10 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cstdio>
 #include <set>
+#include <string_view>
 
 namespace {
 
@@ -28,19 +30,32 @@ struct SceneSize {
     std::uint32_t width = 0, height = 0;
 };
 
+/// 0 where the text is not a number alone.
+std::uint32_t parse_size(std::string_view text) {
+    std::uint32_t size = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), size);
+    return error == std::errc() && end == text.data() + text.size() ? size : 0;
+}
+
 SceneSize parse_scene(const std::string &text) {
+    const std::size_t colon = text.rfind(':'), times = text.find('x', colon == std::string::npos ? 0 : colon);
     SceneSize s;
-    const std::size_t colon = text.rfind(':');
-    if (colon == std::string::npos || std::sscanf(text.c_str() + colon + 1, "%ux%u", &s.width, &s.height) != 2 ||
-        s.width == 0 || s.height == 0)
+    if (colon != std::string::npos && times != std::string::npos) {
+        const std::string_view size = text;
+        s = {text.substr(0, colon), parse_size(size.substr(colon + 1, times - colon - 1)),
+             parse_size(size.substr(times + 1))};
+    }
+    if (s.width == 0 || s.height == 0)
         throw gradus::Error(gradus::ExitCode::usage, fmt::format("'{}' is not SCENE.xml:WxH", text));
-    s.path = text.substr(0, colon);
     return s;
 }
 
 void run(const Arguments &arguments) {
     using namespace gradus;
     using namespace gradus::bench;
+    std::vector<SceneSize> scenes;
+    for (const std::string &text : arguments.scenes)
+        scenes.push_back(parse_scene(text));
     Device device(arguments.device, arguments.threads);
     const Settings settings{device, arguments.threads, arguments.repeats, arguments.method};
     nlohmann::json results = {{"device", device.description().name},
@@ -50,8 +65,7 @@ void run(const Arguments &arguments) {
     for (const char *part : all_parts)
         if (arguments.parts.contains(part))
             results[part] = nlohmann::json::array();
-    for (const std::string &text : arguments.scenes) {
-        const SceneSize s = parse_scene(text);
+    for (const SceneSize &s : scenes) {
         if (arguments.parts.contains("loading"))
             results["loading"].push_back(measure_loading(settings, s.path));
         if (arguments.parts == std::set<std::string>{"loading"})
@@ -90,7 +104,9 @@ int main(int argc, char **argv) {
     app.add_option("--parts", arguments.parts, "Any of floor, specialisation, order, light-paths, chains, loading")
         ->check(CLI::IsMember(std::set<std::string>(std::begin(all_parts), std::end(all_parts))))
         ->delimiter(',');
-    app.add_option("--spp", arguments.samples_per_pixel, "Samples a pixel")->capture_default_str();
+    app.add_option("--spp", arguments.samples_per_pixel, "Samples a pixel")
+        ->check(CLI::Range(1, 1 << 30))
+        ->capture_default_str();
     app.add_option("--repeats", arguments.repeats, "Turns")->check(CLI::Range(1, 1000))->capture_default_str();
     app.add_option("--method", arguments.method, "pt or gpt")
         ->check(CLI::IsMember({"pt", "gpt"}))

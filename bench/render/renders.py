@@ -23,7 +23,6 @@ SHARED_SCENES = {"cornell-box-256": ("cornell-box/scene.xml", 256, 256, 30, "cor
 PHOTON_SCENES = ["metal-ring", "metal-ring-soft", "torus-smooth-glass-soft", "slab-and-ball-soft", "lamp-in-egg-soft",
                  "cornell-box-glossy", "pool"]
 NO_ROULETTE = 1_000_000  # a depth at which no path begins with Russian roulette
-NO_GRADIENTS = 6  # gradus's exit code for an input image that does not fit
 
 
 @dataclasses.dataclass(frozen=True)
@@ -47,17 +46,12 @@ class Scene:
     reference: Reference | None = None
 
 
-def finished(*command, environment=None, accepted=(0,)):
-    """The finished process. Ends the program where its exit code is none of those accepted, with what it said."""
-    result = subprocess.run([str(part) for part in command], capture_output=True, text=True, env=environment)
-    if result.returncode not in accepted:
-        sys.exit(f"failed with exit code {result.returncode}: {' '.join(map(str, command))}\n{result.stderr}")
-    return result
-
-
 def run(*command, environment=None):
     """The command's standard output. Ends the program where the command fails, with what it said."""
-    return finished(*command, environment=environment).stdout
+    result = subprocess.run([str(part) for part in command], capture_output=True, text=True, env=environment)
+    if result.returncode != 0:
+        sys.exit(f"failed with exit code {result.returncode}: {' '.join(map(str, command))}\n{result.stderr}")
+    return result.stdout
 
 
 def default_jobs():
@@ -160,29 +154,43 @@ def known_methods(gradus):
     return listed.group(1).split(",")
 
 
-def reconstruction_of(image):
-    """The options by which `solve` does what the render of an OpenEXR file did, as its header says; none without."""
+def read_header(image):
     with open(image, "rb") as file:
-        header = file.read(1 << 16)
-    # A name, its type, the length of its value, the value.
-    found = re.search(rb"gradus:reconstruction\0string\0(....)", header, re.DOTALL)
-    if not found:
-        return []
-    text = header[found.end():found.end() + int.from_bytes(found.group(1), "little")].decode()
-    return [] if text == "none" else ["--reconstruction", text]
+        return file.read(1 << 16)
 
 
-def reconstruction_seconds(gradus, image, options=()):
-    """Seconds in which the image is reconstructed from its gradients, all kernels compiled; 0 where it has none.
-    options: those of its render that say how; without, as the image says.
+def reconstruction_of(image):
+    """The options by which `solve` does what the render of an OpenEXR file did, as its header says; none where nothing
+    was reconstructed. What was asked for may differ: with few samples it is another."""
+    header, options = read_header(image), []
+    for key in ("reconstruction", "guide"):
+        # A name, its type, the length of its value, the value.
+        found = re.search(rb"gradus:%s\0string\0(....)" % key.encode(), header, re.DOTALL)
+        text = found and header[found.end():found.end() + int.from_bytes(found.group(1), "little")].decode()
+        if text and text != "none":
+            options += [f"--{key}", text]
+    return options
+
+
+def has_layers(image):
+    """Whether an OpenEXR file has what it was reconstructed from: differences, or halves of the samples."""
+    header = read_header(image)
+    return b"\0dx.R\0" in header or b"\0primal_even.R\0" in header
+
+
+def reconstruction_seconds(gradus, image):
+    """Seconds in which the image is reconstructed as its render did, all kernels compiled; 0 where it was not. Ends the
+    program where the image lacks the layers for it.
 
     A render reconstructs once, after the time that its statistics call render_seconds, and loads kernels meanwhile;
     here the third of three is timed."""
-    record, output = pathlib.Path(image).with_suffix(".solved.json"), pathlib.Path(image).with_suffix(".solved.exr")
-    result = finished(gradus, "solve", image, "-o", output, "--stats", record, "--repeats", 3, "--quiet",
-                      *(options or reconstruction_of(image)), accepted=(0, NO_GRADIENTS))
-    if result.returncode == NO_GRADIENTS:
+    options = reconstruction_of(image)
+    if not options:
         return 0.0
+    if not has_layers(image):
+        sys.exit(f"{image}: it was reconstructed, and has no layers to time that by")
+    record, output = pathlib.Path(image).with_suffix(".solved.json"), pathlib.Path(image).with_suffix(".solved.exr")
+    run(gradus, "solve", image, "-o", output, "--stats", record, "--repeats", 3, "--quiet", *options)
     return json.loads(record.read_text())["seconds"]
 
 

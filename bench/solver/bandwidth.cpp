@@ -14,15 +14,18 @@ namespace {
 /// kernels/solver/conjugate_gradient.cl and sum.cl. A neighbour's value in a stencil comes from the cache.
 struct Traffic {
     double needed; ///< by conjugate gradients in any form: the vectors, each read or written once by a kernel
-    double moved;  ///< with the sums, which read their vectors again
+    double moved;  ///< with the sums and their parts
+    int launches;  ///< a step, for all channels together or for each; 0: as the size of the image asks for
 };
 
 const std::map<std::string, Traffic> traffic_of_step = {
-    {"direction", {4, 4}},          // reads z and the old direction, writes direction and image
-    {"advance", {6, 6}},            // reads direction and image, reads and writes u and residual
-    {"reduce_products", {0, 3.13}}, // <direction, image> and <residual, residual> | a sixteenth written for each
-    {"reduce", {0, 0.14}},          // reads that, writes a sixteenth of it
-    {"finish_sum", {0, 0}}};
+    // Reads z and the old direction, writes direction and image, and a part of <direction, image> for each eight.
+    {"direction", {4, 4.125, 1}},
+    {"advance", {6, 6, 1}},              // reads direction and image, reads and writes u and residual
+    {"reduce_products", {0, 1.0625, 1}}, // <residual, residual>: reads it, writes a sixteenth
+    // Reads that eighth and that sixteenth, writes a sixteenth of each; the same of what it wrote, and so on.
+    {"reduce", {0, (1 / 8. + 1 / 16.) * (1 + 1 / 16.) / (1 - 1 / 16.), 0}},
+    {"finish_sum", {0, 0, 2}}}; // of both sums
 
 constexpr int vectors = 5; // z (the residual), two directions, image, u
 // The residual is computed anew in the 50th step, so both counts are below.
@@ -61,8 +64,17 @@ nlohmann::json measure_bandwidth(const Settings &settings, Problem &problem) {
                 continue; // not a part of the step
             if (!traffic_of_step.contains(name))
                 throw Error(ExitCode::failure, "bench/solver/bandwidth.cpp has no bytes for kernel " + name);
+            const int expected = traffic_of_step.at(name).launches;
+            const double launches = double(time.launches - before[name].launches) / steps;
+            if (expected > 0 && launches != expected && launches != expected * channels)
+                throw Error(ExitCode::failure,
+                            fmt::format("bench/solver/bandwidth.cpp expects {} launches of kernel {} a step, not {}",
+                                        expected, name, launches));
             kernel_seconds[name].push_back((time.seconds - before[name].seconds) / steps);
         }
+        for (const auto &[name, traffic] : traffic_of_step)
+            if (!kernel_seconds.contains(name))
+                throw Error(ExitCode::failure, "a step has no kernel " + name + ", see bench/solver/bandwidth.cpp");
     }
     fmt::print("A step of conjugate gradients, {} RGB, against a triad over as much memory ({:.1f} GB/s)\n",
                problem.name(), 1e-9 * median(triads));

@@ -25,7 +25,6 @@
     REAL(chain, end_normal_x, "geometric normal there, unit, either side")                                             \
     REAL(chain, end_normal_y, "")                                                                                      \
     REAL(chain, end_normal_z, "")                                                                                      \
-    REAL(chain, end_offset, "how far rays start off the surface there")                                                \
     REAL(chain, target_x, "where it is to end")                                                                        \
     REAL(chain, target_y, "")                                                                                          \
     REAL(chain, target_z, "")                                                                                          \

@@ -12,12 +12,36 @@
  * that from the mean of all (Welford 1962): of a sum of squares the square of the mean would be taken off, which leaves
  * rounding where the spread is small beside it.
  *
+ * Where frames weigh other than 1 (a filter with negative lobes), samples are times the weight w of theirs, and means
+ * are sums over the sum W of the weights before, whose squares sum up to V. Then w f - w mean has w^2 (1 + V / W^2)
+ * times the variance of f: what is added has w^2 times that, and nothing is divided by W, which may be near 0.
+ *
  * TRAIT_PART_BITS: frames are those of one part of the samples, from `first_slot` on each 2^TRAIT_PART_BITS-th one. */
-//! traits: TRAIT_PART_BITS
+//! traits: TRAIT_PART_BITS TRAIT_FILTER_SIGNED
 #include "kernels/lib/compensated.h"
 #include "kernels/lib/gradient.h"
 
 #define NEXT_FRAME (strip_pixels << TRAIT_PART_BITS)
+#if TRAIT_FILTER_SIGNED
+#define BEFORE real weights = weights_before, squares = squares_before;
+#define SQUARED_DEVIATION(at, frame, value, sum)                                                                       \
+    weighted_deviation(AT(filtered, weight, at), weights, squares, value, sum)
+#define AFTER(at)                                                                                                      \
+    weights += AT(filtered, weight, at);                                                                               \
+    squares += AT(filtered, weight, at) * AT(filtered, weight, at);
+GRADUS_FN real weighted_deviation(real weight, real weights, real squares, real value, real sum) {
+    const real deviation = value * weights - weight * sum;
+    return deviation * (deviation / r_max(weights * weights + squares, R(1e-30)));
+}
+#else
+#define BEFORE
+#define SQUARED_DEVIATION(at, frame, value, sum) squared_deviation((real)(frames_before + frame), value, sum)
+#define AFTER(at)
+GRADUS_FN real squared_deviation(real before, real value, real sum) {
+    const real deviation = value - sum * (R(1) / r_max(before, R(1)));
+    return deviation * (deviation * (before / (before + R(1))));
+}
+#endif
 /* `sample` is that of slot `at`, for pixel `to` of the film. */
 #define ADD(number, to, sample)                                                                                        \
     {                                                                                                                  \
@@ -25,15 +49,16 @@
         s.sum = FILM(gradient_film_primal_r + number, to);                                                             \
         s.correction = FILM(gradient_film_correction_first + number, to);                                              \
         real spread = FILM(gradient_film_deviation_first + number, to);                                                \
+        BEFORE                                                                                                         \
         _Pragma("unroll") for (uint frame = 0; frame < accumulated_frames; ++frame) {                                  \
             const int is_there = frame < frames;                                                                       \
             const size_t at = slot + (is_there ? frame * NEXT_FRAME : 0u);                                             \
-            const real value = sample, before = (real)(frames_before + frame);                                         \
-            const real deviation = value - s.sum * (R(1) / r_max(before, R(1)));                                       \
+            const real value = sample;                                                                                 \
+            spread += is_there ? SQUARED_DEVIATION(at, frame, value, s.sum) : R(0);                                    \
             const compensated added = compensated_add(s, value);                                                       \
             s.sum = is_there ? added.sum : s.sum;                                                                      \
             s.correction = is_there ? added.correction : s.correction;                                                 \
-            spread += is_there ? deviation * (deviation * (before / (before + R(1)))) : R(0);                          \
+            AFTER(at)                                                                                                  \
         }                                                                                                              \
         FILM(gradient_film_primal_r + number, to) = s.sum;                                                             \
         FILM(gradient_film_correction_first + number, to) = s.correction;                                              \
@@ -47,7 +72,12 @@
 STAGE gradient_accumulate(uint count, uint slots, uint pixels, uint first_slot, uint first_pixel, uint first_above,
                           uint is_carried, uint has_above, uint frames, uint frames_before, __global const real *prefix,
                           __global const real *difference, __global real *gradient_film, __global const real *carry,
-                          STRIP_PLACE) {
+                          STRIP_PLACE
+#if TRAIT_FILTER_SIGNED
+                          ,
+                          real weights_before, real squares_before, __global const real *filtered
+#endif
+) {
     const size_t i = work_item();
     if (i >= count)
         return;

@@ -1,7 +1,7 @@
-/* photon_project: photons at the end of a chain of specular vertices: places `first` on of `moved_index`. Where the
- * offset photon must be is found along the normal of the offset gather point's plane, from above (a ray in `moved`),
- * and the base photon must be found likewise (a segment in `moved_link`), or the shift back would find another
- * (kernels/lib/shift_photon.h). */
+/* photon_project: photons at the end of a chain of specular or glossy vertices: places `first` on of `moved_index`.
+ * Where the offset photon must be is found along the normal of the offset gather point's plane, from above (a ray in
+ * `moved`), and the base photon must be found likewise (a segment in `moved_link`), or the shift back would find
+ * another (kernels/lib/shift_photon.h). */
 #include "kernels/lib/moved_photon.h"
 #include "kernels/lib/photon_chain.h"
 

@@ -44,7 +44,6 @@ STAGE photon_walk(uint count, uint unit, uint first, uint pairs, uint capacity, 
     AT(chain, start_offset, i) = FIELD_OF(light_vertex, light_vertices, found.start, offset);
     SET_V3(chain, end, i, end);
     SET_V3(chain, end_normal, i, end_normal);
-    AT(chain, end_offset, i) = AT(gather, offset, row);
     SET_V3(chain, target, i, point.position);
     SET_V3(chain, target_normal, i, point.geometric);
     AT(chain, target_offset, i) = point.offset;

@@ -22,8 +22,6 @@ STAGE walk_turn(uint count, uint chain_rows, __global const real *chain, __globa
     COPY_V3(target, end)
     COPY_V3(target_normal, end_normal)
     AT_IN(back_chain, chain, start_offset, row) = AT(chain, start_offset, row);
-    AT_IN(back_chain, chain, end_offset, row) = AT(chain, target_offset, row);
-    AT_IN(back_chain, chain, target_offset, row) = AT(chain, end_offset, row);
     AT_UINT_IN(back_chain, chain, inner, row) = has_arrived ? number : 0u;
 }
 

@@ -52,4 +52,14 @@ std::string with_file_names(const std::string &log, const std::string &source) {
     }
 }
 
+bool tells_of_error(const std::string &log) { return log.find("error:") != std::string::npos; }
+
+std::string with_hint_at_folder(const std::string &log, const std::string &pocl_folder) {
+    if (tells_of_error(log))
+        return log;
+    return fmt::format("{}{}no error in the source is told: is {} full, or not to be written to?", log,
+                       log.empty() || log.back() == '\n' ? "" : "\n",
+                       pocl_folder.empty() ? "PoCL's folder (POCL_CACHE_DIR)" : fmt::format("'{}'", pocl_folder));
+}
+
 } // namespace gradus

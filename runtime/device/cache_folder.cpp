@@ -8,8 +8,11 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <chrono>
-#include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <mutex>
 #include <string>
@@ -24,7 +27,8 @@ namespace {
 // A folder is named `locked` once its owner holds a lock on it, which the system takes back when that process ends.
 constexpr const char *locked = "gradus-running-", *not_yet_locked = "gradus-starting-";
 
-constexpr std::uint64_t least_free_bytes = std::uint64_t(256) << 20;
+// Enough for the programs of a render and for what compiles them.
+constexpr double least_free_bytes = 256 << 20, least_free_files = 10000;
 
 int locked_folder(const fs::path &folder) {
     const int file = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -53,11 +57,15 @@ void delete_what_others_left(const fs::path &parent) {
     }
 }
 
-/// Whether code that is written there can be run.
-bool takes_code(const fs::path &folder) {
+/// How much room there is for code that can be run from there, of what is enough.
+double room_for_code(const fs::path &folder) {
     struct statvfs system = {};
-    return !folder.empty() && access(folder.c_str(), W_OK | X_OK) == 0 && statvfs(folder.c_str(), &system) == 0 &&
-           !(system.f_flag & ST_NOEXEC) && std::uint64_t(system.f_bavail) * system.f_frsize >= least_free_bytes;
+    if (folder.empty() || access(folder.c_str(), W_OK | X_OK) != 0 || statvfs(folder.c_str(), &system) != 0 ||
+        (system.f_flag & ST_NOEXEC))
+        return 0;
+    const double bytes = double(system.f_bavail) * double(system.f_frsize) / least_free_bytes;
+    // Some file systems have no limit of files, and say 0.
+    return system.f_files > 0 ? std::min(bytes, double(system.f_favail) / least_free_files) : bytes;
 }
 
 /// In memory where that is possible: PoCL waits for the disk after each of its many small files, and a disk may take
@@ -67,10 +75,17 @@ fs::path folder_for_code() {
     const fs::path kept = program_cache_folder();
     if (!kept.empty())
         fs::create_directories(kept, ignored);
-    for (const fs::path &folder : {fs::path("/dev/shm"), kept, fs::temp_directory_path(ignored)})
-        if (takes_code(folder))
-            return folder;
-    return {};
+    const fs::path temporary = fs::temp_directory_path(ignored);
+    const fs::path chosen = folder_with_room({"/dev/shm", kept, temporary}, room_for_code);
+    // Nobody above asks for warnings, and what PoCL says of it is that kernels do not compile.
+    if (chosen.empty() && !std::getenv("POCL_CACHE_DIR"))
+        std::fputs(fmt::format("gradus: warning: of the folders '/dev/shm', '{}' and '{}' none is there that can be "
+                               "written to and that programs can be run from: where kernels do not compile, set "
+                               "POCL_CACHE_DIR to one that is\n",
+                               kept.string(), temporary.string())
+                       .c_str(),
+                   stderr);
+    return chosen;
 }
 
 class PrivateFolder {
@@ -123,6 +138,21 @@ class PrivateFolder {
 };
 
 } // namespace
+
+fs::path folder_with_room(const std::vector<fs::path> &folders, const std::function<double(const fs::path &)> &room) {
+    fs::path best;
+    double most = 0;
+    for (const fs::path &folder : folders) {
+        const double here = room(folder);
+        if (here >= 1)
+            return folder;
+        if (here > most) {
+            most = here;
+            best = folder;
+        }
+    }
+    return best;
+}
 
 fs::path program_cache_folder() {
     if (const char *chosen = std::getenv("GRADUS_CACHE_DIR")) {

@@ -2,12 +2,19 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <vector>
 
 namespace gradus {
 
 /// Where compiled programs are kept: $GRADUS_CACHE_DIR, else gradus/programs in user_cache_folder(). Empty where
 /// GRADUS_CACHE_DIR is empty or "off", or where there is no home.
 std::filesystem::path program_cache_folder();
+
+/// The first of the folders where there is enough room, which is 1 or more; else that with the most. Empty where none
+/// has any.
+std::filesystem::path folder_with_room(const std::vector<std::filesystem::path> &folders,
+                                       const std::function<double(const std::filesystem::path &)> &room);
 
 /// A folder that only this process uses, deleted when it ends; made at the first call. Empty where none can be made.
 /// What processes that were killed left behind goes when the next one makes its own.

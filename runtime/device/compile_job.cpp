@@ -1,5 +1,6 @@
 #include "runtime/device/compile_job.h"
 
+#include "runtime/device/build_log.h"
 #include "runtime/device/byte_text.h"
 #include "runtime/device/framed_socket.h"
 #include "runtime/device/pocl_bitcode.h"
@@ -88,16 +89,16 @@ OpenDevice open_device(const DeviceDescription &wanted) {
     throw cl::Error(CL_DEVICE_NOT_FOUND, "clGetDeviceIDs");
 }
 
-CompileAnswer compile(const CompileJob &job, std::optional<OpenDevice> &opened) {
+CompileAnswer compile(const CompileJob &job, OpenDevice &opened) {
     try {
-        if (!opened)
-            opened.emplace(open_device(job.device));
-        const BuiltProgram program = build_source(opened->context, opened->device, job.source);
-        for (const std::filesystem::path &code : opened->stubs.put(program.kernels))
+        const BuiltProgram program = build_source(opened.context, opened.device, job.source);
+        for (const std::filesystem::path &code : opened.stubs.put(program.kernels))
             trim_pocl_bitcode(code);
         return {CompileAnswer::Kind::compiled, to_bytes(image_of(program)), 0};
     } catch (const Error &error) {
-        return {CompileAnswer::Kind::does_not_compile, error.what(), 0};
+        // Where it is this process that cannot compile, the other one is to try, and to say so where it cannot either.
+        const bool is_of_source = tells_of_error(error.what());
+        return {is_of_source ? CompileAnswer::Kind::does_not_compile : CompileAnswer::Kind::no_code, error.what(), 0};
     } catch (const cl::Error &error) {
         return {CompileAnswer::Kind::no_code, error.what(), 0};
     }
@@ -106,11 +107,15 @@ CompileAnswer compile(const CompileJob &job, std::optional<OpenDevice> &opened) 
 } // namespace
 
 int run_compile_worker(int socket) {
-    // Ctrl-C is for the other process, which may still need kernels for its last image. Once LLVM is loaded it has a
-    // handler of its own here, which gives back what was there and sends itself the signal once more: so it is ignored
-    // all the same.
-    std::signal(SIGINT, SIG_IGN);
     std::signal(SIGCHLD, SIG_DFL); // or PoCL would not learn how its linker ends
+    // Ctrl-C and what batch systems send to all are for the other process, which may still need kernels for its last
+    // image. Blocked and not ignored: LLVM puts handlers of its own in the place of SIG_IGN, and a linker begins
+    // without either. Threads and programs that are started from here have them blocked, too.
+    sigset_t blocked;
+    sigemptyset(&blocked);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+        sigaddset(&blocked, signal);
+    sigprocmask(SIG_BLOCK, &blocked, nullptr);
     // Nobody waits for what is compiled when the other process is gone. (PR_SET_PDEATHSIG would end this one with the
     // thread that began it.)
     std::thread([socket] {
@@ -125,7 +130,10 @@ int run_compile_worker(int socket) {
         const auto start = std::chrono::steady_clock::now();
         CompileAnswer answer;
         try {
-            answer = compile(compile_job(message), opened);
+            const CompileJob job = compile_job(message);
+            if (!opened) // an error of this one is none of the source
+                opened.emplace(open_device(job.device));
+            answer = compile(job, *opened);
         } catch (const std::exception &error) {
             answer = {CompileAnswer::Kind::no_code, error.what(), 0};
         }

@@ -91,10 +91,11 @@ class CompileWorker {
         if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair) != 0)
             return;
         std::vector<std::string> arguments = {program.string()};
-        std::vector<std::string> variables =
-            environment_with({{"POCL_CACHE_DIR", folder_.string()},
-                              {"POCL_MAX_PTHREAD_COUNT", "1"}, // it runs nothing
-                              {"POCL_BINARY_SPECIALIZE_WG", pocl_specialization(work_group_size)}});
+        std::vector<std::pair<std::string, std::string>> changes = {
+            {"POCL_CACHE_DIR", folder_.string()}, {"POCL_BINARY_SPECIALIZE_WG", pocl_specialization(work_group_size)}};
+        for (const char *variable : pocl_thread_variables)
+            changes.emplace_back(variable, "1"); // it runs nothing
+        std::vector<std::string> variables = environment_with(changes);
         posix_spawn_file_actions_t actions;
         posix_spawn_file_actions_init(&actions);
         posix_spawn_file_actions_adddup2(&actions, pair[1], STDIN_FILENO);

@@ -28,6 +28,15 @@ std::string lower(std::string text) {
     return text;
 }
 
+/// Not all implementations answer what OpenCL 2.0 made deprecated, without another question in its place.
+bool has_memory_of_host(const cl::Device &device) {
+    try {
+        return device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() == CL_TRUE;
+    } catch (const cl::Error &) {
+        return false;
+    }
+}
+
 DeviceDescription describe(const cl::Platform &platform, const cl::Device &device) {
     DeviceDescription d;
     d.platform = trimmed(platform.getInfo<CL_PLATFORM_NAME>());
@@ -42,9 +51,8 @@ DeviceDescription describe(const cl::Platform &platform, const cl::Device &devic
     d.memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
     d.local_bytes = device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>();
     d.allocation_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
-    // Deprecated since OpenCL 2.0, without another that tells it.
     d.is_host = (type & CL_DEVICE_TYPE_CPU) != 0;
-    d.shares_memory = d.is_host || device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() == CL_TRUE;
+    d.shares_memory = d.is_host || has_memory_of_host(device);
     d.has_double = device.getInfo<CL_DEVICE_EXTENSIONS>().find("cl_khr_fp64") != std::string::npos;
     return d;
 }
@@ -105,8 +113,9 @@ std::vector<FoundDevice> find_devices(int threads) {
     const std::lock_guard lock(mutex);
     // PoCL reads its variables once, when the platform is first asked for.
     give_pocl_a_private_folder();
-    if (threads > 0)
-        setenv("POCL_MAX_PTHREAD_COUNT", std::to_string(threads).c_str(), 1);
+    for (const char *variable : pocl_thread_variables)
+        if (threads > 0)
+            setenv(variable, std::to_string(threads).c_str(), 1);
     std::vector<FoundDevice> found;
     std::vector<cl::Platform> platforms;
     try {
@@ -118,11 +127,15 @@ std::vector<FoundDevice> find_devices(int threads) {
         std::vector<cl::Device> devices;
         try {
             platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
-            for (const cl::Device &device : devices)
-                found.push_back({device, describe(platform, device)});
         } catch (const cl::Error &) {
             continue; // a platform without a device says so by an error
         }
+        for (const cl::Device &device : devices)
+            try {
+                found.push_back({device, describe(platform, device)});
+            } catch (const cl::Error &) {
+                // One that does not say what it is cannot be used; those after it can.
+            }
     }
     return found;
 }
@@ -189,7 +202,10 @@ Device::Device(_cl_context *context, _cl_command_queue *queue) : implementation_
     });
 }
 
-Device::~Device() = default;
+Device::~Device() {
+    if (implementation_->is_stuck)
+        static_cast<void>(implementation_.release());
+}
 
 const DeviceDescription &Device::description() const { return implementation_->description; }
 

@@ -4,6 +4,7 @@
 #include "runtime/device/device.h"
 #include "runtime/device/launch_observer.h"
 #include "runtime/device/program_store.h"
+#include "runtime/error.h"
 
 #define CL_TARGET_OPENCL_VERSION 120
 #define CL_HPP_TARGET_OPENCL_VERSION 120
@@ -46,11 +47,13 @@ struct Device::Implementation {
     std::mutex restoring;
     unsigned renewals = 0;             ///< of the private folder, after which code was unpacked there again
     std::vector<cl::Program> restored; ///< for that
+    /// A compiler's exception flew through OpenCL (compiler_call()): nothing that the device has is released any more.
+    std::atomic<bool> is_stuck{false};
 
     ~Implementation() { finish_quietly(); } // threads of the implementation must not outlive the program's memory
     /// Waits for all that is queued, where nobody could do anything about an error.
     void finish_quietly() noexcept {
-        if (queue())
+        if (queue() && !is_stuck)
             ::clFinish(queue());
     }
 };
@@ -59,6 +62,9 @@ struct FoundDevice {
     cl::Device device;
     DeviceDescription description;
 };
+
+/// How many threads run kernels: the second name is that of PoCL 4 and later, which is first asked for there.
+constexpr const char *pocl_thread_variables[] = {"POCL_MAX_PTHREAD_COUNT", "POCL_CPU_MAX_CU_COUNT"};
 
 /// Every device of every platform, as list_devices() has them. `threads` is Device's. Several threads may ask at once.
 std::vector<FoundDevice> find_devices(int threads = 0);
@@ -82,6 +88,21 @@ auto opencl_call(const std::string &doing, Function function) -> decltype(functi
         return function();
     } catch (const cl::Error &error) {
         throw_opencl_error(doing, error);
+    }
+}
+
+/// The same for calls that may compile. An exception that is none of OpenCL's flies through PoCL 3.1, as LLVM's
+/// std::bad_alloc does, and a lock is left behind that whoever releases a program waits for: so none is from then on.
+template <class Function>
+auto compiler_call(Device::Implementation &device, const std::string &doing, Function function)
+    -> decltype(function()) {
+    try {
+        return opencl_call(doing, function);
+    } catch (const Error &) {
+        throw;
+    } catch (...) {
+        device.is_stuck = true;
+        throw;
     }
 }
 

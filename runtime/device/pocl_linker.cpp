@@ -12,8 +12,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A symbol that no library defines is an error in the first link, and not what a launch finds.
+/// A symbol that no library defines is an error in the first link, and not what a launch finds. Signals are for others
+/// (run_compile_worker()); shells unblock them.
 constexpr const char *script = R"(#!/bin/sh
+trap '' INT TERM HUP
 without_libraries() {
     for argument do
         shift

@@ -121,7 +121,7 @@ void Kernel::Handle::enqueue(std::size_t groups, std::size_t lines, std::size_t 
             throw std::logic_error("kernel " + request.name + ": argument " + argument + " was not set");
     restore_code(*device);
     const bool profiles = device->profiles;
-    opencl_call("launching " + request.name, [&] {
+    compiler_call(*device, "launching " + request.name, [&] {
         cl::Event event;
         device->queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(groups * work_group_size, lines, planes),
                                            cl::NDRange(work_group_size, 1, 1), nullptr, profiles ? &event : nullptr);
@@ -220,17 +220,8 @@ std::vector<Kernel> KernelLibrary::build(const std::vector<KernelRequest> &reque
         handle->is_observed = static_cast<bool>(d.observer);
         if (handle->is_observed)
             handle->traits = traits_;
-        opencl_call("making kernel " + requests[i].name, [&] {
-            try {
-                handle->kernel = cl::Kernel(programs[i]->program, requests[i].entry.c_str());
-            } catch (const cl::Error &) {
-                throw;
-            } catch (...) {
-                // Never released: runtime/device/program_code.cpp says why.
-                static_cast<void>(new auto(programs[i]));
-                throw;
-            }
-        });
+        compiler_call(d, "making kernel " + requests[i].name,
+                      [&] { handle->kernel = cl::Kernel(programs[i]->program, requests[i].entry.c_str()); });
         cl_uint index = 0;
         for (const KernelArgument &argument : programs[i]->kernels.at(requests[i].entry)) {
             handle->arguments[argument.name] = index++;

@@ -78,7 +78,7 @@ class KernelLibrary {
                   std::uint32_t work_group_size = 0);
 
     /// Called after each kernel was built: its name, how many are built, of how many, and the seconds that compiling
-    /// its program took: 0 where that was not compiled for it.
+    /// its program took: 0 where that was not compiled for it. What it throws ends the build.
     using Progress = std::function<void(const std::string &, std::size_t, std::size_t, double)>;
     /// Builds several kernels, several at a time, or takes them from the folder of programs (cache_folder.h). Where
     /// `dump_folder` is not empty, the final source of each goes there. Throws Error with the compiler's log.

@@ -118,8 +118,10 @@ class Builder {
     bool take_image(const Task &task, const ProgramImage &image, double seconds) {
         std::optional<BuiltProgram> program;
         try {
-            program = load_image(device_.context, device_.device, image, sources_[task.index].options);
-        } catch (const cl::Error &) {
+            program = compiler_call(device_, "loading " + sources_[task.index].name, [&] {
+                return load_image(device_.context, device_.device, image, sources_[task.index].options);
+            });
+        } catch (const Error &) {
             return false;
         }
         program->key = task.key;
@@ -154,12 +156,8 @@ class Builder {
 
     bool take_entry(const Task &task) {
         const std::optional<ProgramImage> image = device_.store.find(task.key);
-        if (!image)
-            return false;
-        if (take_image(task, *image, 0))
-            return true;
-        device_.store.remove(task.key);
-        return false;
+        // One that is not taken, for want of memory or of room on a disk, may be whole: what is compiled replaces it.
+        return image && take_image(task, *image, 0);
     }
 
     void compile(std::vector<Task> &missing) {
@@ -210,7 +208,9 @@ class Builder {
             for (std::size_t i = next++; i < tasks.size(); i = next++) {
                 try {
                     const auto start = Clock::now();
-                    BuiltProgram program = build_source(device_.context, device_.device, tasks[i].source);
+                    BuiltProgram program = compiler_call(device_, "compiling " + tasks[i].source.name, [&] {
+                        return build_source(device_.context, device_.device, tasks[i].source);
+                    });
                     if (keep)
                         store(tasks[i], program);
                     finish(tasks[i], std::move(program), seconds_since(start));
@@ -270,14 +270,17 @@ void restore_code(Device::Implementation &device) {
     if (std::exchange(device.renewals, renewals) == renewals || !is_pocl_cpu(device.description))
         return;
     const std::lock_guard programs_lock(device.built.mutex);
-    for (const auto &[name, program] : device.built.programs) {
+    for (const auto &entry : device.built.programs) {
+        const std::shared_future<Shared> &program = entry.second;
         if (program.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
             continue; // who makes it unpacks it
         try {
-            const BuiltProgram &built = *program.get();
-            if (const std::optional<ProgramImage> image = device.store.find(built.key))
-                device.restored.push_back(load_image(device.context, device.device, *image, built.options).program);
-        } catch (const std::exception &) {
+            compiler_call(device, "unpacking code", [&] {
+                const BuiltProgram &built = *program.get();
+                if (const std::optional<ProgramImage> image = device.store.find(built.key))
+                    device.restored.push_back(load_image(device.context, device.device, *image, built.options).program);
+            });
+        } catch (const Error &) {
             // It is as it was before.
         }
     }

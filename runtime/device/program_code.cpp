@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <utility>
 #include <vector>
 
@@ -33,8 +34,8 @@ KernelArguments arguments_of(const cl::Program &program) {
     return found;
 }
 
-/// Calls use(). Where an exception flies through the OpenCL implementation, as LLVM's std::bad_alloc does through PoCL
-/// 3.1, the program is never released: it is still locked then, and who releases it waits for ever.
+/// Calls use(). Where an exception of the compiler flies through OpenCL, the program is never released: compiler_call()
+/// says why.
 template <class Use>
 auto with_program(cl::Program &program, const Use &use) {
     try {
@@ -59,10 +60,12 @@ BuiltProgram build_source(const cl::Context &context, const cl::Device &device, 
         } catch (const cl::Error &error) {
             if (error.err() != CL_BUILD_PROGRAM_FAILURE)
                 throw;
-            throw Error(ExitCode::device,
-                        fmt::format("kernel {} does not compile for {}:\n{}", source.name,
-                                    without_end(device.getInfo<CL_DEVICE_NAME>()),
-                                    with_file_names(program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device), source.text)));
+            const char *const folder = std::getenv("POCL_CACHE_DIR");
+            const std::string log =
+                with_file_names(without_end(program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device)), source.text);
+            throw Error(ExitCode::device, fmt::format("kernel {} does not compile for {}:\n{}", source.name,
+                                                      without_end(device.getInfo<CL_DEVICE_NAME>()),
+                                                      with_hint_at_folder(log, folder ? folder : "")));
         }
         KernelArguments kernels = arguments_of(program);
         return BuiltProgram{std::move(program), std::move(kernels)};

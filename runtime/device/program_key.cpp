@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -24,13 +25,17 @@ std::string processor() {
     return text;
 }
 
-/// PoCL's variables but those that do not change code.
+/// PoCL's variables but those that do not change code: folders, threads and what is told.
 std::vector<std::string> compiler_variables() {
+    const char *const harmless[] = {"POCL_CACHE_DIR",        "POCL_DEBUG",           "POCL_MAX_PTHREAD_COUNT",
+                                    "POCL_CPU_MAX_CU_COUNT", "POCL_CPU_NUM_WORKERS", "POCL_AFFINITY",
+                                    "POCL_MAX_COMPUTE_UNITS"};
     std::vector<std::string> variables;
     for (char **variable = environ; variable && *variable; ++variable) {
         const std::string text = *variable;
-        const bool is_harmless = text.starts_with("POCL_CACHE_DIR=") || text.starts_with("POCL_MAX_PTHREAD_COUNT=") ||
-                                 text.starts_with("POCL_DEBUG=");
+        const bool is_harmless = text.starts_with("POCL_TRACING") ||
+                                 std::any_of(std::begin(harmless), std::end(harmless),
+                                             [&](const std::string &name) { return text.starts_with(name + '='); });
         if (text.starts_with("POCL_") && !is_harmless)
             variables.push_back(text);
     }

@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <exception>
 #include <thread>
 #include <utility>
 
@@ -34,9 +35,14 @@ int threads_for(std::uint64_t bytes) {
     if (bytes < worth_threads)
         return 0;
     const int threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 4u));
-    if (Imf::globalThreadCount() < threads)
-        Imf::setGlobalThreadCount(threads);
-    return threads;
+    try {
+        // One by one, so that those that were started are kept.
+        for (int count = Imf::globalThreadCount(); count < threads; ++count)
+            Imf::setGlobalThreadCount(count + 1);
+    } catch (const std::exception &) {
+        // The system starts no more; fewer do as well.
+    }
+    return std::min(threads, Imf::globalThreadCount());
 }
 
 /// Texts and numbers.

@@ -33,6 +33,7 @@ class FilmSums {
             for (const std::uint64_t more : {0, 1}) {
                 const auto count = double(count_of_part(frames + more, part, parts));
                 weights_[more].push_back(count > 0 ? weights.of_part(frames + more, part, parts) / count : 1);
+                squares_[more] += weights.sums(frames + more, part, parts).squares;
             }
         }
     }
@@ -62,6 +63,17 @@ class FilmSums {
             replicates[part] = part_of(color, pixel, part);
         return variance_of_mean(replicates);
     }
+    /// The same of samples that are independent, from the sum of their squares: (mean of squares - square of mean) /
+    /// (n - 1) where they weigh 1. What they weigh is taken to say nothing of their values.
+    double variance_of_samples(double square, int color, std::size_t pixel) const {
+        const double all_samples = samples_of(pixel), n = all_samples - rejected(pixel);
+        const Replicate all = sum(color, pixel);
+        if (n <= 1 || all.count <= 0)
+            return 0;
+        const double mean = all.sum / all.count;
+        const double squared_weights = squares_[pixel < samples_ % pixels_ ? 1 : 0] * (n / all_samples);
+        return std::max(0.0, square - mean * mean * squared_weights) * (n / (n - 1)) / (all.count * all.count);
+    }
 
   private:
     Replicate part_of(int color, std::size_t pixel, std::uint32_t part) const {
@@ -74,6 +86,7 @@ class FilmSums {
     }
     std::deque<HostTable> films_;
     std::array<std::vector<double>, 2> weights_; ///< of a sample of each part, and with a frame more
+    std::array<double, 2> squares_{};            ///< the sum of the squared weights of all samples, likewise
     std::size_t pixels_;
     std::uint64_t samples_;
 };
@@ -180,15 +193,14 @@ Image Film::image(std::uint64_t samples, std::uint64_t &non_finite, std::uint64_
     add("depth.Z", [&](std::size_t pixel) { return mean_feature(feature_film_depth, pixel); });
     if (!tells_variance(session_.options))
         return image;
-    // The variance of the pixel's mean. Of independent samples (mean of squares - square of mean) / (n - 1).
+    // The variance of the pixel's mean.
     for (int c = 0; c < 3; ++c)
         add(std::string("variance.") + colors[c], [&](std::size_t pixel) {
             if (has_replicates())
                 return films.variance(c, pixel);
-            const Replicate all = films.sum(c, pixel);
-            const double mean = mean_of(all), square = features.real(feature_film_square_r + c, pixel) +
-                                                       features.real(feature_film_square_correction_r + c, pixel);
-            return all.count > 1 ? std::max(0.0, square / all.count - mean * mean) / (all.count - 1) : 0.0;
+            const double square = features.real(feature_film_square_r + c, pixel) +
+                                  features.real(feature_film_square_correction_r + c, pixel);
+            return films.variance_of_samples(square, c, pixel);
         });
     return image;
 }

@@ -22,7 +22,7 @@ SharedWeights::SharedWeights(const Session &session)
 
 void SharedWeights::begin_at(std::uint64_t first_frame) {
     first_frame_ = first_frame;
-    weights_.clear();
+    sums_.clear();
 }
 
 /// As kernels/stages/camera.cl draws it.
@@ -46,16 +46,28 @@ double SharedWeights::weight(std::uint64_t frame, std::uint32_t start_number) co
     return double(filter_table_sample(camera, 1, jitter.x).weight) * filter_table_sample(camera, 1, jitter.y).weight;
 }
 
-double SharedWeights::of_part(std::uint64_t frames, std::uint32_t part, std::uint32_t parts) const {
+SharedWeights::Sums SharedWeights::sums(std::uint64_t frames, std::uint32_t part, std::uint32_t parts) const {
     const auto count = double(count_of_part(frames, part, parts));
     if (!are_there_)
-        return count;
-    while (weights_.size() < frames)
-        weights_.push_back(weight(weights_.size(), session_.numbers.at("shared_start")));
-    double sum = 0;
-    for (std::uint64_t frame = part; frame < frames; frame += parts)
-        sum += weights_[frame];
-    return std::max(sum, least_share * count);
+        return {count, count};
+    const std::uint64_t all_parts = 1u << session_.traits.at("TRAIT_PART_BITS");
+    while (sums_.size() < frames) {
+        const std::uint64_t frame = sums_.size();
+        const double weighs = weight(frame, session_.numbers.at("shared_start"));
+        const Sums before = frame >= all_parts ? sums_[frame - all_parts] : Sums();
+        sums_.push_back({before.weights + weighs, before.squares + weighs * weighs});
+    }
+    Sums all;
+    for (std::uint64_t first = part; first < std::min(all_parts, frames); first += parts) {
+        const Sums &one = sums_[first + (frames - 1 - first) / all_parts * all_parts];
+        all.weights += one.weights;
+        all.squares += one.squares;
+    }
+    return all;
+}
+
+double SharedWeights::of_part(std::uint64_t frames, std::uint32_t part, std::uint32_t parts) const {
+    return std::max(sums(frames, part, parts).weights, least_share * double(count_of_part(frames, part, parts)));
 }
 
 std::uint32_t SharedWeights::chosen_start() const {

@@ -21,8 +21,14 @@ class SharedWeights {
 
     /// Whether frames weigh other than 1.
     bool are_there() const { return are_there_; }
-    /// What the frames of a part weigh among the first `frames` ones, at least least_share of their number: few frames
-    /// may have weights that cancel out, which tells no brightness. Their number where they weigh 1.
+    /// The weights of the frames of a part among the first `frames` ones, and their squares, summed: both the number of
+    /// these frames where they weigh 1. `parts` divides the number of parts that the samples have.
+    struct Sums {
+        double weights = 0, squares = 0;
+    };
+    Sums sums(std::uint64_t frames, std::uint32_t part, std::uint32_t parts) const;
+    /// The sum of weights that a mean is over: at least least_share of the number of frames, for few frames may have
+    /// weights that cancel out, which tells no brightness.
     double of_part(std::uint64_t frames, std::uint32_t part, std::uint32_t parts) const;
 
     /// Where the sequence of places is to start, of many starts: the number `shared_start` of kernels. 0 where frames
@@ -36,7 +42,7 @@ class SharedWeights {
     const Session &session_;
     bool are_there_;
     std::uint64_t first_frame_ = 0;
-    mutable std::vector<double> weights_; ///< of the first frames, as far as they have been asked for
+    mutable std::vector<Sums> sums_; ///< of a frame and those of its part before, as far as they have been asked for
 };
 
 } // namespace gradus

@@ -49,11 +49,11 @@ Kernel guide_kernel(Device &device, Precision precision, const char *file, const
     return std::move(guide_library(device, precision).build({guide_request({file, entry, taps})}).front());
 }
 
-void compile_guide_kernels(Device &device) {
+void compile_guide_kernels(Device &device, const KernelLibrary::Progress &progress) {
     std::vector<KernelRequest> requests;
     for (const GuideKernel &kernel : guide_kernels)
         requests.push_back(guide_request(kernel));
-    guide_library(device, Precision::single).build(requests);
+    guide_library(device, Precision::single).build(requests, progress);
 }
 
 GuideSmoother::GuideSmoother(const PlaneMaker &make, const Grid &grid, int radius, double sigma)

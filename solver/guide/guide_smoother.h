@@ -26,7 +26,7 @@ class GuideSmoother {
 Grid guide_grid(std::uint32_t width, std::uint32_t height);
 
 /// Compiles all kernels of guides, several at a time; uses no queue.
-void compile_guide_kernels(Device &device);
+void compile_guide_kernels(Device &device, const KernelLibrary::Progress &progress = {});
 
 /// Compiles a kernel of kernels/solver/FILE.cl for guides of three channels.
 Kernel guide_kernel(Device &device, Precision precision, const char *file, const char *entry, int taps = 0);

@@ -28,9 +28,9 @@ GuidedReconstruction::GuidedReconstruction(Device &device, PoissonSolver &solver
         filter_ = std::make_unique<FeatureFilter>(device, solver.width(), solver.height());
 }
 
-void GuidedReconstruction::compile(Device &device) {
-    WeightedReconstruction::compile(device);
-    solver::compile_guide_kernels(device);
+void GuidedReconstruction::compile(Device &device, const KernelLibrary::Progress &progress) {
+    WeightedReconstruction::compile(device, 3, progress);
+    solver::compile_guide_kernels(device, progress);
 }
 
 void GuidedReconstruction::denoise(const Buffer &primal, const Buffer *solution, const Buffer &direct,

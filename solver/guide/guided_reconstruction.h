@@ -35,7 +35,7 @@ class GuidedReconstruction {
                         SquaredErrors *errors = nullptr);
 
     /// As PoissonSolver::compile().
-    static void compile(Device &device);
+    static void compile(Device &device, const KernelLibrary::Progress &progress = {});
 
   private:
     /// The mean of the denoised primal, whose noise is of each pixel alone, and of the denoised solution, which has

@@ -24,6 +24,10 @@ BYTES = {
     # radiance: read; film: six sums, read and written. That nothing is added to a seventh column is not seen.
     "accumulate": REAL * (3 + 2 * 6),
 }
+# Of photons: position; key and line: written. Index and line; line: written.
+PHOTON_BYTES = {"photon_cells": REAL * (3 + 2), "photon_lines": REAL * 3}
+# Of the solver's `advance`: direction, image, u, residual; u, residual.
+SOLVER_ADVANCE = REAL * 6
 
 # Largest relative errors of the float build, inside of the domain; the relaxed build, whose operations may be off by
 # some units in the last place in place of half a one, gets ten times as much. Float rounds to 6e-8.
@@ -77,7 +81,9 @@ def check_throughput(rows, has_double):
                    "join diffuse", "direction", "advance", "descend", "ascend", "residual", "prolong"):
         expect(kernel in names, f"kernel {kernel} was not measured")
     # A stage and a kernel of the solver have that name.
-    expect(sum(row["kernel"] == "advance" for row in rows) == 2, "one of two kernels `advance` was not measured")
+    advance = {row["file"].split("/")[1]: row["bytes_per_item"] for row in rows if row["kernel"] == "advance"}
+    expect(set(advance) == {"stages", "solver"}, "one of two kernels `advance` was not measured")
+    expect(advance["solver"] == SOLVER_ADVANCE, f"{advance['solver']} bytes of the solver's `advance`")
     for row in rows:
         name = row["kernel"]
         builds = {"float", "relaxed"} | ({"double"} if has_double else set())
@@ -92,6 +98,18 @@ def check_throughput(rows, has_double):
             expect(row["bytes_per_item"] == BYTES[name], f"{name}: {row['bytes_per_item']} bytes, not {BYTES[name]}")
     whole = [row["items"] for row in rows if row["kernel"] in ("camera", "classify")]
     expect(all(items == 256 for items in whole), f"queues of {whole} in place of 256")
+
+
+def check_defaults(rows):
+    """With a kind at which nothing is gathered before one that gathers: of the latter, kernels of photons."""
+    found = {row["kernel"]: row["bytes_per_item"] for row in rows}
+    expect("shade conductor" in found, "the smooth kind was not measured")
+    for kernel, size in PHOTON_BYTES.items():
+        expect(found.get(kernel) == size, f"{kernel}: {found.get(kernel)} bytes, not {size}")
+    # An item looks at any number of photons, or takes a chunk of rows.
+    for kernel in ("photon_pairs list", "photons count", "photon_shift diffuse"):
+        expect(kernel in found and found[kernel] is None, f"{kernel}: {found.get(kernel)} bytes are not known")
+    expect(all(size is None or size > 0 for size in found.values()), "kernels of no bytes")
 
 
 def check_accuracy(rows):
@@ -126,6 +144,13 @@ def main():
                         "pt,gpt", "--queue-bits", "8", "--cases", "4000", "--repeats", "1", "--no-vectoriser", "--json",
                         file], check=True)
         results = json.loads(file.read_text())
+        # --json is looked at first.
+        wrong = subprocess.run([program, "--json", pathlib.Path(folder) / "none" / "kernels.json"], capture_output=True,
+                               text=True, timeout=60)
+        expect(wrong.returncode != 0 and "cannot write" in wrong.stderr, f"a file without a folder: {wrong.stderr}")
+        subprocess.run([program, "--parts", "throughput", "--kinds", "conductor,diffuse", "--queue-bits", "6",
+                        "--repeats", "1", "--no-vectoriser", "--json", file], check=True)
+        check_defaults(json.loads(file.read_text())["throughput"])
     for key in ("device", "platform", "driver", "repeats"):
         expect(key in results, f"no {key}")
     check_throughput(results["throughput"], "accuracy" in results)

@@ -1,16 +1,24 @@
 #!/usr/bin/env python3
-"""Scenes are found by name, and references that are made are known by what they were made from."""
+"""Scenes are found by name, references that are made are known by what they were made from, and programs that measure
+nothing fail."""
 
+import contextlib
 import dataclasses
+import io
+import json
 import pathlib
+import subprocess
 import sys
 import tempfile
 import unittest
+from unittest import mock
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-sys.path.insert(0, str(ROOT / "bench" / "render"))
+sys.path[:0] = [str(ROOT / "bench" / "render"), str(ROOT / "bench" / "peers")]
+import convergence  # noqa: E402
 import gradient  # noqa: E402
 import photons  # noqa: E402
+import random_scenes  # noqa: E402
 import references  # noqa: E402
 import renders  # noqa: E402
 
@@ -52,6 +60,87 @@ class KnownMethods(unittest.TestCase):
     def test_a_help_without_them_is_an_error(self):
         with self.assertRaises(SystemExit):
             self.of("  --seed UINT")
+
+
+class ReconstructionSeconds(unittest.TestCase):
+    """By a header of OpenEXR and a program that keeps how it was called."""
+
+    def of(self, layers=(b"dx.R",), **attributes):
+        def attribute(name, kind, value):
+            return name + b"\0" + kind + b"\0" + len(value).to_bytes(4, "little") + value
+
+        names = b"".join(name + b"\0" + bytes(16) for name in layers)
+        header = b"v/1\1" + bytes(4) + attribute(b"channels", b"chlist", names + b"\0") + b"".join(
+            attribute(b"gradus:" + name.encode(), b"string", value) for name, value in attributes.items())
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            (folder / "image.exr").write_bytes(header + b"\0")
+            program = folder / "gradus"
+            program.write_text(f"#!/bin/sh\necho \"$@\" > {folder}/called\necho '{{\"seconds\": 3}}' > "
+                               f"{folder}/image.solved.json\n")
+            program.chmod(0o755)
+            seconds = renders.reconstruction_seconds(program, folder / "image.exr")
+            called = folder / "called"
+            return seconds, called.read_text().split("--quiet")[1].split() if called.exists() else None
+
+    def test_are_those_of_what_the_image_says_was_used(self):
+        self.assertEqual(self.of(reconstruction=b"l1"), (3, ["--reconstruction", "l1"]))
+        self.assertEqual(self.of([b"B", b"primal_even.R"], guide=b"denoiser", reconstruction=b"guided"),
+                         (3, ["--reconstruction", "guided", "--guide", "denoiser"]))
+
+    def test_are_none_where_nothing_was_reconstructed(self):
+        self.assertEqual(self.of(reconstruction=b"none"), (0, None))
+
+    def test_without_layers_are_an_error(self):
+        with self.assertRaises(SystemExit):
+            self.of([b"B", b"G", b"R"], reconstruction=b"l1")
+
+
+class RandomScenes(unittest.TestCase):
+    def code(self, *answers):
+        """The exit code where processes of scenes answer so, and whether the temporary folder is left."""
+        runs = [subprocess.CompletedProcess([], answer is None, json.dumps(answer), "") for answer in answers]
+        with tempfile.TemporaryDirectory() as parent, mock.patch.object(random_scenes.subprocess, "run",
+                                                                        side_effect=runs), \
+                mock.patch.object(random_scenes, "find_python", return_value="python"), \
+                mock.patch.object(tempfile, "tempdir", parent), \
+                mock.patch.object(sys, "argv", ["random_scenes.py", "--scenes", str(len(answers))]), \
+                contextlib.redirect_stdout(io.StringIO()):
+            return random_scenes.main(), any(pathlib.Path(parent).iterdir())
+
+    def test_agree_or_differ(self):
+        self.assertEqual(self.code({"pt": ""}, {"pt": ""}, None), (0, False))
+        self.assertEqual(self.code({"pt": ""}, {"pt": "block 1"}), (1, True))
+
+    def test_fail_where_too_little_is_compared(self):
+        self.assertEqual(self.code(None, None), (1, False))
+        self.assertEqual(self.code({"pt": None}, {"pt": None}), (1, False))
+        self.assertEqual(self.code({"pt": ""}, None), (1, False))
+
+
+class NothingToMeasure(unittest.TestCase):
+    def test_is_an_error_in_words(self):
+        for command in (["lights.py"], ["error_calibration.py", "--variants", "pt"],
+                        ["instances.py", "--only", "bogus"]):
+            result = subprocess.run([sys.executable, ROOT / "bench" / "render" / command[0], *command[1:]],
+                                    capture_output=True, text=True)
+            self.assertEqual(result.returncode, 2, command)
+            self.assertIn("error: ", result.stderr)
+
+
+class Tables(unittest.TestCase):
+    def test_columns_of_long_names_stay_below_their_titles(self):
+        printed = io.StringIO()
+        with contextlib.redirect_stdout(printed):
+            convergence.print_summary([{"scene": "box", "method": method, "slope": -1.0}
+                                       for method in ("pt", "gpt:guided:denoiser")])
+        title, *rows = printed.getvalue().strip().splitlines()
+        for row in rows:
+            self.assertEqual(row.index("-1.00") + 5, title.index("slope") + 5)
+
+    def test_the_gain_that_auto_expects_is_of_runs_that_know_it(self):
+        self.assertEqual(gradient.median_gain([{"gain": None}, {"gain": 2}, {"gain": None}, {"gain": 4}]), 3)
+        self.assertIsNone(gradient.median_gain([{"gain": None}]))
 
 
 class ReferenceKey(unittest.TestCase):

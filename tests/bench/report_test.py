@@ -15,6 +15,7 @@ import xml.etree.ElementTree
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "bench" / "charts"))
 import convergence as chart  # noqa: E402
+import kernels as kernels_chart  # noqa: E402
 import stages as stages_chart  # noqa: E402
 
 MACHINE = {"processor": "a processor", "processors": 2, "load_before": 0.1, "date": "2026-01-01", "commit": "abc",
@@ -185,6 +186,17 @@ class DrawOnly(unittest.TestCase):
         result = subprocess.run([str(part) for part in command], capture_output=True, text=True)
         self.assertNotEqual(result.returncode, 0)
         self.assertIn("no such folder", result.stdout + result.stderr)
+
+
+class Kernels(unittest.TestCase):
+    def test_of_one_name_are_apart(self):
+        rows = [{"kernel": name, "file": f"kernels/{file}", "queue": queue}
+                for name, file in (("advance", "stages/advance.cl"), ("advance", "solver/conjugate_gradient.cl"),
+                                   ("shift", "stages/shift.cl")) for queue in (64, 1024)]
+        found = kernels_chart.kernels_of({"throughput": rows})
+        self.assertEqual(list(found),
+                         ["advance (stages/advance.cl)", "advance (solver/conjugate_gradient.cl)", "shift"])
+        self.assertTrue(all(entry["queue"] == 1024 for entry in found.values()))
 
 
 class PartsOfStages(unittest.TestCase):

@@ -19,6 +19,13 @@ TEST(BuildLog, OfLinesOfTheWholeSourceNamesTheirFiles) {
               "In kernels/b.h:1:1: and kernels/a.cl:8:33: note");
 }
 
+TEST(BuildLog, AsksForTheFolderWhereTheSourceHasNoError) {
+    EXPECT_EQ(with_hint_at_folder("a.cl:1:9: error: x", "/shm"), "a.cl:1:9: error: x");
+    EXPECT_EQ(with_hint_at_folder("failed", "/shm"),
+              "failed\nno error in the source is told: is '/shm' full, or not to be written to?");
+    EXPECT_NE(with_hint_at_folder("", "").find("POCL_CACHE_DIR"), std::string::npos);
+}
+
 TEST(BuildLog, StaysAsItIsElsewhere) {
     for (const std::string log : {"", "kernels/a.cl:2:9: error", "<kernel>: no line", "<kernel>:99:1: past the end",
                                   "<kernel>:0:1: before it", "<kernel>:"})

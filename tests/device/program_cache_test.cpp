@@ -1,5 +1,6 @@
 // Kernels from the store of programs against kernels that were compiled.
 #include "runtime/device/cache_folder.h"
+#include "runtime/device/compile_workers.h"
 #include "runtime/device/kernel_source.h"
 #include "runtime/device/opencl.h"
 #include "runtime/device/program.h"
@@ -163,6 +164,12 @@ TEST_F(ProgramCache, RebuildsWhatTheDeviceRefuses) {
     const ProgramImage good = *image;
     image->binary = "not code at all, and long enough to have a head like the code of other implementations has";
     store.put(key, *image);
+    {
+        // It may be whole, and refused for want of memory or of a disk's room: it stays until there is another.
+        const Variable none("GRADUS_COMPILE", "/bin/false");
+        EXPECT_EQ(build_and_run().compiled, 1u);
+        EXPECT_TRUE(store.find(key));
+    }
     EXPECT_EQ(build_and_run().compiled, 1u);
     EXPECT_EQ(store.find(key)->kernels, good.kernels);
     image = good;
@@ -216,6 +223,8 @@ TEST_F(ProgramCache, CompilesForOtherLaunchesFromWhatIsKept) {
 
 TEST_F(ProgramCache, IsFilledBySeveralWorkers) {
     Device device("", 3);
+    for (const char *variable : pocl_thread_variables)
+        EXPECT_STREQ(std::getenv(variable), "3") << variable;
     std::vector<KernelRequest> requests;
     for (const int chunk : {1, 2, 4, 8})
         requests.push_back(scan_of(chunk));
@@ -248,12 +257,53 @@ TEST_F(ProgramCache, CompilesItselfWhereNoWorkerDoes) {
     }
 }
 
+/// As where its disk is full, which is no error of the kernel.
+TEST_F(ProgramCache, CompilesItselfWhereAWorkerCannotWrite) {
+    if (!is_pocl_cpu(Device().description()))
+        GTEST_SKIP() << "only PoCL has workers";
+    fs::create_directories(folder);
+    const std::string worker = folder / "worker";
+    std::ofstream(worker) << "#!/bin/sh\ntrap '' XFSZ\nulimit -f 0\nexec " << compile_worker_program().string() << '\n';
+    fs::permissions(worker, fs::perms::owner_all);
+    const Variable chosen("GRADUS_COMPILE", worker);
+    const Outcome outcome = build_and_run();
+    EXPECT_EQ(outcome.compiled, 1u);
+    EXPECT_THAT(outcome.result, right);
+}
+
+TEST(CacheFolder, IsTheFirstWithRoomElseTheRoomiest) {
+    const auto chosen = [](const std::vector<double> &rooms) {
+        std::vector<fs::path> folders;
+        for (std::size_t i = 0; i < rooms.size(); ++i)
+            folders.push_back(std::to_string(i));
+        return folder_with_room(folders, [&](const fs::path &path) { return rooms[std::stoul(path.string())]; });
+    };
+    EXPECT_EQ(chosen({0.9, 1, 5}), "1");
+    EXPECT_EQ(chosen({0.25, 0, 0.5, 0.3}), "2");
+    EXPECT_EQ(chosen({0, 0}), "");
+}
+
 /// PoCL waits for its linker, and would not learn how that ends: neither here nor in a worker.
 TEST_F(ProgramCache, IsFilledWhereTheEndsOfProcessesAreIgnored) {
     const auto before = std::signal(SIGCHLD, SIG_IGN);
     const Outcome outcome = build_and_run(32);
     std::signal(SIGCHLD, before);
     EXPECT_EQ(entries().size(), is_pocl_cpu(Device().description()) ? 1u : entries().size());
+    EXPECT_THAT(outcome.result, right);
+}
+
+/// Ctrl-C and `timeout` send their signals to all processes of a group, a worker's linker among them.
+TEST_F(ProgramCache, IsFilledWhereSignalsReachTheLinker) {
+    if (!is_pocl_cpu(Device().description()))
+        GTEST_SKIP() << "only PoCL has workers";
+    fs::create_directories(folder);
+    std::ofstream(folder / "ld") << "#!/bin/sh\ntouch " << folder / "linked"
+                                 << "\nkill -INT $$\nkill -TERM $$\nkill -HUP $$\nPATH=${PATH#*:} exec ld \"$@\"\n";
+    fs::permissions(folder / "ld", fs::perms::owner_all);
+    const Variable path("PATH", folder.string() + ':' + std::getenv("PATH"));
+    const Outcome outcome = build_and_run();
+    EXPECT_TRUE(fs::exists(folder / "linked"));
+    EXPECT_EQ(entries().size(), 1u) << "no worker compiled it";
     EXPECT_THAT(outcome.result, right);
 }
 
@@ -322,12 +372,13 @@ TEST_F(ProgramCache, KeepsWorkersWhileTheyAreAskedFor) {
         return found;
     };
     std::shared_ptr<void> kept = keep_compilers(device);
-    // They outlive the thread that began them, and Ctrl-C, which is this process's to answer.
+    // They outlive the thread that began them, and Ctrl-C and its like, which are this process's to answer.
     std::thread([&] { KernelLibrary(device, {}).build({scan_of(1)}); }).join();
     const std::vector<std::string> first = workers();
     EXPECT_EQ(first.size(), 1u);
     for (const pid_t child : children())
-        kill(child, SIGINT);
+        for (const int number : {SIGINT, SIGTERM, SIGHUP})
+            kill(child, number);
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     KernelLibrary(device, {}).build({scan_of(2)});
     EXPECT_EQ(workers(), first);

@@ -53,6 +53,15 @@ TEST(ProgramKey, DoesNotDependOnWhereAndOnHowManyThreads) {
     ASSERT_EQ(setenv("POCL_CACHE_DIR", "/elsewhere", 1), 0);
     EXPECT_EQ(device_key(device), before);
     ASSERT_EQ(folder ? setenv("POCL_CACHE_DIR", kept.c_str(), 1) : unsetenv("POCL_CACHE_DIR"), 0);
+    for (const char *variable :
+         {"POCL_CPU_NUM_WORKERS", "POCL_AFFINITY", "POCL_TRACING", "POCL_TRACING_OPT", "POCL_MAX_COMPUTE_UNITS"}) {
+        ASSERT_EQ(setenv(variable, "1", 1), 0);
+        EXPECT_EQ(device_key(device), before) << variable;
+        ASSERT_EQ(unsetenv(variable), 0);
+    }
+    ASSERT_EQ(setenv("POCL_AFFINITY_OF_CODE", "1", 1), 0);
+    EXPECT_NE(device_key(device), before) << "of which nothing is known";
+    ASSERT_EQ(unsetenv("POCL_AFFINITY_OF_CODE"), 0);
 }
 
 } // namespace

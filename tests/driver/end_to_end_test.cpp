@@ -117,6 +117,21 @@ TEST_F(EndToEnd, CompilesWhereTheEndsOfProcessesAreIgnored) {
         unsetenv("GRADUS_CACHE_DIR");
 }
 
+/// Ctrl-C and `timeout` send their signals to all processes of a group, the linker of PoCL in the program itself among
+/// them.
+TEST_F(EndToEnd, CompilesWhereSignalsReachTheLinker) {
+    std::ofstream(at("sky.xml")) << R"(<scene version="3.0.0"><sensor type="perspective"/><emitter type="constant"/>
+</scene>)";
+    std::ofstream(at("ld")) << "#!/bin/sh\n>linked\nkill -INT $$\nkill -TERM $$\nkill -HUP $$\nexec ld \"$@\"\n";
+    std::filesystem::permissions(at("ld"), std::filesystem::perms::owner_all);
+    const std::string command =
+        fmt::format("cd '{0}' && COMPILER_PATH='{0}' POCL_CACHE_DIR='{0}/pocl' GRADUS_CACHE_DIR=off "
+                    "'{1}' render sky.xml -q -o out.exr --method pt --spp 1 --size 4x4",
+                    folder.string(), GRADUS_PROGRAM);
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    EXPECT_TRUE(std::filesystem::exists(at("linked")));
+}
+
 /// A cache is never an error.
 TEST_F(EndToEnd, DoesWithoutACacheWhereTheFolderThatItIsInIsGone) {
     const std::string command =

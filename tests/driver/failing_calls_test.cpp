@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <fstream>
 #include <numeric>
+#include <sstream>
+#include <string>
 #include <vector>
 
 namespace gradus {
@@ -22,7 +24,8 @@ class FailingCalls : public ProgramTest {
         ::setenv("LD_PRELOAD", GRADUS_FAILING_OPENCL, 1);
     }
     void TearDown() override {
-        for (const char *name : {"LD_PRELOAD", "GRADUS_TEST_FAILING_CALL", "GRADUS_TEST_CALLS"})
+        for (const char *name : {"LD_PRELOAD", "GRADUS_TEST_FAILING_CALL", "GRADUS_TEST_CALLS",
+                                 "GRADUS_TEST_THROWING_BUILD", "POCL_DEVICES"})
             ::unsetenv(name);
         ProgramTest::TearDown();
     }
@@ -101,6 +104,35 @@ TEST_F(FailingCalls, SomeCallsOfPathTracing) {
             some.push_back(n);
         return some;
     });
+}
+
+/// PoCL keeps the lock that each release of a program takes: nothing is released, or the render would not end.
+TEST_F(FailingCalls, ExceptionsOfTheCompiler) {
+    EXPECT_EQ(render({"pt"}).exit_code, 0);
+    for (const char *build : {"1", "4"}) {
+        ::setenv("GRADUS_TEST_THROWING_BUILD", build, 1);
+        const Outcome outcome = render({"pt"});
+        EXPECT_EQ(outcome.exit_code, 4) << outcome.err;
+        EXPECT_THAT(outcome.err, HasSubstr("gradus: error: out of memory")) << build;
+    }
+}
+
+/// A device that does not say what it is takes none of those beside it along.
+TEST_F(FailingCalls, WhatOneDeviceDoesNotTell) {
+    ::setenv("POCL_DEVICES", "basic pthread", 1);
+    const auto devices = [&] {
+        std::istringstream text(run({"devices"}).out);
+        int count = 0;
+        for (std::string line; std::getline(text, line);)
+            count += line.starts_with("   platform ");
+        return count;
+    };
+    const int all = devices();
+    if (all < 2)
+        GTEST_SKIP() << "only PoCL has two devices";
+    // The calls before are for the platform, and the first description makes some twenty.
+    ::setenv("GRADUS_TEST_FAILING_CALL", "12", 1);
+    EXPECT_EQ(devices(), all - 1);
 }
 
 /// Of which each takes half an hour.

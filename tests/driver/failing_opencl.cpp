@@ -2,7 +2,8 @@
 // environment has as GRADUS_TEST_FAILING_CALL. The number of calls is written to the file GRADUS_TEST_CALLS at the end,
 // and after it the first and the last call from each place: a stack of callers, a kernel and an argument of it.
 // Iterations of a solver make thousands of calls from a few places. Retaining and releasing are left alone: nobody asks
-// whether they worked.
+// whether they worked. With GRADUS_TEST_THROWING_BUILD=n, instead, the n-th build of a program throws std::bad_alloc,
+// as LLVM does through PoCL 3.1, and who then releases a program for good, where PoCL would wait for ever, is ended.
 #define CL_TARGET_OPENCL_VERSION 120
 #define CL_USE_DEPRECATED_OPENCL_1_2_APIS
 #include <CL/cl.h>
@@ -16,6 +17,7 @@
 #include <fstream>
 #include <map>
 #include <mutex>
+#include <new>
 #include <set>
 #include <tuple>
 #include <type_traits>
@@ -125,10 +127,6 @@ LAYER(cl_program, clCreateProgramWithSource, (cl_context a, cl_uint b, const cha
 LAYER(cl_program, clCreateProgramWithBinary,
       (cl_context a, cl_uint b, const cl_device_id *c, const size_t *d, const unsigned char **e, cl_int *f, cl_int *g),
       a, b, c, d, e, f, g)
-LAYER(cl_int, clBuildProgram,
-      (cl_program a, cl_uint b, const cl_device_id *c, const char *d, void(CL_CALLBACK *e)(cl_program, void *),
-       void *f),
-      a, b, c, d, e, f)
 LAYER(cl_int, clGetProgramInfo, (cl_program a, cl_program_info b, size_t c, void *d, size_t *e), a, b, c, d, e)
 LAYER(cl_int, clGetProgramBuildInfo,
       (cl_program a, cl_device_id b, cl_program_build_info c, size_t d, void *e, size_t *f), a, b, c, d, e, f)
@@ -162,3 +160,27 @@ LAYER(cl_int, clGetEventProfilingInfo, (cl_event a, cl_profiling_info b, size_t 
 LAYER(cl_int, clGetMemObjectInfo, (cl_mem a, cl_mem_info b, size_t c, void *d, size_t *e), a, b, c, d, e)
 LAYER(cl_int, clGetCommandQueueInfo, (cl_command_queue a, cl_command_queue_info b, size_t c, void *d, size_t *e), a, b,
       c, d, e)
+
+namespace {
+std::atomic<bool> has_thrown{false};
+}
+
+extern "C" cl_int clBuildProgram(cl_program a, cl_uint b, const cl_device_id *c, const char *d,
+                                 void(CL_CALLBACK *e)(cl_program, void *), void *f) {
+    static const char *const text = std::getenv("GRADUS_TEST_THROWING_BUILD");
+    static std::atomic<long> left{text ? std::atol(text) : 0};
+    if (text && --left == 0) {
+        has_thrown = true;
+        throw std::bad_alloc();
+    }
+    return forward("clBuildProgram", &clBuildProgram, a, b, c, d, e, f);
+}
+
+extern "C" cl_int clReleaseProgram(cl_program program) {
+    cl_uint references = 0;
+    if (has_thrown)
+        clGetProgramInfo(program, CL_PROGRAM_REFERENCE_COUNT, sizeof references, &references, nullptr);
+    if (references == 1)
+        std::abort();
+    return reinterpret_cast<decltype(&clReleaseProgram)>(::dlsym(RTLD_NEXT, "clReleaseProgram"))(program);
+}

@@ -5,6 +5,7 @@
 //   holes=N      so many pixels have a sample less than the others
 //   fail=memory  the render runs out of memory; fail=strange: throws what is no exception; memory-later, device-later:
 //                after three samples a pixel; memory-image: and in image(), too; memory-partial: in the first image();
+//                statistics: all statistics after the first sample fail;
 //                reconstruction: in all image() but not in mean_image(), whose B is 0.25
 //   reads=FILE   the loader says that it read this file, too
 //   spp=N        the samples that the scene asks for (4)
@@ -129,6 +130,8 @@ class FakeMethod : public Method {
         return image;
     }
     Statistics statistics() const override {
+        if (parameter("fail") == "statistics" && done_ > 0)
+            throw Error(ExitCode::device, "the fake device is lost");
         Statistics statistics;
         statistics.stages = {{"trace", 0.75, 100, 10}, {"camera", 0.25, 50, 5}};
         statistics.rays = {{"extension", 1000}};

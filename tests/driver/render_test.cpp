@@ -393,6 +393,17 @@ TEST_F(Render, WhatWasRenderedIsSavedWhereMemoryOrTheDeviceFails) {
     EXPECT_EQ(render({"-o", "out.exr", "-D", "fail=memory-partial", "--write-partial", "1e-9"}).exit_code, 0);
 }
 
+/// The device is asked for statistics once more when the image is there.
+TEST_F(Render, AnImageIsWrittenWhereItsStatisticsFail) {
+    const Outcome outcome = render({"-o", "out.exr", "--png", "--stats", "out.json", "-D", "fail=statistics"});
+    EXPECT_EQ(outcome.exit_code, 4);
+    EXPECT_THAT(outcome.err, HasSubstr("warning: the image is written without its statistics: the fake device"));
+    EXPECT_THAT(outcome.err, HasSubstr("gradus: error: the fake device is lost"));
+    EXPECT_THAT(files(), ElementsAre("out.exr", "out.png", "scene.xml"));
+    EXPECT_EQ(value(read_image(at("out.exr")), "G"), 4);
+    EXPECT_EQ(read_image(at("out.exr")).metadata.at("partial"), "false");
+}
+
 /// A file of a run that was killed goes; one that somebody writes, or that is not ours, stays.
 TEST_F(Render, AbandonedTemporaryFilesAreRemovedByTheNextRun) {
     std::ofstream(folder / ".gradus-1-0.part") << "abandoned";

@@ -11,10 +11,12 @@
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfRgbaFile.h>
 #include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfThreading.h>
 #include <OpenEXR/ImfTiledOutputFile.h>
 #include <gmock/gmock.h>
 
 #include <filesystem>
+#include <pthread.h>
 #include <unistd.h>
 
 namespace gradus {
@@ -38,6 +40,23 @@ class ExrFile : public ::testing::Test {
 
     const std::string path_ = ::testing::TempDir() + "gradus-exr-" + std::to_string(::getpid()) + ".exr";
 };
+
+// Threads of which each asks for more stack than there are addresses: the system starts none.
+TEST_F(ExrFile, IsWrittenWhereNoThreadCanBeStarted) {
+    Imf::setGlobalThreadCount(0);
+    pthread_attr_t usual, none;
+    ASSERT_EQ(pthread_getattr_default_np(&usual), 0);
+    ASSERT_EQ(pthread_attr_init(&none), 0);
+    ASSERT_EQ(pthread_attr_setstacksize(&none, std::size_t(1) << 50), 0);
+    ASSERT_EQ(pthread_setattr_default_np(&none), 0);
+    Image image;
+    image.width = image.height = 600; // more than the caller would write alone
+    image.channels.push_back({"Y", std::vector<float>(600 * 600, 0.5f)});
+    EXPECT_NO_THROW(write_image(image, path_));
+    ASSERT_EQ(pthread_setattr_default_np(&usual), 0);
+    EXPECT_EQ(Imf::globalThreadCount(), 0);
+    EXPECT_EQ(read_image(path_).channels.at(0).values, image.channels[0].values);
+}
 
 // 23 x 9 pixels that begin left of and below the origin, in tiles of 8 x 4.
 TEST_F(ExrFile, TilesOfHalvesAndWholeNumbersFarFromTheOrigin) {

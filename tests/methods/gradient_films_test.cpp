@@ -45,6 +45,12 @@ struct RandomFilm {
     }
 };
 
+/// Of `frames` frames that weigh 1, and of one more.
+GradientFilm::Weights even_weights(std::uint64_t frames) {
+    const auto of = [](double n) { return GradientFilm::Weight{n, n, std::max(n - 1, 0.0)}; };
+    return {of(double(frames)), of(double(frames + 1))};
+}
+
 TEST(GradientFilms, AreSummedPixelByPixel) {
     SceneMaker maker(film_width, film_height);
     maker.floor(-1, 1, 1, maker.material(diffuse(0.5)), 0);
@@ -59,7 +65,7 @@ TEST(GradientFilms, AreSummedPixelByPixel) {
     GradientFilms all(tracer, true);
     for (std::size_t i = 0; i < films.size(); ++i)
         all.add(buffers[i], film_width, film_height, Precision::single, films[i].samples,
-                {double(films[i].samples / film_pixels), double(films[i].samples / film_pixels + 1)});
+                even_weights(films[i].samples / film_pixels));
 
     std::vector<float> mean(film_pixels), variance(film_pixels);
     for (const auto layer : {GradientFilm::primal, GradientFilm::dx, GradientFilm::dy})
@@ -104,8 +110,8 @@ TEST(GradientFilms, OfFewSamplesTellTheVarianceOfAll) {
     std::vector<Buffer> buffers;
     for (const RandomFilm *film : {&even, &odd})
         buffers.emplace_back(device, "gradient_film", film->values.data(), film->values.size() * sizeof(float));
-    films.add(buffers[0], film_width, film_height, Precision::single, even.samples, {1, 2});
-    films.add(buffers[1], film_width, film_height, Precision::single, odd.samples, {1, 2});
+    films.add(buffers[0], film_width, film_height, Precision::single, even.samples, even_weights(1));
+    films.add(buffers[1], film_width, film_height, Precision::single, odd.samples, even_weights(1));
     std::vector<float> variance(film_pixels);
     for (const auto layer : {GradientFilm::primal, GradientFilm::dx, GradientFilm::dy}) {
         films.variance(layer)(0, variance.data());
@@ -129,7 +135,7 @@ TEST(GradientFilms, WithoutASampleAreMissing) {
     const RandomFilm film(1, 3 * film_width);
     const Buffer buffer(device, "gradient_film", film.values.data(), film.values.size() * sizeof(float));
     GradientFilms films(tracer);
-    films.add(buffer, film_width, film_height, Precision::single, film.samples, {0, 1});
+    films.add(buffer, film_width, film_height, Precision::single, film.samples, even_weights(0));
     EXPECT_EQ(films.pixels_with_samples(), 3 * film_width);
     const ImageSources images = films.images();
     std::vector<float> mean(film_pixels), solved(film_pixels);

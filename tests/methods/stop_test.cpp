@@ -43,6 +43,19 @@ TEST(Stop, IsHeardBetweenBounces) {
     }
 }
 
+// Nobody waits for the other kernels of an image that will not be made.
+TEST(Stop, EndsTheCompilingOfAReconstruction) {
+    Device device;
+    RenderOptions options;
+    options.stop = [] { return true; };
+    std::unique_ptr<Method> method = make_method("gpt", device, endless(), options);
+    device.implementation().store = ProgramStore(); // which knows what the reconstruction needs
+    const std::size_t before = device.implementation().compiled;
+    EXPECT_THROW(method->render_batch(), Stopped);
+    method.reset();
+    EXPECT_LT(device.implementation().compiled, before + 4); // of eleven
+}
+
 // The pass that is given up leaves nothing in any layer, wherever it ends.
 TEST(Stop, AnImageOfPhotonsIsThatOfItsPasses) {
     SceneMaker maker(16, 16);

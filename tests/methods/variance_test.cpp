@@ -67,6 +67,21 @@ TEST(Variances, OfThreeIndependentSamplesAreTheirs) {
                      std::string("gpt: ") + layer);
 }
 
+/// Samples of a frame have a weight in common, of either sign: their spread is that of what is weighed. That of what
+/// they are times it would tell four times the variance.
+TEST(Variances, OfFiltersWithNegativeLobesAreTheirs) {
+    RenderOptions options = with_aov();
+    options.sampler = RenderOptions::Sampler::independent;
+    Scene scene = smooth_wall(16);
+    scene.film.filter = FilmSettings::Filter::lanczos;
+    scene.film.filter_radius = 3;
+    const std::vector<Image> images = render_seeds(scene, 40, options, 1, "gpt");
+    expect_right(told_over_true(images, "primal", "variance"), 1, "gpt: the mean");
+    for (const char *layer : {"primal", "dx", "dy"})
+        expect_right(told_over_true(images, layer, std::string(layer) + "_variance", 1), 1,
+                     std::string("gpt: ") + layer);
+}
+
 /// Blocks of 4 x 4 pixels of pairs of seeds: (a - b) over the root of both variances is normal but for what 96 degrees
 /// of freedom leave, 96 / 94 of its square.
 TEST(Variances, MakeScoresOfUnitSpread) {

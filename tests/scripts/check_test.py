@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""./check with programs that only say how they were called: what fails it, and the summary of --full."""
+"""./check with programs that only say how they were called: what fails it, and the summary of --full; ./demo and
+scripts/fuzz.sh alike."""
 
 import os
 import pathlib
@@ -27,6 +28,18 @@ case "$call" in $FAILS) exit 8 ;; esac
 """
 
 
+MKTEMP = f"""#!/bin/sh
+case mktemp in $FAILS) exit 8 ;; esac
+exec '{shutil.which("mktemp")}' "$@"
+"""
+
+
+def write_program(path, text):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text)
+    path.chmod(0o755)
+
+
 class Check(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -38,8 +51,8 @@ class Check(unittest.TestCase):
             shutil.copy(ROOT / name, self.folder / name)
         for name in ("demo", "scripts/build.sh", "scripts/fuzz.sh", "scripts/install_dependencies.sh", *(
                 f"programs/{program}" for program in ("cmake", "ctest", "python3"))):
-            (self.folder / name).write_text(STUB)
-            (self.folder / name).chmod(0o755)
+            write_program(self.folder / name, STUB)
+        write_program(self.folder / "programs" / "mktemp", MKTEMP)
 
     def check(self, *arguments, expected="always: B\n", fails="nothing"):
         (self.folder / "tests" / "expected_skips.txt").write_text(expected)
@@ -89,10 +102,49 @@ class Check(unittest.TestCase):
     def test_full_goes_on_after_a_failure(self):
         for fails, part in (("cmake --build*", "tests under the sanitizers"), ("*compare.py*", "Mitsuba 3"),
                             ("fuzz.sh*", "readers of files, fuzzed for a minute each"), ("*run.py*", "planted defects"),
+                            ("mktemp*", "the demo with empty caches"),
                             ("ctest*Stability*", "tests under the sanitizers that open a device")):
             code, summary = self.summary(fails=fails)
             self.assertEqual(code, 1)
             self.assertEqual([title for title, outcome in summary.items() if outcome == "FAILED"], [part])
+
+
+class Scripts(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        for name in ("demo", "scripts/fuzz.sh"):
+            (self.folder / name).parent.mkdir(exist_ok=True)
+            shutil.copy(ROOT / name, self.folder / name)
+        for program in ("scripts/build.sh", "programs/cmake", "programs/clang++"):
+            write_program(self.folder / program, "#!/bin/sh\n")
+
+    def run_script(self, *command, **environment):
+        path = f"{self.folder / 'programs'}:{os.environ['PATH']}"
+        clean = {name: value for name, value in os.environ.items() if name != "GRADUS_CACHE_DIR"}
+        return subprocess.run([self.folder / command[0], *command[1:]], capture_output=True, text=True,
+                              env={**clean, "PATH": path, **environment})
+
+    def test_the_demo_keeps_programs_where_it_is_told(self):
+        write_program(self.folder / "build" / "gradus", '#!/bin/sh\necho "cache: $GRADUS_CACHE_DIR."\n')
+        for given, expected in (({}, self.folder / "build" / "program-cache"), ({"GRADUS_CACHE_DIR": ""}, ""),
+                                ({"GRADUS_CACHE_DIR": "off"}, "off")):
+            result = self.run_script("demo", "--no-install", **given)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertIn(f"cache: {expected}.", result.stdout)
+
+    def test_fuzzing_names_what_broke_this_run(self):
+        write_program(self.folder / "build-fuzz/tests/fuzz/fuzz_png", '#!/bin/sh\ntouch $MAKES\nexit 1\n')
+        (self.folder / "build-fuzz" / "png-crash-before").touch()
+        for makes, expected in (("build-fuzz/png-crash-now", "build-fuzz/png-crash-now"),
+                                ("build-fuzz/else", "no input of its own")):
+            for old in self.folder.glob("build-fuzz/png-crash-now"):
+                old.unlink()
+            os.utime(self.folder / "build-fuzz" / "png-crash-before", (1e9, 1e9))
+            result = self.run_script("scripts/fuzz.sh", "1", "png", MAKES=makes)
+            self.assertEqual(result.returncode, 1, result.stderr)
+            self.assertIn(f"png: broken by {expected}", result.stdout)
 
 
 if __name__ == "__main__":

@@ -43,6 +43,9 @@ TEST(Options, OutOfTheirRangeAreRefused) {
     for (const double tolerance : {-1e-5, not_a_number})
         expect_usage_error("tolerance " + std::to_string(tolerance),
                            [&](auto &, auto &options) { options.tolerance = tolerance; });
+    for (const double share : {-1.0, not_a_number})
+        expect_usage_error("share of the noise " + std::to_string(share),
+                           [&](auto &, auto &options) { options.noise_share = share; });
     for (const double damping : {0.0, -1.0, 1.5, not_a_number})
         expect_usage_error("damping " + std::to_string(damping), [&](auto &, auto &options) {
             options.norm = PoissonNorm::l2;
@@ -56,6 +59,13 @@ TEST(Options, OutOfTheirRangeAreRefused) {
 
 TEST(Options, OneVarianceIsForBuffers) {
     expect_usage_error("one variance", [](auto &images, auto &) { images.one_variance = true; });
+}
+
+TEST(Options, AResultThatGoesNowhereIsAnError) {
+    const PlaneSource zeros = [](std::uint32_t, float *plane) { std::fill_n(plane, 12 * 9, 0.0f); };
+    ImageSources images;
+    images.primal = images.dx = images.dy = zeros;
+    EXPECT_THROW(PoissonSolver(test_device(), 12, 9, 3).solve(images, PoissonOptions(), PlaneSink()), Error);
 }
 
 TEST(Options, ImagesThatAreMissingAreNamed) {

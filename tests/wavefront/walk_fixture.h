@@ -116,14 +116,15 @@ class Walker {
         Writer rows(*tables, "chain", walk.chain_rows()), vertices(*tables, "chain_vertex", walk.chain_vertices());
         for (std::size_t i = 0; i < count; ++i) {
             const WalkChain &chain = chains[first + i];
-            const auto end = [&](const ChainEnd &e, int position, int normal, int offset) {
+            const auto end = [&](const ChainEnd &e, int position, int normal) {
                 rows.vector(position, i, e.position);
                 rows.vector(normal, i, e.normal);
-                rows.real(offset, i, e.offset);
             };
-            end(chain.start, chain_start_x, chain_start_normal_x, chain_start_offset);
-            end(chain.end, chain_end_x, chain_end_normal_x, chain_end_offset);
-            end(chain.target, chain_target_x, chain_target_normal_x, chain_target_offset);
+            end(chain.start, chain_start_x, chain_start_normal_x);
+            end(chain.end, chain_end_x, chain_end_normal_x);
+            end(chain.target, chain_target_x, chain_target_normal_x);
+            rows.real(chain_start_offset, i, chain.start.offset);
+            rows.real(chain_target_offset, i, chain.target.offset);
             rows.uint(chain_inner, i, std::uint32_t(chain.vertices.size()));
             for (std::size_t k = 0; k < std::min<std::size_t>(chain.vertices.size(), walk.settings().most_vertices);
                  ++k) {
