@@ -11,7 +11,7 @@ GRADUS_LIB_BEGIN
 #define SPECULAR_KINDS 0xFFFFFFFFu
 #endif
 
-#define GRADUS_IS_SPECULAR(name, lobes) ((lobes) == 1 && ((SPECULAR_KINDS >> bsdf_kind_##name) & 1u) != 0u)
+#define GRADUS_IS_SPECULAR(name, lobes) (((lobes) == 1) & (int)((SPECULAR_KINDS >> bsdf_kind_##name) & 1u))
 
 GRADUS_FN bsdf_value specular_evaluate(material m, vec3 wi, vec3 wo, int mode) {
     (void)m, (void)wi, (void)wo, (void)mode;

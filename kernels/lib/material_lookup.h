@@ -39,7 +39,7 @@ GRADUS_LIB_BEGIN
 #endif
 /* With a single lookup, which all materials take, there is nothing to ask. */
 #define LOOK_UP(name)                                                                                                  \
-    const int is_asked = CLASS_LOOKUPS > 1 || !HAS_PARAMETER(CLASS_ALL_TEXTURED, name);                                \
+    const int is_asked = (CLASS_LOOKUPS > 1) | !HAS_PARAMETER(CLASS_ALL_TEXTURED, name);                                \
     uint number = 0u;                                                                                                  \
     if (is_asked)                                                                                                      \
         number = (material_textures + parameter_##name * (size_t)unit)[(int)(record * (uint)textured_parameters)];     \

@@ -309,7 +309,7 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         uint ends = 0u;
 #if SIDE_BY_SHADING
         const int from_behind = v3_dot(end_shading, v3_after(to_next, reconnection)) > R(0);
-        ends = is_hit & end_turns & (from_behind != base_from_behind) ? shift_ends : 0u;
+        ends = (is_hit & end_turns & (from_behind != base_from_behind)) ? shift_ends : 0u;
 #endif
 #if TRAIT_APART
         const int both_rough = base_is_rough & ((kind & kind_is_rough) != 0u);

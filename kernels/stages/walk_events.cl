@@ -58,5 +58,5 @@ STAGE walk_events(uint count, uint unit, uint chain_rows, uint chain_vertices, _
     AT(chain_event, half_x, at) = is_dirac ? R(0) : half_of.x;
     AT(chain_event, half_y, at) = is_dirac ? R(0) : half_of.y;
     AT_UINT(chain_event, kind, at) = kind | (reflects ? event_reflects : 0u) | (in_cosine < R(0) ? event_behind : 0u) |
-                                     ((is_dirac | half_of.is_valid) & (kind != kind_none) ? 0u : event_unknown);
+                                     (((is_dirac | half_of.is_valid) & (kind != kind_none)) ? 0u : event_unknown);
 }
