@@ -75,7 +75,7 @@ TEST(Variances, OfFiltersWithNegativeLobesAreTheirs) {
     Scene scene = smooth_wall(16);
     scene.film.filter = FilmSettings::Filter::lanczos;
     scene.film.filter_radius = 3;
-    const std::vector<Image> images = render_seeds(scene, 40, options, 1, "gpt");
+    const std::vector<Image> images = render_seeds(scene, 20, options, 1, "gpt");
     expect_right(told_over_true(images, "primal", "variance"), 1, "gpt: the mean");
     for (const char *layer : {"primal", "dx", "dy"})
         expect_right(told_over_true(images, layer, std::string(layer) + "_variance", 1), 1,

@@ -33,11 +33,11 @@ class Oclgrind : public ProgramTest {
     }
 
     /// Names of the stages that had something to do.
-    std::set<std::string> render(const std::string &scene, std::vector<std::string> more) const {
+    std::set<std::string> render(const std::string &scene, std::vector<std::string> more,
+                                 bool finds_uninitialized = true) const {
         std::vector<std::string> arguments = {"oclgrind",
                                               "--data-races",
                                               "--uniform-writes",
-                                              "--uninitialized",
                                               "--check-api",
                                               "--log",
                                               at("report.txt"),
@@ -53,6 +53,8 @@ class Oclgrind : public ProgramTest {
                                               "--nthreads",
                                               "1",
                                               "--quiet"};
+        if (finds_uninitialized)
+            arguments.insert(arguments.begin() + 1, "--uninitialized");
         if (std::find(more.begin(), more.end(), "--method") == more.end())
             more.insert(more.end(), {"--method", "pt"});
         if (std::find(more.begin(), more.end(), "--spp") == more.end())
@@ -159,9 +161,17 @@ TEST_F(FullOclgrind, GradientsOfPhotonsStraightFromLights) {
 
 // With fewer samples there are no variances of halves.
 TEST_F(FullOclgrind, ReconstructionsByVariances) {
-    for (const std::string name : {"weighted", "guided"})
-        render("cornell-box.xml",
-               {"--method", "gpt", "--size", "6x5", "--spp", "4", "--max-depth", "3", "--reconstruction", name});
+    const std::vector<std::string> small = {"--size", "6x5", "--spp", "4", "--max-depth", "3"};
+    const auto by = [&](const std::string &method, const std::string &reconstruction, bool finds_uninitialized = true) {
+        std::vector<std::string> arguments = small;
+        arguments.insert(arguments.end(), {"--method", method, "--reconstruction", reconstruction});
+        render("cornell-box.xml", arguments, finds_uninitialized);
+    };
+    by("gpt", "weighted");
+    by("pt", "guided");
+    // Oclgrind 21.10 goes on with what it knew of a released buffer where a larger one takes its place, and takes what
+    // lies behind for never written.
+    by("gpt", "guided", false);
 }
 
 TEST_F(FullOclgrind, GradientsWithEveryTrait) {
