@@ -140,9 +140,9 @@ void DifferenceFilm::add(std::uint32_t first, std::uint32_t rows, std::uint32_t 
             accumulate_.bind("gradient_film", (*tables_)[film_names_[film]]);
         for (std::uint32_t frame = first_frame; frame < frames; frame += apart * accumulated_frames) {
             const std::uint32_t together = std::min(accumulated_frames, (frames - frame + apart - 1) / apart);
-            const auto before = std::uint32_t((number + frame - first_sample_) / apart);
+            const std::uint64_t before = number + frame - first_sample_; // of all films
             if (film_.weights().are_there()) {
-                const SharedWeights::Sums weighed = film_.weights().sums(number + frame - first_sample_, film, apart);
+                const SharedWeights::Sums weighed = film_.weights().sums(before, film, apart);
                 stages_.set_real("weights_before", weighed.weights);
                 stages_.set_real("squares_before", weighed.squares);
             }
@@ -152,14 +152,14 @@ void DifferenceFilm::add(std::uint32_t first, std::uint32_t rows, std::uint32_t 
                                     {"is_carried", 1},
                                     {"has_above", first > 0},
                                     {"frames", together},
-                                    {"frames_before", before}});
+                                    {"frames_before", static_cast<std::uint32_t>(before / apart)}});
             accumulate_.run(pixels - width, {{"first_slot", frame * pixels + width},
                                              {"first_pixel", (first + 1) * width},
                                              {"first_above", first * width},
                                              {"is_carried", 0},
                                              {"has_above", 1},
                                              {"frames", together},
-                                             {"frames_before", before}});
+                                             {"frames_before", static_cast<std::uint32_t>(before / apart)}});
         }
     }
     if (first + rows < session_.film.crop_height)

@@ -1,14 +1,13 @@
 // The kernels that a render by each method and a solve launch on more than one item, the solver's main ones alone
-// (bench/kernels/solver_traffic.cpp), measured in the render itself: where a kernel is about
-// to be launched on the most items that it gets in this render, the render is held, what the launch was given is kept,
-// and the kernel runs on it again and again, in its float, relaxed and double builds, before the render goes on. So
-// tables, arguments and specialisation are those of a real batch, whatever stages a method has.
+// (bench/kernels/solver_traffic.cpp), measured in the render itself: where a kernel is about to be launched on the most
+// items that it gets in this render, the render is held, what the launch was given is kept, and the kernel runs on it
+// again and again, in its float, relaxed and double builds, before the render goes on. So tables, arguments and
+// specialisation are those of a real batch, whatever stages a method has.
 //
 // The scene is a room, scenes/cornell-box.xml, whose surfaces are all of one BSDF kind and all but one emit: then each
 // stage gets a queue about as long as the batch. It is rendered once for each kind; a kernel that does not depend on
 // the kind is measured with the first. Methods of photons are left out where the kind is too smooth to gather any. A
-// queue of n items is a film of n pixels with one sample each in batches of n
-// paths.
+// queue of n items is a film of n pixels with one sample each in batches of n paths.
 //
 // Google Benchmark runs the builds of a kernel in random order, interleaved, and takes the device's own clock. Between
 // two runs the memory that the kernel writes is restored, outside the clock.

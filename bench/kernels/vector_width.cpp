@@ -1,5 +1,6 @@
 #include "bench/kernels/vector_width.h"
 
+#include "runtime/device/spawn_arguments.h"
 #include "runtime/error.h"
 
 #include <fmt/format.h>
@@ -29,23 +30,11 @@ constexpr std::string_view vectorised = "vectorized loop (vectorization width: "
 
 bool is_pocl(const Device &device) { return device.description().platform.find("Portable") != std::string::npos; }
 
-std::vector<char *> pointers_to(std::vector<std::string> &texts) {
-    std::vector<char *> pointers;
-    for (std::string &text : texts)
-        pointers.push_back(text.data());
-    pointers.push_back(nullptr);
-    return pointers;
-}
-
 /// What this program prints, called with these arguments, without caches of kernels, which would leave out PoCL's
 /// remarks. Throws Error where it fails.
 std::string own_output(std::vector<std::string> arguments) {
-    std::vector<std::string> environment = {"GRADUS_CACHE_DIR=off", "POCL_KERNEL_CACHE=0", "POCL_VECTORIZER_REMARKS=1"};
-    for (char **entry = environ; *entry; ++entry)
-        if (std::ranges::none_of(environment, [&](const std::string &own) {
-                return std::string_view(*entry).starts_with(own.substr(0, own.find('=') + 1));
-            }))
-            environment.emplace_back(*entry);
+    std::vector<std::string> environment =
+        environment_with({{"GRADUS_CACHE_DIR", "off"}, {"POCL_KERNEL_CACHE", "0"}, {"POCL_VECTORIZER_REMARKS", "1"}});
     arguments.insert(arguments.begin(), "/proc/self/exe");
     int ends[2];
     if (pipe2(ends, O_CLOEXEC) != 0)

@@ -3,6 +3,7 @@
 #include "runtime/companion_file.h"
 #include "runtime/device/cache_folder.h"
 #include "runtime/device/framed_socket.h"
+#include "runtime/device/spawn_arguments.h"
 #include "runtime/seconds_since.h"
 
 #include <fcntl.h>
@@ -35,27 +36,6 @@ namespace fs = std::filesystem;
 namespace {
 
 bool is_program(const fs::path &path) { return !path.empty() && access(path.c_str(), X_OK) == 0; }
-
-/// This process's variables with others set.
-std::vector<std::string> environment_with(const std::vector<std::pair<std::string, std::string>> &changes) {
-    std::vector<std::string> variables;
-    for (char **variable = environ; variable && *variable; ++variable)
-        if (std::none_of(changes.begin(), changes.end(), [&](const auto &change) {
-                return std::string_view(*variable).starts_with(change.first + '=');
-            }))
-            variables.emplace_back(*variable);
-    for (const auto &[name, value] : changes)
-        variables.push_back(name + '=' + value);
-    return variables;
-}
-
-std::vector<char *> pointers_to(std::vector<std::string> &texts) {
-    std::vector<char *> pointers;
-    for (std::string &text : texts)
-        pointers.push_back(text.data());
-    pointers.push_back(nullptr);
-    return pointers;
-}
 
 /// Seconds after which it is looked at who is late.
 constexpr double slice = 0.5;

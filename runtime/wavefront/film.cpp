@@ -28,12 +28,12 @@ class FilmSums {
              const SharedWeights &weights)
         : pixels_(pixels), samples_(samples) {
         const std::uint64_t frames = samples / pixels;
+        squares_ = {weights.sums(frames, 0, 1).squares, weights.sums(frames + 1, 0, 1).squares};
         for (std::uint32_t part = 0; part < parts; ++part) {
             films_.emplace_back(tables[name_of_part("film", part)], pixels, tables.precision());
             for (const std::uint64_t more : {0, 1}) {
                 const auto count = double(count_of_part(frames + more, part, parts));
                 weights_[more].push_back(count > 0 ? weights.of_part(frames + more, part, parts) / count : 1);
-                squares_[more] += weights.sums(frames + more, part, parts).squares;
             }
         }
     }

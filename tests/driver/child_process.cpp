@@ -1,5 +1,7 @@
 #include "tests/driver/child_process.h"
 
+#include "runtime/device/spawn_arguments.h"
+
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -35,10 +37,7 @@ ChildProcess::ChildProcess(const std::vector<std::string> &arguments, const fs::
     err_ = printed_folder(folder) / ("err" + std::to_string(count++));
     std::vector<std::string> words = arguments;
     words.insert(words.begin(), GRADUS_PROGRAM);
-    std::vector<char *> pointers;
-    for (std::string &word : words)
-        pointers.push_back(word.data());
-    pointers.push_back(nullptr);
+    const std::vector<char *> pointers = pointers_to(words);
     process_ = ::fork();
     if (process_ != 0)
         return;
