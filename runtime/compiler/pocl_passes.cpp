@@ -11,6 +11,7 @@
 // PoCL has no settings for these. But it has LLVM list its passes by a function of LLVM's library, and the loader finds
 // the one here first, since the program exports it (runtime/CMakeLists.txt). It puts two passes in front, leaves the
 // first time out, and then does what LLVM's does. Where PoCL or LLVM are others, nobody calls it.
+#include "runtime/compiler/pocl_version.h"
 #include "runtime/compiler/symbol_name.h"
 #include "runtime/device/loaded_library.h"
 
@@ -30,7 +31,6 @@ using AddGlobalDce = void(void *passes);
 using Populate = void(void *builder, void *passes);
 using SetLevel = void(void *builder, unsigned level);
 
-constexpr const char *library_of_pocl = "libpocl.so.2.10"; // of 3.1
 constexpr unsigned level_of_pocl = 3;
 
 NameOf *name_of = nullptr;
@@ -85,7 +85,7 @@ extern "C" void POPULATE(void *builder, void *passes) {
     // PoCL 3.1 lists all passes for a kernel once, those of both times in one list.
     static void *listed = nullptr;
     const auto set_level = gradus::function_of_llvm<SetLevel>("LLVMPassManagerBuilderSetOptLevel");
-    const bool is_first_time = set_level && listed != passes && gradus::loaded_library(library_of_pocl);
+    const bool is_first_time = set_level && listed != passes && gradus::is_pocl_3_1_loaded();
     listed = is_first_time ? passes : nullptr; // another list may come to lie at the same place
     if (is_first_time)
         set_level(builder, 0);

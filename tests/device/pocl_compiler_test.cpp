@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <string>
@@ -135,6 +137,18 @@ __kernel void NAME(__global const record *from, __global record *to) { to[get_gl
 )");
     EXPECT_NE(code.find("memcpy"), std::string::npos) << "uses no library";
     EXPECT_NE(code.find("libc.so"), std::string::npos);
+}
+
+// Reading all of it takes 30000 pages of memory more, and most of the time until the first kernel is compiled.
+TEST_F(PoclCompilerOf31, ReadsOfItsLibraryWhatKernelsCall) {
+    const auto pages_of_children = [] {
+        rusage used{};
+        getrusage(RUSAGE_CHILDREN, &used);
+        return used.ru_minflt;
+    };
+    const long before = pages_of_children();
+    compiled();
+    EXPECT_LT(pages_of_children() - before, 20000);
 }
 
 } // namespace
