@@ -27,7 +27,7 @@ TraitMap gradient_traits(const Scene &scene, const RenderOptions &options) {
         apart = apart || !is_rough(bsdf, options.shift_threshold) || bsdf_kind_traits(bsdf.kind).is_mixed;
     });
     return {{"TRAIT_GRADIENT", 1},
-            {"TRAIT_SHARED_JITTER", 1},
+            {"TRAIT_SHARED_START", 1},
             {"TRAIT_APART", apart},
             {"TRAIT_SHIFT_DISTANCE", distance},
             {"TRAIT_AOV", options.all_traits || needs_features(options)},

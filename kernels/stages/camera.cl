@@ -8,7 +8,7 @@
  * their offset paths, which are those of the neighbours (gradient_neighbour in kernels/lib/gradient.h) with the pixel's
  * own random numbers. */
 //! traits: TRAIT_FILTER_TENT TRAIT_FILTER_GAUSSIAN TRAIT_FILTER_SIGNED TRAIT_AOV TRAIT_SHARED_JITTER
-//! traits: TRAIT_HIDE_EMITTERS
+//! traits: TRAIT_SHARED_START TRAIT_HIDE_EMITTERS
 #include "kernels/lib/additive_sequence.h"
 #include "kernels/lib/begin_path.h"
 #include "kernels/lib/camera_ray.h"
@@ -77,26 +77,26 @@ STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ra
     const random_bits key = random_key(seed_low, seed_high, y * film_width + x, sample.low, sample.high);
 #endif
 #if TRAIT_SHARED_JITTER
-    /* All pixels of a sample share their place within the pixel, and their point of the lens: so base and offset paths
-     * are each other's first segments. */
+    /* All pixels of a sample share their place within the pixel; where paths start alike, their point of the lens. */
     const sample_place shared = shared_number_at(place);
     const random_bits start = random_key(seed_low, seed_high, 0xFFFFFFFFu, shared_start, shared.high);
 #if TRAIT_STRATIFIED
     /* In a sequence that fills the pixel evenly: what all pixels share does not average out over the image. */
     const point2 jitter = additive_sequence(start.x, start.y, shared.low);
+    const random4 lens = stratified_draw(TRAIT_SHARED_START ? start.z : key.x, TRAIT_SHARED_START ? shared.low : key.y,
+                                         random_dimension_camera);
     random4 u;
     u.a = jitter.x;
     u.b = jitter.y;
-#if TRAIT_THIN_LENS
-    const random4 lens = stratified_draw(start.z, shared.low, random_dimension_camera);
     u.c = lens.a;
     u.d = lens.b;
 #else
-    u.c = R(0);
-    u.d = R(0);
+    random4 u = random_draw(start.x, shared.low, random_dimension_camera);
+#if !TRAIT_SHARED_START
+    const random4 lens = random_draw(key.x, key.y, random_dimension_camera);
+    u.c = lens.a;
+    u.d = lens.b;
 #endif
-#else
-    const random4 u = random_draw(start.x, shared.low, random_dimension_camera);
 #endif
 #else
     const random4 u = PATH_DRAW(key.x, key.y, random_dimension_camera);

@@ -11,12 +11,12 @@
  *
  * TRAIT_BLENDS: also the record that a blend has come to, chosen by a number of the path's key and depth, which its
  * offset paths share: so it is a coordinate of the paths that shifts keep. Of first vertices, where offset paths are
- * those of the neighbours, all pixels of a sample share it (TRAIT_SHARED_JITTER). Of offset path j there are the rows
+ * those of the neighbours, all pixels of a sample share it (TRAIT_SHARED_START). Of offset path j there are the rows
  * from j plane_rows on. OF_LIGHT_PATHS: rays of light paths.
  *
  * TRAIT_TEXTURED_NORMALS: also the normal that a map makes, as it is seen from the ray's side, and what goes with it
  * (kernels/lib/mapped_normal.h). */
-//! traits: TRAIT_TEXTURED TRAIT_TWO_FACED TRAIT_SPHERES TRAIT_TRIANGLES TRAIT_BLENDS TRAIT_SHARED_JITTER TRAIT_LOOKUPS
+//! traits: TRAIT_TEXTURED TRAIT_TWO_FACED TRAIT_SPHERES TRAIT_TRIANGLES TRAIT_BLENDS TRAIT_SHARED_START TRAIT_LOOKUPS
 //! traits: TRAIT_TEXTURES TRAIT_BLEND_TEXTURES TRAIT_BLEND_LEVELS
 //! traits: TRAIT_TEXTURED_NORMALS TRAIT_NORMAL_TEXTURES TRAIT_TWO_SIDED
 #include "kernels/lib/division.h"
@@ -72,7 +72,7 @@ STAGE read_material(uint count, uint unit, uint first, uint traced_rows, uint pa
                     ,
                     __global const real *path
 #endif
-#if TRAIT_SHARED_JITTER
+#if TRAIT_SHARED_START
                     ,
                     uint first_sample_low, uint first_sample_high, uint pixels_multiplier, uint pixels_shift,
                     uint seed_low, uint seed_high
@@ -114,7 +114,7 @@ STAGE read_material(uint count, uint unit, uint first, uint traced_rows, uint pa
     const uint depth = AT_UINT(path, depth, base);
     real choice = PATH_DRAW(key_0, key_1, random_dimension_blend(depth)).a;
 #endif
-#if TRAIT_SHARED_JITTER
+#if TRAIT_SHARED_START
     /* An additive sequence, as the places within the pixel are: what all pixels share does not average out. */
     const sample_place sample = shared_number_at(sample_place_after(
         first_sample_low, first_sample_high, divide(AT_UINT(path, slot, base), pixels_multiplier, pixels_shift)));

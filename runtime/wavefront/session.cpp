@@ -36,7 +36,7 @@ TraitMap traits_for(const Scene &scene, const SessionOptions &options, const Tra
     if (options.by_index)
         traits["TRAIT_INDEXED"] = indexed_trait(traits, std::numeric_limits<std::size_t>::max());
     // Settings of a method, which no scene has.
-    traits["TRAIT_SHARED_JITTER"] = 0;
+    traits["TRAIT_SHARED_START"] = 0;
     traits["TRAIT_STRATIFIED"] = options.sampler == SessionOptions::Sampler::sobol;
     traits["TRAIT_LOBE_LEVELS"] = 0;
     traits["TRAIT_OPACITY"] = 0;
@@ -48,6 +48,8 @@ TraitMap traits_for(const Scene &scene, const SessionOptions &options, const Tra
     traits["KINDS_BY_CLASS"] = 0;
     for (const auto &[name, value] : of_method)
         traits[name] = value;
+    // Where paths start alike, and where samples weigh, which they then do alike (shared_weights.h).
+    traits["TRAIT_SHARED_JITTER"] = traits["TRAIT_SHARED_START"] || traits["TRAIT_FILTER_SIGNED"];
     if (options.all_traits || traits["TRAIT_MATERIAL"] == 0)
         traits["KINDS_BY_CLASS"] = 0;
     // Features are seen through mirrors and glass (kernels/lib/seen_features.h).

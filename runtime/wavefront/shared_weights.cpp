@@ -72,7 +72,7 @@ double SharedWeights::of_part(std::uint64_t frames, std::uint32_t part, std::uin
 
 std::uint32_t SharedWeights::chosen_start() const {
     constexpr std::uint32_t starts = 256, few = 32;
-    constexpr double enough = 0.7;
+    constexpr double enough = 0.95;
     if (!are_there_)
         return 0;
     const std::uint32_t parts = 1u << session_.traits.at("TRAIT_PART_BITS");

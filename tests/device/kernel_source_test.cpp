@@ -90,11 +90,11 @@ TEST(KernelTraits, AreUsedByEachStageThatHasThem) {
 TEST(KernelTraits, AreThoseThatAMethodKnows) {
     // Of the render and of the solver, not of the scene.
     std::set<std::string> known = {
-        "TRAIT_AOV",         "TRAIT_SHARED_JITTER",  "TRAIT_APART",        "TRAIT_SHIFT_DISTANCE",
-        "TRAIT_GRADIENT",    "TRAIT_LIGHT_VERTICES", "TRAIT_LIGHT_STARTS", "TRAIT_STRATIFIED",
-        "TRAIT_LOBE_LEVELS", "TRAIT_ONLY_CHAINS",    "TRAIT_OPACITY",      "SAMPLES_LIGHTS",
-        "FEW_LIGHTS",        "MANY_LIGHTS",          "STRATEGY",           "SOLVER_CHANNELS",
-        "SOLVER_WEIGHTED",   "SOLVER_JOINT",         "TRAIT_PART_BITS",    "TRAIT_LIGHT_TREE"};
+        "TRAIT_AOV",         "TRAIT_SHARED_JITTER",  "TRAIT_APART",        "TRAIT_SHIFT_DISTANCE", "TRAIT_SHARED_START",
+        "TRAIT_GRADIENT",    "TRAIT_LIGHT_VERTICES", "TRAIT_LIGHT_STARTS", "TRAIT_STRATIFIED",     "TRAIT_LOBE_LEVELS",
+        "TRAIT_ONLY_CHAINS", "TRAIT_OPACITY",        "SAMPLES_LIGHTS",     "FEW_LIGHTS",           "MANY_LIGHTS",
+        "STRATEGY",          "SOLVER_CHANNELS",      "SOLVER_WEIGHTED",    "SOLVER_JOINT",         "TRAIT_PART_BITS",
+        "TRAIT_LIGHT_TREE"};
     for (const auto &[name, value] : scene_traits(Scene{}))
         known.insert(name);
     known.erase("TRAIT_FAR_CLIP"); // a stage of its own, there or not

@@ -87,7 +87,7 @@ GradientBias bias_under_a_leaning_card(float glow) {
 constexpr const char *other_side = "two-sided vertices that base and offset path see from different sides by the "
                                    "shading normal: each has the vertex in a frame of its own";
 
-TEST(ReconnectionStability, ToTheOtherSideByShadingNormals) {
+TEST(FullReconnectionStability, ToTheOtherSideByShadingNormals) {
     expect_no_bias(bias_under_a_leaning_card(0),
                    {area, other_side,
                     "a floor under a wide card whose normals lean by 53 degrees, which alone sees the lamp",
@@ -144,7 +144,7 @@ void add_leaning_sheet(SceneMaker &scene, const std::vector<std::uint32_t> &stri
     scene.look({1, 0.4, 0}, {0.02, 0, 0}, 2);
 }
 
-TEST(ReconnectionStability, ToGlossyMetal) {
+TEST(FullReconnectionStability, ToGlossyMetal) {
     SceneMaker scene = scene_for_bias(3);
     add_leaning_sheet(scene, {scene.material(diffuse(0.9)), scene.material(diffuse(0.1))});
     expect_no_bias(gradient_bias(scene.scene, {8, 1024, 2048}),

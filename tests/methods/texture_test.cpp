@@ -282,13 +282,8 @@ TEST(Textures, SeveralOfAMaterialAreEachInTheirPlace) {
 
 /// Strips of a wall and a sphere before it, each of another class: bytes of gray, halves in colour, no texture, a rough
 /// metal, a blend whose weight is a texture, and two sides. `pictures`: of one texel, in place of constants.
-Image wall_of_classes(bool pictures, const char *method) {
-    SceneMaker maker(size, 1);
-    maker.look({0, 0, 3}, {0, 0, 0}, 60);
-    maker.directional_light({3, 3, 3}, {0.6f, 0, -0.8f});
-    maker.scene.settings.max_depth = 2;
+void add_wall_of_classes(SceneMaker &maker, bool pictures, float x) {
     Scene &scene = maker.scene;
-    scene.textures.push_back(random_texture()); // nobody's
     const auto picture_of = [&](Bitmap::Format format, bool is_color, std::array<std::uint32_t, 3> code) {
         auto bitmap = std::make_shared<Bitmap>();
         bitmap->resize(1, 1, format, is_color);
@@ -311,12 +306,13 @@ Image wall_of_classes(bool pictures, const char *method) {
     metal.kind = BsdfKind::roughconductor_ggx;
     metal.alpha_u = metal.alpha_v = Number(102.0f / 255);
     metal.alpha_u.texture = metal.alpha_v.texture = picture_of(Bitmap::Format::byte, false, {102});
-    scene.blended = {gray(51), metal};
-    scene.blends = {{0, 1, 51.0f / 255}};
-    scene.blends[0].weight.texture = picture_of(Bitmap::Format::byte, false, {51});
+    const auto part = std::uint32_t(scene.blended.size());
+    scene.blended.insert(scene.blended.end(), {gray(51), metal});
+    scene.blends.push_back({part, part + 1, 51.0f / 255});
+    scene.blends.back().weight.texture = picture_of(Bitmap::Format::byte, false, {51});
     Bsdf blend;
-    blend.blend = 0;
-    float left = -2;
+    blend.blend = std::int32_t(scene.blends.size() - 1);
+    float left = x - 2;
     for (const Bsdf &bsdf : {gray(204), colored, diffuse(0.3f), metal, blend, gray(26)}) {
         maker.parallelogram({left, -2, 0}, {0.6f, 0, 0}, {0, 4, 0}, maker.material(bsdf));
         left += 0.6f;
@@ -324,36 +320,13 @@ Image wall_of_classes(bool pictures, const char *method) {
     const std::uint32_t sides = maker.material(metal);
     scene.materials[sides].two_sided = true;
     scene.materials[sides].back = colored;
-    maker.sphere({0, -0.5f, 1}, 0.3f, sides);
-    maker.parallelogram({-0.3f, 0.4f, 0.5f}, {0, 0.6f, 0}, {0.6f, 0, 0}, sides); // from behind
-    return render(scene, RenderOptions(), method).image;
+    maker.sphere({x, -0.5f, 1}, 0.3f, sides);
+    maker.parallelogram({x - 0.3f, 0.4f, 0.5f}, {0, 0.6f, 0}, {0.6f, 0, 0}, sides); // from behind
 }
 
-class TexturesOfClasses : public ::testing::TestWithParam<const char *> {};
-
-/// In pt those that shade, in sppm those of the stage `material`.
-TEST_P(TexturesOfClasses, KernelsReadThoseOfTheirClass) {
-    const Image constants = wall_of_classes(false, GetParam()), read = wall_of_classes(true, GetParam());
-    double largest = 0;
-    for (int c = 0; c < 3; ++c)
-        for (std::size_t i = 0; i < size * size; ++i) {
-            const double expected = constants.find(colors[c])->values[i];
-            ASSERT_NEAR(read.find(colors[c])->values[i], expected, rounding * (1 + expected))
-                << colors[c] << " of pixel " << i;
-            largest = worse(largest, expected);
-        }
-    EXPECT_GT(largest, 0.5);
-}
-INSTANTIATE_TEST_SUITE_P(Methods, TexturesOfClasses, ::testing::Values("pt"), name_of_method);
-INSTANTIATE_TEST_SUITE_P(Full, TexturesOfClasses, ::testing::Values("sppm"), name_of_method);
-
-/// Strips of a wall of rough plastics: two whose roughness is a picture share a kind and an index, one has others, and
-/// of one only the base is a picture. `pictures`: of one texel, in place of constants.
-Image wall_of_coats(bool pictures, const char *method) {
-    SceneMaker maker(size, 1);
-    maker.look({0, 0, 3}, {0, 0, 0}, 60);
-    maker.directional_light({3, 3, 3}, {0.6f, 0, -0.8f});
-    maker.scene.settings.max_depth = 2;
+/// Rough plastics of a wall: two whose roughness is a picture share a kind and an index, one has others, and of one
+/// only the base is a picture. `pictures`: of one texel, in place of constants.
+void add_wall_of_coats(SceneMaker &maker, bool pictures, float x) {
     const auto picture_of = [&](std::uint32_t code) {
         auto bitmap = std::make_shared<Bitmap>();
         bitmap->resize(1, 1, Bitmap::Format::byte, false);
@@ -363,7 +336,7 @@ Image wall_of_coats(bool pictures, const char *method) {
         maker.scene.textures.push_back(texture);
         return pictures ? std::int32_t(maker.scene.textures.size() - 1) : no_texture;
     };
-    float left = -2;
+    float left = x - 2;
     const auto add = [&](Bsdf bsdf) {
         set_coating(bsdf);
         maker.parallelogram({left, -2, 0}, {1, 0, 0}, {0, 4, 0}, maker.material(bsdf));
@@ -391,8 +364,41 @@ Image wall_of_coats(bool pictures, const char *method) {
     add(base_alone);
     add(varying(BsdfKind::roughplastic_ggx, 153, 1.5f));
     add(varying(BsdfKind::roughplastic_beckmann, 102, 1.9f));
+}
+
+using AddWall = void(SceneMaker &maker, bool pictures, float x);
+
+/// A wall of pictures or of constants; the other one is out of sight, so that both images are those of the same
+/// kernels.
+Image image_of_wall(AddWall *add, bool pictures, const char *method) {
+    SceneMaker maker(size, 1);
+    maker.look({0, 0, 3}, {0, 0, 0}, 60);
+    maker.directional_light({3, 3, 3}, {0.6f, 0, -0.8f});
+    maker.scene.settings.max_depth = 2;
+    maker.scene.textures.push_back(random_texture()); // nobody's
+    add(maker, pictures, 0);
+    add(maker, !pictures, 50);
     return render(maker.scene, RenderOptions(), method).image;
 }
+
+class TexturesOfClasses : public ::testing::TestWithParam<const char *> {};
+
+/// In pt those that shade, in sppm those of the stage `material`.
+TEST_P(TexturesOfClasses, KernelsReadThoseOfTheirClass) {
+    const Image constants = image_of_wall(add_wall_of_classes, false, GetParam()),
+                read = image_of_wall(add_wall_of_classes, true, GetParam());
+    double largest = 0;
+    for (int c = 0; c < 3; ++c)
+        for (std::size_t i = 0; i < size * size; ++i) {
+            const double expected = constants.find(colors[c])->values[i];
+            ASSERT_NEAR(read.find(colors[c])->values[i], expected, rounding * (1 + expected))
+                << colors[c] << " of pixel " << i;
+            largest = worse(largest, expected);
+        }
+    EXPECT_GT(largest, 0.5);
+}
+INSTANTIATE_TEST_SUITE_P(Methods, TexturesOfClasses, ::testing::Values("pt"), name_of_method);
+INSTANTIATE_TEST_SUITE_P(Full, TexturesOfClasses, ::testing::Values("sppm"), name_of_method);
 
 class TexturesOfCoats : public ::testing::TestWithParam<const char *> {};
 
@@ -400,7 +406,8 @@ class TexturesOfCoats : public ::testing::TestWithParam<const char *> {};
 /// of.
 TEST_P(TexturesOfCoats, VaryWhatACoatLetsPass) {
     constexpr double between = 2e-3;
-    const Image constants = wall_of_coats(false, GetParam()), read = wall_of_coats(true, GetParam());
+    const Image constants = image_of_wall(add_wall_of_coats, false, GetParam()),
+                read = image_of_wall(add_wall_of_coats, true, GetParam());
     double largest = 0;
     for (std::size_t i = 0; i < size * size; ++i) {
         const double expected = constants.find("R")->values[i];

@@ -75,6 +75,7 @@ TEST(Variances, OfFiltersWithNegativeLobesAreTheirs) {
     Scene scene = smooth_wall(16);
     scene.film.filter = FilmSettings::Filter::lanczos;
     scene.film.filter_radius = 3;
+    expect_right(told_over_true(render_seeds(scene, 20, options), "", "variance"), 0.5, "pt");
     const std::vector<Image> images = render_seeds(scene, 20, options, 1, "gpt");
     expect_right(told_over_true(images, "primal", "variance"), 1, "gpt: the mean");
     for (const char *layer : {"primal", "dx", "dy"})
