@@ -262,7 +262,7 @@ class EndToEndTuning : public EndToEnd {
 };
 
 TEST_F(EndToEndTuning, ATunedRenderHasTheSameImage) {
-    ASSERT_EQ(run(render("default.exr", {"--spp", "4"})).exit_code, 0);
+    ASSERT_EQ(run(render("default.exr", {"--spp", "4", "--method", "pt"})).exit_code, 0);
     nlohmann::json entries = nlohmann::json::array();
     for (const nlohmann::json &device : devices()) {
         EXPECT_EQ(device.at("tuning"), nullptr);
@@ -276,7 +276,7 @@ TEST_F(EndToEndTuning, ATunedRenderHasTheSameImage) {
     write_tuning(nlohmann::json{{"version", 1}, {"devices", entries}}.dump());
     EXPECT_EQ(devices().at(0).at("tuning").at("batch_size"), 640);
     EXPECT_THAT(run({"devices"}).out, HasSubstr("work-groups 128, batches 640"));
-    const Outcome tuned = run(render("tuned.exr", {"--spp", "4", "--dump-kernels", "kernels"}));
+    const Outcome tuned = run(render("tuned.exr", {"--spp", "4", "--method", "pt", "--dump-kernels", "kernels"}));
     ASSERT_EQ(tuned.exit_code, 0) << tuned.err;
     EXPECT_THAT(text_of("kernels/camera.cl"), HasSubstr("-D WORK_GROUP_SIZE=128")) << "the tuning was not used";
     expect_equal_pixels("default.exr", "tuned.exr");

@@ -56,10 +56,10 @@ TEST_P(ForeignDevice, GivesTheSameBits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, ForeignDevice,
-                         ::testing::Values(ForeignCase{"pt", "textures"}, ForeignCase{"gpt", "lanterns"},
+                         ::testing::Values(ForeignCase{"pt", "textures"}, ForeignCase{"pt", "lanterns"},
+                                           ForeignCase{"pt", "../tests/scenes/instances"},
                                            ForeignCase{"gpt", "cornell-box", Precision::double_},
-                                           ForeignCase{"sppm", "../tests/scenes/instances"},
-                                           ForeignCase{"gpm", "torus-smooth-glass"}),
+                                           ForeignCase{"sppm", "pool"}, ForeignCase{"gpm", "lamp-in-egg"}),
                          [](const auto &info) {
                              return test_name(fmt::format("{}_{}", info.param.method,
                                                           std::filesystem::path(info.param.scene).stem().string()));

@@ -41,10 +41,21 @@ class Random {
     std::mt19937_64 engine;
 };
 
-/// The cube [-1, 1]^3, diffuse, seen from within.
+constexpr double slab_ior = 1.5;
+
+/// The cube [-1, 1]^3, diffuse, seen from within. What chains go by in any of these scenes is outside as well: so all
+/// need the same kernels, which are compiled once.
 testing::SceneMaker room() {
     testing::SceneMaker maker(4, 1);
     maker.cube(maker.material(testing::diffuse(0.5)), -1, true);
+    float x = -1;
+    for (const Bsdf &bsdf : {testing::mirror(), testing::glass(slab_ior), testing::rough_glass(0.05, slab_ior),
+                             testing::rough_metal(0.05)}) {
+        const std::uint32_t material = maker.material(bsdf);
+        maker.sphere({x, 0, 1.2f}, 0.1f, material);
+        maker.parallelogram({x, 0.5f, 1.2f}, {0.1f, 0, 0}, {0, 0.1f, 0}, material);
+        x += 0.5f;
+    }
     return maker;
 }
 
@@ -53,7 +64,7 @@ Scene plane_mirror() {
     maker.parallelogram({-0.9f, -0.9f, -0.5f}, {1.8f, 0, 0}, {0, 1.8f, 0}, maker.material(testing::mirror()));
     return maker.scene;
 }
-constexpr double slab_half = 0.1, slab_ior = 1.5;
+constexpr double slab_half = 0.1;
 Scene slab() {
     testing::SceneMaker maker = room();
     const std::uint32_t glass = maker.material(testing::glass(slab_ior));
