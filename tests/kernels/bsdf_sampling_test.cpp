@@ -15,7 +15,7 @@ namespace {
 
 constexpr int resolution = 20; // cells along each axis of a chart
 /// The double build has the same formulas: what it is tried for are constants and functions of its own.
-constexpr int samples_of_case = sample_count / (is_double ? 8 : 2);
+constexpr int samples_of_case = sample_count / (is_double ? 8 : 4);
 
 LobeCharts charts_of(const BsdfCase &test) {
     const bool rough = is_rough(test.kind);

@@ -147,13 +147,13 @@ class ErrorOfRenders : public ::testing::TestWithParam<RenderedErrors> {
     }
 };
 
-/// Of 16 samples, against 2048 of another seed. Of two renders whose error all pixels share in part, the places within
+/// Of 16 samples, against 1024 of another seed. Of two renders whose error all pixels share in part, the places within
 /// the pixel. What guides are wrong by is known within a factor of two or three (error_layer.h).
 TEST_P(ErrorOfRenders, IsNearTheTruth) {
     static const Image truth = [] {
         RenderOptions options;
         options.seed = 100;
-        return render(scene_of(2048), options, "pt").image;
+        return render(scene_of(1024), options, "pt").image;
     }();
     constexpr int seeds = 2;
     double told = 0, right = 0;

@@ -89,7 +89,7 @@ TEST(L2AccuracyLarge, OfWideImages) {
 }
 
 /// large_test.cpp has images of 8 Mpixel.
-TEST(L2AccuracyLarge, OfFourMillionPixels) {
+TEST(FullL2AccuracyLarge, OfFourMillionPixels) {
     constexpr double level = 1e-4;
     const double error = error_of_conjugate_gradients(make_poisson_problem(2048, 2048, 1, 1), level);
     record_stability({"Reconstruction", "very large images: sums of millions of floats stall conjugate gradients",
