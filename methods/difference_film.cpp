@@ -123,7 +123,8 @@ std::vector<float> DifferenceFilm::direct_variance(std::uint64_t samples, const 
 }
 
 void DifferenceFilm::clear_slots() {
-    for (const char *table : {"radiance", "feature", "direct", "prefix", "difference"})
+    film_.clear_slots();
+    for (const char *table : {"direct", "prefix", "difference"})
         if (tables_->has(table))
             (*tables_)[table].clear();
 }

@@ -295,7 +295,7 @@ std::uint32_t GradientPhotonMapper::light_bin() const {
 
 Image GradientPhotonMapper::make_image(bool layers, bool last) {
     statistics_.non_finite = 0;
-    const std::optional<BiasEstimates> bias = bias_.estimates(done_);
+    const std::optional<BiasEstimates> bias = bias_.estimates(done_, film_.weights());
     Image image = film_.image(done_, layers, last, statistics_.non_finite);
     add_pass_errors(bias, image, statistics_);
     return image;

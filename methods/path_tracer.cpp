@@ -48,11 +48,8 @@ bool PathTracer::render_batch() {
     const std::uint32_t first_pixel = static_cast<std::uint32_t>(done_ % session_.pixels());
     const std::uint64_t first_sample = done_ / session_.pixels();
 
-    if (session_.max_depth() == 0) { // no path begins, so none sets its slot to zero
-        (*tables_)["radiance"].clear();
-        if (tables_->has("feature"))
-            (*tables_)["feature"].clear();
-    }
+    if (session_.max_depth() == 0)
+        film_.clear_slots();
     paths_.begin_pass(session_.max_depth() == 0 ? 0 : paths);
     for (;;) {
         begin_camera_paths(camera_, paths_, first_pixel, first_sample);

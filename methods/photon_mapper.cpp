@@ -62,10 +62,8 @@ bool PhotonMapper::render_batch() {
     const double radii_before = pairs_.radius_sum();
     const std::uint64_t points_before = statistics_.gather_points;
     bias_.begin();
-    if (session_.max_depth() == 0) { // no path begins, so none sets its slot to zero
-        (*tables_)["radiance"].clear();
-        if (tables_->has("feature"))
-            (*tables_)["feature"].clear();
+    if (session_.max_depth() == 0) {
+        film_.clear_slots();
     } else {
         photons_.begin(pass);
         paths_.trace(paths, first_pixel, pass, [&](const Hits &hits) { gather_photons(hits); });
@@ -98,7 +96,7 @@ void PhotonMapper::gather_photons(const Hits &hits) {
 Image PhotonMapper::image() {
     statistics_.non_finite = 0;
     Image image = film_.image(done_, statistics_.non_finite);
-    add_pass_errors(bias_.estimates(done_), image, statistics_);
+    add_pass_errors(bias_.estimates(done_, film_.weights()), image, statistics_);
     return image;
 }
 

@@ -4,6 +4,7 @@
 #include "runtime/film/metrics.h"
 #include "runtime/wavefront/host_table.h"
 
+#include <array>
 #include <string>
 
 namespace gradus {
@@ -114,7 +115,7 @@ void RadiusBias::keep(std::uint32_t slots, std::uint32_t first_pixel, std::uint6
     keep_.run(slots, {{"first_pixel", first_pixel}, {"half_number", std::uint32_t(pass % 2)}});
 }
 
-std::optional<BiasEstimates> RadiusBias::estimates(std::uint64_t samples) const {
+std::optional<BiasEstimates> RadiusBias::estimates(std::uint64_t samples, const SharedWeights &weights) const {
     if (!is_wanted_)
         return std::nullopt;
     const std::size_t pixels = session_.pixels();
@@ -122,15 +123,20 @@ std::optional<BiasEstimates> RadiusBias::estimates(std::uint64_t samples) const 
     const std::uint64_t of_all = samples / pixels, with_one_more = samples % pixels;
     BiasEstimates found;
     found.has_halves = of_all >= 2;
-    const auto mean_of = [](double sum, std::uint64_t count) { return count > 0 ? sum / double(count) : 0.0; };
+    // What the passes weigh, and with a pass more: all, even and odd ones.
+    const auto weight_of = [&](std::uint64_t passes) {
+        return std::array{weights.of_part(passes, 0, 1), weights.of_part(passes, 0, 2), weights.of_part(passes, 1, 2)};
+    };
+    const std::array weighed = {weight_of(of_all), weight_of(of_all + 1)};
+    const auto mean_of = [](double sum, double weight) { return weight > 0 ? sum / weight : 0.0; };
     for (int color = 0; color < 3; ++color)
         for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-            const std::uint64_t passes = of_all + (pixel < with_one_more ? 1 : 0);
+            const auto &[all, of_even, of_odd] = weighed[pixel < with_one_more ? 1 : 0];
             const double even = table.real(radius_bias_value_r + color, pixel);
             const double odd = table.real(radius_bias_value_r + color, pixels + pixel);
-            found.mean.push_back(mean_of(even + odd, passes));
-            found.even.push_back(mean_of(even, passes - passes / 2));
-            found.odd.push_back(mean_of(odd, passes / 2));
+            found.mean.push_back(mean_of(even + odd, all));
+            found.even.push_back(mean_of(even, of_even));
+            found.odd.push_back(mean_of(odd, of_odd));
         }
     return found;
 }

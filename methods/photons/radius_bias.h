@@ -12,6 +12,7 @@
 #include "methods/photons/photon_pairs.h"
 #include "runtime/film/image.h"
 #include "runtime/wavefront/session.h"
+#include "runtime/wavefront/shared_weights.h"
 #include "runtime/wavefront/stage.h"
 #include "runtime/wavefront/table.h"
 
@@ -58,8 +59,8 @@ class RadiusBias {
     /// After all gather points: only now the batch counts. Slot 0 is that of pixel `first_pixel`.
     void keep(std::uint32_t slots, std::uint32_t first_pixel, std::uint64_t pass);
 
-    /// After `samples` samples. Nothing where nobody asked for it.
-    std::optional<BiasEstimates> estimates(std::uint64_t samples) const;
+    /// After `samples` samples, which weigh so much. Nothing where nobody asked for it.
+    std::optional<BiasEstimates> estimates(std::uint64_t samples, const SharedWeights &weights) const;
 
   private:
     Session &session_;

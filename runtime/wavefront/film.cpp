@@ -138,6 +138,12 @@ void Film::clear(std::uint64_t first_sample) {
             (*tables_)[name].clear();
 }
 
+void Film::clear_slots() {
+    for (const char *table : {"radiance", "feature", "filtered"})
+        if (tables_->has(table))
+            (*tables_)[table].clear();
+}
+
 void Film::add(std::uint32_t count, std::uint32_t first_pixel, std::uint64_t first_sample) {
     // One launch a sample of each pixel: within a launch no pixel occurs twice, and their rows lie side by side.
     std::uint32_t done = 0;

@@ -41,6 +41,9 @@ class Film {
     /// All zero again, splats too. Samples are those from this number on.
     void clear(std::uint64_t first_sample = 0);
 
+    /// Samples of nothing in all slots, for where no path begins and sets its own.
+    void clear_slots();
+
     /// The tables that image() reads, but for splats.
     std::vector<std::string> table_names() const;
 

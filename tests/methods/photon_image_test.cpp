@@ -134,12 +134,16 @@ TEST(PhotonBias, IsToldFromTheSamePhotons) {
     RenderOptions options = with_radius(radius / diameter, true);
     options.direct_photons = options.aov = true;
     options.photons = 25'000;
-    std::vector<double> found, squares;
+    std::vector<double> found, of_weights, squares;
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
         options.seed = seed;
-        const Rendered rendered = render(floor.scene(4), options, "sppm");
+        Scene scene = floor.scene(4);
+        const Rendered rendered = render(scene, options, "sppm");
         found.push_back(mean_of_middle(rendered.image, "bias.G"));
         squares.push_back(rendered.statistics.relative_squared_bias.value_or(NAN));
+        scene.film.filter = FilmSettings::Filter::lanczos; // of whose samples four weigh more or less than four
+        scene.film.filter_radius = 3;
+        of_weights.push_back(mean_of_middle(render(scene, options, "sppm").image, "bias.G"));
     }
     const double expected = 2 * (floor.middle(radius) - floor.middle(radius / std::sqrt(2.0)));
     const double bias = floor.middle(radius) - floor.middle(0);
@@ -156,6 +160,7 @@ TEST(PhotonBias, IsToldFromTheSamePhotons) {
                spread.mean, spread.standard_error, expected, bias, of_squares.mean, of_squares.standard_error, square);
     // 6.9 standard errors of 6 seeds, as above, and the quadratures'.
     EXPECT_NEAR(spread.mean, expected, 6.9 * spread.standard_error + 2e-4);
+    EXPECT_NEAR(spread_of(of_weights).mean, expected, 6.9 * spread_of(of_weights).standard_error + 2e-4);
     EXPECT_NEAR(of_squares.mean, square, 6.9 * of_squares.standard_error + 0.01 * square);
     EXPECT_LT(6.9 * spread.standard_error, 0.15 * std::fabs(expected)) << "too noisy to tell";
     EXPECT_LT(6.9 * of_squares.standard_error, 0.8 * square) << "too noisy to tell";
