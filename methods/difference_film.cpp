@@ -9,6 +9,8 @@
 #include "runtime/wavefront/sample_parts.h"
 #include "solver/squared_errors.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <chrono>
@@ -45,7 +47,9 @@ DifferenceFilm::DifferenceFilm(Session &session, Stages &stages, const RenderOpt
                               .numbers = {"first_slot", "first_pixel", "first_above", "is_carried", "has_above",
                                           "frames", "frames_before"}})),
       carry_(stages.add({.name = "gradient_carry", .numbers = {"first_slot"}})) {
-    session.reals["weights_before"] = session.reals["squares_before"] = 0; // add() says them
+    for (std::uint32_t frame = 0; frame < accumulated_frames; ++frame)
+        for (const char *sum : {"weights_{}", "squares_{}"})
+            session.reals[fmt::format(fmt::runtime(sum), frame)] = 0; // add() says them
     check_guide(options);
     if (options.threads != 1)
         compilers_ = keep_compilers(session.device);
@@ -142,11 +146,12 @@ void DifferenceFilm::add(std::uint32_t first, std::uint32_t rows, std::uint32_t 
         for (std::uint32_t frame = first_frame; frame < frames; frame += apart * accumulated_frames) {
             const std::uint32_t together = std::min(accumulated_frames, (frames - frame + apart - 1) / apart);
             const std::uint64_t before = number + frame - first_sample_; // of all films
-            if (film_.weights().are_there()) {
-                const SharedWeights::Sums weighed = film_.weights().sums(before, film, apart);
-                stages_.set_real("weights_before", weighed.weights);
-                stages_.set_real("squares_before", weighed.squares);
-            }
+            if (film_.weights().are_there())
+                for (std::uint32_t more = 0; more < accumulated_frames; ++more) {
+                    const SharedWeights::Sums weighed = film_.weights().sums(before + more * apart, film, apart);
+                    stages_.set_real(fmt::format("weights_{}", more), weighed.weights);
+                    stages_.set_real(fmt::format("squares_{}", more), weighed.squares);
+                }
             accumulate_.run(width, {{"first_slot", frame * pixels},
                                     {"first_pixel", first * width},
                                     {"first_above", ((first > 0 ? first : session_.film.crop_height) - 1) * width},
@@ -203,9 +208,8 @@ Image DifferenceFilm::image(std::uint64_t samples, bool layers, bool last, std::
         solver_.reset();
         mean_.reset();
     }
-    // The sum of weights is not independent of what it divides.
-    if (film_.weights().are_there() && used_.accuracy == accuracy_name(Accuracy::unbiased))
-        used_.accuracy = accuracy_name(Accuracy::consistent);
+    if (used_.accuracy == accuracy_name(Accuracy::unbiased))
+        used_.accuracy = accuracy_name(accuracy_of_mean(film_.weights()));
     return image;
 }
 
@@ -234,8 +238,9 @@ Image DifferenceFilm::mean(std::uint64_t samples) const {
 }
 
 void DifferenceFilm::add_to(Statistics &statistics) const {
-    statistics.reconstruction =
-        mean_ ? ReconstructionUsed{"none", accuracy_name(Accuracy::unbiased), "the reconstruction failed"} : used_;
+    statistics.reconstruction = mean_ ? ReconstructionUsed{"none", accuracy_name(accuracy_of_mean(film_.weights())),
+                                                           "the reconstruction failed"}
+                                      : used_;
     statistics.estimated_error = relative_error_;
     statistics.lost_pixels = lost_pixels_;
     statistics.rays["edge"] = edge_rays_;

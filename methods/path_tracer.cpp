@@ -146,7 +146,7 @@ Statistics PathTracer::statistics() const {
                             statistics_.reconstruction.note, guide_name(options_.guide)};
     else
         s.reconstruction = {
-            "none", accuracy_name(film_.weights().are_there() ? Accuracy::consistent : Accuracy::unbiased),
+            "none", accuracy_name(accuracy_of_mean(film_.weights())),
             is_guided() && !has_halves() ? "guided needs two samples of each pixel; with less it is their mean" : ""};
     return s;
 }

@@ -3,8 +3,9 @@
 // Where the image is U = p A + q B, of halves A and B with the shares p and q of the samples, p q (A - B)^2 has the
 // variance of U as its mean: A has the variance V / p, B has V / q, so (A - B)^2 has the mean V / (p q). For that
 // nothing may be common to both, so samples of one sequence would not do: their halves differ by more than their mean
-// is wrong. Of gradient-domain methods the places within pixels are such a sequence, and errors at edges are told too
-// high.
+// is wrong. Where all pixels of a sample share their place within the pixel (gradient-domain methods, and any with a
+// filter of negative lobes) these places are such a sequence, and errors at edges are told too high. Edges then err
+// alike all over an image, so that what is told of it is as uncertain as of one edge.
 #pragma once
 
 #include <vector>

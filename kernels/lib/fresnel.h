@@ -46,7 +46,8 @@ GRADUS_FN real fresnel_at_normal(real eta) {
 GRADUS_FN real fresnel_conductor(real cosine, real eta, real k) {
     const real tiny = R(1e-30);
     const real cosine_squared = cosine * cosine;
-    const real sine_squared = r_max(R(1) - cosine_squared, R(0));
+    /* Not 0, where nothing would be left of eta = 0, k = 0. */
+    const real sine_squared = r_max(R(1) - cosine_squared, R(1e-20));
     /* (a + i b)^2 = (eta + i k)^2 - sin^2 */
     const real re = (eta - k) * (eta + k) - sine_squared;
     const real half_im = eta * k;

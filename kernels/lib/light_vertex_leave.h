@@ -103,12 +103,13 @@ GRADUS_FN light_leaving light_vertex_leave(GRADUS_GLOBAL const real *light_verti
 #endif
 #endif
     light_leaving leaving;
-    leaving.is_possible = same_side & (f.pdf > R(0)) & (rgb_max(f.value) > R(0));
     const real inverse_pdf = R(1) / r_max(VERTEX_REAL(pdf), R(1e-30));
     const rgb arriving = FIELD_RGB(light_vertex, light_vertices, record, power);
     leaving.power =
         rgb_scale(rgb_mul(arriving, f.value), inverse_pdf * turned / r_max(VERTEX_REAL(survival), R(1e-30)));
     leaving.pdf = f.pdf * inverse_pdf;
+    /* As paths go on there: what scatters red alone has none of green light. */
+    leaving.is_possible = same_side & (f.pdf > R(0)) & (rgb_max(leaving.power) > R(0));
     return leaving;
 }
 

@@ -13,8 +13,9 @@
  * rounding where the spread is small beside it.
  *
  * Where frames weigh other than 1 (a filter with negative lobes), samples are times the weight w of theirs, and means
- * are sums over the sum W of the weights before, whose squares sum up to V. Then w f - w mean has w^2 (1 + V / W^2)
- * times the variance of f: what is added has w^2 times that, and nothing is divided by W, which may be near 0.
+ * are sums over the sum W of the weights before (weights_0 of the first frame), whose squares sum up to V (squares_0).
+ * Then w f - w mean has w^2 (1 + V / W^2) times the variance of f: what is added has w^2 times that, and nothing is
+ * divided by W, which may be near 0.
  *
  * TRAIT_PART_BITS: frames are those of one part of the samples, from `first_slot` on each 2^TRAIT_PART_BITS-th one. */
 //! traits: TRAIT_PART_BITS TRAIT_FILTER_SIGNED
@@ -23,12 +24,12 @@
 
 #define NEXT_FRAME (strip_pixels << TRAIT_PART_BITS)
 #if TRAIT_FILTER_SIGNED
-#define BEFORE real weights = weights_before, squares = squares_before;
+/* Of each frame by itself: a sum that went on from frame to frame would depend on where a launch begins. */
+#define BEFORE                                                                                                         \
+    const real weights[accumulated_frames] = {weights_0, weights_1, weights_2, weights_3};                             \
+    const real squares[accumulated_frames] = {squares_0, squares_1, squares_2, squares_3};
 #define SQUARED_DEVIATION(at, frame, value, sum)                                                                       \
-    weighted_deviation(AT(filtered, weight, at), weights, squares, value, sum)
-#define AFTER(at)                                                                                                      \
-    weights += AT(filtered, weight, at);                                                                               \
-    squares += AT(filtered, weight, at) * AT(filtered, weight, at);
+    weighted_deviation(AT(filtered, weight, at), weights[frame], squares[frame], value, sum)
 GRADUS_FN real weighted_deviation(real weight, real weights, real squares, real value, real sum) {
     const real deviation = value * weights - weight * sum;
     return deviation * (deviation / r_max(weights * weights + squares, R(1e-30)));
@@ -36,7 +37,6 @@ GRADUS_FN real weighted_deviation(real weight, real weights, real squares, real 
 #else
 #define BEFORE
 #define SQUARED_DEVIATION(at, frame, value, sum) squared_deviation((real)(frames_before + frame), value, sum)
-#define AFTER(at)
 GRADUS_FN real squared_deviation(real before, real value, real sum) {
     const real deviation = value - sum * (R(1) / r_max(before, R(1)));
     return deviation * (deviation * (before / (before + R(1))));
@@ -58,7 +58,6 @@ GRADUS_FN real squared_deviation(real before, real value, real sum) {
             const compensated added = compensated_add(s, value);                                                       \
             s.sum = is_there ? added.sum : s.sum;                                                                      \
             s.correction = is_there ? added.correction : s.correction;                                                 \
-            AFTER(at)                                                                                                  \
         }                                                                                                              \
         FILM(gradient_film_primal_r + number, to) = s.sum;                                                             \
         FILM(gradient_film_correction_first + number, to) = s.correction;                                              \
@@ -75,7 +74,8 @@ STAGE gradient_accumulate(uint count, uint slots, uint pixels, uint first_slot, 
                           STRIP_PLACE
 #if TRAIT_FILTER_SIGNED
                           ,
-                          real weights_before, real squares_before, __global const real *filtered
+                          real weights_0, real weights_1, real weights_2, real weights_3, real squares_0,
+                          real squares_1, real squares_2, real squares_3, __global const real *filtered
 #endif
 ) {
     const size_t i = work_item();

@@ -239,7 +239,7 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         light_jacobian *= is_spot ? spot_change : R(1);
 #endif
 #if LIGHTS_HAVE_PICTURES
-        /* Each vertex has its own place of the picture; where that is black it has no light sample either. */
+        /* Each vertex has its own place of the picture; where it shows nothing there is no light sample either. */
         const vec3 to_own = v3_neg(to_point_unit);
         const real own_ahead = v3_dot(picture_axis, to_own);
         const texture_point own_place = point_of_picture(along_u, along_v, to_own, own_ahead);
@@ -248,9 +248,9 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
             base_profile > R(0) ? light_projector_profile(own_place, own_ahead) / base_profile : R(0);
         light_jacobian *= is_projector ? profile_change : R(1);
         const int has_picture = is_spot | is_projector;
-        light_jacobian = has_picture && rgb_max(of_picture) == R(0) ? R(0) : light_jacobian;
         const rgb base_arriving = AT_RGB(event, arriving, row);
         const rgb shown_here = rgb_select(has_picture, rgb_mul(arriving_untextured, of_picture), base_arriving);
+        light_jacobian = has_picture && rgb_max(shown_here) == R(0) ? R(0) : light_jacobian;
         SET_RGB(shown, arriving, at, shown_here);
 #endif
         light_jacobian =

@@ -207,6 +207,8 @@ std::int32_t SceneBuilder::scaled(std::int32_t index, float factor) {
     Texture texture = texture_at(index);
     for (float &scale : texture.scale)
         scale *= factor;
+    texture.lowest *= factor; // it is clamped before it is scaled
+    texture.highest *= factor;
     scene_.textures.push_back(std::move(texture));
     return std::int32_t(scene_.textures.size()) - 1;
 }

@@ -299,7 +299,10 @@ void add_other_lights(const Scene &scene, double radius, SceneTables &tables, Li
             tables.environment = emitter.map;
         } else if (emitter.kind == Emitter::Kind::spot) {
             const double cutoff = emitter.cutoff, beam = emitter.beam, ramp = cutoff - beam;
-            const double sent = ramp > 0 ? 1 - (std::sin(cutoff) - std::sin(beam)) / ramp : 1 - std::cos(cutoff);
+            // 1 - (sin cutoff - sin beam) / ramp, which is 1 - cos cutoff without a ramp, but above 0 for any cutoff.
+            const double middle = 0.5 * (cutoff + beam), half = 0.5 * ramp;
+            const double within = 2 * std::pow(std::sin(0.5 * middle), 2);
+            const double sent = within + (half > 0 ? std::cos(middle) * (1 - std::sin(half) / half) : 0);
             lights.add(light_kind_spot, emitter.value, {2 * pi * value * sent, number, false}, record);
             put(record, light_p_x, emitter.position);
             put(record, light_e1_x, emitter.direction);

@@ -50,7 +50,8 @@ SharedWeights::Sums SharedWeights::sums(std::uint64_t frames, std::uint32_t part
     const auto count = double(count_of_part(frames, part, parts));
     if (!are_there_)
         return {count, count};
-    const std::uint64_t all_parts = 1u << session_.traits.at("TRAIT_PART_BITS");
+    // Even and odd ones are asked for where samples have no parts, too.
+    const std::uint64_t all_parts = std::max(1u << session_.traits.at("TRAIT_PART_BITS"), 2u);
     while (sums_.size() < frames) {
         const std::uint64_t frame = sums_.size();
         const double weighs = weight(frame, session_.numbers.at("shared_start"));

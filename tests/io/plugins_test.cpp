@@ -489,6 +489,11 @@ TEST(BsdfPlugin, MasksInMasksAndBlends) {
         const Number opacity = scene.materials.at(0).opacity;
         EXPECT_FLOAT_EQ(float(texture_value(scene.textures.at(std::size_t(opacity.texture)), 0.1, 0.1)[0]), 0.2f);
     }
+    // An opacity above 1 is 1, of which the other mask takes its part.
+    const std::string bright = "<texture name='opacity' type='checkerboard'><float name='color0' value='2'/></texture>";
+    const Scene opaque = loaded(mask("0.5", "<bsdf type='mask'>" + bright + red + "</bsdf>"));
+    const Texture &picture = opaque.textures.at(std::size_t(opaque.materials.at(0).opacity.texture));
+    EXPECT_FLOAT_EQ(float(texture_value(picture, 0.1, 0.1)[0]), 0.5f);
     // 0.7 of 0.5, and 0.3 of 0.2.
     const Scene numbers = loaded(blend("0.3", mask("0.5", red) + mask("0.2", mirror)));
     EXPECT_FLOAT_EQ(numbers.materials.at(0).opacity, 0.41f);

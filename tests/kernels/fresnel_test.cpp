@@ -83,8 +83,9 @@ TEST(FresnelConductor, HandDerivedValues) {
 }
 
 TEST(FresnelConductor, PerfectMirrorAtEveryAngle) {
-    for (int i = 0; i <= 1000; ++i)
-        ASSERT_NEAR(lib::fresnel_conductor(real(i / 1000.0), 0, 1), 1, bound(3e-7, 1e-15));
+    for (const real k : {R(0), R(1)})
+        for (int i = 0; i <= 1000; ++i)
+            ASSERT_NEAR(lib::fresnel_conductor(real(i / 1000.0), 0, k), 1, bound(3e-7, 1e-15)) << k << " at " << i;
 }
 
 TEST(FresnelConductor, MatchesComplexArithmetic) {

@@ -31,6 +31,21 @@ TEST_P(GradientInvariance, ToTheBatchSize) {
     }
 }
 
+/// Its samples weigh, and variances tell of the weights of those before.
+TEST(GradientInvarianceOfAFilter, WithNegativeLobesToTheBatchSize) {
+    Scene scene = own_scene("cornell-box.xml", 21, 31);
+    scene.settings.samples_per_pixel = 7;
+    scene.film.filter = FilmSettings::Filter::mitchell;
+    scene.film.filter_radius = 2;
+    RenderOptions options;
+    options.layers = true;
+    const Image image = render(scene, options, "gpt").image;
+    for (const std::uint32_t batch_size : {64u, 300u, 1300u}) {
+        options.batch_size = batch_size;
+        EXPECT_TRUE(equal_bits(image, render(scene, options, "gpt").image)) << "batch size " << batch_size;
+    }
+}
+
 TEST_P(GradientInvariance, ToTheThreadsThatTrace) {
     const Scene scene = small_scene(48, 36);
     RenderOptions options;

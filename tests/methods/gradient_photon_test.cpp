@@ -265,6 +265,14 @@ void throw_picture(SceneMaker &maker, Emitter::Kind kind, Vector3 position) {
     emitter.beam = 0.1f;
 }
 
+Texture of_red_and_green() {
+    Texture squares;
+    squares.kind = Texture::Kind::checkerboard;
+    squares.color_0 = {1, 0, 0};
+    squares.color_1 = {0, 1, 0};
+    return squares;
+}
+
 /// A ball of glass and a mirror over a floor, and light from no surface: from infinity, by a sun, by a map with a
 /// bright spot, or from all directions alike; and from points that shine differently into each direction. All of it by
 /// photons, so that some come straight from there, and some by chains.
@@ -289,6 +297,9 @@ TEST_P(GradientPhotonsFrom, HaveDifferencesOfThePrimal) {
     else {
         throw_picture(maker, Emitter::Kind::projector, {-0.3f, 2.5f, 0.2f});
         throw_picture(maker, Emitter::Kind::spot, {0.3f, 2.2f, 0.3f});
+        throw_picture(maker, Emitter::Kind::spot, {0, 2.3f, -0.2f});
+        maker.scene.emitters.back().value = {0, 3, 0}; // nothing, where the picture is red
+        maker.scene.textures.back() = of_red_and_green();
         maker.point_light({1, 1, 1}, {0, 2.4f, -0.3f});
     }
     RenderOptions options = few_photons(true);

@@ -102,6 +102,26 @@ TEST(GradientStability, AtTheRimOfASpot) {
                     "beyond the rim there is no light sample, as behind a lamp; unbiased", 0.14});
 }
 
+// A green spot through a picture of red and green squares, each of two or three pixels.
+TEST(GradientStability, InThePictureOfASpotOfItsOwnColor) {
+    SceneMaker scene = scene_for_bias(2);
+    scene.floor(-2, 2, 2, scene.material(two_sided(diffuse(0.7))));
+    Texture squares;
+    squares.kind = Texture::Kind::checkerboard;
+    squares.color_0 = {1, 0, 0};
+    squares.color_1 = {0.2f, 1, 0};
+    squares.to_uv = {6, 0, 0, 0, 6, 0};
+    scene.scene.textures.push_back(squares);
+    Emitter &spot = scene.picture(Emitter::Kind::spot, {0, 5, 0}, 0, {0.1f, 2, 0.1f}, 0.7f, 0.6f);
+    spot.cutoff = 0.5f;
+    spot.beam = 0.1f;
+    scene.look({0, 3, 0}, {0, 0, 0}, 40, {0, 0, 1});
+    expect_no_bias(gradient_bias(scene.scene, {8, 32, 64}),
+                   {area, "a picture that is not black and yet shows nothing of its light",
+                    "a green spot through a picture of red and green squares",
+                    "there is no light sample, as where a picture is black; unbiased", 0.14});
+}
+
 // A ball of glass between a lamp and the floor: light sampling cannot find the caustic.
 TEST(GradientStability, InACaustic) {
     SceneMaker scene = scene_for_bias();

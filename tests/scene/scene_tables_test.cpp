@@ -76,6 +76,27 @@ TEST(LightPowers, AtInfinityCountAmongThemselves) {
     EXPECT_NEAR(light_value(tables, 1, light_probability), 0.5 * M_PI / (3 + M_PI) + 0.25, 1e-6);
 }
 
+TEST(LightPowers, OfTheNarrowestSpotIsAboveZero) {
+    for (const float cutoff : {0.2f, 1e-3f, 1e-8f, 1e-15f})
+        for (const float beam : {0.0f, 0.5f * cutoff, cutoff}) {
+            SceneMaker maker(4, 1);
+            maker.sphere({0, 0, 0}, 1, maker.material(diffuse(0.5)));
+            maker.point_light({5, 5, 5}, {0, 3, 0});
+            maker.spot({1, 1, 1}, {0, 3, 0}, {0, -1, 0}, 1, 1);
+            Emitter &spot = maker.scene.emitters.back();
+            spot.beam = beam;
+            spot.cutoff = cutoff;
+            const SceneTables tables = tables_of(maker.scene);
+            ASSERT_EQ(tables.light_count, 2u);
+            const double sent = cutoff > beam
+                                    ? 1 - (std::sin(double(cutoff)) - std::sin(double(beam))) / (double(cutoff) - beam)
+                                    : 1 - std::cos(double(cutoff));
+            const double share = sent / (2 * 5 + sent);
+            EXPECT_NEAR(light_value(tables, 1, light_probability), 0.5 * share + 0.25, 1e-6) << cutoff << ' ' << beam;
+            EXPECT_NEAR(light_value(tables, 0, light_probability), 0.75 - 0.5 * share, 1e-6) << cutoff << ' ' << beam;
+        }
+}
+
 TEST(Lights, AreNoneInADarkScene) {
     SceneMaker maker(4, 1);
     maker.cube(maker.material(diffuse(0.5)), maker.emitter(Emitter::Kind::area, {0, 0, 0}));
