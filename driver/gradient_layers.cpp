@@ -121,10 +121,10 @@ struct Found {
 /// The channels that stand for an image, in their order. Throws where they are not there.
 std::vector<std::string> channels_to_take(GradientLayer layer, const std::map<std::string, const Channel *> &there,
                                           const std::string &where, const std::string &listed) {
-    if (layer != GradientLayer::normal && layer != GradientLayer::depth && there.count("Y") && there.size() == 1)
+    if (!is_feature(layer) && there.count("Y") && there.size() == 1)
         return {"Y"};
     std::vector<std::string> wanted{"R", "G", "B"};
-    const char *text = "R, G and B, or Y alone";
+    const char *text = is_feature(layer) ? "R, G and B" : "R, G and B, or Y alone";
     if (layer == GradientLayer::normal) {
         wanted = {"X", "Y", "Z"};
         text = "X, Y and Z";

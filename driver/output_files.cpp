@@ -55,7 +55,7 @@ void check_folder(const std::string &path) {
     std::filesystem::create_directories(path, failure);
     if (failure)
         throw Error(ExitCode::output, fmt::format("cannot make the folder '{}': {}", path, failure.message()));
-    check_writable((std::filesystem::path(path) / "file").string());
+    check_writable((std::filesystem::path(path) / ".gradus").string());
 }
 
 void check_distinct(const std::vector<NamedFile> &outputs, const std::vector<std::string> &inputs) {

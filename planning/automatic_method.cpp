@@ -45,7 +45,8 @@ class ChosenMethod final : public Method {
 // Photons are taken where they are estimated to have less than so much of the error: costs of so unlike methods are
 // known less well, and their bias does not fall as noise does.
 constexpr double least_gain_of_photons = 0.5;
-// A render that ends by time has more samples than this; it is decided on as if it had those.
+// A render that ends by its error has so many samples, and one that ends by time more: these are decided on as if they
+// had those of an endless one.
 constexpr std::uint64_t most_samples = 1u << 20;
 constexpr double samples_of_endless = 1024;
 // Passes are a render's samples: with fewer, radii hardly shrink, and nobody knows alpha.
@@ -133,7 +134,7 @@ MethodChoice choose_by_rule(const Scene &scene, const RenderOptions &options, st
 
 MethodChoice choose_by_pilot(const RowPilot &pilot, Reconstruction reconstruction, std::uint64_t samples,
                              std::uint64_t pixels) {
-    const double decided = samples > most_samples ? samples_of_endless : double(samples);
+    const double decided = samples >= most_samples ? samples_of_endless : double(samples);
     MethodChoice choice;
     choice.pilot_samples = pilot_samples;
     choice.pilot_seconds = pilot.seconds;
@@ -162,7 +163,7 @@ PhotonChoice choose_by_photons(MethodChoice choice, const PhotonPilot &pilot, st
     const PhotonErrors &errors = pilot.errors;
     choice.pilot_seconds += pilot.seconds;
     choice.estimates["gpm"] = {errors.gpm, pilot.cost};
-    const double decided = samples > most_samples ? samples_of_endless : double(samples);
+    const double decided = samples >= most_samples ? samples_of_endless : double(samples);
     const double cost = choice.estimates.at(choice.method).cost;
     const double of_paths = choice.method == "gpt" ? errors.gpt : errors.pt;
     const double paths = of_paths * double(half_samples) / decided + errors.missed;
@@ -222,8 +223,9 @@ std::unique_ptr<Method> make_automatic_method(Device &device, const Scene &scene
         found.choice.pilot_seconds += pilot.seconds;
         const PhotonPilot of_photons = run_photon_pilot(device, scene, options, pilot, expected);
         found = choose_by_photons(found.choice, of_photons, expected, options);
-        // A render until a time goes on beyond what was expected.
-        found.samples = std::uint64_t(std::min(double(found.samples) * (double(samples) / double(expected)), 0x1p62));
+        // A render until a time goes on beyond what was expected. Only passes of photons are others than samples.
+        const double beyond = double(found.samples) * (double(samples) / double(expected));
+        found.samples = found.light_paths > 0 ? std::uint64_t(std::min(beyond, 0x1p62)) : samples;
     }
     if (found.choice.method == "gpt") {
         method->restart(0, samples);

@@ -81,7 +81,8 @@ class Reader {
     void add_include(const File &file, const pugi::xml_node &node, int depth);
     bool open_include(const File &file, const pugi::xml_node &node, int depth, bool last_chance);
     /// Beside `file`, or in the folders to search; an error where it is in none of them.
-    std::optional<fs::path> find(const File &file, const Location &location, const char *what, const std::string &name);
+    std::optional<fs::path> find(const File &file, const Location &location, const char *what, const std::string &name,
+                                 bool is_include_of_include = false);
     void read_deferred_includes();
     Element convert(const File &file, const pugi::xml_node &node, int depth);
     void convert_children(const File &file, pugi::xml_node parent, Element &element, int depth);
@@ -187,7 +188,9 @@ void Reader::check_entity(const File &file, const pugi::xml_node &root) const {
 void Reader::add_folder(const File &file, const pugi::xml_node &node, const std::string &value) {
     if (folders_.size() > most_folders)
         fail(file.locate(node), "more than " + std::to_string(most_folders) + " folders to search");
-    folders_.insert(folders_.begin(), file.path.parent_path() / value); // the last that is named goes first
+    std::string folder(trimmed(value));
+    std::ranges::replace(folder, '\\', '/');
+    folders_.insert(folders_.begin(), file.path.parent_path() / folder); // the last that is named goes first
 }
 
 /// Of what stands in `parent`, however deep, and in the files that it includes; `depth`: of these.
@@ -242,7 +245,7 @@ bool Reader::open_include(const File &file, const pugi::xml_node &node, int dept
         name = parameters_.expand(written, location);
     else if (!parameters_.try_expand(written, location, name))
         return false;
-    const std::optional<fs::path> found = find(file, location, "included file", name);
+    const std::optional<fs::path> found = find(file, location, "included file", name, depth > 0);
     if (!found) // reported with all the others before anything else is read
         return true;
     auto included = open(finder_.open(*found), *found, file.version, bool(node.attribute(entity_attribute)));
@@ -253,9 +256,10 @@ bool Reader::open_include(const File &file, const pugi::xml_node &node, int dept
 }
 
 std::optional<fs::path> Reader::find(const File &file, const Location &location, const char *what,
-                                     const std::string &name) {
+                                     const std::string &name, bool is_include_of_include) {
     std::vector<fs::path> folders = folders_;
-    folders.insert(folders.end() - 1, file.path.parent_path()); // before that of the scene
+    // Before that of the scene; of a file that is included before all others, as others' programs have it.
+    folders.insert(is_include_of_include ? folders.begin() : folders.end() - 1, file.path.parent_path());
     const std::optional<FoundFile> found = finder_.find(name, folders);
     if (!found) {
         diagnostics_.error(location,

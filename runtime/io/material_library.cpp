@@ -56,9 +56,9 @@ class MtlReader {
     MaterialLibrary read() {
         for (std::size_t at = byte_order_mark(text_).size(); at < text_.size();) {
             ++line_;
-            const std::size_t end = std::min(text_.find('\n', at), text_.size());
+            const std::size_t end = std::min(text_.find_first_of("\r\n", at), text_.size());
             read_line(std::string_view(text_).substr(at, end - at));
-            at = end + 1;
+            at = end + (text_.compare(end, 2, "\r\n") == 0 ? 2 : 1);
         }
         add_material();
         return std::move(library_);

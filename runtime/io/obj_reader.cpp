@@ -185,6 +185,14 @@ class ObjReader {
     std::vector<ObjCorner> face_;
 };
 
+/// How long what follows "1." is, where that is no number as Microsoft's library writes it; else 0.
+std::size_t written_as_none(std::string_view rest) {
+    for (const std::string_view name : {"#IND", "#INF", "#QNAN", "#SNAN"})
+        if (rest.starts_with(name))
+            return name.size();
+    return 0;
+}
+
 template <class Faces>
 int ObjReader<Faces>::read_floats(const char *&at, const char *end, float *values, int count) const {
     for (int i = 0; i < count; ++i) {
@@ -194,7 +202,11 @@ int ObjReader<Faces>::read_floats(const char *&at, const char *end, float *value
         if (*at == '+')
             ++at;
         double value = 0;
-        const auto [stop, error] = std::from_chars(at, end, value);
+        auto [stop, error] = std::from_chars(at, end, value);
+        if (const auto no_number = written_as_none({stop, std::size_t(end - stop)})) {
+            value = NAN;
+            stop += no_number;
+        }
         if (error == std::errc::invalid_argument || (stop < end && !is_blank(*stop) && *stop != '#'))
             fail(quoted(at, end) + " is not a number");
         values[i] = error == std::errc() ? float(value) : 0.0f; // out of a double's range: nothing to keep

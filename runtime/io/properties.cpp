@@ -249,6 +249,9 @@ Double3 Properties::point(const std::string &name) {
             throw error(name, "\"" + name + "\" needs three numbers, not \"" + text + "\"");
         return {(*values)[0], (*values)[1], (*values)[2]};
     }
+    for (const auto &[attribute, value] : property->attributes)
+        if (attribute != "name" && attribute != "x" && attribute != "y" && attribute != "z")
+            diagnostics_.unknown(property->location, "unknown attribute \"" + attribute + "\" of \"" + name + "\"");
     Double3 result{0, 0, 0};
     const char *const axes[] = {"x", "y", "z"};
     for (int i = 0; i < 3; ++i)
@@ -339,8 +342,10 @@ void Properties::report_unknown() {
         const std::string tag = is_reference ? referenced_tag(child) : child.tag;
         if (element_.tag == "bsdf" && element_.is_legacy() && name == "ensure_energy_conservation")
             continue; // of all BSDFs of 0.x; what it asks for is done
-        if (declaration_.find_objects(tag) || (is_parameter && (is_property_tag(tag) || tag == "texture")))
+        if (declaration_.find_objects(tag) || (is_parameter && (is_property_tag(tag) || tag == "texture"))) {
+            report_children(child);
             continue;
+        }
         if (is_property_tag(child.tag) || (child.tag == "texture" && written)) {
             std::string message = "unknown parameter \"" + (written ? *written : "") + "\" of " + owner;
             if (const auto nearest = diagnostics_.is_full() ? std::nullopt : nearest_name(name, names))
@@ -352,6 +357,15 @@ void Properties::report_unknown() {
         else
             diagnostics_.unknown(child.location, "<" + child.tag + "> in " + owner + " is not used");
     }
+}
+
+/// Of what holds a value alone, or names something else.
+void Properties::report_children(const Element &child) {
+    const bool is_step_list = child.tag == "transform" || child.tag == "animation";
+    if (child.tag != "ref" && (!is_property_tag(child.tag) || is_step_list || child.attribute("type")))
+        return;
+    for (const Element &inner : child.children)
+        diagnostics_.unknown(inner.location, "<" + inner.tag + "> in <" + child.tag + "> is not used");
 }
 
 /// Empty where it leads nowhere.

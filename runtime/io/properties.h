@@ -92,6 +92,7 @@ class Properties {
   private:
     const Parameter &declared(const std::string &name, std::initializer_list<Takes> types) const;
     std::string referenced_tag(const Element &reference) const;
+    void report_children(const Element &child);
     const Element *find(const std::string &name);
     const Element *find(const Parameter &parameter);
     const std::string &value_of(const Element &property);

@@ -75,7 +75,7 @@ void SceneBuilder::index(const Element &element, int depth) {
         else
             aliases_[*as] = *id;
     }
-    if (element.tag == "texture") {
+    if (element.tag == "texture" || (is_plugin && element.tag == "spectrum")) {
         want_attribute(element);
         if (type_of(element) == "bitmap")
             pictures_.push_back(&element);
@@ -228,6 +228,9 @@ Scene SceneBuilder::build() {
         each("shape", [&](const Element &element) { shapes.push_back(&element); });
         build_shapes(shapes, nullptr);
         settle_instances();
+        for (const Element *shape : shapes)
+            if (type_of(*shape) == "shapegroup" && !groups_.contains(shape))
+                diagnostics_.warn(shape->location, "no instance names this shapegroup: it is seen nowhere");
         std::vector<const Element *> bsdfs;
         each("bsdf", [&](const Element &element) { bsdfs.push_back(&element); });
         check_unused_bsdfs(bsdfs);

@@ -211,6 +211,7 @@ class SceneBuilder {
     std::map<const Element *, std::variant<Material, SceneError>> built_materials_;
     std::map<std::tuple<BsdfKind, float, float>, Bsdf> coatings_; ///< by kind, ior and alpha_u
     std::vector<std::string> wanted_attributes_;
+    std::set<std::string> attribute_names_; ///< the same
     std::vector<std::uint64_t> blend_parts_; ///< of each of the scene's blends
     std::map<const Element *, Emitter> area_emitters_;
     std::map<const Element *, std::variant<Texture, SceneError>> built_textures_;

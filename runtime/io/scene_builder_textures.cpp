@@ -220,7 +220,7 @@ void SceneBuilder::want_attribute(const Element &texture) {
     for (const Element &child : texture.children)
         if (type == "mesh_attribute" && trimmed(child.attribute_or("name", "")) == "name")
             name = std::string(trimmed(child.attribute_or("value", "")));
-    if (!name.empty() && std::ranges::count(wanted_attributes_, name) == 0)
+    if (!name.empty() && attribute_names_.insert(name).second)
         wanted_attributes_.push_back(name);
 }
 

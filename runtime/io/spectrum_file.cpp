@@ -2,16 +2,18 @@
 
 #include "runtime/io/text.h"
 
-#include <sstream>
+#include <algorithm>
+#include <string_view>
 
 namespace gradus {
 
 std::optional<std::string> spectrum_of_file(const std::string &text) {
-    std::istringstream lines(text);
     std::string pairs;
-    for (std::string line; std::getline(lines, line);) {
-        const std::string content(trimmed(line));
-        if (content.empty() || content.front() == '#')
+    for (std::string_view rest = std::string_view(text).substr(byte_order_mark(text).size()); !rest.empty();) {
+        const std::string_view line = rest.substr(0, rest.find_first_of("\r\n"));
+        rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+        const std::string content(trimmed(line.substr(0, line.find('#'))));
+        if (content.empty())
             continue;
         const auto items = split_list(content);
         if (items.size() != 2 || !parse_number(items[0]) || !parse_number(items[1]))

@@ -3,6 +3,7 @@
 #include "runtime/io/text.h"
 #include "runtime/scene/transform.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -51,6 +52,17 @@ Double3 components(const Element &step, double otherwise) {
     }
     return {number_attribute(step, "x", otherwise), number_attribute(step, "y", otherwise),
             number_attribute(step, "z", otherwise)};
+}
+
+/// Tells of attributes that no such step has, and of those that others stand for.
+void check_attributes(const Element &step, const std::vector<std::string> &known, Diagnostics &diagnostics) {
+    for (const auto &[name, value] : step.attributes) {
+        const bool is_axis = name == "x" || name == "y" || name == "z";
+        if (std::ranges::count(known, name) == 0)
+            diagnostics.unknown(step.location, "unknown attribute \"" + name + "\" of <" + step.tag + ">");
+        else if (is_axis && step.attribute("value"))
+            diagnostics.unknown(step.location, "<" + step.tag + ">: value stands for " + name + ", too");
+    }
 }
 
 Matrix4 read_matrix(const Element &step) {
@@ -115,6 +127,17 @@ Matrix4 read_look_at(const Element &step, Diagnostics &diagnostics) {
     return look_at(origin, target, up);
 }
 
+std::vector<std::string> attributes_of(const std::string &kind) {
+    if (kind == "lookat")
+        return {"origin", "target", "up"};
+    if (kind == "matrix")
+        return {"value"};
+    std::vector<std::string> known = {"value", "x", "y", "z"};
+    if (kind == "rotate")
+        known.emplace_back("angle");
+    return known;
+}
+
 } // namespace
 
 Matrix4 read_transform(const Element &transform, Diagnostics &diagnostics) {
@@ -122,6 +145,7 @@ Matrix4 read_transform(const Element &transform, Diagnostics &diagnostics) {
     for (const Element &step : transform.children) {
         const std::string kind = lower_case(step.tag);
         Matrix4 matrix;
+        check_attributes(step, attributes_of(kind), diagnostics);
         if (kind == "matrix")
             matrix = read_matrix(step);
         else if (kind == "translate")

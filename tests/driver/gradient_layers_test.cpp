@@ -357,6 +357,11 @@ TEST_F(GradientLayers, HalvesForAGuideHaveFeaturesAndAllDifferencesOrNone) {
     without.emplace_back("depth.Y", 1.0f);
     sources.layered = write("y.exr", counting_image(3, 2, without));
     expect_error(sources, ExitCode::image, HasSubstr("there must be Z"));
+    auto grey = guided_layers({"primal"});
+    std::erase_if(grey, [](const auto &channel) { return channel.first.starts_with("albedo."); });
+    grey.emplace_back("albedo.Y", 1.0f);
+    sources.layered = write("grey-albedo.exr", counting_image(3, 2, grey));
+    expect_error(sources, ExitCode::image, AllOf(HasSubstr("R, G and B"), Not(HasSubstr("Y alone"))));
 }
 
 } // namespace

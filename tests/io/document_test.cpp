@@ -8,9 +8,11 @@
 namespace gradus {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::UnorderedElementsAre;
 
 const char *const sensor_with_spp = "<sensor type=\"perspective\"><sampler type=\"independent\"><integer "
                                     "name=\"sample_count\" value=\"$spp\"/></sampler></sensor>";
@@ -174,6 +176,24 @@ TEST(Includes, FoldersThatAreNamedGoBeforeTheScenesAndTheLastFirst) {
     EXPECT_EQ(triangles_with("<path value=\"first\"/><path value=\"second\"/>"), 3u);
 }
 
+/// As in the programs that such files were written for: an included file's own folder goes first for what it includes.
+TEST(Includes, OfAnIncludedFileLieBesideIt) {
+    TemporaryFolder folder;
+    const auto ball = [&](const std::string &file, const char *radius) {
+        folder.write(file, std::string("<scene version='3.0.0'><shape type='sphere'><float name='radius' value='") +
+                               radius + "'/></shape></scene>");
+    };
+    ball("lib/b.xml", "7");
+    ball("sub/b.xml", "3");
+    folder.write("sub/a.xml", "<scene version='3.0.0'><include filename='b.xml'/></scene>");
+    const auto radius_with = [&](const std::string &includes) {
+        const std::string text = scene_around(constant_light + "<path value=' lib\\. '/>" + includes, "3.0.0", "");
+        return load_scene(folder.write("scene.xml", text)).scene.spheres.at(0).radius;
+    };
+    EXPECT_EQ(radius_with("<include filename='sub/a.xml'/>"), 3);
+    EXPECT_EQ(radius_with("<include filename='b.xml'/>"), 7);
+}
+
 TEST(Includes, MeshesMayLieBesideTheIncludedFile) {
     TemporaryFolder folder;
     folder.write("part/mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -185,6 +205,26 @@ TEST(Includes, MeshesMayLieBesideTheIncludedFile) {
 }
 
 /// Of an object's parameters, of objects in it and, through another file, of more; in the dialect of each.
+/// What would be lost without a word: a part of a value, a word that is misspelt, a group that is nowhere.
+TEST(Unused, PartsOfPropertiesAndUnknownAttributesAreWarnedOf) {
+    const LoadedScene loaded =
+        load_text(scene_around("<bsdf type='diffuse' id='m'/><shape type='sphere'>"
+                               "<ref id='m'><rgb name='reflectance' value='1 0 0'/></ref>\n"
+                               "<emitter type='area'><rgb name='radiance' value='2'><float name='scale' value='3'/>"
+                               "</rgb></emitter>\n"
+                               "<point name='center' X='3'/>\n"
+                               "<transform name='to_world'><scale X='3'/><translate value='1' x='5'/></transform>"
+                               "</shape>\n<shape type='shapegroup' id='g'><shape type='cube'/></shape>"));
+    EXPECT_THAT(
+        loaded.warnings,
+        UnorderedElementsAre(AllOf(HasSubstr("scene.xml:3: "), HasSubstr("<rgb> in <ref> is not used")),
+                             AllOf(HasSubstr("scene.xml:4: "), HasSubstr("<float> in <rgb> is not used")),
+                             AllOf(HasSubstr("scene.xml:5: "), HasSubstr("unknown attribute \"X\" of \"center\"")),
+                             AllOf(HasSubstr("scene.xml:6: "), HasSubstr("unknown attribute \"X\" of <scale>")),
+                             AllOf(HasSubstr("scene.xml:6: "), HasSubstr("<translate>: value stands for x, too")),
+                             AllOf(HasSubstr("scene.xml:7: "), HasSubstr("no instance names this shapegroup"))));
+}
+
 TEST(Includes, WithinObjects) {
     TemporaryFolder folder;
     folder.write("parts/material.xml",

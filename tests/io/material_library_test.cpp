@@ -150,8 +150,10 @@ TEST_F(ObjMaterials, OfLibrariesCountWhereTheShapeHasNoBsdfForThem) {
 /// A line `newmtl` that names nothing is no material of faces that have none.
 TEST_F(ObjMaterials, WithoutANameAreNobodys) {
     folder_.write("meshes/a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nusemtl one\nf 1 2 3\nf 1 3 2\n");
-    write_mtl("newmtl\nKd 0 1 0\nnewmtl one\nKd 1 0 0\n");
-    EXPECT_EQ(triangles(load("").scene), (Found{{1, 2}, {0.5f, 1}}));
+    for (const char *text : {"newmtl\nKd 0 1 0\nnewmtl one\nKd 1 0 0\n", "newmtl\rKd 0 1 0\r\nnewmtl one\rKd 1 0 0"}) {
+        write_mtl(text);
+        EXPECT_EQ(triangles(load("").scene), (Found{{1, 2}, {0.5f, 1}}));
+    }
 }
 
 TEST_F(ObjMaterials, PartsOfAFileByNumberAreWarnedOf) {

@@ -152,6 +152,16 @@ TEST(Obj, PositionsWithSeveralNormalsAreSplit) {
     EXPECT_THAT(mesh.triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{3, 4, 5}, Triangle{0, 2, 5}));
 }
 
+/// As Microsoft's library writes it, where others write "nan".
+TEST(Obj, WhatIsNoNumberIsNone) {
+    for (const char *text : {"nan", "1.#INF", "-1.#IND", "1.#QNAN", "1.#SNAN"}) {
+        const Mesh mesh = parse_obj(std::string("v 0 0 0\nv 1 ") + text + " 0\nv 0 1 " + text + "\nf 1 2 3\n", "m.obj");
+        ASSERT_EQ(mesh.positions.size(), 3u) << text;
+        EXPECT_TRUE(std::isnan(mesh.positions[1].y) && std::isnan(mesh.positions[2].z)) << text;
+    }
+    EXPECT_EQ(parse_obj("v 0 0 0\nv 1 0 0\nv 0 1 2#1\nf 1 2 3\n", "m.obj").positions[2].z, 2) << "a comment";
+}
+
 TEST(Obj, Errors) {
     const std::string head = "v 0 0 0\nv 1 0 0\nv 1 1 0\n";
     EXPECT_THAT(obj_error(head + "f 1 2 4\n"), HasSubstr("m.obj:4: face index out of range: v 4 of 3"));

@@ -120,7 +120,7 @@ TEST(Entities, DoNotFillTheMemory) {
 
 TEST(SpectrumFiles, AreReadAsIfTheyStoodThere) {
     TemporaryFolder folder;
-    folder.write("spectra/red.spd", "# nm\n400 0.1\r\n\n500\t0.2\n600, 0.7\n700 0.8\n");
+    folder.write("spectra/red.spd", "\xEF\xBB\xBF# nm\n400 0.1\r\n\n500\t0.2 # green\n600, 0.7\r700 0.8\n");
     const auto reflectance = [&](const std::string &attribute) {
         const LoadedScene loaded = load_scene(folder.write(
             "scene.xml", scene_around("<path value=\"spectra\"/><shape type=\"cube\"><bsdf type=\"diffuse\"><spectrum "

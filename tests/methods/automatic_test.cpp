@@ -1,4 +1,5 @@
 // The method `auto`: what it estimates, what it picks, and that its image is that of the method that it picked.
+#include "driver/error_watch.h"
 #include "planning/automatic_method.h"
 #include "planning/make_method.h"
 #include "tests/methods/reference_scene.h"
@@ -150,6 +151,15 @@ TEST(ChoiceByPilot, CountsTheReconstruction) {
     const RowPilot pilot = pilot_of(4, 0.125, 5, 10);
     EXPECT_NEAR(choice_for(pilot, Reconstruction::weighted, 4).gain, 20 / (10 + (18 + 1.1) / 4), 1e-6);
     EXPECT_EQ(choose_by_pilot(pilot, Reconstruction::weighted, 4, 10'000).method, "pt");
+}
+
+/// One that ends by its error may have 2^20 samples, and one by time any number: neither comes near.
+TEST(ChoiceByPilot, TakesRendersWithoutACountForOnesOf1024) {
+    const RowPilot pilot = pilot_of(4, 0.1, 5, 12);
+    const double of_1024 = choice_for(pilot, Reconstruction::guided, 1024).gain;
+    for (const std::uint64_t samples : {ErrorWatch::most_samples, std::uint64_t(1) << 40})
+        EXPECT_EQ(choice_for(pilot, Reconstruction::guided, samples).gain, of_1024) << samples;
+    EXPECT_NE(choice_for(pilot, Reconstruction::guided, ErrorWatch::most_samples / 2).gain, of_1024);
 }
 
 /// What a guide does for pt is not gained by gpt once more.
