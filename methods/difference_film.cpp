@@ -9,9 +9,8 @@
 #include "runtime/wavefront/sample_parts.h"
 #include "solver/squared_errors.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <chrono>
 #include <utility>
@@ -26,6 +25,12 @@ namespace {
 Image mean_of(const Image &image) {
     return {image.width, image.height, {image.channels.begin(), image.channels.begin() + 3}, {}};
 }
+
+/// The arguments of gradient_accumulate that say what the frames before each of a launch weigh.
+constexpr std::array<const char *, accumulated_frames> weights_before = {"weights_0", "weights_1", "weights_2",
+                                                                         "weights_3"},
+                                                       squares_before = {"squares_0", "squares_1", "squares_2",
+                                                                         "squares_3"};
 
 std::vector<std::string> film_names(std::uint32_t parts) {
     std::vector<std::string> names;
@@ -48,8 +53,7 @@ DifferenceFilm::DifferenceFilm(Session &session, Stages &stages, const RenderOpt
                                           "frames", "frames_before"}})),
       carry_(stages.add({.name = "gradient_carry", .numbers = {"first_slot"}})) {
     for (std::uint32_t frame = 0; frame < accumulated_frames; ++frame)
-        for (const char *sum : {"weights_{}", "squares_{}"})
-            session.reals[fmt::format(fmt::runtime(sum), frame)] = 0; // add() says them
+        session.reals[weights_before[frame]] = session.reals[squares_before[frame]] = 0; // add() says them
     check_guide(options);
     if (options.threads != 1)
         compilers_ = keep_compilers(session.device);
@@ -149,8 +153,8 @@ void DifferenceFilm::add(std::uint32_t first, std::uint32_t rows, std::uint32_t 
             if (film_.weights().are_there())
                 for (std::uint32_t more = 0; more < accumulated_frames; ++more) {
                     const SharedWeights::Sums weighed = film_.weights().sums(before + more * apart, film, apart);
-                    stages_.set_real(fmt::format("weights_{}", more), weighed.weights);
-                    stages_.set_real(fmt::format("squares_{}", more), weighed.squares);
+                    stages_.set_real(weights_before[more], weighed.weights);
+                    stages_.set_real(squares_before[more], weighed.squares);
                 }
             accumulate_.run(width, {{"first_slot", frame * pixels},
                                     {"first_pixel", first * width},

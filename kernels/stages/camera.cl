@@ -77,7 +77,8 @@ STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ra
     const random_bits key = random_key(seed_low, seed_high, y * film_width + x, sample.low, sample.high);
 #endif
 #if TRAIT_SHARED_JITTER
-    /* All pixels of a sample share their place within the pixel; where paths start alike, their point of the lens. */
+    /* All pixels of a sample share their place within the pixel. TRAIT_SHARED_START: and their point of the lens, so
+     * that base and offset paths are each other's first segments. */
     const sample_place shared = shared_number_at(place);
     const random_bits start = random_key(seed_low, seed_high, 0xFFFFFFFFu, shared_start, shared.high);
 #if TRAIT_STRATIFIED

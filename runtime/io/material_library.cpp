@@ -54,11 +54,9 @@ class MtlReader {
         : text_(text), file_(std::make_shared<const std::string>(file_name)), is_there_(is_there) {}
 
     MaterialLibrary read() {
-        for (std::size_t at = byte_order_mark(text_).size(); at < text_.size();) {
+        for (std::string_view rest = std::string_view(text_).substr(byte_order_mark(text_).size()); !rest.empty();) {
             ++line_;
-            const std::size_t end = std::min(text_.find_first_of("\r\n", at), text_.size());
-            read_line(std::string_view(text_).substr(at, end - at));
-            at = end + (text_.compare(end, 2, "\r\n") == 0 ? 2 : 1);
+            read_line(take_line(rest));
         }
         add_material();
         return std::move(library_);

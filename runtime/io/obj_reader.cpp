@@ -203,10 +203,11 @@ int ObjReader<Faces>::read_floats(const char *&at, const char *end, float *value
             ++at;
         double value = 0;
         auto [stop, error] = std::from_chars(at, end, value);
-        if (const auto no_number = written_as_none({stop, std::size_t(end - stop)})) {
-            value = NAN;
-            stop += no_number;
-        }
+        if (stop < end && *stop == '#')
+            if (const std::size_t length = written_as_none({stop, std::size_t(end - stop)})) {
+                value = NAN;
+                stop += length;
+            }
         if (error == std::errc::invalid_argument || (stop < end && !is_blank(*stop) && *stop != '#'))
             fail(quoted(at, end) + " is not a number");
         values[i] = error == std::errc() ? float(value) : 0.0f; // out of a double's range: nothing to keep

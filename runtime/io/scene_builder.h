@@ -80,7 +80,9 @@ class SceneBuilder {
     void count_mesh_bytes(std::uint64_t bytes, const Location &location);
     const LoadLimits &limits() const { return limits_; }
     /// Names of mesh attributes that textures of the file ask for; meshes keep no others.
-    const std::vector<std::string> &wanted_attributes() const { return wanted_attributes_; }
+    std::vector<std::string> wanted_attributes() const {
+        return {wanted_attributes_.begin(), wanted_attributes_.end()};
+    }
     /// Counts the words of a picture. Throws SceneError where all pictures have more bytes than the limit.
     void count_texture_bytes(std::uint64_t words, const Location &location);
     /// A picture that a texture names, decoded once. `is_srgb` becomes whether what is stored is sRGB. Throws
@@ -210,8 +212,7 @@ class SceneBuilder {
     /// Each is built once, however many refer to it, and fails once.
     std::map<const Element *, std::variant<Material, SceneError>> built_materials_;
     std::map<std::tuple<BsdfKind, float, float>, Bsdf> coatings_; ///< by kind, ior and alpha_u
-    std::vector<std::string> wanted_attributes_;
-    std::set<std::string> attribute_names_; ///< the same
+    std::set<std::string> wanted_attributes_;
     std::vector<std::uint64_t> blend_parts_; ///< of each of the scene's blends
     std::map<const Element *, Emitter> area_emitters_;
     std::map<const Element *, std::variant<Texture, SceneError>> built_textures_;

@@ -220,8 +220,8 @@ void SceneBuilder::want_attribute(const Element &texture) {
     for (const Element &child : texture.children)
         if (type == "mesh_attribute" && trimmed(child.attribute_or("name", "")) == "name")
             name = std::string(trimmed(child.attribute_or("value", "")));
-    if (!name.empty() && attribute_names_.insert(name).second)
-        wanted_attributes_.push_back(name);
+    if (!name.empty())
+        wanted_attributes_.insert(name);
 }
 
 /// Numbers that are none become 0.

@@ -2,7 +2,6 @@
 
 #include "runtime/io/text.h"
 
-#include <algorithm>
 #include <string_view>
 
 namespace gradus {
@@ -10,8 +9,7 @@ namespace gradus {
 std::optional<std::string> spectrum_of_file(const std::string &text) {
     std::string pairs;
     for (std::string_view rest = std::string_view(text).substr(byte_order_mark(text).size()); !rest.empty();) {
-        const std::string_view line = rest.substr(0, rest.find_first_of("\r\n"));
-        rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+        const std::string_view line = take_line(rest);
         const std::string content(trimmed(line.substr(0, line.find('#'))));
         if (content.empty())
             continue;

@@ -19,6 +19,13 @@ std::string_view byte_order_mark(std::string_view text) {
     return text.starts_with("\xEF\xBB\xBF") ? text.substr(0, 3) : std::string_view();
 }
 
+std::string_view take_line(std::string_view &text) {
+    const std::string_view line = text.substr(0, text.find_first_of("\r\n"));
+    const std::string_view rest = text.substr(line.size());
+    text = rest.substr(rest.starts_with("\r\n") ? 2 : std::min<std::size_t>(1, rest.size()));
+    return line;
+}
+
 std::string_view trimmed(std::string_view text) {
     while (!text.empty() && is_blank(text.front()))
         text.remove_prefix(1);

@@ -11,6 +11,8 @@ namespace gradus {
 
 /// What some editors begin a file in UTF-8 with; empty where it does not.
 std::string_view byte_order_mark(std::string_view text);
+/// Takes the next line off a text, without its end, which is that of any system.
+std::string_view take_line(std::string_view &text);
 /// Without blanks at either end.
 std::string_view trimmed(std::string_view text);
 std::string lower_case(std::string_view text);

@@ -1,11 +1,13 @@
 #include "runtime/io/transform_reader.h"
 
+#include "runtime/io/properties.h"
 #include "runtime/io/text.h"
 #include "runtime/scene/transform.h"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
+#include <string_view>
 
 namespace gradus {
 
@@ -52,17 +54,6 @@ Double3 components(const Element &step, double otherwise) {
     }
     return {number_attribute(step, "x", otherwise), number_attribute(step, "y", otherwise),
             number_attribute(step, "z", otherwise)};
-}
-
-/// Tells of attributes that no such step has, and of those that others stand for.
-void check_attributes(const Element &step, const std::vector<std::string> &known, Diagnostics &diagnostics) {
-    for (const auto &[name, value] : step.attributes) {
-        const bool is_axis = name == "x" || name == "y" || name == "z";
-        if (std::ranges::count(known, name) == 0)
-            diagnostics.unknown(step.location, "unknown attribute \"" + name + "\" of <" + step.tag + ">");
-        else if (is_axis && step.attribute("value"))
-            diagnostics.unknown(step.location, "<" + step.tag + ">: value stands for " + name + ", too");
-    }
 }
 
 Matrix4 read_matrix(const Element &step) {
@@ -127,15 +118,20 @@ Matrix4 read_look_at(const Element &step, Diagnostics &diagnostics) {
     return look_at(origin, target, up);
 }
 
-std::vector<std::string> attributes_of(const std::string &kind) {
-    if (kind == "lookat")
-        return {"origin", "target", "up"};
-    if (kind == "matrix")
-        return {"value"};
-    std::vector<std::string> known = {"value", "x", "y", "z"};
-    if (kind == "rotate")
-        known.emplace_back("angle");
-    return known;
+/// Tells of attributes that no such step has, and of those that others stand for.
+void check_attributes(const Element &step, const std::string &kind, Diagnostics &diagnostics) {
+    static constexpr std::string_view of_look_at[] = {"origin", "target", "up"},
+                                      of_others[] = {"value", "x", "y", "z", "angle"};
+    const std::span<const std::string_view> others(of_others);
+    report_unknown_attributes(step,
+                              kind == "lookat"   ? std::span(of_look_at)
+                              : kind == "matrix" ? others.first(1)
+                              : kind == "rotate" ? others
+                                                 : others.first(4),
+                              described(step), diagnostics);
+    for (const char *axis : {"x", "y", "z"})
+        if (kind != "matrix" && step.attribute("value") && step.attribute(axis))
+            diagnostics.unknown(step.location, described(step) + ": value stands for " + axis + ", too");
 }
 
 } // namespace
@@ -145,7 +141,7 @@ Matrix4 read_transform(const Element &transform, Diagnostics &diagnostics) {
     for (const Element &step : transform.children) {
         const std::string kind = lower_case(step.tag);
         Matrix4 matrix;
-        check_attributes(step, attributes_of(kind), diagnostics);
+        check_attributes(step, kind, diagnostics);
         if (kind == "matrix")
             matrix = read_matrix(step);
         else if (kind == "translate")

@@ -18,7 +18,7 @@ constexpr double least_share = 0.4;
 } // namespace
 
 SharedWeights::SharedWeights(const Session &session)
-    : session_(session), are_there_(session.has("TRAIT_SHARED_JITTER") && session.has("TRAIT_FILTER_SIGNED")) {}
+    : session_(session), are_there_(session.has("TRAIT_FILTER_SIGNED")) {}
 
 void SharedWeights::begin_at(std::uint64_t first_frame) {
     first_frame_ = first_frame;

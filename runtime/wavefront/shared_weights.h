@@ -1,5 +1,5 @@
-// Of a filter with negative lobes, what the samples of a frame weigh where all pixels share their place within the
-// pixel. They share the weight then, so that its mean over the frames, which tends to 1, is a factor of the whole
+// Of a filter with negative lobes, what the samples of a frame weigh. All pixels share their place within the pixel
+// (TRAIT_SHARED_JITTER) and so the weight, so that its mean over the frames, which tends to 1, is a factor of the whole
 // image: after 16 frames of Lanczos's filter off by a third. So sums go over the weights' sum and not over the number
 // of frames, as those of a film that adds samples to the pixels around do.
 #pragma once

@@ -78,7 +78,8 @@ def expect(condition, message):
 def check_throughput(rows, has_double):
     names = {row["kernel"] for row in rows}
     for kernel in ("camera", "classify", "emission", "connect", "accumulate", "shade roughconductor_ggx", "shift",
-                   "weigh", "join roughconductor_ggx", "direction", "advance", "descend", "ascend", "residual", "prolong"):
+                   "weigh", "join roughconductor_ggx", "direction", "advance", "descend", "ascend", "residual",
+                   "prolong"):
         expect(kernel in names, f"kernel {kernel} was not measured")
     # A stage and a kernel of the solver have that name.
     advance = {row["file"].split("/")[1]: row["bytes_per_item"] for row in rows if row["kernel"] == "advance"}

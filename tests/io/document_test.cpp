@@ -204,7 +204,6 @@ TEST(Includes, MeshesMayLieBesideTheIncludedFile) {
     EXPECT_EQ(load_scene(path).scene.meshes.size(), 1u);
 }
 
-/// Of an object's parameters, of objects in it and, through another file, of more; in the dialect of each.
 /// What would be lost without a word: a part of a value, a word that is misspelt, a group that is nowhere.
 TEST(Unused, PartsOfPropertiesAndUnknownAttributesAreWarnedOf) {
     const LoadedScene loaded =
@@ -225,6 +224,7 @@ TEST(Unused, PartsOfPropertiesAndUnknownAttributesAreWarnedOf) {
                              AllOf(HasSubstr("scene.xml:7: "), HasSubstr("no instance names this shapegroup"))));
 }
 
+/// Of an object's parameters, of objects in it and, through another file, of more; in the dialect of each.
 TEST(Includes, WithinObjects) {
     TemporaryFolder folder;
     folder.write("parts/material.xml",

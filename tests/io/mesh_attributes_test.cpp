@@ -164,6 +164,16 @@ class SceneWithAttributes : public ::testing::Test {
     TemporaryFolder folder_;
 };
 
+/// As newer programs write textures of one colour, and take any.
+TEST_F(SceneWithAttributes, KeepsWhatSpectraName) {
+    std::string text = shape("c.ply", of_mesh_);
+    for (const std::string tag : {"<texture", "</texture"})
+        text.replace(text.find(tag), tag.size(), tag[1] == '/' ? "</spectrum" : "<spectrum");
+    const LoadedScene loaded = load(text);
+    EXPECT_EQ(loaded.scene.textures.at(0).attribute, "vertex_color");
+    EXPECT_FLOAT_EQ(loaded.scene.meshes.at(0).attributes.at(0).values[9], 128 / 255.0f);
+}
+
 TEST_F(SceneWithAttributes, KeepsWhatTexturesName) {
     const LoadedScene loaded = load(shape("c.ply", of_mesh_) + shape("plain.ply", "type=\"checkerboard\"/>"));
     EXPECT_THAT(loaded.warnings, IsEmpty());
