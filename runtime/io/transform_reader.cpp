@@ -122,15 +122,15 @@ Matrix4 read_look_at(const Element &step, Diagnostics &diagnostics) {
 void check_attributes(const Element &step, const std::string &kind, Diagnostics &diagnostics) {
     static constexpr std::string_view of_look_at[] = {"origin", "target", "up"},
                                       of_others[] = {"value", "x", "y", "z", "angle"};
-    const std::span<const std::string_view> others(of_others);
-    report_unknown_attributes(step,
-                              kind == "lookat"   ? std::span(of_look_at)
-                              : kind == "matrix" ? others.first(1)
-                              : kind == "rotate" ? others
-                                                 : others.first(4),
-                              described(step), diagnostics);
+    const bool has_axes = kind != "lookat" && kind != "matrix";
+    std::span<const std::string_view> known = of_others;
+    if (kind == "lookat")
+        known = of_look_at;
+    else if (kind != "rotate")
+        known = known.first(has_axes ? 4 : 1);
+    report_unknown_attributes(step, known, described(step), diagnostics);
     for (const char *axis : {"x", "y", "z"})
-        if (kind != "matrix" && step.attribute("value") && step.attribute(axis))
+        if (has_axes && step.attribute("value") && step.attribute(axis))
             diagnostics.unknown(step.location, described(step) + ": value stands for " + axis + ", too");
 }
 
