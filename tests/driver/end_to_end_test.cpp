@@ -360,13 +360,19 @@ TEST_P(EndToEndOf, AnInterruptLeavesAValidImage) {
 }
 
 TEST_P(EndToEndOf, TimeEndsTheRender) {
-    const Outcome outcome = run(render_early({"--time", "0.5"}));
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-    const Image image = read_image(at("out.exr"));
-    EXPECT_GE(std::stod(image.metadata.at("seconds")), 0.5);
-    EXPECT_LT(std::stod(image.metadata.at("seconds")), 5);
-    EXPECT_GT(std::stod(image.metadata.at("spp")), 1);
-    expect_valid_image();
+    double samples_a_pixel = 0;
+    for (const double time : {0.5, 4.0}) { // a busy machine may need half a second for the first sample
+        const Outcome outcome = run(render_early({"--time", fmt::to_string(time)}));
+        ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+        const Image image = read_image(at("out.exr"));
+        EXPECT_GE(std::stod(image.metadata.at("seconds")), time);
+        EXPECT_LT(std::stod(image.metadata.at("seconds")), 10 * time);
+        expect_valid_image();
+        samples_a_pixel = std::stod(image.metadata.at("spp"));
+        if (samples_a_pixel > 1)
+            break;
+    }
+    EXPECT_GT(samples_a_pixel, 1);
 }
 
 /// Facing mirrors, of which no ray and no roulette frees a path.
