@@ -2,6 +2,7 @@
 
 #include "runtime/error.h"
 #include "runtime/io/entities.h"
+#include "runtime/io/known_attributes.h"
 #include "runtime/io/parameters.h"
 #include "runtime/io/properties.h"
 #include "runtime/io/spectrum_file.h"
@@ -74,6 +75,8 @@ class Reader {
                                std::optional<int> including, bool is_entity = false);
     /// Puts what the file says in the place of its name.
     void read_spectrum(const File &file, Element &spectrum);
+    /// Tells of those that nobody reads.
+    void check_attributes(const File &file, const pugi::xml_node &node);
     void check_root(const File &file, const pugi::xml_node &root, bool is_main) const;
     void check_entity(const File &file, const pugi::xml_node &root) const;
     void collect_parameters(const File &file, const pugi::xml_node &node, int depth);
@@ -141,6 +144,7 @@ std::unique_ptr<File> Reader::open(const std::shared_ptr<const OpenFile> &opened
     if (is_entity)
         check_entity(*file, root);
     check_root(*file, root, !including);
+    check_attributes(*file, root);
     file->version = including.value_or(3);
     const Location location = file->locate(root);
     if (const pugi::xml_attribute attribute = root.attribute("version")) {
@@ -190,7 +194,34 @@ void Reader::add_folder(const File &file, const pugi::xml_node &node, const std:
         fail(file.locate(node), "more than " + std::to_string(most_folders) + " folders to search");
     std::string folder(trimmed(value));
     std::ranges::replace(folder, '\\', '/');
-    folders_.insert(folders_.begin(), file.path.parent_path() / folder); // the last that is named goes first
+    const fs::path path = file.path.parent_path() / folder;
+    std::error_code error;
+    if (!finder_.is_confined() && !fs::is_directory(path, error)) // of what is outside nothing is told
+        diagnostics_.unknown(file.locate(node), "<path>: there is no folder \"" + path.string() + "\"");
+    folders_.insert(folders_.begin(), path); // the last that is named goes first
+}
+
+void Reader::check_attributes(const File &file, const pugi::xml_node &node) {
+    const auto *known = known_attributes(node.name());
+    if (!known)
+        return;
+    const auto described = [&] {
+        std::string text = fmt::format("<{}", node.name());
+        for (const char *attribute : {"type", "name"})
+            if (const pugi::xml_attribute found = node.attribute(attribute))
+                text += fmt::format(" {}=\"{}\"", attribute, found.value());
+        return text + ">";
+    };
+    const bool has_value = bool(node.attribute("value"));
+    for (const pugi::xml_attribute &attribute : node.attributes()) {
+        const std::string_view name = attribute.name();
+        if (name == "id" || name == "name" || name == entity_attribute || name.starts_with("xml") /* namespaces */)
+            continue;
+        if (std::ranges::find(*known, name) == known->end())
+            diagnostics_.unknown(file.locate(node), fmt::format("unknown attribute \"{}\" of {}", name, described()));
+        else if (has_value && (name == "x" || name == "y" || name == "z"))
+            diagnostics_.unknown(file.locate(node), fmt::format("{}: value stands for {}, too", described(), name));
+    }
 }
 
 /// Of what stands in `parent`, however deep, and in the files that it includes; `depth`: of these.
@@ -342,6 +373,7 @@ void Reader::convert_children(const File &file, pugi::xml_node parent, Element &
         }
         if (child.type() != pugi::node_element)
             continue;
+        check_attributes(file, child);
         const std::string_view tag = child.name();
         if (tag == "default")
             continue;

@@ -42,13 +42,6 @@ std::string described(const Element &element) {
     return "<" + element.tag + (type.empty() ? "" : " type=\"" + type + "\"") + ">";
 }
 
-void report_unknown_attributes(const Element &element, std::span<const std::string_view> known,
-                               const std::string &owner, Diagnostics &diagnostics) {
-    for (const auto &[name, value] : element.attributes)
-        if (std::ranges::count(known, name) == 0)
-            diagnostics.unknown(element.location, "unknown attribute \"" + name + "\" of " + owner);
-}
-
 std::vector<NestedObject> nested_objects(const Element &element, const std::string &tag,
                                          const ResolveReference &resolve) {
     std::vector<NestedObject> found;
@@ -256,8 +249,6 @@ Double3 Properties::point(const std::string &name) {
             throw error(name, "\"" + name + "\" needs three numbers, not \"" + text + "\"");
         return {(*values)[0], (*values)[1], (*values)[2]};
     }
-    static constexpr std::string_view known[] = {"name", "x", "y", "z"};
-    report_unknown_attributes(*property, known, "\"" + name + "\"", diagnostics_);
     Double3 result{0, 0, 0};
     const char *const axes[] = {"x", "y", "z"};
     for (int i = 0; i < 3; ++i)

@@ -11,9 +11,7 @@
 
 #include <functional>
 #include <initializer_list>
-#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace gradus {
@@ -43,9 +41,6 @@ std::vector<NestedObject> nested_objects(const Element &element, const std::stri
 std::string type_of(const Element &element);
 /// For messages: <bsdf type="diffuse">.
 std::string described(const Element &element);
-/// Tells of attributes whose names are not among these. `owner`: who has them, for the message.
-void report_unknown_attributes(const Element &element, std::span<const std::string_view> known,
-                               const std::string &owner, Diagnostics &diagnostics);
 
 /// Parameters are asked for by their snake_case names; files may spell them in camelCase. Only what the declaration has
 /// can be asked for, in the getter of its type: all else is a defect of the program, a std::logic_error. Every getter

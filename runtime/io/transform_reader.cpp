@@ -6,8 +6,6 @@
 
 #include <cmath>
 #include <optional>
-#include <span>
-#include <string_view>
 
 namespace gradus {
 
@@ -118,22 +116,6 @@ Matrix4 read_look_at(const Element &step, Diagnostics &diagnostics) {
     return look_at(origin, target, up);
 }
 
-/// Tells of attributes that no such step has, and of those that others stand for.
-void check_attributes(const Element &step, const std::string &kind, Diagnostics &diagnostics) {
-    static constexpr std::string_view of_look_at[] = {"origin", "target", "up"},
-                                      of_others[] = {"value", "x", "y", "z", "angle"};
-    const bool has_axes = kind != "lookat" && kind != "matrix";
-    std::span<const std::string_view> known = of_others;
-    if (kind == "lookat")
-        known = of_look_at;
-    else if (kind != "rotate")
-        known = known.first(has_axes ? 4 : 1);
-    report_unknown_attributes(step, known, described(step), diagnostics);
-    for (const char *axis : {"x", "y", "z"})
-        if (has_axes && step.attribute("value") && step.attribute(axis))
-            diagnostics.unknown(step.location, described(step) + ": value stands for " + axis + ", too");
-}
-
 } // namespace
 
 Matrix4 read_transform(const Element &transform, Diagnostics &diagnostics) {
@@ -141,7 +123,6 @@ Matrix4 read_transform(const Element &transform, Diagnostics &diagnostics) {
     for (const Element &step : transform.children) {
         const std::string kind = lower_case(step.tag);
         Matrix4 matrix;
-        check_attributes(step, kind, diagnostics);
         if (kind == "matrix")
             matrix = read_matrix(step);
         else if (kind == "translate")

@@ -214,14 +214,45 @@ TEST(Unused, PartsOfPropertiesAndUnknownAttributesAreWarnedOf) {
                                "<point name='center' X='3'/>\n"
                                "<transform name='to_world'><scale X='3'/><translate value='1' x='5'/></transform>"
                                "</shape>\n<shape type='shapegroup' id='g'><shape type='cube'/></shape>"));
-    EXPECT_THAT(
-        loaded.warnings,
-        UnorderedElementsAre(AllOf(HasSubstr("scene.xml:3: "), HasSubstr("<rgb> in <ref> is not used")),
-                             AllOf(HasSubstr("scene.xml:4: "), HasSubstr("<float> in <rgb> is not used")),
-                             AllOf(HasSubstr("scene.xml:5: "), HasSubstr("unknown attribute \"X\" of \"center\"")),
-                             AllOf(HasSubstr("scene.xml:6: "), HasSubstr("unknown attribute \"X\" of <scale>")),
-                             AllOf(HasSubstr("scene.xml:6: "), HasSubstr("<translate>: value stands for x, too")),
-                             AllOf(HasSubstr("scene.xml:7: "), HasSubstr("no instance names this shapegroup"))));
+    EXPECT_THAT(loaded.warnings,
+                UnorderedElementsAre(
+                    AllOf(HasSubstr("scene.xml:3: "), HasSubstr("<rgb> in <ref> is not used")),
+                    AllOf(HasSubstr("scene.xml:4: "), HasSubstr("<float> in <rgb> is not used")),
+                    AllOf(HasSubstr("scene.xml:5: "), HasSubstr("unknown attribute \"X\" of <point name=\"center\">")),
+                    AllOf(HasSubstr("scene.xml:6: "), HasSubstr("unknown attribute \"X\" of <scale>")),
+                    AllOf(HasSubstr("scene.xml:6: "), HasSubstr("<translate>: value stands for x, too")),
+                    AllOf(HasSubstr("scene.xml:7: "), HasSubstr("no instance names this shapegroup"))));
+}
+
+/// Where nobody reads them they are told of, whatever element has them; ids and names may be everywhere.
+TEST(Unused, AttributesOfEveryElementAreWarnedOf) {
+    const auto unknown = [](const char *line, const char *element) {
+        return AllOf(HasSubstr(line), HasSubstr(std::string("unknown attribute \"X\" of ") + element));
+    };
+    const LoadedScene loaded = load_text(
+        "<scene version='3.0.0' xmlns='urn:a' X='1' type='scene'>\n"
+        "<default name='radius' value='2' X='1'/>\n"
+        "<path value='no-such-folder' X='1'/>\n"
+        "<bsdf type='diffuse' id='m' name='m' X='1'><rgb name='reflectance' value='1 0 0' intent='reflectance'/>\n"
+        "<spectrum name='unheard' id='s' value='1' X='1'/></bsdf>\n"
+        "<shape type='sphere'><float name='radius' id='r' value='$radius' X='1'/><ref id='m' name='bsdf' X='1'/>\n"
+        "<point name='center' value='0' z='3'/>\n"
+        "<transform name='to_world' id='t' X='1'><lookAt origin='0 0 1' target='0 0 0' up='0 1 0' X='1'/>\n"
+        "<matrix value='1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1' angle='3'/><rotate z='1' angle='0'/></transform></shape>\n"
+        "<alias id='m' as='n' X='1'/><emitter type='constant'/>\n"
+        "<sensor type='perspective'/></scene>");
+    EXPECT_THAT(loaded.warnings,
+                UnorderedElementsAre(
+                    unknown("xml:1: ", "<scene type=\"scene\">"), HasSubstr("xml:1: unknown attribute \"type\""),
+                    unknown("xml:2: ", "<default name=\"radius\">"), unknown("xml:3: ", "<path>"),
+                    AllOf(HasSubstr("xml:3: <path>: there is no folder"), HasSubstr("no-such-folder")),
+                    unknown("xml:4: ", "<bsdf type=\"diffuse\" name=\"m\">"),
+                    unknown("xml:5: ", "<spectrum name=\"unheard\">"),
+                    HasSubstr("xml:5: unknown parameter \"unheard\""), unknown("xml:6: ", "<float name=\"radius\">"),
+                    unknown("xml:6: ", "<ref name=\"bsdf\">"),
+                    HasSubstr("xml:7: <point name=\"center\">: value stands for z, too"),
+                    unknown("xml:8: ", "<transform name=\"to_world\">"), unknown("xml:8: ", "<lookAt>"),
+                    HasSubstr("xml:9: unknown attribute \"angle\" of <matrix>"), unknown("xml:10: ", "<alias>")));
 }
 
 /// Of an object's parameters, of objects in it and, through another file, of more; in the dialect of each.
