@@ -113,7 +113,10 @@ TableList GradientPathTracer::tables() const {
                                                            : primary_origin_x},
         {.name = "primary_vertex", .rows = RowsOf::slot, .columns = session_.vertex_columns(primary_vertex_columns)},
         {.name = "vertex", .columns = session_.vertex_columns(vertex_columns)},
-        {.name = "event", .columns = has_tree ? event_columns : event_light},
+        {.name = "event",
+         .columns = has_tree                      ? event_columns
+                    : session_.has("TRAIT_APART") ? event_light
+                                                  : event_inverse_survival},
         {.name = "offset", .multiple = 4, .columns = offset_columns_used, .alternates = true, .is_cleared = true},
         {.name = "shift", .multiple = 4, .columns = has_tree ? shift_columns : shift_receiver, .is_cleared = true},
         {.name = "shown", .multiple = 4, .columns = has_pictures(session_) ? std::uint32_t(shown_columns) : 0u},

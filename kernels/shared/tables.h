@@ -275,6 +275,8 @@
     REAL(event, arriving_b, "")                                                                                        \
     REAL(event, inverse_light_pdf, "1 over that density by solid angle; 0 where BSDF sampling cannot find the light")  \
     REAL(event, base_bsdf, "density with which BSDF sampling finds the light point, over light sampling's")            \
+    REAL(event, inverse_survival,                                                                                      \
+         "only with TRAIT_APART, from `join` on: 1 over the chance of surviving its roulette")                         \
     UINT(event, light, "only with TRAIT_LIGHT_TREE: the light sampled")                                                \
     REAL(event, light_path, "with it: probability of the tree's way to its leaf")
 

@@ -21,7 +21,7 @@
 #include "kernels/shared/stage.h"
 
 STAGE join(uint count, uint unit, uint first, uint capacity, uint slots, uint roulette_depth,
-           __global const real *vertex, __global const real *event, __global real *path, __global real *ray,
+           __global const real *vertex, __global real *event, __global real *path, __global real *ray,
            __global real *shadow, __global real *offset, __global real *shift, __global real *evaluation,
            __global real *prefix, __global real *difference, __global const real *materials
 #if TRAIT_APART
@@ -159,7 +159,7 @@ STAGE join(uint count, uint unit, uint first, uint capacity, uint slots, uint ro
     const int alive = AT_UINT(ray, primitive, row) == ray_pending && brightest >= R(1e-37) && u.d < survival;
     AT_UINT(ray, primitive, row) = alive ? ray_pending : ray_none;
     /* Divided by the chance of surviving, all of them: it is a factor of each path, and of no density that weighs
-     * them. */
+     * them. Of those at vertices of their own `weigh` does it, after the light that they see there. */
     const real inverse_survival = R(1) / (alive ? survival : R(1));
     /* Where all are connected, the row's throughput counts from 1 from here on, but for its size, which roulette goes
      * by; the slot has the rest. Without offset paths the row keeps its own, for the colour of what it may have been
@@ -170,11 +170,13 @@ STAGE join(uint count, uint unit, uint first, uint capacity, uint slots, uint ro
     rgb left = rgb_select(has_offset, rgb_gray(alive ? brightest / survival : R(0)), own);
 #if TRAIT_APART
     left = rgb_select(keeps != 0u, own, left);
+    AT(event, inverse_survival, row) = inverse_survival;
     if (keeps) {
 #pragma unroll
         for (uint j = 0; j < 4; ++j) {
             const size_t at = (size_t)j * capacity + row;
-            SCALE_RGB(offset, value, at, inverse_survival);
+            const int is_own = AT_UINT(offset, state, at) < connection_recent;
+            SCALE_RGB(offset, value, at, is_own ? R(1) : inverse_survival);
         }
     }
     if (!keeps)

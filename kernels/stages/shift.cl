@@ -13,6 +13,10 @@
  * path. Where it is the Dirac one, the offset path takes its own Dirac lobe, whatever kind that is of; rough ones
  * likewise.
  *
+ * Nothing connects with a surface in whose plane a vertex lies, to within the offsets of rays: on which side of it that
+ * is, and so whether light sampled or a direction sampled leads there, were a matter of rounding, and for both samplers
+ * of different rounding.
+ *
  * The step fails where the next vertex would be seen from its other side, between a Dirac lobe and a rough one, and
  * where the half-vector copy does. Where the vertex is two-sided and seen from its other side by the shading normal
  * alone, which turns its frame (SIDE_BY_SHADING), each of both paths has it in a frame of its own, in which the other
@@ -97,6 +101,7 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
     const int slot = AT_ROW(path, slot, row);
     const film_pixel pixel = PIXEL_OF(slot);
     const vec3 base = AT_V3(vertex, position, row);
+    const real base_offset = AT(vertex, offset, row);
     const uint base_kind = AT_UINT(vertex, kind, row);
 
     /* Where the base path goes. */
@@ -179,6 +184,7 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
     const int is_finite_light = is_surface | is_point;
     const real base_distance_squared = v3_dot(s.connection, s.connection);
     const real base_cosine = -v3_dot(s.normal, s.direction);
+    const real base_above = -v3_dot(s.normal, s.connection); /* the light's plane */
     /* After the light's normal, which is normalised as the ways to it will be (kernels/lib/ordered.h). */
     const vec3 light_point = v3_after(v3_add(base, s.connection), base_cosine);
     const real light_gap = offset_at(light_point, s.normal, LIGHT_FIELD(chosen.light, offset));
@@ -253,8 +259,9 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         light_jacobian = has_picture && rgb_max(shown_here) == R(0) ? R(0) : light_jacobian;
         SET_RGB(shown, arriving, at, shown_here);
 #endif
-        light_jacobian =
-            is_surface ? (cosine > R(0) && base_cosine > R(0) ? nearer * cosine / base_cosine : R(0)) : light_jacobian;
+        const real above = -v3_dot(s.normal, to_point);
+        const int connects = (above > light_gap + from_offset) & (base_above > light_gap + base_offset);
+        light_jacobian = is_surface ? (connects ? nearer * cosine / base_cosine : R(0)) : light_jacobian;
         /* The same point of the same light, chosen with the same density by area. Spheres are sampled by cones. */
         real light_density = light_jacobian > R(0) ? R(1) : R(0);
 #if TRAIT_LIGHT_SPHERE
@@ -305,7 +312,9 @@ STAGE shift(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         const vec3 connection = v3_sub(hit.position, from_after);
         const vec3 to_next = v3_select(is_escaped, base_direction, v3_normalize(connection));
         const real reconnection = is_escaped ? R(1) : reconnection_jacobian(base, from_after, hit.position, hit.normal);
-        const int same_side = is_escaped | (-v3_dot(hit.normal, connection) * base_side > R(0));
+        const real side = -v3_dot(hit.normal, connection);
+        const int same_side = is_escaped | ((side * base_side > R(0)) & (r_abs(side) > end_offset + from_offset) &
+                                            (r_abs(base_side) > end_offset + base_offset));
         uint ends = 0u;
 #if SIDE_BY_SHADING
         const int from_behind = v3_dot(end_shading, v3_after(to_next, reconnection)) > R(0);

@@ -14,6 +14,9 @@
  * TRAIT_MIXED_LOBES: offset paths that have just reconnected to a vertex at which the base path then takes a Dirac lobe
  * fail once the light there is weighed: seen from elsewhere, that lobe does not lead there, nor would the way back.
  *
+ * Roulette has been played by `join`, but light is sampled before it: of what goes on only the step is divided by its
+ * chance.
+ *
  * AT_FIRST: whether the rows are those at first vertices. */
 //! traits: TRAIT_SHIFT_DISTANCE TRAIT_MIXED_LOBES
 #include "kernels/lib/gradient.h"
@@ -91,6 +94,10 @@ STAGE weigh(uint count, uint unit, uint first, uint stride, uint capacity, uint 
 
     const real pdf = AT(event, pdf, row);
     const real inverse_pdf = pdf > R(0) ? R(1) / pdf : R(0);
+    real inverse_survival = R(1); /* at first vertices there is no roulette */
+#if TRAIT_APART && !AT_FIRST
+    inverse_survival = AT(event, inverse_survival, row);
+#endif
 #if TRAIT_APART
     const uint primitive = AT_UINT(ray, primitive, row);
     const int is_hit = primitive < ray_first_special;
@@ -167,7 +174,7 @@ STAGE weigh(uint count, uint unit, uint first, uint stride, uint capacity, uint 
         const int works = is_possible & (reconnects | (step_pdf > R(0)));
         const uint reason = is_possible ? outcome_failed_copy : shift_outcome_of(outcome);
         const real factor = works ? jacobian * inverse_pdf : R(0);
-        const rgb stepped = rgb_mul(own.value, rgb_scale(f, factor));
+        const rgb stepped = rgb_mul(own.value, rgb_scale(f, factor * inverse_survival));
         real ratio = works ? own.ratio * step_pdf * factor : shift_failed(reason);
 #if TRAIT_APART
         const size_t sent = (size_t)j * stride + row;

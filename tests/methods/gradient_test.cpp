@@ -6,6 +6,7 @@
 #include "tests/support/small_scenes.h"
 #include "tests/support/stability.h"
 #include "tests/support/test_name.h"
+#include "tests/support/worse.h"
 
 #include <fmt/format.h>
 
@@ -177,6 +178,77 @@ TEST(GradientNoise, IsKnownWhereItIsSmallBesideTheMean) {
                 EXPECT_NEAR(pixel(image, x, y, "primal_variance.G") / variance, 1, 0.01) << x << ", " << y;
             }
     }
+}
+
+/// Light sampled at an offset path's own vertex is sampled before roulette there, and so is not divided by its chance.
+/// A lit wall in a mirror has no noise but roulette's, which pairs of pixels share.
+TEST(GradientsUnderRoulette, AreThoseOfTheLightBeforeIt) {
+    SceneMaker maker(12, 16);
+    maker.look({0, 0.4, 5}, {0, 0, 0}, 35);
+    Bsdf dim = mirror();
+    dim.specular_reflectance = {0.4f, 0.4f, 0.4f};
+    maker.parallelogram({-3, -3, -1}, {6, 0, 0}, {0, 6, 0}, maker.material(dim));
+    maker.parallelogram({-3, -3, 7}, {0, 6, 0}, {6, 0, 0}, maker.material(diffuse(0.4)));
+    maker.point_light({10, 10, 10}, {0, 2, 4});
+    maker.scene.settings.max_depth = 4;
+    maker.scene.settings.rr_depth = 2;
+    RenderOptions options;
+    options.layers = true;
+    const Image image = render(maker.scene, options, "gpt").image;
+    const Layer primal(image, "primal"), dx(image, "dx"), dy(image, "dy");
+    double most = 0, brightest = 0;
+    for (std::uint32_t y = 0; y + 1 < 12; ++y)
+        for (std::uint32_t x = 0; x + 1 < 12; ++x) {
+            most = worse(most, std::fabs(dx(1, x, y) - (primal(1, x + 1, y) - primal(1, x, y))));
+            most = worse(most, std::fabs(dy(1, x, y) - (primal(1, x, y + 1) - primal(1, x, y))));
+            brightest = std::max(brightest, primal(1, x, y));
+        }
+    std::printf("difference of the primal and the layer: %.2g of the brightest\n", most / brightest);
+    EXPECT_GT(brightest, 0);
+    EXPECT_LT(most, 1e-6 * brightest);
+}
+
+/// Both samplers must agree on whether a vertex in the plane of a lamp is connected with it: on which side it lies is a
+/// matter of rounding.
+TEST(GradientsInTheLampsPlane, HaveNoLightTooMuch) {
+    constexpr std::uint32_t size = 16;
+    constexpr std::size_t renders = 12;
+    SceneMaker maker(size, 256);
+    maker.look({0.2, 0.1, 4}, {0.2, 0.1, 0}, 20);
+    maker.parallelogram({-4, -4, -1}, {8, 0, 0}, {0, 8, 0}, maker.material(diffuse(0.5)));
+    // In no plane of two axes, where rounding would leave nothing of what is above it.
+    maker.parallelogram({-0.4f, 0.61f, -0.9f}, {1.11f, 0.13f, 0.21f}, {-0.17f, -0.37f, 1.13f},
+                        maker.material(diffuse(0.5)), maker.emitter(Emitter::Kind::area, {1, 1, 1}));
+    maker.scene.settings.max_depth = 2;
+    RenderOptions options;
+    options.layers = true;
+    std::vector<double> sums(2 * size * size, 0), squares(sums);
+    for (const Image &image : render_seeds(maker.scene, renders, options, 1, "gpt")) {
+        const Layer primal(image, "primal"), dx(image, "dx"), dy(image, "dy");
+        const auto add = [&](std::size_t at, double off) {
+            sums[at] += off;
+            squares[at] += off * off;
+        };
+        for (std::uint32_t y = 0; y + 1 < size; ++y)
+            for (std::uint32_t x = 0; x + 1 < size; ++x) {
+                add(2 * (y * size + x), dx(1, x, y) - (primal(1, x + 1, y) - primal(1, x, y)));
+                add(2 * (y * size + x) + 1, dy(1, x, y) - (primal(1, x, y + 1) - primal(1, x, y)));
+            }
+    }
+    double largest = 0, sum = 0, count = 0;
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+        const double mean = sums[i] / renders, spread = squares[i] / renders - mean * mean;
+        if (!(spread > 0))
+            continue;
+        const double z_squared = mean * mean * (renders - 1) / spread;
+        largest = worse(largest, z_squared);
+        sum += z_squared;
+        ++count;
+    }
+    // The mean of the square of Student's t with 11 degrees of freedom is 11 / 9.
+    std::printf("squares of standard errors: mean %.2f, largest %.1f, of %.0f\n", sum / count, largest, count);
+    EXPECT_GT(count, 100);
+    EXPECT_LT(sum / count, 2);
 }
 
 } // namespace
