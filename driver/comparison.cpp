@@ -183,11 +183,16 @@ std::string test_line(const char *name, const BlockTest &test) {
                        test.over_three_limit);
 }
 
+/// Numbers of JSON are finite, and a PSNR is infinite for what is equal and for what is all wrong.
+nlohmann::json psnr_json(double psnr) {
+    return std::isinf(psnr) ? nlohmann::json(psnr > 0 ? "inf" : "-inf") : nlohmann::json(psnr);
+}
+
 nlohmann::json figures_json(const Comparison::Figures &figures) {
     nlohmann::json json{{"name", figures.name},
                         {"relative_mse", figures.relative_mse},
                         {"trimmed_relative_mse", figures.trimmed_relative_mse},
-                        {"psnr", figures.psnr},
+                        {"psnr", psnr_json(figures.psnr)},
                         {"mean", figures.mean.image},
                         {"reference_mean", figures.mean.reference},
                         {"mean_ratio", figures.mean.ratio},

@@ -52,9 +52,6 @@ void check_alpha(Reconstruction reconstruction, bool given, double alpha) {
                                 alpha, least_alpha_of_absolute_values));
 }
 
-// Its square and the sums of many weights are to be finite in single precision.
-constexpr double largest_alpha = 1e12;
-
 void add_alpha_option(CLI::App &command, const char *group, const char *standard, const char *text,
                       std::function<void(std::optional<double>)> set) {
     const auto complaint = [](std::string &value) {

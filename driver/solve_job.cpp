@@ -1,6 +1,7 @@
 #include "driver/solve_job.h"
 
 #include "driver/finite_values.h"
+#include "driver/number_checks.h"
 #include "driver/program.h"
 #include "driver/reconstruction_options.h"
 #include "driver/solve_report.h"
@@ -21,6 +22,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <new>
+#include <optional>
 
 namespace gradus {
 namespace {
@@ -90,11 +92,23 @@ class SolveJob {
     /// A render's layers without a word on how to solve them give another image than the render's.
     void warn_of_other_reconstruction() const {
         const auto made = images_.metadata.find("reconstruction");
-        const std::string name = reconstruction_name(request_.reconstruction);
-        if (!request_.reconstruction_is_given && made != images_.metadata.end() && made->second != name)
-            warn(fmt::format("the render that wrote these layers has --reconstruction {0}, and this image is {1}: "
-                             "--reconstruction {0} makes its own",
-                             made->second, name));
+        if (made == images_.metadata.end())
+            return;
+        std::string own = "--reconstruction " + made->second, ours = reconstruction_name(request_.reconstruction);
+        const bool is_other = made->second != ours;
+        // The render's alpha is from variances as a rule, a solve's is not.
+        const auto text = images_.metadata.find("alpha");
+        const auto alpha = text != images_.metadata.end() ? finite_number(text->second) : std::nullopt;
+        const bool alpha_is_other = alpha && !request_.options.alpha_from_variances && *alpha != request_.options.alpha;
+        if (is_other ? request_.reconstruction_is_given : request_.alpha_is_given || !alpha_is_other)
+            return;
+        if (alpha_is_other) {
+            own += " --alpha " + text->second;
+            ours +=
+                !needs_halves(request_.reconstruction) ? fmt::format(" with --alpha {}", request_.options.alpha) : "";
+        }
+        warn(fmt::format("the render that wrote these layers has {0}, and this image is {1}: {0} makes its own", own,
+                         ours));
     }
 
     void warn_of_what_is_not_read() const {

@@ -49,7 +49,8 @@ struct LinearSolver::Progress {
     std::function<void(std::uint32_t, const Buffer &)> keep;
     int iterations = 0;
     struct Channel {
-        std::vector<double> norms; ///< residuals, or the roots of the errors
+        std::vector<double> norms;                              ///< residuals, or the roots of the errors
+        double least = std::numeric_limits<double>::infinity(); ///< of them
         bool finished = false, converged = false, is_kept = false;
     };
     std::vector<Channel> of = std::vector<Channel>(channels.count);
@@ -84,12 +85,15 @@ struct LinearSolver::Progress {
 
     void look(Channel &channel, int known, std::uint32_t number) {
         std::vector<double> &norms = channel.norms;
-        while (int(norms.size()) <= known) // <z, r> may be below 0 where rounding errors are all that is left
+        while (int(norms.size()) <= known) { // <z, r> may be below 0 where rounding errors are all that is left
             norms.push_back(std::sqrt(std::abs(sums.read(slot(int(norms.size())), number))));
+            channel.least = std::min(channel.least, norms.back());
+        }
         // From u = 0, the first residual is b itself.
         const double norm = reference_norm > 0 ? reference_norm : norms.front();
         channel.converged = norms.back() <= std::max(request.tolerance, least_tolerance) * norm;
-        channel.finished = channel.converged || !std::isfinite(norms.back()) || stagnates(norms) || drifts(norms, norm);
+        channel.finished =
+            channel.converged || !std::isfinite(norms.back()) || stagnates(norms) || drifts(channel, norm);
     }
 
     /// Rounding errors are all that is left: a cycle that works divides the residual by ten.
@@ -99,10 +103,9 @@ struct LinearSolver::Progress {
     }
 
     /// The same of preconditioned steps, where the mean of the solution is next to free.
-    bool drifts(const std::vector<double> &norms, double norm) const {
-        const double least = *std::min_element(norms.begin(), norms.end());
-        return request.may_drift && request.method == LinearMethod::pcg && least <= small_residual * norm &&
-               norms.back() > 2 * least;
+    bool drifts(const Channel &channel, double norm) const {
+        return request.may_drift && request.method == LinearMethod::pcg && channel.least <= small_residual * norm &&
+               channel.norms.back() > 2 * channel.least;
     }
 };
 

@@ -27,10 +27,6 @@ namespace {
 constexpr double default_tolerance = 1e-5;
 constexpr std::uint32_t most_channels = 8;
 
-/// Beyond it, nothing is left of the differences in any precision. Squares, times the sizes of coarse pixels, are to
-/// be numbers.
-constexpr double largest_alpha = 1e12;
-
 /// The weights of a problem in which something may be missing.
 Weights weights_for(const PoissonOptions &options, bool missing) {
     const bool uniform = options.norm == PoissonNorm::l2 && !missing && !options.weigh_by_variance;
@@ -133,6 +129,8 @@ void PoissonSolver::Implementation::least_squares(const Inputs &images, const Po
     const bool settles = !uniform && report.alpha < least_alpha_of_means;
     if (settles && report.alpha > 0)
         report.alpha = std::max(report.alpha, least_alpha_of_squares);
+    if (!uniform)
+        report.alpha = std::min(report.alpha, largest_alpha_of_weights);
     problem.use_least_squares_weights(kernels, report.alpha);
 
     LinearSolver::Request request;

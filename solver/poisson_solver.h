@@ -36,7 +36,7 @@ struct PoissonImages {
     Planes dx{};     ///< Gx(x, y), an estimate of I(x + 1, y) - I(x, y); the last column is not read
     Planes dy{};     ///< Gy(x, y), an estimate of I(x, y + 1) - I(x, y); the last row is not read
     Planes direct{}; ///< added to the reconstruction as it is
-    Planes start{};  ///< where the iteration starts, else near I0; for L1 only where its norm is less than there
+    Planes start{};  ///< where the iteration starts, else at or near I0; for L1 only where its norm is less than there
     /// Variances of primal, dx and dy, by pixel and channel: all three or none.
     Planes primal_variance{}, dx_variance{}, dy_variance{};
     /// Of BufferSources: the variances have one plane, for all channels.
@@ -56,6 +56,16 @@ using PlaneSink = std::function<void(std::uint32_t channel, const float *plane)>
 /// With a smaller alpha, but for 0, the L1 norm's data terms are lost in single precision's rounding beside its
 /// differences: in images of 16 x 16 to 512 x 512, 1e-5 is off by up to 0.15 and 1e-6 by ten.
 inline constexpr double least_alpha_of_absolute_values = 1e-4;
+
+/// What a larger alpha counts as: nothing is left of the differences in any precision. Squares, times the sizes of
+/// coarse pixels, are to be numbers.
+inline constexpr double largest_alpha = 1e12;
+
+/// The same of the L2 norm where anything is missing or weighed. There differences take a pixel some 1e-4 of what they
+/// ask for away from its datum, while larger weights of data beside pixels without any are more than preconditioned
+/// steps can bridge: with 300 some small images do not converge, with 1000 every third, and with 1e8 pixels without
+/// data are off by up to 1e12.
+inline constexpr double largest_alpha_of_weights = 100;
 
 struct PoissonOptions {
     PoissonNorm norm = PoissonNorm::l1;
@@ -101,7 +111,7 @@ constexpr const char *no_system = "none";
 
 struct PoissonReport {
     std::string method; ///< "multigrid", or "irls, pcg" and the like; or no_system
-    double alpha = 0;   ///< as used: at most 1e12; of L2 where anything is missing or weighed, 0 or at least 1e-4
+    double alpha = 0;   ///< as used: at most 1e12; of L2 where anything is missing or weighed, 0 or 1e-4 to 100
     int iterations = 0; ///< steps or cycles in all
     int reweightings = 0;
     bool converged = false; ///< the tolerance was reached

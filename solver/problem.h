@@ -20,9 +20,9 @@ class Problem {
     void import(const Inputs &images, PoissonReport &report);
     /// Reads the variances for their scales, and keeps them for weights. A variance that is missing or below zero
     /// removes its equation from weighted problems. Of uniform L2 their scale is the mean (Kettunen et al. 2015,
-    /// supplement), which tells its squared error. Else it is (mean of fourth roots)^4, for a firefly is most of a mean:
-    /// all that is less noisy than a thousandth of it would weigh alike, and L1, which leaves outliers where they are,
-    /// would go by them (docs/design.md, 'Reconstruction').
+    /// supplement), which tells its squared error. Else it is (mean of fourth roots)^4, for a firefly is most of a
+    /// mean: all that is less noisy than a thousandth of it would weigh alike, and L1, which leaves outliers where they
+    /// are, would go by them (docs/design.md, 'Reconstruction').
     void import_variances(const Inputs &images, const PoissonOptions &options);
     /// Kettunen et al. 2015, supplement, eq. 12; `otherwise` where all variances are 0.
     double alpha_from_variances(double otherwise) const;
@@ -41,7 +41,7 @@ class Problem {
     const Buffer &make_right_side(Kernels &kernels, Planes group);
     /// u = start - I0, or 0.
     void start(const Inputs &images);
-    /// u = 0, cut to what the differences give from the neighbours: an outlier of I0 does not stay.
+    /// u = 0, cut to what the differences give from the neighbours: an outlier of I0 does not stay, right or wrong.
     void start_between_neighbours(Kernels &kernels);
     /// Takes the mean of u off: uniform weights keep that of I0.
     void remove_mean(Kernels &kernels);

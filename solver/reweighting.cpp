@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <functional>
 #include <numeric>
 #include <optional>
 #include <vector>
@@ -21,6 +23,9 @@ constexpr int first_extrapolated = 3;
 /// The first step has the longest way, and weights that are nearly equal.
 constexpr double first_tolerance = 1e-2;
 constexpr int most_first_iterations = 20;
+/// With a smaller alpha, a pixel that start_between_neighbours() moves is outweighed by those of its differences that
+/// ask for it, which are three or four. With a larger one outliers of I0 may stay: from 4 on, all do.
+constexpr double least_alpha_of_outliers = 3;
 
 double total(const std::vector<double> &values, std::uint32_t planes) {
     return std::accumulate(values.begin(), values.begin() + planes, 0.0);
@@ -58,15 +63,26 @@ Reweighting::Norm Reweighting::reweight(Kernels &kernels, Problem &problem, doub
 }
 
 void Reweighting::start(Kernels &kernels, Problem &problem, double alpha, const Inputs &images) {
-    problem.start_between_neighbours(kernels);
-    if (!images.start)
-        return;
-    // Reweighting hardly leaves a poor start, so one that is worse than our own is not taken.
-    const auto norm = [&] { return reweight(kernels, problem, alpha, 1, 1, 1).all; };
-    const double own = norm();
-    problem.start(images);
-    if (!(norm() < own))
-        problem.start_between_neighbours(kernels);
+    std::vector<std::function<void()>> starts = {[&] { problem.start_between_neighbours(kernels); }};
+    if (alpha >= least_alpha_of_outliers)
+        starts.insert(starts.begin(), [&] { problem.u().clear(); });
+    if (images.start)
+        starts.emplace_back([&] { problem.start(images); });
+    if (starts.size() == 1)
+        return starts[0]();
+    // Reweighting hardly leaves a poor start, so the one of the least norm is taken.
+    std::size_t best = 0;
+    double least = 0;
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+        starts[i]();
+        const double norm = reweight(kernels, problem, alpha, 1, 1, 1).all;
+        if (i == 0 || norm < least) {
+            best = i;
+            least = norm;
+        }
+    }
+    if (best + 1 < starts.size())
+        starts[best]();
 }
 
 void Reweighting::run(Kernels &kernels, Problem &problem, double alpha, const Inputs &images,
@@ -85,7 +101,8 @@ void Reweighting::run(Kernels &kernels, Problem &problem, double alpha, const In
     const double scale = scale_of(kernels, problem);
     double regularisation = first_regularisation * scale, before = 0;
     for (int k = 0;; ++k) {
-        // Where nothing is left to minimise, weights of 1 stand in.
+        // Where no difference has a residual there is nothing to reweight by, and the start is the minimum (next to it
+        // with an alpha of 3 to 4, of which some outliers of I0 stay and others do not). Weights of 1 stand in.
         const Norm norm = scale > 0 ? reweight(kernels, problem, alpha, scale, regularisation, cut_at * scale)
                                     : reweight(kernels, problem, alpha, 1, 1, 1);
         report.objectives.push_back(norm.all);

@@ -58,8 +58,9 @@ SOLVE right_side(GRID, WEIGHTS_OF_DIAGONAL, __global const real *gradient_x, __g
 }
 
 /* u = 0, cut to between the second least and the second largest value that the differences give from the neighbours. So
- * a pixel of I0 that is far off by itself does not stay where it is. But not where I0 + u would lose more than three
- * digits to cancellation, which would be noise to all equations of the pixel. */
+ * a pixel of I0 that is far off by itself does not stay where it is, which is right where its differences outweigh it:
+ * with an alpha below 3 (solver/reweighting.cpp). But not where I0 + u would lose more than three digits to
+ * cancellation, which would be noise to all equations of the pixel. */
 SOLVE start_between_neighbours(GRID, __global const real *base, __global const real *gradient_x,
                                __global const real *gradient_y, __global real *u) {
     SOLVER_PLACE

@@ -1,6 +1,9 @@
 /* accumulate: adds one sample to each of `count` pixels from `first_pixel` on: slots `first_slot` on. A sample with a
  * NaN or an infinity is left out and counted. Samples of filters with negative lobes have a weight. Squares are summed
- * where the spread of the samples is to tell the variance: not where replicates do, the films of which are many.
+ * where the spread of the samples is to tell the variance: not where replicates do, the films of which are many. With
+ * weights the squares are those of deviations from the mean of the samples before in the same film, of which there are
+ * film_samples_before; weights_before and squares_before are the sums of their weights and of the squares of these. From
+ * plain squares the mean's could not be taken off: what the weights are would be left, times mean and deviation.
  *
  * Of features the film has means over the samples of a pixel, of which there are `samples_before` already: sums without
  * corrections would lose what a sample adds, once they are large beside it. One that is left out counts as 0 there. */
@@ -24,6 +27,15 @@
 #define ADD_FEATURE(column, x)                                                                                         \
     AT(feature_film, column, pixel) += ((finite ? WEIGHTED(x) : R(0)) - AT(feature_film, column, pixel)) * share;
 
+#if TRAIT_FILTER_SIGNED
+#define SQUARE(channel)                                                                                                \
+    (finite ? weighted_deviation(filter_weight, weights_before * kept, squares_before * kept, value.channel,           \
+                                 AT(film, sum_##channel, pixel))                                                       \
+            : R(0))
+#else
+#define SQUARE(channel) (value.channel * value.channel)
+#endif
+
 STAGE accumulate(uint count, uint slots, uint pixels, uint first_slot, uint first_pixel, uint samples_before,
                  __global const real *radiance, __global real *film
 #if TRAIT_AOV
@@ -33,6 +45,10 @@ STAGE accumulate(uint count, uint slots, uint pixels, uint first_slot, uint firs
 #if TRAIT_FILTER_SIGNED
                  ,
                  __global const real *filtered
+#if TRAIT_AOV && TRAIT_PART_BITS < 2
+                 ,
+                 real film_samples_before, real weights_before, real squares_before
+#endif
 #endif
 ) {
     const size_t i = work_item();
@@ -51,15 +67,19 @@ STAGE accumulate(uint count, uint slots, uint pixels, uint first_slot, uint firs
 #endif
     const int finite = is_finite(value.r) && is_finite(value.g) && is_finite(value.b);
     value = rgb3(finite ? value.r : R(0), finite ? value.g : R(0), finite ? value.b : R(0));
+#if TRAIT_AOV && TRAIT_PART_BITS < 2
+#if TRAIT_FILTER_SIGNED
+    /* Samples that were left out weigh nothing, and which ones these were is not known. */
+    const real kept = R(1) - (real)AT_UINT(film, rejected, pixel) / r_max(film_samples_before, R(1));
+#endif
+    ADD(feature_film, square_r, square_correction_r, SQUARE(r))
+    ADD(feature_film, square_g, square_correction_g, SQUARE(g))
+    ADD(feature_film, square_b, square_correction_b, SQUARE(b))
+#endif
     ADD(film, sum_r, correction_r, value.r)
     ADD(film, sum_g, correction_g, value.g)
     ADD(film, sum_b, correction_b, value.b)
     AT_UINT(film, rejected, pixel) += finite ? 0u : 1u;
-#if TRAIT_AOV && TRAIT_PART_BITS < 2
-    ADD(feature_film, square_r, square_correction_r, value.r * value.r)
-    ADD(feature_film, square_g, square_correction_g, value.g * value.g)
-    ADD(feature_film, square_b, square_correction_b, value.b * value.b)
-#endif
 #if TRAIT_AOV
     const real share = R(1) / ((real)samples_before + R(1));
     ADD_FEATURE(albedo_r, albedo.r)

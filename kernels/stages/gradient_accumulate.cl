@@ -12,14 +12,13 @@
  * that from the mean of all (Welford 1962): of a sum of squares the square of the mean would be taken off, which leaves
  * rounding where the spread is small beside it.
  *
- * Where frames weigh other than 1 (a filter with negative lobes), samples are times the weight w of theirs, and means
- * are sums over the sum W of the weights before (weights_0 of the first frame), whose squares sum up to V (squares_0).
- * Then w f - w mean has w^2 (1 + V / W^2) times the variance of f: what is added has w^2 times that, and nothing is
- * divided by W, which may be near 0.
+ * Where frames weigh other than 1 (a filter with negative lobes), samples are times the weight of theirs, and means are
+ * sums over the sum of the weights before (weights_0 of the first frame), whose squares sum up to squares_0.
  *
  * TRAIT_PART_BITS: frames are those of one part of the samples, from `first_slot` on each 2^TRAIT_PART_BITS-th one. */
 //! traits: TRAIT_PART_BITS TRAIT_FILTER_SIGNED
 #include "kernels/lib/compensated.h"
+#include "kernels/lib/filter_weight.h"
 #include "kernels/lib/gradient.h"
 
 #define NEXT_FRAME (strip_pixels << TRAIT_PART_BITS)
@@ -30,10 +29,6 @@
     const real squares[accumulated_frames] = {squares_0, squares_1, squares_2, squares_3};
 #define SQUARED_DEVIATION(at, frame, value, sum)                                                                       \
     weighted_deviation(AT(filtered, weight, at), weights[frame], squares[frame], value, sum)
-GRADUS_FN real weighted_deviation(real weight, real weights, real squares, real value, real sum) {
-    const real deviation = value * weights - weight * sum;
-    return deviation * (deviation / r_max(weights * weights + squares, R(1e-30)));
-}
 #else
 #define BEFORE
 #define SQUARED_DEVIATION(at, frame, value, sum) squared_deviation((real)(frames_before + frame), value, sum)

@@ -34,6 +34,17 @@ std::size_t after_parenthesis(const std::vector<SourceToken> &tokens, std::size_
     return end;
 }
 
+/// The comma or semicolon after the value that begins at `at`.
+std::size_t after_value(const std::vector<SourceToken> &tokens, std::size_t at, std::size_t end) {
+    for (int depth = 0; at < end; ++at) {
+        const SourceToken &token = tokens[at];
+        if (depth == 0 && (token.is(",") || token.is(";")))
+            return at;
+        depth += token.is("(") + token.is("[") + token.is("{") - token.is(")") - token.is("]") - token.is("}");
+    }
+    return end;
+}
+
 /// What can be named elsewhere: a function; all of an enumeration; else each name that ends a declarator, and a tag.
 std::vector<std::string_view> names_of(const std::vector<SourceToken> &tokens, std::size_t first, std::size_t end) {
     std::vector<std::string_view> names;
@@ -45,12 +56,13 @@ std::vector<std::string_view> names_of(const std::vector<SourceToken> &tokens, s
             i = after_parenthesis(tokens, i + 1, end) - 1;
             continue;
         }
-        depth += token.is("{") - token.is("}");
-        if (token.kind != Kind::identifier) {
-            if (depth == 0 && token.is("=")) // a value; what it names is needed, not given
-                break;
+        if (depth == 0 && token.is("=")) { // a value; what it names is needed, not given
+            i = after_value(tokens, i + 1, end) - 1;
             continue;
         }
+        depth += token.is("{") + token.is("[") - token.is("}") - token.is("]");
+        if (token.kind != Kind::identifier)
+            continue;
         if (token.is("enum")) {
             is_enumeration = true;
             continue;

@@ -1,6 +1,8 @@
 #include "runtime/device/source_condition.h"
 
+#include <algorithm>
 #include <charconv>
+#include <limits>
 #include <string_view>
 #include <utility>
 
@@ -8,10 +10,12 @@ namespace gradus {
 
 namespace {
 
-/// By precedence climbing.
+/// By precedence climbing, in 64 bits with a sign. What overflows them is not understood; nor is a negative number in a
+/// condition with one that has no sign, which would make it a large one.
 class Condition {
   public:
-    explicit Condition(const std::vector<SourceToken> &tokens) : tokens_(tokens) {}
+    explicit Condition(const std::vector<SourceToken> &tokens)
+        : tokens_(tokens), has_unsigned_(std::any_of(tokens.begin(), tokens.end(), is_unsigned)) {}
 
     std::int64_t value() {
         const std::int64_t result = choice();
@@ -21,6 +25,16 @@ class Condition {
     }
 
   private:
+    static constexpr std::int64_t least = std::numeric_limits<std::int64_t>::min();
+
+    static bool is_unsigned(const SourceToken &token) {
+        return token.kind == SourceToken::Kind::number && token.spelling.find_first_of("uU") != std::string_view::npos;
+    }
+
+    std::int64_t checked(std::int64_t value) const {
+        return value < 0 && has_unsigned_ ? throw NotUnderstood("a negative number among unsigned ones") : value;
+    }
+
     bool take(std::string_view spelling) {
         if (at_ == tokens_.size() || !tokens_[at_].is(spelling))
             return false;
@@ -57,14 +71,16 @@ class Condition {
             if (level <= above)
                 break;
             ++at_;
-            left = result(operation, left, binary(level));
+            left = checked(result(operation, left, binary(level)));
         }
         return left;
     }
 
     static std::int64_t result(std::string_view operation, std::int64_t a, std::int64_t b) {
-        if ((operation == "/" || operation == "%") && b == 0)
-            throw NotUnderstood("a division by zero");
+        if ((operation == "/" || operation == "%") && (b == 0 || (b == -1 && a == least)))
+            throw NotUnderstood("a division without a result");
+        if ((operation == "<<" || operation == ">>") && (b < 0 || b > 63))
+            throw NotUnderstood("a shift without a result");
         if (operation == "||")
             return a || b;
         if (operation == "&&")
@@ -88,16 +104,21 @@ class Condition {
         if (operation == ">=")
             return a >= b;
         if (operation == "<<")
-            return a << b;
+            return (a << b) >> b == a ? a << b : throw NotUnderstood("an overflow");
         if (operation == ">>")
             return a >> b;
-        if (operation == "+")
-            return a + b;
-        if (operation == "-")
-            return a - b;
-        if (operation == "*")
-            return a * b;
-        return operation == "/" ? a / b : a % b;
+        std::int64_t exact = 0;
+        if (operation == "+" && !__builtin_add_overflow(a, b, &exact))
+            return exact;
+        if (operation == "-" && !__builtin_sub_overflow(a, b, &exact))
+            return exact;
+        if (operation == "*" && !__builtin_mul_overflow(a, b, &exact))
+            return exact;
+        if (operation == "/")
+            return a / b;
+        if (operation == "%")
+            return a % b;
+        throw NotUnderstood("an overflow");
     }
 
     std::int64_t unary() {
@@ -106,11 +127,11 @@ class Condition {
         if (take("!"))
             return !unary();
         if (take("-"))
-            return -unary();
+            return checked(result("-", 0, unary()));
         if (take("+"))
             return unary();
         if (take("~"))
-            return ~unary();
+            return checked(~unary());
         if (take("(")) {
             const std::int64_t inner = choice();
             if (!take(")"))
@@ -139,6 +160,7 @@ class Condition {
     }
 
     const std::vector<SourceToken> &tokens_;
+    bool has_unsigned_;
     std::size_t at_ = 0;
 };
 

@@ -116,8 +116,8 @@ void SourceLexer::skip_space() {
         } else if (c == '/' && after == '*') {
             skip_comment();
         } else if (c == '/' && after == '/') {
-            while (at_ + 1 < text_.size() && text_[at_ + 1] != '\n')
-                ++at_;
+            for (; at_ + 1 < text_.size() && (text_[at_ + 1] != '\n' || text_[at_] == '\\'); ++at_)
+                line += text_[at_ + 1] == '\n';
         } else if (c != ' ' && c != '\t' && c != '\r' && c != '\f' && c != '\v') {
             return;
         }

@@ -145,12 +145,14 @@ class SceneBuilder {
     /// A shape of a shapegroup.
     struct Prototype {
         const Element *element;
-        std::variant<BuiltMesh, Sphere> geometry;
-        bool can_be_kept = false; ///< in instances: a mesh that does not emit
+        std::variant<BuiltMesh, Sphere> geometry; ///< relative to the group's origin
+        Double3 origin{0, 0, 0};                  ///< until the group has one: what it is relative to
+        bool can_be_kept = false;                 ///< in instances: a mesh that does not emit
     };
     /// A shapegroup, once one of its instances is met.
     struct KnownGroup {
         std::vector<Prototype> prototypes;
+        Double3 origin{0, 0, 0};        ///< in the frame of the file: what positions are relative to
         std::uint64_t bytes = 0;        ///< of an instance's copies of those that could be kept
         std::uint64_t instances = 0;    ///< so far
         std::int32_t number = no_group; ///< in the scene
@@ -178,6 +180,7 @@ class SceneBuilder {
     void finish(ShapeInLine &shape, std::vector<Prototype> *group);
     void add_shape(const Element &element, std::variant<BuiltMesh, Sphere> geometry, std::int32_t group = no_group);
     KnownGroup &known_group(const Element &element);
+    static Double3 settle_origin(std::vector<Prototype> &prototypes);
     void add_instance(const Element &element, const ShapeGroup &instance);
     void copy_prototype(const Element &element, const Prototype &prototype, const Matrix4 &to_world);
     void add_group(KnownGroup &group);

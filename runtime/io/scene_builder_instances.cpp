@@ -2,7 +2,9 @@
 // back.
 #include "runtime/io/plugins/plugin.h"
 #include "runtime/io/scene_builder.h"
+#include "runtime/scene/bounds.h"
 #include "runtime/scene/instances.h"
+#include "runtime/scene/own_origin.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +17,17 @@ namespace {
 constexpr std::uint64_t copied_shape_bytes = 256;
 /// What an instance takes in the scene, in the device's tables, and in Embree's.
 constexpr std::uint64_t kept_instance_bytes = 512;
+
+/// What has been built already, at another place.
+BuiltMesh placed_mesh(BuiltMesh built, const Matrix4 &to_world) {
+    MeshOptions options;
+    options.front_from_local_winding = true;
+    options.compute_normals = false;
+    options.normals_keep_proportions = !(uniform_scale(to_world) > 0);
+    BuiltMesh placed = build_mesh(std::move(built.mesh), to_world, options);
+    placed.degenerate += built.degenerate;
+    return placed;
+}
 } // namespace
 
 SceneBuilder::KnownGroup &SceneBuilder::known_group(const Element &element) {
@@ -27,6 +40,7 @@ SceneBuilder::KnownGroup &SceneBuilder::known_group(const Element &element) {
     std::vector<Prototype> prototypes;
     build_shapes(shapes, &prototypes);
     KnownGroup &group = known->second;
+    group.origin = settle_origin(prototypes);
     for (Prototype &prototype : prototypes)
         if (const auto *built = std::get_if<BuiltMesh>(&prototype.geometry)) {
             prototype.can_be_kept = nested_objects(*prototype.element, "emitter", resolve_).empty();
@@ -35,6 +49,33 @@ SceneBuilder::KnownGroup &SceneBuilder::known_group(const Element &element) {
         }
     group.prototypes = std::move(prototypes);
     return group;
+}
+
+/// Makes shapes relative to one origin, which is returned: near all of them where they are far from that of their
+/// frame, so that positions have the bits that the group needs, wherever in its file it was modelled.
+Double3 SceneBuilder::settle_origin(std::vector<Prototype> &prototypes) {
+    Bounds all;
+    for (const Prototype &prototype : prototypes) {
+        Bounds bounds;
+        if (const auto *sphere = std::get_if<Sphere>(&prototype.geometry))
+            bounds.add(sphere->center, sphere->radius);
+        else
+            bounds = bounds_of(std::get<BuiltMesh>(prototype.geometry).mesh);
+        all.add({add(bounds.lower, prototype.origin), add(bounds.upper, prototype.origin)});
+    }
+    const Double3 origin = own_origin_of(all);
+    for (Prototype &prototype : prototypes) {
+        const Double3 by = subtract(prototype.origin, origin);
+        if (by == Double3{0, 0, 0})
+            continue;
+        if (auto *built = std::get_if<BuiltMesh>(&prototype.geometry)) {
+            *built = placed_mesh(std::move(*built), translation(by));
+            continue;
+        }
+        Vector3 &center = std::get<Sphere>(prototype.geometry).center;
+        center = to_float(add(to_double(center), by));
+    }
+    return origin;
 }
 
 /// The prototype becomes a shape where the instance, `element`, has it.
@@ -58,13 +99,7 @@ void SceneBuilder::copy_prototype(const Element &element, const Prototype &proto
     const auto &mesh = std::get<BuiltMesh>(prototype.geometry).mesh;
     if (geometry_bytes_ + mesh_bytes(mesh) > limits_.geometry_bytes) // before it takes the memory
         count_geometry(mesh_bytes(mesh), element.location);
-    MeshOptions options;
-    options.front_from_local_winding = true;
-    options.compute_normals = false;
-    options.normals_keep_proportions = !(uniform_scale(to_world) > 0);
-    BuiltMesh placed = build_mesh(mesh, to_world, options);
-    placed.degenerate += std::get<BuiltMesh>(prototype.geometry).degenerate;
-    add_shape(*prototype.element, std::move(placed));
+    add_shape(*prototype.element, placed_mesh(std::get<BuiltMesh>(prototype.geometry), to_world));
 }
 
 /// `element`: the instance. The first of each group is a copy, and so are others as long as copies are small; what
@@ -74,18 +109,18 @@ void SceneBuilder::add_instance(const Element &element, const ShapeGroup &instan
         throw SceneError(instance.location, "the to_world of this instance cannot be undone: it is singular, or too "
                                             "nearly so, and would leave its shapes flat");
     KnownGroup &group = known_group(*instance.instanced);
+    const Matrix4 to_world = multiply(instance.to_world, translation(group.origin));
     ++group.instances;
-    const bool can_be_kept =
-        group.bytes > 0 && instance_choice_ != InstanceChoice::copies && can_be_instance(instance.to_world);
+    const bool can_be_kept = group.bytes > 0 && instance_choice_ != InstanceChoice::copies && can_be_instance(to_world);
     const bool is_copied =
         !can_be_kept || (instance_choice_ == InstanceChoice::automatic &&
                          (group.instances == 1 || copied_bytes_ + group.bytes <= most_copied_bytes_));
-    Copied copied{&group, make_instance(0, instance.to_world), {}};
+    Copied copied{&group, make_instance(0, to_world), {}};
     for (const Prototype &prototype : group.prototypes) {
         if (prototype.can_be_kept && !is_copied)
             continue;
         const std::size_t before = scene_.shapes.size();
-        copy_prototype(element, prototype, instance.to_world);
+        copy_prototype(element, prototype, to_world);
         if (prototype.can_be_kept && scene_.shapes.size() > before)
             copied.shapes.push_back(before);
     }
@@ -93,7 +128,7 @@ void SceneBuilder::add_instance(const Element &element, const ShapeGroup &instan
         count_geometry(kept_instance_bytes, element.location);
         add_group(group);
         if (group.number != no_group)
-            scene_.instances.push_back(make_instance(std::uint32_t(group.number), instance.to_world));
+            scene_.instances.push_back(make_instance(std::uint32_t(group.number), to_world));
         return;
     }
     ++scene_.copied_instances;

@@ -3,6 +3,9 @@
 #include "runtime/io/plugins/plugin.h"
 #include "runtime/io/scene_builder.h"
 #include "runtime/phases.h"
+#include "runtime/scene/bounds.h"
+#include "runtime/scene/instances.h"
+#include "runtime/scene/own_origin.h"
 
 #include <tbb/parallel_for.h>
 
@@ -31,6 +34,7 @@ bool is_never_met(const Material &material) {
 struct SceneBuilder::ShapeInLine {
     const Element *element = nullptr;
     ShapeGeometry geometry = ShapeGroup();
+    Double3 origin{0, 0, 0}; ///< of a group's shape, in its frame: what its geometry, once built, is relative to
     std::optional<SceneError> error;
     std::vector<Diagnostics::Held> messages; ///< of its plugin
     std::uint64_t unfolded_bytes = 0;
@@ -180,7 +184,10 @@ void SceneBuilder::build_line(std::deque<ShapeInLine> &line, std::vector<Prototy
             SerializedMesh mesh = read_file(shape);
             shape.unfolded_bytes = mesh.unfolded_bytes;
             pending.options.face_normals |= mesh.face_normals;
-            shape.geometry = build_mesh(std::move(mesh.mesh), pending.to_world, pending.options);
+            if (group)
+                shape.origin = own_origin_of(placed_bounds(bounds_of(mesh.mesh), pending.to_world));
+            const Matrix4 to_origin = multiply(translation(scale(shape.origin, -1)), pending.to_world);
+            shape.geometry = build_mesh(std::move(mesh.mesh), to_origin, pending.options);
         } catch (const SceneError &error) {
             shape.error = error;
         }
@@ -228,10 +235,16 @@ void SceneBuilder::finish(ShapeInLine &shape, std::vector<Prototype> *group) {
     std::variant<BuiltMesh, Sphere> geometry = Sphere();
     if (auto *built = std::get_if<BuiltMesh>(&shape.geometry))
         geometry = std::move(*built);
-    else
-        geometry = std::get<Sphere>(shape.geometry);
+    else {
+        auto [sphere, center] = std::get<PlacedSphere>(shape.geometry);
+        if (group) {
+            shape.origin = center;
+            sphere.center = {0, 0, 0};
+        }
+        geometry = sphere;
+    }
     if (group)
-        group->push_back({shape.element, std::move(geometry)});
+        group->push_back({shape.element, std::move(geometry), shape.origin});
     else
         add_shape(*shape.element, std::move(geometry));
 }

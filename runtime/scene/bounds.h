@@ -30,19 +30,24 @@ struct Bounds {
     double extent() const { return std::max({0.0, upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2]}); }
 };
 
-/// What of the shape can be hit.
-inline Bounds bounds_of(const Scene &scene, const Shape &shape) {
+/// What of the mesh can be hit.
+inline Bounds bounds_of(const Mesh &mesh) {
     Bounds bounds;
-    if (shape.kind == Shape::Kind::sphere) {
-        const Sphere &sphere = scene.spheres.at(shape.geometry);
-        bounds.add(sphere.center, sphere.radius);
-        return bounds;
-    }
-    const Mesh &mesh = scene.meshes.at(shape.geometry);
     for (const auto &triangle : mesh.triangles)
         for (const std::uint32_t index : triangle)
             bounds.add(mesh.positions[index]);
     return bounds;
+}
+
+/// What of the shape can be hit.
+inline Bounds bounds_of(const Scene &scene, const Shape &shape) {
+    if (shape.kind == Shape::Kind::sphere) {
+        Bounds bounds;
+        const Sphere &sphere = scene.spheres.at(shape.geometry);
+        bounds.add(sphere.center, sphere.radius);
+        return bounds;
+    }
+    return bounds_of(scene.meshes.at(shape.geometry));
 }
 
 } // namespace gradus

@@ -63,7 +63,11 @@ class Gaps {
     bool has_places() const { return !places_.empty(); }
     bool may_lie_in_some_of(const Bounds &box) const {
         const double reach = most_reach_of(box);
-        return std::ranges::any_of(places_, [&](const Place &place) { return holds(box, place.at, reach); });
+        const auto past = [&](const Place &place) { return place.at[0] > box.upper[0] + reach; };
+        for (auto place = first_from(box.lower[0] - reach); place != places_.end() && !past(*place); ++place)
+            if (holds(box, place->at, reach))
+                return true;
+        return false;
     }
 
     void add_triangle(const std::array<Double3, 3> &corners) {
@@ -140,14 +144,16 @@ std::vector<float> gaps_in_surfaces(const Scene &scene) {
             gaps.add_sphere(scene.spheres[shape.geometry]);
     }
     const std::vector<Bounds> of_groups = group_bounds(scene);
-    for (const Instance &instance : scene.instances) {
+    const auto add_instance = [&](std::size_t number) {
+        const Instance &instance = scene.instances[number];
         const Matrix4 to_world = matrix_of(instance);
         if (!gaps.may_lie_in_some_of(placed_bounds(of_groups[instance.group], to_world)))
-            continue;
+            return;
         for (const Shape &shape : scene.shapes)
             if (shape.group == std::int32_t(instance.group) && shape.kind == Shape::Kind::mesh)
                 add_mesh(scene.meshes[shape.geometry], &to_world, gaps);
-    }
+    };
+    for_each_in_parallel(scene.instances.size(), add_instance, 1 << 8);
     return gaps.take();
 }
 

@@ -1,7 +1,6 @@
 #include "runtime/scene/own_origin.h"
 
 #include "runtime/scene/instances.h"
-#include "runtime/scene/transform.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,12 +14,18 @@ constexpr double extents_away = 8; ///< and no more: usual scenes keep their num
 
 } // namespace
 
-void bring_to_own_origin(Scene &scene) {
-    const Bounds bounds = world_bounds(scene);
+Double3 own_origin_of(const Bounds &bounds) {
     const double extent = bounds.extent();
     const Double3 middle = scale(add(bounds.lower, bounds.upper), 0.5);
     const double away = std::max({std::abs(middle[0]), std::abs(middle[1]), std::abs(middle[2])});
     if (!(extent > 0 && std::isfinite(away) && away > extents_away * extent))
+        return {0, 0, 0};
+    return middle;
+}
+
+void bring_to_own_origin(Scene &scene) {
+    const Double3 middle = own_origin_of(world_bounds(scene));
+    if (middle == Double3{0, 0, 0})
         return;
     const auto moved = [&](const Vector3 &position) { return to_float(subtract(to_double(position), middle)); };
     std::vector<bool> is_of_world(scene.meshes.size()); // those of groups are in the groups' frames

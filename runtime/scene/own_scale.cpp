@@ -10,6 +10,7 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -31,15 +32,38 @@ constexpr double most_away = 1e15;
 
 void multiply(Vector3 &v, float factor) { v = {v.x * factor, v.y * factor, v.z * factor}; }
 
+/// By mesh, what the areas of its triangles are times in the world: of a group's meshes by the two shortest axes of its
+/// smallest instance.
+std::vector<double> area_factors(const Scene &scene) {
+    std::vector<double> of_group(scene.groups, INFINITY);
+    for (const Instance &instance : scene.instances) {
+        const Matrix4 to_world = matrix_of(instance);
+        std::array<double, 3> axes;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            axes[axis] = length(column_of(to_world, axis));
+        std::ranges::sort(axes);
+        double &factor = of_group[instance.group];
+        factor = std::min(factor, axes[0] * axes[1]);
+    }
+    std::vector<double> factors(scene.meshes.size(), 1);
+    for (const Shape &shape : scene.shapes)
+        if (shape.group != no_group)
+            factors[shape.geometry] = of_group[std::size_t(shape.group)];
+    return factors;
+}
+
 /// Twice the least area of a triangle that is at least so large; infinite where there is none.
 double smallest_area(const Scene &scene, double at_least) {
     double least = INFINITY;
-    for (const Mesh &mesh : scene.meshes) {
+    const std::vector<double> factors = area_factors(scene);
+    for (std::size_t number = 0; number < scene.meshes.size(); ++number) {
+        const Mesh &mesh = scene.meshes[number];
+        const double factor = factors[number];
         using Range = tbb::blocked_range<std::size_t>;
         const auto least_of = [&](const Range &range, double found) {
             for (std::size_t i = range.begin(); i < range.end(); ++i) {
                 const Double3 normal = area_vector(mesh, mesh.triangles[i]);
-                const double area = std::sqrt(dot(normal, normal));
+                const double area = factor * std::sqrt(dot(normal, normal));
                 if (area >= at_least)
                     found = std::min(found, area);
             }

@@ -47,23 +47,6 @@ void put(float *record, int field, Vector3 v) {
     record[field + 2] = v.z;
 }
 
-Bounds scene_bounds(const Scene &scene) {
-    Bounds bounds;
-    const std::vector<Bounds> of_groups = group_bounds(scene);
-    for (const Instance &instance : scene.instances)
-        bounds.add(placed_bounds(of_groups[instance.group], matrix_of(instance)));
-    for (const Shape &shape : scene.shapes) {
-        if (shape.group != no_group)
-            continue;
-        if (shape.kind == Shape::Kind::mesh)
-            for (const Vector3 &p : scene.meshes[shape.geometry].positions)
-                bounds.add(p);
-        else
-            bounds.add(scene.spheres[shape.geometry].center, scene.spheres[shape.geometry].radius);
-    }
-    return bounds;
-}
-
 /// The bin of a side of a surface that does not emit; that of one that does follows. Blends are behind all kinds.
 std::uint32_t bin_of(const Bsdf &bsdf, std::uint32_t number_of_class, const SceneTables &tables) {
     const bool is_blend = bsdf.blend != no_blend;
@@ -434,7 +417,7 @@ SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits, const 
         if (shape.kind == Shape::Kind::sphere)
             add_sphere(scene, shape, {scene, shape, tables, classes}, tables, primitives, lights);
     primitives.finish();
-    const Bounds bounds = scene_bounds(scene);
+    const Bounds bounds = world_bounds(scene);
     const bool is_empty = !(bounds.lower[0] <= bounds.upper[0]);
     tables.bounds = is_empty ? Bounds{{0, 0, 0}, {0, 0, 0}} : bounds;
     const Double3 across = subtract(tables.bounds.upper, tables.bounds.lower);

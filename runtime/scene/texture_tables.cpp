@@ -5,6 +5,8 @@
 #include "runtime/scene/traits.h"
 #include "runtime/scene/vertex_table.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <map>
@@ -21,6 +23,14 @@ void check_words(std::uint64_t words) {
         throw Error(ExitCode::device, "the scene's textures and mesh attributes have more than 8 GiB");
 }
 
+/// Of one picture, whose texels kernels count by 32 bits; four of them may share a word.
+void check_texels(const Bitmap &bitmap) {
+    if (std::uint64_t(bitmap.width) * bitmap.height > std::uint64_t(1) << 32)
+        throw Error(ExitCode::device, fmt::format("a picture of {} x {} texels has more than 2^32, the most that a "
+                                                  "texture may have",
+                                                  bitmap.width, bitmap.height));
+}
+
 /// The pictures one after the other, each once. By picture: its first word.
 std::map<const Bitmap *, std::uint32_t> add_bitmaps(const Scene &scene, SceneTables &tables) {
     std::map<const Bitmap *, std::uint32_t> offsets;
@@ -31,6 +41,7 @@ std::map<const Bitmap *, std::uint32_t> add_bitmaps(const Scene &scene, SceneTab
     std::vector<const Bitmap *> bitmaps;
     for (const Texture &texture : scene.textures)
         if (texture.bitmap && offsets.emplace(texture.bitmap.get(), std::uint32_t(words)).second) {
+            check_texels(*texture.bitmap);
             bitmaps.push_back(texture.bitmap.get());
             words += texture.bitmap->words.size();
         }

@@ -104,7 +104,6 @@ double determinant(const Matrix4 &matrix) {
     return dot(c[0], cross(c[1], c[2]));
 }
 
-// The columns of the cofactor matrix are the cross products of the columns of the matrix.
 double uniform_scale(const Matrix4 &matrix) {
     std::array<Double3, 3> columns;
     for (std::size_t i = 0; i < 3; ++i)
@@ -119,6 +118,7 @@ double uniform_scale(const Matrix4 &matrix) {
     return factor;
 }
 
+// The columns of the cofactor matrix are the cross products of the columns of the matrix.
 NormalMap::NormalMap(const Matrix4 &matrix) {
     const auto c = columns(matrix);
     const double sign = determinant(matrix) < 0 ? -1 : 1;

@@ -28,12 +28,14 @@ class FilmSums {
              const SharedWeights &weights)
         : pixels_(pixels), samples_(samples) {
         const std::uint64_t frames = samples / pixels;
-        squares_ = {weights.sums(frames, 0, 1).squares, weights.sums(frames + 1, 0, 1).squares};
         for (std::uint32_t part = 0; part < parts; ++part) {
             films_.emplace_back(tables[name_of_part("film", part)], pixels, tables.precision());
             for (const std::uint64_t more : {0, 1}) {
                 const auto count = double(count_of_part(frames + more, part, parts));
                 weights_[more].push_back(count > 0 ? weights.of_part(frames + more, part, parts) / count : 1);
+                const std::uint64_t first = std::min<std::uint64_t>(frames + more, part + 1);
+                of_samples_[more].push_back(
+                    {weights.sums(frames + more, part, parts), weights.sums(first, part, parts).squares});
             }
         }
     }
@@ -43,8 +45,8 @@ class FilmSums {
     }
     std::uint32_t rejected(std::size_t pixel) const {
         std::uint32_t rejected = 0;
-        for (const HostTable &film : films_)
-            rejected += film.uint(film_rejected, pixel);
+        for (std::uint32_t part = 0; part < films_.size(); ++part)
+            rejected += rejected_of(part, pixel);
         return rejected;
     }
     /// What parts have of a pixel, for one of R, G and B: `step` apart, from `first` on. Counts are what samples weigh.
@@ -63,19 +65,48 @@ class FilmSums {
             replicates[part] = part_of(color, pixel, part);
         return variance_of_mean(replicates);
     }
-    /// The same of samples that are independent, from the sum of their squares: (mean of squares - square of mean) /
-    /// (n - 1) where they weigh 1. What they weigh is taken to say nothing of their values.
+    /// The same of samples that are independent and weigh 1, from the sum of their squares: (mean of squares - square
+    /// of mean) / (n - 1).
     double variance_of_samples(double square, int color, std::size_t pixel) const {
-        const double all_samples = samples_of(pixel), n = all_samples - rejected(pixel);
         const Replicate all = sum(color, pixel);
-        if (n <= 1 || all.count <= 0)
-            return 0;
-        const double mean = all.sum / all.count;
-        const double squared_weights = squares_[pixel < samples_ % pixels_ ? 1 : 0] * (n / all_samples);
-        return std::max(0.0, square - mean * mean * squared_weights) * (n / (n - 1)) / (all.count * all.count);
+        const double n = all.count;
+        return n > 1 ? std::max(0.0, square - all.sum * all.sum / n) / (n * (n - 1)) : 0;
+    }
+    /// The same of samples that weigh other than 1, from the sum of the squared deviations that all parts have.
+    double variance_of_weighted_samples(double deviations, int color, std::size_t pixel) const {
+        const bool has_more = pixel < samples_ % pixels_;
+        double sum_before = 0, of_deviations = 0; // the second: how many variances of a sample they are
+        SharedWeights::Sums before;
+        for (std::uint32_t part = 0; part < films_.size(); ++part) {
+            const Replicate one = part_of(color, pixel, part);
+            if (one.count <= 0)
+                continue;
+            const OfSamples &of = of_samples_[has_more ? 1 : 0][part];
+            const double kept = one.count / (one.count + weights_[has_more ? 1 : 0][part] * rejected_of(part, pixel));
+            const SharedWeights::Sums here{of.all.weights * kept, of.all.squares * kept};
+            // Two means are apart by so much of the samples' variance (Chan et al. 1983, where weights are 1).
+            const double apart =
+                here.squares * before.weights * before.weights + before.squares * here.weights * here.weights;
+            const double off = one.sum * before.weights - sum_before * here.weights;
+            if (apart > 0)
+                deviations += off * off / apart;
+            of_deviations += (of.all.squares - of.first_square) * kept + (apart > 0 ? 1 : 0);
+            sum_before += one.sum;
+            before.weights += here.weights;
+            before.squares += here.squares;
+        }
+        const double count = sum(color, pixel).count;
+        return of_deviations > 0 ? deviations * before.squares / (of_deviations * count * count) : 0;
     }
 
   private:
+    struct OfSamples {
+        SharedWeights::Sums all;
+        double first_square; ///< that of the first one's weight, which has no mean before it to be off
+    };
+    std::uint32_t rejected_of(std::uint32_t part, std::size_t pixel) const {
+        return films_[part].uint(film_rejected, pixel);
+    }
     Replicate part_of(int color, std::size_t pixel, std::uint32_t part) const {
         const HostTable &film = films_[part];
         const bool has_more = pixel < samples_ % pixels_;
@@ -85,21 +116,28 @@ class FilmSums {
                 weights_[has_more ? 1 : 0][part] * (double(count) - film.uint(film_rejected, pixel))};
     }
     std::deque<HostTable> films_;
-    std::array<std::vector<double>, 2> weights_; ///< of a sample of each part, and with a frame more
-    std::array<double, 2> squares_{};            ///< the sum of the squared weights of all samples, likewise
+    std::array<std::vector<double>, 2> weights_;       ///< of a sample of each part, and with a frame more
+    std::array<std::vector<OfSamples>, 2> of_samples_; ///< likewise
     std::size_t pixels_;
     std::uint64_t samples_;
 };
+
+/// The arguments of accumulate that say what the samples before in a film weigh.
+constexpr const char *film_samples_before = "film_samples_before", *weights_before = "weights_before",
+                     *squares_before = "squares_before";
 
 double mean_of(const Replicate &all) { return all.count > 0 ? all.sum / all.count : 0.0; }
 
 } // namespace
 
 Film::Film(Session &session, Stages &stages, bool halves)
-    : session_(session), weights_(session),
+    : session_(session), stages_(stages), weights_(session),
       accumulate_(stages.add(
           {.name = "accumulate", .strict = true, .numbers = {"first_slot", "first_pixel", "samples_before"}})),
-      parts_(1u << part_bits(session.options, halves)) {}
+      parts_(1u << part_bits(session.options, halves)) {
+    for (const char *name : {film_samples_before, weights_before, squares_before})
+        session.reals[name] = 0; // add() says them
+}
 
 std::vector<std::string> Film::table_names() const {
     std::vector<std::string> names;
@@ -152,9 +190,17 @@ void Film::add(std::uint32_t count, std::uint32_t first_pixel, std::uint64_t fir
         if (parts_ > 1)
             accumulate_.bind("film",
                              (*tables_)[name_of_part("film", static_cast<std::uint32_t>(first_sample % parts_))]);
+        const std::uint64_t before = first_sample - first_sample_;
+        if (weights_.are_there() && session_.has("TRAIT_AOV") && !has_replicates()) {
+            const auto part = static_cast<std::uint32_t>(before % parts_);
+            const SharedWeights::Sums weighed = weights_.sums(before, part, parts_);
+            stages_.set_real(film_samples_before, double(count_of_part(before, part, parts_)));
+            stages_.set_real(weights_before, weighed.weights);
+            stages_.set_real(squares_before, weighed.squares);
+        }
         accumulate_.run(done, {{"first_slot", slot},
                                {"first_pixel", first_pixel},
-                               {"samples_before", static_cast<std::uint32_t>(first_sample - first_sample_)}});
+                               {"samples_before", static_cast<std::uint32_t>(before)}});
     }
 }
 
@@ -206,7 +252,8 @@ Image Film::image(std::uint64_t samples, std::uint64_t &non_finite, std::uint64_
                 return films.variance(c, pixel);
             const double square = features.real(feature_film_square_r + c, pixel) +
                                   features.real(feature_film_square_correction_r + c, pixel);
-            return films.variance_of_samples(square, c, pixel);
+            return weights_.are_there() ? films.variance_of_weighted_samples(square, c, pixel)
+                                        : films.variance_of_samples(square, c, pixel);
         });
     return image;
 }

@@ -51,6 +51,7 @@ class Film {
     bool has_replicates() const { return parts_ > 2; }
 
     Session &session_;
+    Stages &stages_;
     SharedWeights weights_;
     Stage &accumulate_;
     std::uint32_t parts_; ///< of the samples, each with a table of its own

@@ -70,8 +70,8 @@ FilmSettings with_crop(FilmSettings film) {
         film.crop_width = film.width;
         film.crop_height = film.height;
     }
-    if (film.width == 0 || film.height == 0 || film.crop_x + film.crop_width > film.width ||
-        film.crop_y + film.crop_height > film.height)
+    if (film.width == 0 || film.height == 0 || std::uint64_t(film.crop_x) + film.crop_width > film.width ||
+        std::uint64_t(film.crop_y) + film.crop_height > film.height)
         throw Error(ExitCode::usage,
                     fmt::format("the crop {}x{} at {},{} does not lie in the film of {}x{}", film.crop_width,
                                 film.crop_height, film.crop_x, film.crop_y, film.width, film.height));

@@ -2,10 +2,10 @@
 
 #include "kernels/shared/guide_shared.h"
 #include "kernels/shared/solver_shared.h"
+#include "solver/guide/mean_brightness.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
+#include <cstddef>
 
 namespace gradus {
 
@@ -23,17 +23,6 @@ GuideJudge::GuideJudge(Device &device, std::uint32_t width, std::uint32_t height
       blend_(solver::guide_kernel(device, precision, "guide_judge", "guide_blend")), wide_(make_, grid_, 9, 3.0),
       narrow_(make_, grid_, 3, 1.0) {}
 
-double GuideJudge::squared_brightness(const Buffer &image) const {
-    const Buffer::Mapping mapping(image, Access::read, Wait::now);
-    const std::size_t pixels = std::size_t(grid_.width) * grid_.height;
-    const float *value = mapping.as<float>();
-    double sum = 0;
-    for (std::size_t i = 0; i < 3 * pixels; ++i)
-        sum += std::isfinite(value[i]) ? std::abs(double(value[i])) : 0;
-    const double mean = sum / (3 * double(pixels));
-    return mean * mean;
-}
-
 void GuideJudge::run(const std::array<const Buffer *, 2> &halves, double share,
                      const std::array<const Buffer *, 2> &guides, Buffer &result, const Buffer *followed,
                      std::vector<float> *kept) {
@@ -47,8 +36,9 @@ void GuideJudge::run(const std::array<const Buffer *, 2> &halves, double share,
         kernel->bind("first_guide", *guides[0]);
         kernel->bind("second_guide", *guides[1]);
     }
+    const double mean = mean_brightness(*guides[0], 3 * std::size_t(grid_.width) * grid_.height);
     // At least what squares to a number of full precision.
-    moments_.set_real("least_brightness", std::max(least_brightness * squared_brightness(*guides[0]), 1e-30));
+    moments_.set_real("least_brightness", std::max(least_brightness * mean * mean, 1e-30));
     moments_.bind(moments);
     moments_.bind(shares);
     grid_.launch(moments_, {0, 1});

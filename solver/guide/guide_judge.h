@@ -38,7 +38,6 @@ class GuideJudge {
              Buffer &result, const Buffer *followed = nullptr, std::vector<float> *kept = nullptr);
 
   private:
-    double squared_brightness(const Buffer &image) const;
     template <class Real>
     std::vector<float> quotients_inside(const Buffer &planes) const;
 

@@ -2,8 +2,9 @@
 
 #include "kernels/shared/guide_shared.h"
 #include "solver/guide/guide_smoother.h"
+#include "solver/guide/mean_brightness.h"
 
-#include <cmath>
+#include <cstddef>
 #include <utility>
 
 namespace gradus {
@@ -22,18 +23,8 @@ LightCorrection::LightCorrection(Device &device, std::uint32_t width, std::uint3
       pass_(solver::guide_kernel(device, precision, "guide_light", "guide_light_pass")),
       give_back_(solver::guide_kernel(device, precision, "guide_light", "guide_give_back")) {}
 
-double LightCorrection::mean_brightness(const Buffer &image) const {
-    const Buffer::Mapping mapping(image, Access::read, Wait::now);
-    const std::size_t values = 3 * std::size_t(grid_.width) * grid_.height;
-    const float *value = mapping.as<float>();
-    double sum = 0;
-    for (std::size_t i = 0; i < values; ++i)
-        sum += std::isfinite(value[i]) ? std::abs(double(value[i])) : 0;
-    return sum / double(values);
-}
-
 void LightCorrection::run(const std::array<const Buffer *, 2> &halves, double share, Buffer &image) {
-    const double mean = mean_brightness(image);
+    const double mean = mean_brightness(image, 3 * std::size_t(grid_.width) * grid_.height);
     if (!(mean > 1e-30)) // black
         return;
     Buffer lost = make_.planes("lost", grid_, GUIDE_LOST), smoothed = make_.planes("smoothed", grid_, GUIDE_LOST);

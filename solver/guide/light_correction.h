@@ -28,8 +28,6 @@ class LightCorrection {
     void run(const std::array<const Buffer *, 2> &halves, double share, Buffer &image);
 
   private:
-    double mean_brightness(const Buffer &image) const;
-
     const solver::PlaneMaker make_;
     const solver::Grid grid_;
     Kernel lost_, pass_, give_back_;

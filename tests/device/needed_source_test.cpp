@@ -81,6 +81,17 @@ TEST(NeededSource, KeepsOptionsButDefinitionsOfOurs) {
     EXPECT_FALSE(needed_source("#error no", ""));
 }
 
+TEST(NeededSource, KnowsAllNamesOfADeclaration) {
+    const auto text_of = [](const std::string &declaration) {
+        const auto result = needed_source(declaration + "\n__kernel void k(__global uint *out) { out[0] = b; }", "");
+        return result ? result->text : "not understood";
+    };
+    EXPECT_THAT(text_of("__constant uint a = 1u, b = 2u;"), HasSubstr("a = 1u , b"));
+    EXPECT_THAT(text_of("__constant uint a[2] = {f(1, 2), 3}, b = 2u;"), HasSubstr("3 } , b"));
+    EXPECT_THAT(text_of("__constant uint b[sizeof(float)] = {1u};"), HasSubstr("b [ sizeof"));
+    EXPECT_THAT(text_of("__constant uint a = 1u, c = b;"), Not(HasSubstr("1u"))) << "which gives none";
+}
+
 // A tenth of the text is what this is for; a kernel that was not understood would be compiled whole, and alone.
 TEST(NeededSource, IsMadeOfEveryKernel) {
     for (const std::string &path : testing::stage_files()) {

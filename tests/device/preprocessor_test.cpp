@@ -92,6 +92,7 @@ TEST(Preprocessor, ExpandsAsTheStandardSays) {
     EXPECT_EQ(result_of("a /* b\n c */ d // e\nf", {"a=1", "f"}), "1 d 1");
     EXPECT_EQ(result_of("1.5e-3f+0x1F-.5 a+++b->c"), "1.5e-3f + 0x1F - .5 a ++ + b -> c");
     EXPECT_EQ(result_of("#define long \\\n 1 + \\\n 2\nlong"), "1 + 2");
+    EXPECT_EQ(result_of("a // b \\\n c\nd"), "a d") << "a comment that goes on";
 }
 
 TEST(Preprocessor, DecidesConditions) {
@@ -141,6 +142,17 @@ TEST(Preprocessor, LeavesWhatItDoesNotKnowToTheCompiler) {
                              "#if 1 2\n#endif",
                              "#if 1.5\n#endif",
                              "#if 1 / 0\n#endif",
+                             "#if (-9223372036854775807 - 1) / -1\n#endif",
+                             "#if (-9223372036854775807 - 1) % -1\n#endif",
+                             "#if 9223372036854775807 + 1\n#endif",
+                             "#if -(-9223372036854775807 - 1)\n#endif",
+                             "#if 4611686018427387904 * 2\n#endif",
+                             "#if 1 << 64\n#endif",
+                             "#if 1 << 63\n#endif",
+                             "#if 1 >> -1\n#endif",
+                             "#if -1 < 0u\n#endif",
+                             "#if 1u - 2 > 0\n#endif",
+                             "#if ~0U\n#endif",
                              "#if (1\n#endif",
                              "#define f(a) #a\nf(1)",
                              "#define f(a) x##a\nf()",

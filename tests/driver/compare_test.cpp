@@ -113,6 +113,18 @@ TEST_F(Compare, PrintsFiguresOfOneImage) {
     EXPECT_EQ(run({"compare", "image.exr", "reference.exr", "--check", "--max-relmse", "0.2"}).exit_code, 0);
 }
 
+/// Of what is equal it is infinite, and of what is all wrong beside black; a NaN it is where nothing can be told.
+TEST_F(Compare, AnInfinitePsnrKeepsItsSign) {
+    write_image(make_gray(2, 1, {1, 2}), at("image.exr"));
+    write_image(make_gray(2, 1, {0, 0}), at("black.exr"));
+    const auto psnr_beside = [&](const char *reference) {
+        const nlohmann::json json = nlohmann::json::parse(run({"compare", "image.exr", reference, "--json", "-"}).out);
+        return json.at("images").at(0).at("psnr");
+    };
+    EXPECT_EQ(psnr_beside("image.exr"), "inf");
+    EXPECT_EQ(psnr_beside("black.exr"), "-inf");
+}
+
 TEST_F(Compare, UnbiasedSeedsHold) {
     write_set(0);
     const Outcome outcome =

@@ -216,6 +216,30 @@ TEST_F(SolveOptions, AnImageOfAnotherKindThanTheRendersIsTold) {
     EXPECT_EQ(run({path, "-o", at("out.exr")}).err, "");
 }
 
+TEST_F(SolveOptions, AnotherAlphaThanTheRendersIsTold) {
+    report.converged = true;
+    Image layers = read_image(write_with_variances());
+    layers.metadata = {{"reconstruction", "l2"}, {"alpha", "0.39557"}};
+    const std::string path = write("of_render.exr", layers);
+    const std::string own = "--reconstruction l2 --alpha 0.39557 makes its own";
+    EXPECT_THAT(run({path, "-o", at("out.exr")}).err, AllOf(HasSubstr("this image is l1"), HasSubstr(own)));
+    EXPECT_THAT(run({path, "-o", at("out.exr"), "--reconstruction", "l2"}).err,
+                AllOf(HasSubstr("this image is l2 with --alpha 0.2"), HasSubstr(own)));
+    EXPECT_THAT(run({path, "-o", at("out.exr"), "--alpha", "0.39557"}).err,
+                HasSubstr("--reconstruction l2 makes its own"));
+    for (const std::vector<std::string> &chosen :
+         std::vector<std::vector<std::string>>{{"--reconstruction", "l2", "--alpha", "0.39557"},
+                                               {"--reconstruction", "l2", "--alpha", "0.2"},
+                                               {"--reconstruction", "l2", "--alpha", "auto"},
+                                               {"--reconstruction", "l1"}}) {
+        std::vector<std::string> arguments{path, "-o", at("out.exr")};
+        arguments.insert(arguments.end(), chosen.begin(), chosen.end());
+        EXPECT_EQ(run(arguments).err, "");
+    }
+    layers.metadata["alpha"] = "0.2";
+    EXPECT_EQ(run({write("of_one_sample.exr", layers), "-o", at("out.exr"), "--reconstruction", "l2"}).err, "");
+}
+
 TEST_F(SolveOptions, ValuesWithoutSquaresAreTold) {
     const std::string path = write_with_variances();
     Image layers = read_image(path);

@@ -68,6 +68,69 @@ TEST(KeptInstances, AreThoseWhoseCopiesWouldBeLarge) {
     EXPECT_EQ(one.instances.size(), 0u) << "there is nothing to share";
 }
 
+/// Corners of all meshes and centers of all spheres, where they are seen.
+std::vector<Double3> places_in(const Scene &scene) {
+    std::vector<Double3> places;
+    const auto add_mesh = [&](const Shape &shape, const Matrix4 &to_world) {
+        for (const Vector3 &position : scene.meshes.at(shape.geometry).positions)
+            places.push_back(transform_point(to_world, to_double(position)));
+    };
+    for (const Instance &instance : scene.instances)
+        for (const Shape &shape : scene.shapes)
+            if (shape.group == std::int32_t(instance.group))
+                add_mesh(shape, matrix_of(instance));
+    for (const Shape &shape : scene.shapes)
+        if (shape.kind == Shape::Kind::mesh && shape.group == no_group)
+            add_mesh(shape, Matrix4());
+    for (const Sphere &sphere : scene.spheres)
+        places.push_back(to_double(sphere.center));
+    return places;
+}
+
+// At 1e5 floats are 0.008 apart, which none of these is moved by.
+TEST(Instances, AreSeenWhereTheyAreHoweverFarInTheirGroup) {
+    const auto scene_at = [](double to, InstanceChoice choice) {
+        const auto shape = [&](const char *type, const char *scale, const char *x) {
+            return fmt::format("<shape type=\"{}\"><transform name=\"to_world\"><scale value=\"{}\"/><translate "
+                               "x=\"{}\"/><translate x=\"{}\" z=\"{}\"/></transform></shape>",
+                               type, scale, x, to, to);
+        };
+        const std::string cylinder =
+            fmt::format("<shape type=\"cylinder\"><point name=\"p0\" x=\"{}\" y=\"0.1\" z=\"{}\"/><point name=\"p1\" "
+                        "x=\"{}\" y=\"0.3\" z=\"{}\"/><float name=\"radius\" value=\"0.1\"/></shape>",
+                        to, to, to, to);
+        const std::string moved_back = fmt::format("<translate x=\"{}\" z=\"{}\"/>", -to, -to);
+        return loaded_as(group_of(shape("cube", "0.3", "0.123") + shape("rectangle", "0.01", "-1.0457") +
+                                  shape("sphere", "0.2", "0.7771") + cylinder) +
+                             instance_of(moved_back) +
+                             instance_of(moved_back + "<rotate y=\"1\" angle=\"30\"/><translate y=\"1\"/>"),
+                         choice);
+    };
+    for (const InstanceChoice choice : {InstanceChoice::kept, InstanceChoice::copies, InstanceChoice::automatic}) {
+        const std::vector<Double3> near = places_in(scene_at(0, choice));
+        const Scene scene = scene_at(1e5, choice);
+        const std::vector<Double3> far = places_in(scene);
+        EXPECT_EQ(scene.instances.size(), choice == InstanceChoice::copies ? 0u : 2u);
+        for (const Bounds &bounds : group_bounds(scene)) // rounding goes with its coordinates
+            EXPECT_LT(std::max(std::fabs(bounds.lower[0]), std::fabs(bounds.upper[0])), 2);
+        ASSERT_EQ(far.size(), near.size());
+        for (std::size_t i = 0; i < near.size(); ++i)
+            EXPECT_LT(length(subtract(far[i], near[i])), 1e-6) << i; // some roundings of what is two large
+    }
+}
+
+// What is far from its own origin but in a group around that stays where it is, but for the last bit.
+TEST(Instances, OfGroupsThatAreWideKeepTheirOrigin) {
+    const Scene scene = loaded_as(group_of("<shape type=\"cube\"/><shape type=\"rectangle\"><transform "
+                                           "name=\"to_world\"><translate x=\"100\"/></transform></shape>") +
+                                      instance_of("<translate x=\"3\"/>"),
+                                  InstanceChoice::kept);
+    EXPECT_EQ(scene.instances.at(0).to_world[3], 3);
+    const Bounds bounds = group_bounds(scene).at(0);
+    EXPECT_EQ(bounds.lower, (Double3{-1, -1, -1}));
+    EXPECT_EQ(bounds.upper, (Double3{101, 1, 1}));
+}
+
 // Shapes around those that are taken back keep their meshes.
 TEST(KeptInstances, LeaveOtherShapesAsTheyWere) {
     const std::string around = "<shape type=\"rectangle\" id=\"before\"/>" + group_of("<shape type=\"cube\"/>") +

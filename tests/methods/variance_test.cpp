@@ -83,6 +83,42 @@ TEST(Variances, OfFiltersWithNegativeLobesAreTheirs) {
                      std::string("gpt: ") + layer);
 }
 
+/// An evenly lit wall: noise is some 1e-4 of the value. What is left of the weights' own spread, times the value, would
+/// tell a thousand times the variance, and none in half of the pixels. Halves have films of their own.
+TEST(Variances, OfFiltersWithNegativeLobesAreTheirsWhereNoiseIsSmall) {
+    SceneMaker maker(side, 16);
+    maker.look({0, 1.5, -3}, {0, 0, 0}, 20, {0, 0, 1});
+    maker.scene.settings.max_depth = 2;
+    const std::uint32_t white = maker.material(diffuse(0.5));
+    maker.floor(-4, 4, 4, white);
+    maker.lamp({0, 40, 1.5f}, 0.01f, 0.01f, 1e7f, white);
+    maker.scene.film.filter = FilmSettings::Filter::lanczos;
+    maker.scene.film.filter_radius = 3;
+    RenderOptions options = with_aov();
+    options.sampler = RenderOptions::Sampler::independent;
+    for (const bool halves : {false, true}) {
+        options.error = halves;
+        const std::vector<Image> images = render_seeds(maker.scene, 128, options);
+        for (const Image &image : images)
+            EXPECT_THAT(image.find("variance.G")->values, ::testing::Each(::testing::Gt(0.0f)));
+        // All pixels share their places, so that few numbers tell it.
+        expect_right(told_over_true(images, "", "variance"), 1, halves ? "pt, halves" : "pt");
+    }
+}
+
+/// Edges: what samples weigh and what they show go by the same places.
+TEST(FullVariances, OfFiltersWithNegativeLobesAreTheirsAtEdges) {
+    RenderOptions options = with_aov();
+    options.sampler = RenderOptions::Sampler::independent;
+    for (const std::uint64_t samples : {16u, 64u}) {
+        Scene scene = strips(samples);
+        scene.film.filter = FilmSettings::Filter::lanczos;
+        scene.film.filter_radius = 3;
+        expect_right(told_over_true(render_seeds(scene, 400, options), "", "variance"), 0.2,
+                     fmt::format("pt, {} samples", samples));
+    }
+}
+
 /// Blocks of 4 x 4 pixels of pairs of seeds: (a - b) over the root of both variances is normal but for what 96 degrees
 /// of freedom leave, 96 / 94 of its square.
 TEST(Variances, MakeScoresOfUnitSpread) {
@@ -142,15 +178,23 @@ TEST(Variances, CostOthersNothing) {
     }
 }
 
-/// Batches end anywhere: replicates go by a sample's number.
+/// Batches end anywhere: replicates, and the weights of those before, go by a sample's number.
 TEST(Variances, DoNotDependOnBatches) {
-    const Scene scene = strips(7);
-    for (const char *method : {"pt", "gpt"}) {
-        const Image whole = render(scene, with_aov(), method).image;
-        for (const std::uint32_t batch : {64u, 1000u}) {
-            RenderOptions options = with_aov();
-            options.batch_size = batch;
-            EXPECT_TRUE(equal_bits(whole, render(scene, options, method).image)) << method << ", " << batch;
+    Scene scene = strips(7);
+    for (const bool is_signed : {false, true}) {
+        RenderOptions options = with_aov();
+        if (is_signed) {
+            scene.film.filter = FilmSettings::Filter::lanczos;
+            scene.film.filter_radius = 3;
+            options.sampler = RenderOptions::Sampler::independent;
+        }
+        for (const char *method : {"pt", "gpt"}) {
+            options.batch_size = 0;
+            const Image whole = render(scene, options, method).image;
+            for (const std::uint32_t batch : {64u, 1000u}) {
+                options.batch_size = batch;
+                EXPECT_TRUE(equal_bits(whole, render(scene, options, method).image)) << method << ", " << batch;
+            }
         }
     }
 }

@@ -60,6 +60,23 @@ TEST(GapsInSurfaces, KnowInstances) {
     EXPECT_GT(gaps_of(maker, {{5.25f, 3.0000005f, 0.5f}})[0], 1e-5);
 }
 
+/// Whichever of many places lies in one of many.
+TEST(GapsInSurfaces, KnowEachOfManyInstances) {
+    SceneMaker maker(4, 1);
+    maker.parallelogram({-1, 0, -1}, {2, 0, 0}, {0, 0, 2}, maker.material(diffuse(0.5)));
+    maker.scene.shapes.back().group = 0;
+    maker.scene.groups = 1;
+    std::vector<Vector3> places;
+    for (int i = 0; i < 1000; ++i) {
+        const double x = 4 * (i * 7 % 1000); // in no order
+        maker.scene.instances.push_back(make_instance(0, translation({x, 0, 0})));
+        places.push_back({float(x + 0.75 * (i % 3 - 1)), i % 2 == 0 ? 0.0f : 1.0f, 0.5f});
+    }
+    const std::vector<float> gaps = gaps_of(maker, places);
+    for (std::size_t i = 0; i < gaps.size(); ++i)
+        EXPECT_EQ(gaps[i] > 0, i % 2 == 0) << i;
+}
+
 TEST(GapsInSurfaces, AreNothingOfNothing) {
     const SceneMaker maker(4, 1);
     EXPECT_TRUE(gaps_of(maker, {}).empty());

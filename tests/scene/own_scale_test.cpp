@@ -1,6 +1,7 @@
 // Lengths of scenes of any unit, in the one that they are rendered in.
 #include "runtime/error.h"
 #include "runtime/scene/camera_clips.h"
+#include "runtime/scene/instances.h"
 #include "runtime/scene/mesh_builder.h"
 #include "runtime/scene/own_scale.h"
 #include "tests/support/placed_scene.h"
@@ -61,6 +62,24 @@ TEST(OwnScale, SmallTrianglesMakeTheSceneLarger) {
         EXPECT_LE(edge * factor, 4e-9) << size << ": no larger than it need be";
         EXPECT_LE(size * factor, 1e6) << size;
     }
+}
+
+// In the world, where kernels take the areas of what is in groups, too.
+TEST(OwnScale, TrianglesOfGroupsAreAsSmallAsTheirInstances) {
+    const auto factor_with = [](float edge, const std::vector<double> &scales) {
+        SceneMaker maker = room(1e-2f);
+        maker.parallelogram({0, 0, 0}, {edge, 0, 0}, {0, edge, 0}, 0);
+        maker.scene.groups = scales.empty() ? 0 : 1;
+        maker.scene.shapes.back().group = scales.empty() ? no_group : 0;
+        for (const double by : scales)
+            maker.scene.instances.push_back(make_instance(0, scaling({by, by, by})));
+        Scene scene = maker.scene;
+        return bring_to_own_scale(scene);
+    };
+    const double expected = factor_with(3e-11f, {});
+    EXPECT_GT(expected, 1);
+    EXPECT_EQ(factor_with(3e-4f, {1, 1}), 1);
+    EXPECT_EQ(factor_with(3e-4f, {1, 1e-7, 1}), expected);
 }
 
 TEST(OwnScale, WhatNoFloatHoldsIsRefusedWithItsName) {

@@ -1,6 +1,8 @@
 // The records of a scene: lights with their powers, and primitives in their order.
 #include "runtime/scene/scene_tables.h"
 
+#include "runtime/error.h"
+#include "runtime/scene/texture_tables.h"
 #include "tests/support/small_scenes.h"
 #include "tests/support/textures.h"
 
@@ -319,6 +321,29 @@ TEST(SceneTables, HaveALightTreeWhereLightsAreMany) {
     EXPECT_EQ(levels({.emitters = 2}), 0u);
     maker.point_light({1, 1, 1}, {0, 2, 0});
     EXPECT_GT(levels({.emitters = 2}), 0u);
+}
+
+/// Kernels count the texels of a picture by 32 bits. Of its words nothing is read before it is refused.
+TEST(TextureTables, RefusePicturesWhoseTexelsHaveNoNumber) {
+    SceneMaker maker(4, 1);
+    maker.sphere({0, 0, 0}, 1, maker.material(diffuse(0.5)));
+    const auto refusal = [&](std::uint32_t width, std::uint32_t height) {
+        auto bitmap = std::make_shared<Bitmap>();
+        bitmap->width = width;
+        bitmap->height = height;
+        Scene scene = maker.scene;
+        scene.textures.emplace_back().bitmap = bitmap;
+        SceneTables tables;
+        try {
+            add_textures(scene, tables);
+        } catch (const Error &error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_EQ(refusal(1 << 16, 1 << 16), "");
+    EXPECT_EQ(refusal(1 << 16, (1 << 16) + 1),
+              "a picture of 65536 x 65537 texels has more than 2^32, the most that a texture may have");
 }
 
 } // namespace

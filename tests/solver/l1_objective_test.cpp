@@ -146,6 +146,35 @@ TEST(L1Objective, LargeAlphaGivesThePrimal) {
                       "returns the primal", "relative distance from the primal", worst, 1e-3});
 }
 
+/// Outliers of I0 whose differences, four, or three at an edge, weigh less than they do stay; others do not. Where the
+/// rest has no residual, what is left is the least.
+TEST(L1Objective, OutliersOfThePrimalStayWhereTheyWeighMore) {
+    constexpr std::uint32_t size = 32;
+    PoissonProblem problem = make_exact_problem(size, size, 3);
+    problem.primal.assign(problem.primal.size(), 0.5f);
+    problem.dx.assign(problem.dx.size(), 0);
+    problem.dy.assign(problem.dy.size(), 0);
+    const auto add = [&](std::uint32_t x, std::uint32_t y) {
+        for (std::uint32_t c = 0; c < 3; ++c)
+            problem.primal[problem.at(c, x, y)] += 1;
+    };
+    add(7, 9);
+    add(20, 21);
+    const auto objective_of = [&](double alpha) {
+        const Solution solution = solve(problem, plain_l1_options(alpha));
+        return l1_objective(problem, alpha, to_double(solution.image), true);
+    };
+    for (const double alpha : {0.5, 2.0, 2.9, 3.5, 5.0, 10.0, 1e3})
+        EXPECT_NEAR(objective_of(alpha) / (2 * std::min(alpha, 4.0) * std::sqrt(3.0)), 1, 0.001) << alpha;
+    for (float &value : problem.dx)
+        value = 1e-3f;
+    for (const double alpha : {5.0, 10.0}) {
+        // From 4 on it is I0.
+        EXPECT_LE(objective_of(alpha), allowed * l1_objective(problem, alpha, to_double(problem.primal), true))
+            << alpha;
+    }
+}
+
 TEST(L1Objective, AlphaOfZeroKeepsTheMean) {
     const PoissonProblem problem = make_poisson_problem(75, 43, 3, 12);
     double worst = 0;

@@ -319,5 +319,36 @@ TEST(MissingInputsL1, ObjectiveIsThatOfTheKnownEquations) {
                       0.001});
 }
 
+/// Pixels that have differences alone are not lost beside those that have data, however much these weigh.
+TEST(MissingPrimal, OfALargeAlphaIsThatOfTheDifferences) {
+    PoissonProblem half = make_poisson_problem(64, 64, 3, 13);
+    std::fill_n(half.primal.begin() + 32 * 64, 32 * 64, nan); // what lacks one channel lacks all
+    PoissonProblem few = make_poisson_problem(47, 33, 3, 14);
+    for (const auto &[x, y] : {std::pair{3u, 5u}, {20u, 0u}, {46u, 32u}})
+        few.primal[few.at(1, x, y)] = nan;
+    for (const PoissonProblem &problem : {half, few}) {
+        const std::vector<double> reference = solve_known(problem, 100);
+        for (const double alpha : {100.0, 1e3, 3e3, 1e5, 1e8, 1e12}) {
+            const PoissonOptions options = l2_options(LinearMethod::automatic, alpha, 1e-6);
+            const Solution solution = solve(problem, options);
+            EXPECT_EQ(solution.report.alpha, 100);
+            EXPECT_TRUE(solution.report.converged) << alpha;
+            // The residual is at most 1e-6 of ||b||, about 100, and the slowest mode of the missing half has the
+            // eigenvalue (pi / 64)^2.
+            EXPECT_LE(largest_difference(solution.image, reference), 0.04) << alpha;
+        }
+        // From variances, with weights by them: all are 1.
+        std::vector<float> small(problem.primal.size(), 1e-10f), large(problem.primal.size(), 1e5f);
+        HostImages images = problem.images();
+        images.primal_variance = small.data();
+        images.dx_variance = images.dy_variance = large.data();
+        PoissonOptions options = l2_options(LinearMethod::automatic, 0.2, 1e-6);
+        options.alpha_from_variances = options.weigh_by_variance = true;
+        const Solution solution = solve(solver_for(problem), images, options);
+        EXPECT_EQ(solution.report.alpha, 100);
+        EXPECT_LE(largest_difference(solution.image, reference), 0.04);
+    }
+}
+
 } // namespace
 } // namespace gradus::testing

@@ -1,7 +1,9 @@
 // The film: sums that lose nothing, samples that are not finite, and which pixel gets which sample.
 #include "runtime/wavefront/film.h"
 
+#include "runtime/error.h"
 #include "runtime/film/replicates.h"
+#include "runtime/wavefront/sample_parts.h"
 #include "tests/support/small_scenes.h"
 
 #include <gtest/gtest.h>
@@ -28,8 +30,12 @@ struct FilmUnderTest {
     using Sampler = SessionOptions::Sampler;
     FilmUnderTest(Device &device, std::uint32_t slots, std::uint32_t width, std::uint32_t height, bool aov,
                   Sampler sampler = Sampler::independent)
-        : session(device, scene_of(width, height), options_with(aov, sampler), {}), film(session, stages),
-          tables(device, film.tables(), {64, slots, session.pixels(), width, 1}, Precision::single) {
+        : FilmUnderTest(device, slots, scene_of(width, height), options_with(aov, sampler), false) {}
+    /// `halves`: even and odd samples apart.
+    FilmUnderTest(Device &device, std::uint32_t slots, const Scene &scene, const SessionOptions &options, bool halves)
+        : session(device, scene, options, {{"TRAIT_PART_BITS", part_bits(options, halves)}}),
+          film(session, stages, halves),
+          tables(device, film.tables(), {64, slots, session.pixels(), scene.film.width, 1}, Precision::single) {
         session.numbers["slots"] = slots;
         stages.build(session, tables);
         film.attach(tables);
@@ -213,6 +219,48 @@ TEST_F(FilmTest, KnowsTheVarianceOfItsMean) {
     // Sample variance 5/3, over 4.
     EXPECT_FLOAT_EQ(image.find("variance.R")->values[0], float(5.0 / 12));
     EXPECT_FLOAT_EQ(image.find("variance.B")->values[0], float(9 * 5.0 / 12));
+}
+
+/// Two samples tell (x - y)^2 / 2, whatever they weigh, and whether each is a half by itself or not.
+TEST_F(FilmTest, KnowsTheVarianceOfItsMeanWhereSamplesWeigh) {
+    Scene scene = FilmUnderTest::scene_of(1, 1);
+    scene.film.filter = FilmSettings::Filter::lanczos;
+    scene.film.filter_radius = 3;
+    const double values[] = {1, 1.001};
+    for (const bool halves : {false, true}) {
+        FilmUnderTest test(device, 64, scene, FilmUnderTest::options_with(true, FilmUnderTest::Sampler::independent),
+                           halves);
+        test.tables["feature"].clear();
+        test.set_radiance(2, [&](std::uint32_t slot, int c) { return (c + 1) * values[slot]; });
+        const SharedWeights::Sums first = test.film.weights().sums(1, 0, 1), both = test.film.weights().sums(2, 0, 1);
+        {
+            const auto view = test.tables["filtered"].map(Access::write);
+            view.as<float>()[0] = float(first.weights);
+            view.as<float>()[1] = float(both.weights - first.weights);
+        }
+        test.film.add(2, 0);
+        std::uint64_t non_finite = 0;
+        const Image image = test.film.image(2, non_finite);
+        const double weight = test.film.weights().of_part(2, 0, 1);
+        // The values are a thousandth apart, which is what leaves rounding.
+        const double expected = 1e-6 / 2 * both.squares / (weight * weight);
+        EXPECT_NEAR(image.find("variance.R")->values[0], expected, 1e-3 * expected) << halves;
+        EXPECT_NEAR(image.find("variance.B")->values[0], 9 * expected, 9e-3 * expected) << halves;
+    }
+}
+
+/// A place and a width whose sum is small in 32 bits.
+TEST_F(FilmTest, LiesWithinItsImage) {
+    Scene scene = FilmUnderTest::scene_of(4, 4);
+    scene.film.crop_width = scene.film.crop_height = 2;
+    const auto refuses = [&](std::uint32_t x, std::uint32_t y) {
+        scene.film.crop_x = x;
+        scene.film.crop_y = y;
+        EXPECT_THROW(Session(device, scene, SessionOptions(), {}), Error) << x << ", " << y;
+    };
+    refuses(0xFFFFFFFF, 0);
+    refuses(0, 0xFFFFFFFF);
+    refuses(3, 0);
 }
 
 /// Of five samples and a pixel that has four, the first is one that the fifth is like: sample s is of replicate s

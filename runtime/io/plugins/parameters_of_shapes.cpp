@@ -32,9 +32,10 @@ ParameterList parameters_of_meshes() {
     return joined({list, meaningless({"max_smooth_angle"})});
 }
 
-BuiltMesh build_shape_mesh(Properties &properties, Mesh mesh, MeshOptions options) {
-    const Matrix4 to_world = read_placement(properties, options);
-    return build_mesh(std::move(mesh), to_world, options);
+PendingMesh made_shape_mesh(Properties &properties, Mesh mesh, const MeshOptions &options, const Double3 &origin) {
+    PendingMesh pending{[made = std::move(mesh)] { return SerializedMesh{made}; }, {}, options};
+    pending.to_world = multiply(read_placement(properties, pending.options), translation(origin));
+    return pending;
 }
 
 PendingMesh pending_shape_mesh(Properties &properties, std::function<SerializedMesh()> read) {

@@ -11,8 +11,9 @@ namespace gradus {
 ParameterList parameters_of_meshes();
 /// The same of a shape whose normals are what they are.
 ParameterList parameters_of_any_shape();
-/// By these parameters. What `options` already sets stays set.
-BuiltMesh build_shape_mesh(Properties &properties, Mesh mesh, MeshOptions options);
+/// A mesh by these parameters, of positions relative to `origin`. What `options` already sets stays set.
+PendingMesh made_shape_mesh(Properties &properties, Mesh mesh, const MeshOptions &options,
+                            const Double3 &origin = {0, 0, 0});
 /// The same of a mesh that is read later.
 PendingMesh pending_shape_mesh(Properties &properties, std::function<SerializedMesh()> read);
 

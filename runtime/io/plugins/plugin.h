@@ -24,6 +24,12 @@ struct ReconstructionFilter {
     float b = 1 / 3.0f, c = 1 / 3.0f;   ///< of Mitchell's
 };
 
+/// A sphere, and its center as it was before it was rounded.
+struct PlacedSphere {
+    Sphere sphere;
+    Double3 center;
+};
+
 /// A mesh that is still to be read and built, by any thread.
 struct PendingMesh {
     std::function<SerializedMesh()> read; ///< may throw SceneError; its face_normals is or-ed to that of the options
@@ -39,7 +45,7 @@ struct ShapeGroup {
     Location location = {};              ///< of what says so
 };
 
-using ShapeGeometry = std::variant<BuiltMesh, Sphere, PendingMesh, ShapeGroup>;
+using ShapeGeometry = std::variant<BuiltMesh, PlacedSphere, PendingMesh, ShapeGroup>;
 
 struct SampleCount {
     std::uint64_t count = 4; ///< samples a pixel

@@ -37,7 +37,7 @@ ShapeGeometry shape_cylinder(Properties &properties, SceneBuilder &) {
     for (std::uint32_t i = 0; i <= sides; ++i) {
         const Double3 normal = add(scale(x, std::cos(i % sides * turn)), scale(y, std::sin(i % sides * turn)));
         for (const double v : {0.0, 1.0}) {
-            mesh.positions.push_back(to_float(add(add(p0, scale(axis, v)), scale(normal, outer))));
+            mesh.positions.push_back(to_float(add(scale(axis, v), scale(normal, outer))));
             mesh.normals.push_back(to_float(normal));
             mesh.texcoords.push_back({float(i) / sides, float(v)});
         }
@@ -48,7 +48,7 @@ ShapeGeometry shape_cylinder(Properties &properties, SceneBuilder &) {
     }
     MeshOptions options;
     options.front_from_local_winding = true;
-    return build_shape_mesh(properties, std::move(mesh), options);
+    return made_shape_mesh(properties, std::move(mesh), options, p0);
 }
 
 } // namespace gradus

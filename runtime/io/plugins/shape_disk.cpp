@@ -33,7 +33,7 @@ ShapeGeometry shape_disk(Properties &properties, SceneBuilder &) {
     MeshOptions options;
     options.front_from_local_winding = true;
     options.compute_normals = false; // flat
-    return build_shape_mesh(properties, std::move(mesh), options);
+    return made_shape_mesh(properties, std::move(mesh), options);
 }
 
 } // namespace gradus

@@ -16,7 +16,7 @@ Declaration declare_shape_sphere() {
 }
 
 ShapeGeometry shape_sphere(Properties &properties, SceneBuilder &) {
-    const Double3 center = properties.point("center");
+    const Double3 local_center = properties.point("center");
     const double radius = properties.number("radius");
     const Matrix4 to_world = properties.transform("to_world");
     const double factor = uniform_scale(to_world);
@@ -27,7 +27,8 @@ ShapeGeometry shape_sphere(Properties &properties, SceneBuilder &) {
     if (!(std::isnormal(float(radius * factor))) || (radius < 0 && is_legacy))
         throw properties.error("radius", "a sphere needs a positive radius of moderate size");
     Sphere sphere;
-    sphere.center = to_float(transform_point(to_world, center));
+    const Double3 center = transform_point(to_world, local_center);
+    sphere.center = to_float(center);
     sphere.radius = float(std::fabs(radius) * factor);
     // Mitsuba 3 turns a sphere inside out when it is mirrored or its radius is negative; 0.x does not.
     const bool is_mirrored = (determinant(to_world) < 0) != (radius < 0);
@@ -37,7 +38,7 @@ ShapeGeometry shape_sphere(Properties &properties, SceneBuilder &) {
             to_float(scale({to_world.m[axis], to_world.m[4 + axis], to_world.m[8 + axis]}, 1 / factor));
     if (!std::isfinite(sphere.center.x) || !std::isfinite(sphere.center.y) || !std::isfinite(sphere.center.z))
         throw properties.error("center", "the sphere's center is out of range");
-    return sphere;
+    return PlacedSphere{sphere, center};
 }
 
 } // namespace gradus
