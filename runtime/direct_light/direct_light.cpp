@@ -14,6 +14,8 @@
 #include "kernels/lib/stratified.h"
 #include "kernels/shared/tables.h"
 #include "runtime/direct_light/lit_rectangle.h"
+#include "runtime/direct_light/shared_rays.h"
+#include "runtime/film/metrics.h"
 #include "runtime/scene/environment_map.h"
 #include "runtime/scene/filter_table.h"
 
@@ -27,7 +29,11 @@ using namespace lib_float;
 namespace {
 
 constexpr std::uint32_t pilot_side = 2;
-constexpr double rays_a_sample = 0.5; // of the image; a sample of a path takes a dozen
+constexpr double rays_a_sample = 1; // of the image; a sample of a path takes a dozen
+/// Rays go by this power of a pixel's relative variance. Of errors that fell as one over the square of the rays the
+/// third root would leave least; of 600 lanterns the fourth does (by a sixth less than the third, a half less than the
+/// second).
+constexpr double power_of_need = 0.25;
 /// Through a pixel at an edge. Their error falls nearly as one over their number and is below a hundredth of the light
 /// long before these: more would cost and gain nothing.
 constexpr std::uint32_t least_of_most = 256, most_a_sample = 32, most_samples = 4096;
@@ -143,12 +149,40 @@ class WindowSums {
 
 bool differ(rgb a, rgb b) { return a.r != b.r || a.g != b.g || a.b != b.b; }
 
+/// What of the pixel filter lies over each pixel of a row around its own, `reach` to either side: of its values, and of
+/// their magnitudes. Spread by half a pixel, since of where within a pixel an edge lies pilot rays tell little.
+struct FilterShares {
+    std::vector<double> values, magnitudes;
+    double all = 0; ///< magnitudes
+
+    template <class Sampler>
+    FilterShares(int reach, const Sampler &from_center) : values(2 * reach + 1), magnitudes(values) {
+        constexpr int draws = 1024;
+        for (int i = 0; i < draws; ++i) {
+            const filter_sample sample = from_center((float(i) + 0.5f) / draws);
+            all += std::abs(sample.weight) / draws;
+            for (int side : {-1, 0, 0, 1}) {
+                const long at = std::clamp(std::lround(sample.offset) + side, long(-reach), long(reach)) + reach;
+                values[std::size_t(at)] += 0.25 * sample.weight / draws;
+                magnitudes[std::size_t(at)] += 0.25 * std::abs(sample.weight) / draws;
+            }
+        }
+    }
+};
+
+struct EdgePixels {
+    std::vector<std::size_t> pixels;
+    std::vector<float> needs; ///< of rays: by the relative variance of a pilot ray's light; positive
+};
+
 /// Pixels of the crop near which the pilot rays see different light. Beyond the `lit` ones all would see none.
-std::vector<std::size_t> edge_pixels(const FilmSettings &film, const PixelRectangle &lit, DirectRays &rays, int reach) {
-    // Of each lit pixel its first light, and whether its rays saw another.
+EdgePixels edge_pixels(const FilmSettings &film, const PixelRectangle &lit, DirectRays &rays, int reach,
+                       const FilterShares &filter) {
+    // Of each lit pixel its first light, whether its rays saw another, and means of their brightness and its square.
     constexpr std::size_t pilots = pilot_side * pilot_side;
     std::vector<rgb> seen(std::size_t(lit.width()) * lit.height());
     std::vector<char> mixed(seen.size(), 0);
+    std::vector<std::array<float, 2>> moments(seen.size());
     for (std::size_t begin = 0; begin < seen.size();) {
         const std::size_t end = std::min(seen.size(), begin + batch / pilots);
         const std::vector<rgb> &light = rays.trace(pilots * (end - begin), true, [&](std::size_t ray) {
@@ -165,6 +199,12 @@ std::vector<std::size_t> edge_pixels(const FilmSettings &film, const PixelRectan
             const rgb *first = &light[(number - begin) * pilots];
             seen[number] = *first;
             mixed[number] = std::any_of(first + 1, first + pilots, [&](rgb other) { return differ(other, *first); });
+            for (std::size_t i = 0; i < pilots; ++i) {
+                // Whose square is a number.
+                const float brightness = std::min(1e15f, (first[i].r + first[i].g + first[i].b) / 3);
+                moments[number][0] += brightness / pilots;
+                moments[number][1] += brightness * brightness / pilots;
+            }
         }
         begin = end;
     }
@@ -179,14 +219,29 @@ std::vector<std::size_t> edge_pixels(const FilmSettings &film, const PixelRectan
     const WindowSums mixes(around, is_mixed);
     const WindowSums across(around, [&](int x, int y) { return differ(seen_at(x, y), seen_at(x - 1, y)); });
     const WindowSums down(around, [&](int x, int y) { return differ(seen_at(x, y), seen_at(x, y - 1)); });
-    std::vector<std::size_t> found;
+    const auto need_of = [&](int x, int y) {
+        double mean = 0, square = 0;
+        for (int j = -reach; j <= reach; ++j)
+            for (int i = -reach; i <= reach; ++i)
+                if (lit.contains(x + i, y + j)) {
+                    const auto [of_light, of_square] = moments[number_of(x + i, y + j)];
+                    mean += filter.values[reach + i] * filter.values[reach + j] * of_light;
+                    square += filter.magnitudes[reach + i] * filter.magnitudes[reach + j] * of_square;
+                }
+        const double variance = filter.all * filter.all * square - mean * mean;
+        return float(std::pow(std::max(variance, 0.0) / (mean * mean + relative_mse_epsilon), power_of_need));
+    };
+    constexpr float least_need = 1e-6f; // where colours differ and brightness does not
+    EdgePixels found;
     for (int y = std::max(int(lit.top) - reach, 0); y < std::min(int(lit.bottom) + reach, height); ++y)
         for (int x = std::max(int(lit.left) - reach, 0); x < std::min(int(lit.right) + reach, width); ++x) {
             const int left = std::max(x - reach, 0), right = std::min(x + reach + 1, width);
             const int top = std::max(y - reach, 0), bottom = std::min(y + reach + 1, height);
             if (mixes.any(left, top, right, bottom) || across.any(left + 1, top, right, bottom) ||
-                down.any(left, top + 1, right, bottom))
-                found.push_back(std::size_t(y) * film.crop_width + x);
+                down.any(left, top + 1, right, bottom)) {
+                found.pixels.push_back(std::size_t(y) * film.crop_width + x);
+                found.needs.push_back(std::max(need_of(x, y), least_need));
+            }
         }
     return found;
 }
@@ -208,24 +263,37 @@ std::vector<DirectPixel> sample_direct_edges(const SceneTables &tables, const Fi
     };
     DirectRays direct(tables, tracer, rays);
     const int reach = film.filter == FilmSettings::Filter::box ? 1 : std::max(1, int(std::ceil(radius)));
-    const std::vector<std::size_t> edges = edge_pixels(film, lit_rectangle(tables, film), direct, reach);
-    if (edges.empty())
+    const double budget = rays_a_sample * samples * film.crop_width * film.crop_height;
+    const double most = std::min<double>(least_of_most + double(most_a_sample) * samples, most_samples);
+    const double least = 2.0 * samples; // the paths' own are better than fewer
+    if (most < least)
         return {};
-    const double budget = rays_a_sample * samples * film.crop_width * film.crop_height / double(edges.size());
-    const double enough = std::min<double>(least_of_most + double(most_a_sample) * samples, most_samples);
-    const auto count = static_cast<std::uint32_t>(std::min(budget, enough));
-    if (count < 2 * samples)
-        return {};
+    const EdgePixels edges =
+        edge_pixels(film, lit_rectangle(tables, film), direct, reach, FilterShares(reach, from_center));
+    const std::vector<std::uint32_t> shares =
+        shared_rays(edges.needs, budget, std::uint32_t(least), std::uint32_t(most));
+    std::vector<std::size_t> pixels; // those that have rays, and how many
+    std::vector<std::uint32_t> counts;
+    for (std::size_t i = 0; i < shares.size(); ++i)
+        if (shares[i] > 0) {
+            pixels.push_back(edges.pixels[i]);
+            counts.push_back(shares[i]);
+        }
     std::vector<DirectPixel> found;
-    std::vector<float> weights; ///< of the filter, by ray
-    for (std::size_t begin = 0; begin < edges.size();) {
-        const std::size_t end = std::min(edges.size(), begin + std::max<std::size_t>(batch / count, 1));
-        weights.resize((end - begin) * count);
-        const std::vector<rgb> &light = direct.trace((end - begin) * count, false, [&](std::size_t ray) {
-            const std::size_t pixel = edges[begin + ray / count];
+    std::vector<float> weights;    ///< of the filter, by ray
+    std::vector<std::size_t> ends; ///< where the rays of a pixel end, by pixel of the batch
+    for (std::size_t begin = 0; begin < pixels.size();) {
+        ends.clear();
+        std::size_t end = begin, all = 0;
+        for (; end < pixels.size() && (end == begin || all + counts[end] <= batch); ++end)
+            ends.push_back(all += counts[end]);
+        weights.resize(all);
+        const std::vector<rgb> &light = direct.trace(all, false, [&](std::size_t ray) {
+            const std::size_t e = std::size_t(std::ranges::upper_bound(ends, ray) - ends.begin());
+            const std::size_t pixel = pixels[begin + e];
             const std::uint32_t x = film.crop_x + static_cast<std::uint32_t>(pixel % film.crop_width);
             const std::uint32_t y = film.crop_y + static_cast<std::uint32_t>(pixel / film.crop_width);
-            const auto number = static_cast<std::uint32_t>(ray % count);
+            const auto number = static_cast<std::uint32_t>(ray - (ends[e] - counts[begin + e]));
             // No path has so high a sample number.
             const random_bits start =
                 random_key(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32), y * film.width + x,
@@ -242,9 +310,10 @@ std::vector<DirectPixel> sample_direct_edges(const SceneTables &tables, const Fi
             return at;
         });
         for (std::size_t e = begin; e < end; ++e) {
+            const std::uint32_t count = counts[e];
             DirectPixel pixel;
-            pixel.pixel = edges[e];
-            const std::size_t first = (e - begin) * count, middle = first + count / 2, last = first + count;
+            pixel.pixel = pixels[e];
+            const std::size_t first = ends[e - begin] - count, middle = first + count / 2, last = first + count;
             const auto add = [&](double(&sum)[3], std::size_t ray, std::size_t end) {
                 for (; ray < end; ++ray) {
                     sum[0] += double(weights[ray]) * light[ray].r;

@@ -20,10 +20,10 @@ struct DirectPixel {
 };
 
 /// Finds the pixels in whose reach lights begin or end, by four rays through each that may see one (lit_rectangle.h),
-/// which count for nothing else, and samples those anew, as often as half a ray for each of `samples` of all pixels of
-/// the image allows, or as is enough; does nothing where that would not be twice `samples`. The estimates are unbiased,
-/// and so are those of the path tracer for the other pixels. `film` has its crop set. Adds the rays that were traced to
-/// `rays`.
+/// which count for nothing else, and samples those anew: one ray for each of `samples` of all pixels of the image is
+/// shared among them, by how much their light varies beside what it is, and none gets more than is enough. Those that
+/// would not get twice `samples` are left out. The estimates are unbiased, and so are those of the path tracer for the
+/// other pixels. `film` has its crop set. Adds the rays that were traced to `rays`.
 std::vector<DirectPixel> sample_direct_edges(const SceneTables &tables, const FilmSettings &film, Tracer &tracer,
                                              std::uint64_t seed, std::uint32_t samples, std::uint64_t &rays);
 

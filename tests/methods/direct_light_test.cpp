@@ -1,6 +1,7 @@
 // The light that the camera sees at pixels which a lamp's edge crosses.
 #include "runtime/direct_light/direct_light.h"
 #include "runtime/direct_light/lit_rectangle.h"
+#include "runtime/direct_light/shared_rays.h"
 #include "tests/support/render.h"
 #include "tests/support/small_scenes.h"
 #include "tests/support/worse.h"
@@ -61,7 +62,7 @@ TEST(DirectEdges, IsUnbiasedOverSeeds) {
     EXPECT_LT(error, 0.002);
 }
 
-/// Beyond some hundred rays a pixel the error is not seen, and time is: half a ray a sample would be two million.
+/// Beyond some hundred rays a pixel the error is not seen, and time is: one ray a sample would be four million.
 TEST(DirectEdges, TakeNoMoreRaysThanTheyNeed) {
     Scene scene = lamp(33.3, 45.009, 61.85, 59.5);
     scene.film.width = scene.film.height = 4 * size;
@@ -70,6 +71,49 @@ TEST(DirectEdges, TakeNoMoreRaysThanTheyNeed) {
     std::printf("%llu rays\n", static_cast<unsigned long long>(rays));
     EXPECT_GT(rays, 300 * border / 2);
     EXPECT_LE(rays, 4 * lit + (256 + 32 * 16) * border);
+}
+
+TEST(SharedRays, GoByNeedWithinBounds) {
+    using ::testing::ElementsAre;
+    EXPECT_THAT(shared_rays({1, 3, 2}, 60, 1, 100), ElementsAre(10, 30, 20));
+    EXPECT_THAT(shared_rays({1, 3, 2}, 60, 1, 24), ElementsAre(12, 24, 24)) << "what is too much goes to others";
+    EXPECT_THAT(shared_rays({1, 3, 2}, 60, 11, 100), ElementsAre(0, 36, 24)) << "and so does what is too little";
+    EXPECT_THAT(shared_rays({1, 3, 2}, 600, 11, 100), ElementsAre(100, 100, 100));
+    EXPECT_THAT(shared_rays({1, 3, 2}, 10, 11, 100), ElementsAre(0, 0, 0));
+    EXPECT_THAT(shared_rays({2, 2, 2, 2}, 43, 20, 100), ElementsAre(21, 21, 0, 0)) << "the first of equals";
+    EXPECT_THAT(shared_rays({}, 43, 20, 100), ElementsAre());
+}
+
+/// Many lamps and a wide filter: there are too few rays for all pixels that a border is near, and of those in most what
+/// the filter leaves of it is nothing.
+TEST(DirectEdges, AreSampledWhereTheyVaryMost) {
+    constexpr std::uint32_t side = 32;
+    SceneMaker maker(side, 64);
+    maker.look({0, 0, -1}, {0, 0, 0}, 90);
+    const std::uint32_t black = maker.material(diffuse(0));
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            maker.parallelogram({-0.72f + 0.57f * float(i), -0.74f + 0.55f * float(j), 0}, {0, 0.13f, 0}, {0.13f, 0, 0},
+                                black, maker.emitter(Emitter::Kind::area, {10, 20, 40}));
+    maker.scene.film.filter = FilmSettings::Filter::gaussian;
+    maker.scene.film.filter_radius = 2;
+    maker.scene.settings.max_depth = 1;
+    const auto relative_error = [&](const Image &image, const Image &truth) {
+        double sum = 0;
+        for (std::uint32_t y = 0; y < side; ++y)
+            for (std::uint32_t x = 0; x < side; ++x) {
+                const double expected = pixel(truth, x, y), off = pixel(image, x, y) - expected;
+                sum += off * off / (expected * expected + 0.001);
+            }
+        return sum / (side * side);
+    };
+    Scene many = maker.scene;
+    many.settings.samples_per_pixel = 16384;
+    const Image truth = render(many, {}, "pt").image;
+    const double paths = relative_error(render(maker.scene, {}, "pt").image, truth);
+    const double edges = relative_error(render(maker.scene, {}, "gpt").image, truth);
+    std::printf("relMSE of lamps seen: %.3g, of paths alone %.3g\n", edges, paths);
+    EXPECT_LT(edges, 0.6 * paths); // those of the paths, at places that all pixels share, are worse than paths'
 }
 
 PixelRectangle rectangle_of(const Scene &scene) {
