@@ -30,9 +30,9 @@ namespace {
 
 constexpr std::uint32_t pilot_side = 2;
 constexpr double rays_a_sample = 1; // of the image; a sample of a path takes a dozen
-/// Rays go by this power of a pixel's relative variance. Of errors that fell as one over the square of the rays the third
-/// root would leave least; of 600 lanterns the fourth does: a tenth less than the third, a quarter less than the second.
-/// (Where there are rays enough for all pixels, equal shares do as well.)
+/// Rays go by this power of a pixel's relative variance. Of errors that fell as one over the square of the rays the
+/// third root would leave least; of 600 lanterns the fourth does: a tenth less than the third, a quarter less than the
+/// second. (Where there are rays enough for all pixels, equal shares do as well.)
 constexpr double power_of_need = 0.25;
 /// Through a pixel at an edge. Their error falls nearly as one over their number and is below a hundredth of the light
 /// long before these: more would cost and gain nothing.
