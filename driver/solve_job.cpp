@@ -104,8 +104,8 @@ class SolveJob {
             return;
         if (alpha_is_other) {
             own += " --alpha " + text->second;
-            ours +=
-                !needs_halves(request_.reconstruction) ? fmt::format(" with --alpha {}", request_.options.alpha) : "";
+            if (!needs_halves(request_.reconstruction))
+                ours += fmt::format(" with --alpha {}", request_.options.alpha);
         }
         warn(fmt::format("the render that wrote these layers has {0}, and this image is {1}: {0} makes its own", own,
                          ours));

@@ -223,13 +223,9 @@ GradientFilms DifferenceFilm::films(std::uint64_t samples) const {
     const std::uint64_t frames = samples / session_.pixels();
     for (std::uint32_t part = 0; part < parts; ++part) {
         const SharedWeights &shared = film_.weights();
-        const auto weight = [&](std::uint64_t of_frames) {
-            const double squares = shared.sums(of_frames, part, parts).squares;
-            const double first = shared.sums(std::min<std::uint64_t>(of_frames, part + 1), part, parts).squares;
-            return GradientFilm::Weight{shared.of_part(of_frames, part, parts), squares, squares - first};
-        };
         // A frame more for the upper pixels is one of a single part.
-        const GradientFilm::Weights weights{weight(frames), weight(frames + 1)};
+        const GradientFilm::Weights weights{shared.of_samples(frames, part, parts),
+                                            shared.of_samples(frames + 1, part, parts)};
         films.add((*tables_)[film_names_[part]], session_.film.crop_width, session_.film.crop_height,
                   options_.precision, samples_of_part(samples, session_.pixels(), part, parts), weights);
     }

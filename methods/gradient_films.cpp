@@ -105,27 +105,23 @@ PlaneSource GradientFilms::variance_of_samples(GradientFilm::Layer layer) const 
             const std::size_t halves = has_halves_ && count >= 4 ? 2 : 1;
             Values variance{};
             for (std::size_t half = 0; half < halves; ++half) {
-                GradientFilm::Weight of_half{};
+                SampleWeights of_half;
                 Values sum{}, deviations{};
                 for (std::size_t part = half; part < films_.size(); part += halves) {
                     const GradientFilm &film = *films_[part];
                     if (film.count(layer, first) == 0)
                         continue;
-                    const GradientFilm::Weight &of_part = film.weight(layer, first);
+                    const SampleWeights &of_part = film.weight(layer, first);
                     Values sum_of_part{};
                     film.add_sums(layer, color, first, end, sum_of_part.data());
                     film.add_deviations(layer, color, first, end, deviations.data());
-                    // Two means are apart by so much of the samples' variance (Chan et al. 1983, where weights are 1).
-                    const double apart = of_part.squares * of_half.of_mean * of_half.of_mean +
-                                         of_half.squares * of_part.of_mean * of_part.of_mean;
+                    const double apart = of_half.apart(of_part);
                     for (std::size_t i = 0; i < pixels; ++i) {
                         const double off = sum_of_part[i] * of_half.of_mean - sum[i] * of_part.of_mean;
                         deviations[i] += apart > 0 ? off * off / apart : 0;
                         sum[i] += sum_of_part[i];
                     }
-                    of_half.of_deviations += of_part.of_deviations + (apart > 0 ? 1 : 0);
-                    of_half.of_mean += of_part.of_mean;
-                    of_half.squares += of_part.squares;
+                    of_half.add(of_part);
                 }
                 if (of_half.of_deviations <= 0)
                     continue;

@@ -3,6 +3,7 @@
 
 #include "runtime/trace/tracer.h"
 #include "runtime/wavefront/host_table.h"
+#include "runtime/wavefront/sample_weights.h"
 #include "solver/poisson_solver.h"
 
 #include <algorithm>
@@ -16,15 +17,9 @@ namespace gradus {
 /// A table of GRADUS_GRADIENT_FILM_COLUMNS after so many samples. It is read a column at a time, where it lies.
 class GradientFilm {
   public:
-    /// What so many frames weigh: what a mean is over, their squares' sum, and how much of that deviations from the
-    /// mean are of, which is without the first (kernels/stages/gradient_accumulate.cl). Of weights of 1 their number,
-    /// that too, and one less.
-    struct Weight {
-        double of_mean, squares, of_deviations;
-    };
     /// Of the frames that a pixel has, and with one more.
     struct Weights {
-        Weight of_frames, with_one_more;
+        SampleWeights of_frames, with_one_more;
     };
     /// Samples were taken frame by frame, and of the last one perhaps only the upper rows.
     GradientFilm(const Buffer &film, std::uint32_t width, std::uint32_t height, Precision precision,
@@ -46,7 +41,7 @@ class GradientFilm {
         return has_more(layer, pixel) ? more_ - (layer == dy ? width_ : 0) : pixels_;
     }
     /// What these samples weigh together (SharedWeights).
-    const Weight &weight(Layer layer, std::size_t pixel) const {
+    const SampleWeights &weight(Layer layer, std::size_t pixel) const {
         return has_more(layer, pixel) ? weights_.with_one_more : weights_.of_frames;
     }
     /// As add_sums(), of their squared deviations from their mean.

@@ -1,9 +1,10 @@
 /* accumulate: adds one sample to each of `count` pixels from `first_pixel` on: slots `first_slot` on. A sample with a
  * NaN or an infinity is left out and counted. Samples of filters with negative lobes have a weight. Squares are summed
- * where the spread of the samples is to tell the variance: not where replicates do, the films of which are many. With
- * weights the squares are those of deviations from the mean of the samples before in the same film, of which there are
- * film_samples_before; weights_before and squares_before are the sums of their weights and of the squares of these. From
- * plain squares the mean's could not be taken off: what the weights are would be left, times mean and deviation.
+ * where the spread of the samples is to tell the variance: not where replicates do, the films of which are many.
+ *
+ * With weights the squares are those of deviations from the mean of the samples before in the same film, of which there
+ * are film_samples_before, whose weights have the sum weights_before, and their squares squares_before. From plain
+ * squares the mean's could not be taken off: what the weights are would be left, times mean and deviation.
  *
  * Of features the film has means over the samples of a pixel, of which there are `samples_before` already: sums without
  * corrections would lose what a sample adds, once they are large beside it. One that is left out counts as 0 there. */

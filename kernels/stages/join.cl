@@ -170,8 +170,8 @@ STAGE join(uint count, uint unit, uint first, uint capacity, uint slots, uint ro
     rgb left = rgb_select(has_offset, rgb_gray(alive ? brightest / survival : R(0)), own);
 #if TRAIT_APART
     left = rgb_select(keeps != 0u, own, left);
-    AT(event, inverse_survival, row) = inverse_survival;
     if (keeps) {
+        AT(event, inverse_survival, row) = inverse_survival;
 #pragma unroll
         for (uint j = 0; j < 4; ++j) {
             const size_t at = (size_t)j * capacity + row;

@@ -8,7 +8,8 @@ namespace gradus {
 
 namespace {
 
-/// The last of [0, end) for which `holds`, plus 1, where it holds for all before that one.
+/// The last of [0, end) for which `holds`, plus 1, where it holds for all before that one. (Of a view of numbers clang
+/// 14 makes no std::ranges::partition_point.)
 template <class Predicate>
 std::size_t partition_point(std::size_t end, const Predicate &holds) {
     std::size_t begin = 0;
@@ -44,8 +45,9 @@ std::vector<std::uint32_t> shared_rays(const std::vector<float> &needs, double r
     const std::size_t count =
         partition_point(needs.size(), [&](std::size_t last) { return rate(last + 1) * needs[order[last]] >= least; });
     std::vector<std::uint32_t> shares(needs.size(), 0);
+    const double of_all = count > 0 ? rate(count) : 0;
     for (std::size_t i = 0; i < count; ++i)
-        shares[order[i]] = std::uint32_t(std::min<double>(rate(count) * needs[order[i]], most));
+        shares[order[i]] = std::uint32_t(std::min<double>(of_all * needs[order[i]], most));
     return shares;
 }
 

@@ -1,6 +1,5 @@
 #include "runtime/io/transform_reader.h"
 
-#include "runtime/io/properties.h"
 #include "runtime/io/text.h"
 #include "runtime/scene/transform.h"
 

@@ -30,19 +30,12 @@ class FilmSums {
         const std::uint64_t frames = samples / pixels;
         for (std::uint32_t part = 0; part < parts; ++part) {
             films_.emplace_back(tables[name_of_part("film", part)], pixels, tables.precision());
-            for (const std::uint64_t more : {0, 1}) {
-                const auto count = double(count_of_part(frames + more, part, parts));
-                weights_[more].push_back(count > 0 ? weights.of_part(frames + more, part, parts) / count : 1);
-                const std::uint64_t first = std::min<std::uint64_t>(frames + more, part + 1);
-                of_samples_[more].push_back(
-                    {weights.sums(frames + more, part, parts), weights.sums(first, part, parts).squares});
-            }
+            for (const std::uint64_t more : {0, 1})
+                weights_[more].push_back(weights.of_samples(frames + more, part, parts));
         }
     }
 
-    double samples_of(std::size_t pixel) const {
-        return double(samples_ / pixels_) + (pixel < samples_ % pixels_ ? 1 : 0);
-    }
+    double samples_of(std::size_t pixel) const { return double(samples_ / pixels_) + (has_more(pixel) ? 1 : 0); }
     std::uint32_t rejected(std::size_t pixel) const {
         std::uint32_t rejected = 0;
         for (std::uint32_t part = 0; part < films_.size(); ++part)
@@ -74,50 +67,45 @@ class FilmSums {
     }
     /// The same of samples that weigh other than 1, from the sum of the squared deviations that all parts have.
     double variance_of_weighted_samples(double deviations, int color, std::size_t pixel) const {
-        const bool has_more = pixel < samples_ % pixels_;
-        double sum_before = 0, of_deviations = 0; // the second: how many variances of a sample they are
-        SharedWeights::Sums before;
+        double sum_before = 0;
+        SampleWeights before;
         for (std::uint32_t part = 0; part < films_.size(); ++part) {
-            const Replicate one = part_of(color, pixel, part);
-            if (one.count <= 0)
+            const double count = count_of(part, pixel), kept = count - rejected_of(part, pixel);
+            if (kept <= 0)
                 continue;
-            const OfSamples &of = of_samples_[has_more ? 1 : 0][part];
-            const double kept = one.count / (one.count + weights_[has_more ? 1 : 0][part] * rejected_of(part, pixel));
-            const SharedWeights::Sums here{of.all.weights * kept, of.all.squares * kept};
-            // Two means are apart by so much of the samples' variance (Chan et al. 1983, where weights are 1).
-            const double apart =
-                here.squares * before.weights * before.weights + before.squares * here.weights * here.weights;
-            const double off = one.sum * before.weights - sum_before * here.weights;
-            if (apart > 0)
+            SampleWeights here = weights_of(part, pixel);
+            for (double *weight : {&here.of_mean, &here.squares, &here.of_deviations})
+                *weight *= kept / count;
+            const double sum = film_sum(films_[part], color, pixel);
+            const double off = sum * before.of_mean - sum_before * here.of_mean;
+            if (const double apart = before.apart(here); apart > 0)
                 deviations += off * off / apart;
-            of_deviations += (of.all.squares - of.first_square) * kept + (apart > 0 ? 1 : 0);
-            sum_before += one.sum;
-            before.weights += here.weights;
-            before.squares += here.squares;
+            before.add(here);
+            sum_before += sum;
         }
         const double count = sum(color, pixel).count;
-        return of_deviations > 0 ? deviations * before.squares / (of_deviations * count * count) : 0;
+        return before.of_deviations > 0 ? deviations * before.squares / (before.of_deviations * count * count) : 0;
     }
 
   private:
-    struct OfSamples {
-        SharedWeights::Sums all;
-        double first_square; ///< that of the first one's weight, which has no mean before it to be off
-    };
     std::uint32_t rejected_of(std::uint32_t part, std::size_t pixel) const {
         return films_[part].uint(film_rejected, pixel);
     }
-    Replicate part_of(int color, std::size_t pixel, std::uint32_t part) const {
-        const HostTable &film = films_[part];
-        const bool has_more = pixel < samples_ % pixels_;
+    const SampleWeights &weights_of(std::uint32_t part, std::size_t pixel) const {
+        return weights_[has_more(pixel) ? 1 : 0][part];
+    }
+    bool has_more(std::size_t pixel) const { return pixel < samples_ % pixels_; }
+    /// Samples, those that were rejected too.
+    double count_of(std::uint32_t part, std::size_t pixel) const {
         const auto parts = static_cast<std::uint32_t>(films_.size());
-        const std::uint64_t count = count_of_part(samples_ / pixels_ + (has_more ? 1 : 0), part, parts);
-        return {film_sum(film, color, pixel),
-                weights_[has_more ? 1 : 0][part] * (double(count) - film.uint(film_rejected, pixel))};
+        return double(count_of_part(samples_ / pixels_ + (has_more(pixel) ? 1 : 0), part, parts));
+    }
+    Replicate part_of(int color, std::size_t pixel, std::uint32_t part) const {
+        const double count = count_of(part, pixel), of_one = count > 0 ? weights_of(part, pixel).of_mean / count : 1;
+        return {film_sum(films_[part], color, pixel), of_one * (count - rejected_of(part, pixel))};
     }
     std::deque<HostTable> films_;
-    std::array<std::vector<double>, 2> weights_;       ///< of a sample of each part, and with a frame more
-    std::array<std::vector<OfSamples>, 2> of_samples_; ///< likewise
+    std::array<std::vector<SampleWeights>, 2> weights_; ///< of each part, and with a frame more
     std::size_t pixels_;
     std::uint64_t samples_;
 };

@@ -71,6 +71,12 @@ double SharedWeights::of_part(std::uint64_t frames, std::uint32_t part, std::uin
     return std::max(sums(frames, part, parts).weights, least_share * double(count_of_part(frames, part, parts)));
 }
 
+SampleWeights SharedWeights::of_samples(std::uint64_t frames, std::uint32_t part, std::uint32_t parts) const {
+    const double squares = sums(frames, part, parts).squares;
+    const double first = sums(std::min<std::uint64_t>(frames, part + 1), part, parts).squares;
+    return {of_part(frames, part, parts), squares, squares - first};
+}
+
 std::uint32_t SharedWeights::chosen_start() const {
     constexpr std::uint32_t starts = 256, few = 32;
     constexpr double enough = 0.95;

@@ -4,6 +4,7 @@
 // of frames, as those of a film that adds samples to the pixels around do.
 #pragma once
 
+#include "runtime/wavefront/sample_weights.h"
 #include "runtime/wavefront/session.h"
 
 #include <cstdint>
@@ -30,6 +31,8 @@ class SharedWeights {
     /// The sum of weights that a mean is over: at least least_share of the number of frames, for few frames may have
     /// weights that cancel out, which tells no brightness.
     double of_part(std::uint64_t frames, std::uint32_t part, std::uint32_t parts) const;
+    /// What those frames weigh for a mean and its variance.
+    SampleWeights of_samples(std::uint64_t frames, std::uint32_t part, std::uint32_t parts) const;
 
     /// Where the sequence of places is to start, of many starts: the number `shared_start` of kernels. 0 where frames
     /// weigh 1; else one with which few frames, and few of each part, do not cancel out. It depends on the seed alone.

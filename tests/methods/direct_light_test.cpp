@@ -2,6 +2,7 @@
 #include "runtime/direct_light/direct_light.h"
 #include "runtime/direct_light/lit_rectangle.h"
 #include "runtime/direct_light/shared_rays.h"
+#include "runtime/film/metrics.h"
 #include "tests/support/render.h"
 #include "tests/support/small_scenes.h"
 #include "tests/support/worse.h"
@@ -103,12 +104,8 @@ TEST(DirectEdges, AreSampledThoughTheyAreMany) {
     const auto relative_error = [&](const char *method) {
         double sum = 0;
         for (const Image &image : render_seeds(maker.scene, 8, {}, 1, method))
-            for (std::uint32_t y = 0; y < side; ++y)
-                for (std::uint32_t x = 0; x < side; ++x) {
-                    const double expected = pixel(truth, x, y), off = pixel(image, x, y) - expected;
-                    sum += off * off / (expected * expected + 0.001);
-                }
-        return sum / (8 * side * side);
+            sum += relative_mse(image, truth) / 8;
+        return sum;
     };
     const double paths = relative_error("pt"), edges = relative_error("gpt");
     std::printf("relMSE of lamps seen: %.3g, of paths alone %.3g\n", edges, paths);

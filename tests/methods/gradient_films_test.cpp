@@ -47,7 +47,7 @@ struct RandomFilm {
 
 /// Of `frames` frames that weigh 1, and of one more.
 GradientFilm::Weights even_weights(std::uint64_t frames) {
-    const auto of = [](double n) { return GradientFilm::Weight{n, n, std::max(n - 1, 0.0)}; };
+    const auto of = [](double n) { return SampleWeights{n, n, std::max(n - 1, 0.0)}; };
     return {of(double(frames)), of(double(frames + 1))};
 }
 

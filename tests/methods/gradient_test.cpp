@@ -180,6 +180,18 @@ TEST(GradientNoise, IsKnownWhereItIsSmallBesideTheMean) {
     }
 }
 
+/// Green of dx and dy less the differences of the primal, in all pixels but those of the last row and column.
+std::vector<double> off_the_primal(const Image &image) {
+    const Layer primal(image, "primal"), dx(image, "dx"), dy(image, "dy");
+    std::vector<double> off;
+    for (std::uint32_t y = 0; y + 1 < image.height; ++y)
+        for (std::uint32_t x = 0; x + 1 < image.width; ++x) {
+            off.push_back(dx(1, x, y) - (primal(1, x + 1, y) - primal(1, x, y)));
+            off.push_back(dy(1, x, y) - (primal(1, x, y + 1) - primal(1, x, y)));
+        }
+    return off;
+}
+
 /// Light sampled at an offset path's own vertex is sampled before roulette there, and so is not divided by its chance.
 /// A lit wall in a mirror has no noise but roulette's, which pairs of pixels share.
 TEST(GradientsUnderRoulette, AreThoseOfTheLightBeforeIt) {
@@ -195,14 +207,10 @@ TEST(GradientsUnderRoulette, AreThoseOfTheLightBeforeIt) {
     RenderOptions options;
     options.layers = true;
     const Image image = render(maker.scene, options, "gpt").image;
-    const Layer primal(image, "primal"), dx(image, "dx"), dy(image, "dy");
-    double most = 0, brightest = 0;
-    for (std::uint32_t y = 0; y + 1 < 12; ++y)
-        for (std::uint32_t x = 0; x + 1 < 12; ++x) {
-            most = worse(most, std::fabs(dx(1, x, y) - (primal(1, x + 1, y) - primal(1, x, y))));
-            most = worse(most, std::fabs(dy(1, x, y) - (primal(1, x, y + 1) - primal(1, x, y))));
-            brightest = std::max(brightest, primal(1, x, y));
-        }
+    double most = 0;
+    for (const double off : off_the_primal(image))
+        most = worse(most, std::fabs(off));
+    const double brightest = spread_of(image, "primal.G").most;
     std::printf("difference of the primal and the layer: %.2g of the brightest\n", most / brightest);
     EXPECT_GT(brightest, 0);
     EXPECT_LT(most, 1e-6 * brightest);
@@ -211,9 +219,8 @@ TEST(GradientsUnderRoulette, AreThoseOfTheLightBeforeIt) {
 /// Both samplers must agree on whether a vertex in the plane of a lamp is connected with it: on which side it lies is a
 /// matter of rounding.
 TEST(GradientsInTheLampsPlane, HaveNoLightTooMuch) {
-    constexpr std::uint32_t size = 16;
     constexpr std::size_t renders = 12;
-    SceneMaker maker(size, 256);
+    SceneMaker maker(16, 256);
     maker.look({0.2, 0.1, 4}, {0.2, 0.1, 0}, 20);
     maker.parallelogram({-4, -4, -1}, {8, 0, 0}, {0, 8, 0}, maker.material(diffuse(0.5)));
     // In no plane of two axes, where rounding would leave nothing of what is above it.
@@ -222,25 +229,18 @@ TEST(GradientsInTheLampsPlane, HaveNoLightTooMuch) {
     maker.scene.settings.max_depth = 2;
     RenderOptions options;
     options.layers = true;
-    std::vector<double> sums(2 * size * size, 0), squares(sums);
-    for (const Image &image : render_seeds(maker.scene, renders, options, 1, "gpt")) {
-        const Layer primal(image, "primal"), dx(image, "dx"), dy(image, "dy");
-        const auto add = [&](std::size_t at, double off) {
-            sums[at] += off;
-            squares[at] += off * off;
-        };
-        for (std::uint32_t y = 0; y + 1 < size; ++y)
-            for (std::uint32_t x = 0; x + 1 < size; ++x) {
-                add(2 * (y * size + x), dx(1, x, y) - (primal(1, x + 1, y) - primal(1, x, y)));
-                add(2 * (y * size + x) + 1, dy(1, x, y) - (primal(1, x, y + 1) - primal(1, x, y)));
-            }
-    }
+    std::vector<std::vector<double>> off;
+    for (const Image &image : render_seeds(maker.scene, renders, options, 1, "gpt"))
+        off.push_back(off_the_primal(image));
     double largest = 0, sum = 0, count = 0;
-    for (std::size_t i = 0; i < sums.size(); ++i) {
-        const double mean = sums[i] / renders, spread = squares[i] / renders - mean * mean;
-        if (!(spread > 0))
+    for (std::size_t i = 0; i < off.front().size(); ++i) {
+        std::vector<double> values;
+        for (const std::vector<double> &of_render : off)
+            values.push_back(of_render[i]);
+        const Spread spread = spread_of(values);
+        if (!(spread.standard_error > 0))
             continue;
-        const double z_squared = mean * mean * (renders - 1) / spread;
+        const double z_squared = std::pow(spread.mean / spread.standard_error, 2);
         largest = worse(largest, z_squared);
         sum += z_squared;
         ++count;
