@@ -2,25 +2,35 @@
  * perfect mirror, glass or hole: through these one sees what lies behind, and its edges and textures are the image's.
  * Albedo is times what mirrors and glass let pass, depth is the length of the way.
  *
- * A path is to count by the share of the light that it stands for. Where smooth interfaces choose by other chances
- * (kernels/lib/lobe_chance.h) `weight` makes up for that: who sums features multiplies by it.
+ * A path is to count by the share of the light that it stands for: who sums features multiplies by `weight`. It makes
+ * up for smooth interfaces that choose by other chances (kernels/lib/lobe_chance.h) and for Russian roulette among
+ * mirrors and glass: paths that it ends there count for nothing, those that survive for them too. What the chain lets
+ * pass is no part of it, and makes the albedo darker, not the path.
  *
  * TRAIT_AOV: 1 where the scene has no such surface, else 2. Then, as long as a path has met nothing else, its depth is
  * minus the way so far, and the rest is of the first surface: a chain that ends so, in the sky say, shows that. */
 #ifndef GRADUS_LIB_SEEN_FEATURES_H
 #define GRADUS_LIB_SEEN_FEATURES_H
-//! traits: TRAIT_AOV TRAIT_LOBE_LEVELS
+//! traits: TRAIT_AOV
 #include "kernels/lib/vector.h"
 
-#if TRAIT_LOBE_LEVELS && TRAIT_AOV == 2
+GRADUS_LIB_BEGIN
+
+/* The factor of `weight` by roulette. A path that ends otherwise, by its length or where all is black, does so whatever
+ * roulette says, and counts as it did. */
+GRADUS_FN real seen_by_roulette(int could_go_on, int survives, real survival) {
+    const real inverse_survival = R(1) / (survives ? survival : R(1));
+    return could_go_on && !survives ? R(0) : inverse_survival;
+}
+
+GRADUS_LIB_END
+
+#if TRAIT_AOV == 2
 #define SEEN_WEIGHT(slot) AT(feature, weight, slot)
-/* Of a vertex where the path is in a chain of mirrors and glass, after SET_SEEN_FEATURES. */
-#define SET_SEEN_WEIGHT(slot, lobe_weight)                                                                             \
-    if (AT(feature, depth, slot) < R(0))                                                                               \
-        AT(feature, weight, slot) *= lobe_weight;
+/* Of a vertex where the path may be in a chain of mirrors and glass, after SET_SEEN_FEATURES. */
+#define SCALE_SEEN_WEIGHT(slot, factor) AT(feature, weight, slot) *= AT(feature, depth, slot) < R(0) ? (factor) : R(1);
 #else
 #define SEEN_WEIGHT(slot) R(1)
-#define SET_SEEN_WEIGHT(slot, lobe_weight)
 #endif
 
 /* Of a path's vertex; `vertices` are those before it, `from_last` the way from the last one or the camera, and

@@ -11,11 +11,12 @@
  * `weigh`, after the light that they see here is weighed.
  *
  * Russian roulette goes by the brightest of them all. */
-//! traits: TRAIT_REFRACTION TRAIT_APART TRAIT_TEXTURED_NORMALS SAMPLES_LIGHTS
+//! traits: TRAIT_REFRACTION TRAIT_APART TRAIT_TEXTURED_NORMALS SAMPLES_LIGHTS TRAIT_AOV
 #include "kernels/lib/bsdf.h"
 #include "kernels/lib/bsdf_frame.h"
 #include "kernels/lib/ordered.h"
 #include "kernels/lib/path_draw.h"
+#include "kernels/lib/seen_features.h"
 #include "kernels/lib/textured_material.h"
 #include "kernels/lib/vertex_frame.h"
 #include "kernels/shared/stage.h"
@@ -27,6 +28,10 @@ STAGE join(uint count, uint unit, uint first, uint capacity, uint slots, uint ro
 #if TRAIT_APART
            ,
            uint keeps
+#endif
+#if TRAIT_AOV == 2 && BSDF_IS_DIRAC
+           ,
+           __global real *feature
 #endif
 ) {
     const size_t i = work_item();
@@ -156,11 +161,15 @@ STAGE join(uint count, uint unit, uint first, uint capacity, uint slots, uint ro
 #endif
     const real survival = depth >= roulette_depth ? r_min(brightest * eta * eta, R(0.95)) : R(1);
     /* Of what is darker the inverse is beyond all numbers. */
-    const int alive = AT_UINT(ray, primitive, row) == ray_pending && brightest >= R(1e-37) && u.d < survival;
+    const int could_go_on = AT_UINT(ray, primitive, row) == ray_pending && brightest >= R(1e-37);
+    const int alive = could_go_on && u.d < survival;
     AT_UINT(ray, primitive, row) = alive ? ray_pending : ray_none;
     /* Divided by the chance of surviving, all of them: it is a factor of each path, and of no density that weighs
      * them. Of those at vertices of their own `weigh` does it, after the light that they see there. */
     const real inverse_survival = R(1) / (alive ? survival : R(1));
+#if TRAIT_AOV == 2 && BSDF_IS_DIRAC
+    SCALE_SEEN_WEIGHT(slot, seen_by_roulette(could_go_on, alive, survival))
+#endif
     /* Where all are connected, the row's throughput counts from 1 from here on, but for its size, which roulette goes
      * by; the slot has the rest. Without offset paths the row keeps its own, for the colour of what it may have been
      * seen through (kernels/lib/seen_features.h). */

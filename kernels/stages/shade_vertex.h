@@ -135,9 +135,6 @@ STAGE shade(
     const bsdf_sample sampled = PASTE(BSDF, _sample)(m, wi, u.a, u.b, u.c, transport_radiance);
     const bsdf_sample s = MAPPED_SAMPLE(place, sampled);
     const rgb scattered = rgb_mul(throughput, s.weight);
-#if TRAIT_AOV && BSDF_IS_DIRAC
-    SET_SEEN_WEIGHT(slot, s.lobe_weight)
-#endif
     real eta = R(1);
 #if TRAIT_REFRACTION
     eta = eta_before * s.eta;
@@ -145,6 +142,7 @@ STAGE shade(
 #endif
     const int can_go_on = goes_on && s.pdf > R(0);
 #if WITH_OFFSETS
+    /* For the camera's features, too, `join` knows of roulette; interfaces choose by their share of the light. */
     const int alive = can_go_on;
     const rgb left = scattered;
     AT(event, pdf, row) = s.pdf;
@@ -156,6 +154,9 @@ STAGE shade(
     const real survival = depth + 1u >= roulette_depth ? r_min(rgb_max(scattered) * eta * eta, R(0.95)) : R(1);
     const int alive = can_go_on && rgb_max(scattered) > R(0) && u.d < survival;
     const rgb left = rgb_scale(scattered, R(1) / (alive ? survival : R(1)));
+#if TRAIT_AOV == 2 && BSDF_IS_DIRAC
+    SCALE_SEEN_WEIGHT(slot, s.lobe_weight * seen_by_roulette(can_go_on && rgb_max(scattered) > R(0), alive, survival))
+#endif
 #endif
 
     const vec3 next = v3_normalize(frame_to_world(axes, s.wo));
