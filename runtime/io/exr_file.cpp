@@ -87,8 +87,13 @@ void read_part(Imf::MultiPartInputFile &input, int number, const OpenFile &file,
     for (auto channel = channels.begin(); channel != channels.end(); ++channel)
         ++count;
     limit.begin_part(number, wide, high, count, image);
-    if (number == 0)
+    const PixelPlace origin{window.min.x, window.min.y};
+    if (number == 0) {
         read_metadata(header, image);
+        image.origin = origin;
+    } else if (image.origin != origin)
+        fail_to_read(file, fmt::format("part {} begins at pixel ({}, {}), the first one at ({}, {})", number, origin.x,
+                                       origin.y, image.origin->x, image.origin->y));
     const std::string prefix = number == 0 ? "" : (header.hasName() ? header.name() : std::to_string(number)) + ".";
     Imf::FrameBuffer planes;
     for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
@@ -131,7 +136,8 @@ std::uint64_t bytes_of(const Image &image) {
 }
 
 std::vector<unsigned char> encode(const Image &image, Imf::Compression compression, const std::string &path) {
-    const Imath::Box2i window({0, 0}, {int(image.width) - 1, int(image.height) - 1});
+    const PixelPlace first = image.origin.value_or(PixelPlace{});
+    const Imath::Box2i window({first.x, first.y}, {first.x + int(image.width) - 1, first.y + int(image.height) - 1});
     Imf::Header header(window, window);
     header.compression() = compression;
     for (const auto &[key, value] : image.metadata)

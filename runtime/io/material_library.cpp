@@ -126,6 +126,8 @@ class MtlReader {
         }
         if (rest.empty())
             fail(std::string(word) + " needs a file's name");
+        if (rest.size() > 2 && rest.front() == '"' && rest.back() == '"')
+            rest = rest.substr(1, rest.size() - 2);
         std::string name(rest);
         const std::size_t folders = name.find_last_of("/\\");
         if (folders != std::string::npos && !is_there_(name) && is_there_(name.substr(folders + 1)))

@@ -24,7 +24,8 @@ struct FacesOf {
     bool has(const std::string &material) const { return materials.contains(material) != others; }
 };
 
-/// Wavefront OBJ: v, vt, vn, f with any mix of v, v/t, v//n, v/t/n and negative indices. Polygons become fans.
+/// Wavefront OBJ: v, vt, vn, f with any mix of v, v/t, v//n, v/t/n and negative indices. Polygons become fans, and
+/// faces of one or two corners triangles without area.
 /// Everything else (groups, lines, curves) is skipped: all faces are one mesh. Messages quote a file only where it is
 /// called .obj, links resolved: the format has no mark, and a scene can name any file. place: where the text was read
 /// from; empty: where its name says.
@@ -53,13 +54,14 @@ struct ObjNames {
         std::string name;
         std::size_t line; ///< from 1
     };
-    std::vector<Library> libraries; ///< of `mtllib`: whatever follows is one name
+    std::vector<Library> libraries; ///< of `mtllib`: whatever follows, one name with blanks in it or several
 };
 ObjNames names_in_obj(const std::string &text);
 
-/// PLY, ASCII or binary of either byte order. Takes x y z, nx ny nz, u v (or s t) of "vertex" and the index list of
-/// "face", and what makes the attributes that are wanted (ply_attributes.h); skips every other element and property.
-/// Polygons become fans.
+/// PLY, ASCII or binary of either byte order. Takes x y z, nx ny nz, u v (or s t) of "vertex", the index list of "face"
+/// and its list "texcoord" (u and v of each corner, which go before those of the vertices), and what makes the
+/// attributes that are wanted (ply_attributes.h); skips every other element and property. Polygons become fans, and
+/// faces of fewer than three corners triangles without area.
 Mesh parse_ply(const std::string &data, const std::string &file_name, const std::vector<std::string> &attributes = {});
 
 struct SerializedMesh {

@@ -122,10 +122,13 @@ class MeshOfFaces {
         : lists_(lists), file_name_(file_name), is_small_(most_corners < lists.positions.size() / 8) {}
 
     void begin_material(const std::string &) {}
+    /// One or two corners are a triangle without area, which is left out and counted like any other.
     void add_face(std::span<const ObjCorner> face) {
         polygon_.clear();
         for (const ObjCorner &corner : face)
             polygon_.push_back(vertex_of(corner));
+        if (!polygon_.empty())
+            polygon_.resize(std::max<std::size_t>(polygon_.size(), 3), polygon_.back());
         for (std::size_t i = 2; i < polygon_.size(); ++i)
             triangles_.push_back({polygon_[0], polygon_[i - 1], polygon_[i]});
     }
@@ -283,8 +286,6 @@ void ObjReader<Faces>::read_face(const char *at, const char *end) {
             fail("a face corner is v, v/vt, v//vn or v/vt/vn; cannot read " + quoted(at, end));
         face_.push_back(corner);
     }
-    if (face_.size() < 3)
-        fail("a face needs three corners or more");
     faces_.add_face(face_);
 }
 

@@ -2,6 +2,7 @@
 #include "runtime/io/diagnostics.h"
 #include "runtime/io/mesh_files.h"
 #include "runtime/io/ply_attributes.h"
+#include "runtime/io/ply_corner_texcoords.h"
 #include "runtime/io/text.h"
 
 #include <fmt/format.h>
@@ -105,6 +106,8 @@ using Tasks = tbb::blocked_range<std::size_t>;
 constexpr std::size_t vertices_a_task = 1 << 14;
 
 bool is_index(const std::string &property) { return property == "vertex_indices" || property == "vertex_index"; }
+/// As MeshLab writes them: u and v of each corner.
+bool is_corner_texcoords(const Property &property) { return property.count_type && property.name == "texcoord"; }
 
 class PlyReader {
   public:
@@ -114,6 +117,8 @@ class PlyReader {
     Mesh read() {
         read_header();
         for (const ElementDeclaration &element : elements_) {
+            if (element.name == "face" && element.count > 0)
+                check_indices_are_there(element);
             if (element.properties.empty()) // none takes a byte, however many there are said to be
                 continue;
             if (element.count > std::uint64_t(end_ - at_) / element.least_size(ascii_) + 1)
@@ -136,6 +141,11 @@ class PlyReader {
                 if (index >= mesh_.positions.size())
                     fail("face index " + std::to_string(index) + " is out of range: there are " +
                          std::to_string(mesh_.positions.size()) + " vertices");
+        if (!corner_texcoords_.empty()) {
+            if (mesh_.positions.size() + corner_texcoords_.size() > std::numeric_limits<std::int32_t>::max())
+                fail("more corners with texture coordinates than 32-bit indices hold");
+            set_corner_texcoords(mesh_, corner_texcoords_);
+        }
         return std::move(mesh_);
     }
 
@@ -144,6 +154,7 @@ class PlyReader {
         throw SceneError({std::make_shared<const std::string>(file_name_), line_}, message);
     }
     [[noreturn]] void fail_without_faces() const;
+    void check_indices_are_there(const ElementDeclaration &faces) const;
     std::string_view header_line();
     void read_header();
     double value(Scalar type);
@@ -152,14 +163,16 @@ class PlyReader {
     void read_vertices(const ElementDeclaration &element);
     void read_faces(const ElementDeclaration &element);
     bool read_triangles(const ElementDeclaration &element);
+    void add_polygon(std::vector<std::uint32_t> &polygon, std::vector<float> *texcoords);
     std::vector<PlyAttribute> attributes_of(const ElementDeclaration &element, const char *prefix);
 
     const char *at_, *const end_;
     const std::string &file_name_;
     const std::vector<std::string> &wanted_; // attributes
     std::size_t line_ = 0;                   // counted in the header alone; 0 after it
-    bool ascii_ = false, swap_ = false;
+    bool ascii_ = false, swap_ = false, has_vertices_ = false;
     std::vector<ElementDeclaration> elements_;
+    std::vector<std::array<float, 2>> corner_texcoords_; // three for each triangle; empty: faces have none
     Mesh mesh_;
 };
 
@@ -170,6 +183,17 @@ void PlyReader::fail_without_faces() const {
             skipped.push_back(fmt::format("\"{}\"", element.name));
     fail(fmt::format("the file has vertices but no element \"face\"{}{}",
                      skipped.empty() ? "" : "; not read: ", shortened(join(skipped), 80)));
+}
+
+void PlyReader::check_indices_are_there(const ElementDeclaration &faces) const {
+    std::vector<std::string> others;
+    for (const Property &property : faces.properties) {
+        if (property.count_type && is_index(property.name))
+            return;
+        others.push_back(fmt::format("\"{}\"", property.name));
+    }
+    fail(fmt::format("the faces have no property list \"vertex_indices\" or \"vertex_index\"{}{}",
+                     others.empty() ? "" : "; not read: ", shortened(join(others), 80)));
 }
 
 std::string_view PlyReader::header_line() {
@@ -214,6 +238,7 @@ void PlyReader::read_header() {
                     fail(std::string("a second element \"") + name + "\"");
             if (elements_.size() >= most_elements)
                 fail("more than " + std::to_string(most_elements) + " elements are declared");
+            has_vertices_ |= words[1] == "vertex" && *count > 0;
             elements_.push_back({std::string(words[1]), std::uint64_t(*count), {}});
         } else if (words[0] == "property" && !elements_.empty() && words.size() >= 3) {
             Property property;
@@ -417,6 +442,26 @@ bool PlyReader::read_triangles(const ElementDeclaration &element) {
     return are_plain;
 }
 
+/// A fan of triangles. Fewer than three corners are a triangle without area, which is left out and counted like others.
+/// texcoords: u and v of each corner, where faces have them; of a face without any they are 0.
+void PlyReader::add_polygon(std::vector<std::uint32_t> &polygon, std::vector<float> *texcoords) {
+    if (texcoords && !texcoords->empty() && texcoords->size() != 2 * polygon.size())
+        fail(fmt::format("a face of {} corners has {} texture coordinates, not two each", polygon.size(),
+                         texcoords->size()));
+    if (polygon.empty() && has_vertices_)
+        polygon.push_back(0);
+    if (!polygon.empty())
+        polygon.resize(std::max<std::size_t>(polygon.size(), 3), polygon.back());
+    if (texcoords)
+        texcoords->resize(2 * polygon.size());
+    for (std::size_t corner = 2; corner < polygon.size(); ++corner) {
+        mesh_.triangles.push_back({polygon[0], polygon[corner - 1], polygon[corner]});
+        if (texcoords)
+            for (const std::size_t i : {std::size_t(0), corner - 1, corner})
+                corner_texcoords_.push_back({(*texcoords)[2 * i], (*texcoords)[2 * i + 1]});
+    }
+}
+
 void PlyReader::read_faces(const ElementDeclaration &element) {
     if (!element.properties.empty() && read_triangles(element))
         return;
@@ -428,7 +473,11 @@ void PlyReader::read_faces(const ElementDeclaration &element) {
             is_kept[property] = 1;
     std::vector<float> values(element.properties.size());
     std::vector<std::uint32_t> polygon;
+    std::vector<float> texcoords;
+    const bool has_texcoords = std::ranges::any_of(element.properties, is_corner_texcoords);
     for (std::uint64_t i = 0; i < element.count; ++i) {
+        polygon.clear();
+        texcoords.clear();
         const std::size_t first_triangle = mesh_.triangles.size();
         for (std::size_t p = 0; p < element.properties.size(); ++p) {
             const Property &property = element.properties[p];
@@ -437,21 +486,24 @@ void PlyReader::read_faces(const ElementDeclaration &element) {
                 values[p] = float(value(property.type));
                 continue;
             }
+            if (is_corner_texcoords(property)) {
+                for (std::uint64_t left = list_length(property); left > 0; --left)
+                    texcoords.push_back(float(value(property.type)));
+                continue;
+            }
             if (!is_indices) {
                 skip(property);
                 continue;
             }
             const std::uint64_t length = list_length(property);
-            polygon.clear();
             for (std::uint64_t corner = 0; corner < length; ++corner) {
                 const double index = value(property.type);
                 if (!(index >= 0) || index > 4294967295.0 || index != std::floor(index))
                     fail("face index " + std::to_string(index) + " is out of range");
                 polygon.push_back(std::uint32_t(index));
             }
-            for (std::size_t corner = 2; corner < polygon.size(); ++corner)
-                mesh_.triangles.push_back({polygon[0], polygon[corner - 1], polygon[corner]});
         }
+        add_polygon(polygon, has_texcoords ? &texcoords : nullptr);
         for (std::size_t triangle = first_triangle; triangle < mesh_.triangles.size(); ++triangle)
             for (std::size_t a = 0; a < attributes.size(); ++a)
                 for (const std::size_t property : attributes[a].properties)

@@ -51,6 +51,20 @@ std::vector<NestedObject> nested_objects(const Element &element, const std::stri
     return found;
 }
 
+void warn_of_others(const std::vector<NestedObject> &found, const NestedObject &kept, Diagnostics &diagnostics) {
+    for (const NestedObject &one : found)
+        if (&one != &kept)
+            diagnostics.warn(one.location, "a second <" + kept.element->tag +
+                                               "> is ignored; the one that counts is at " + kept.location.text());
+}
+
+const Element *the_one_of(const std::vector<NestedObject> &found, Diagnostics &diagnostics) {
+    if (found.empty())
+        return nullptr;
+    warn_of_others(found, found.front(), diagnostics);
+    return found.front().element;
+}
+
 Properties::Properties(const Element &element, const Declaration &declaration, const ResolveReference &resolve,
                        Diagnostics &diagnostics, const ReadTexture *read_texture)
     : element_(element), declaration_(declaration), resolve_(resolve), diagnostics_(diagnostics),
@@ -123,6 +137,11 @@ std::string Properties::text_of(const Parameter &parameter, const Element *prope
 }
 
 bool Properties::has(const std::string &name) { return find(declared(name, {})) != nullptr; }
+
+std::string Properties::written(const std::string &name) {
+    const Element *property = find(declared(name, {}));
+    return std::string(trimmed(property ? property->attribute_or("value", "") : ""));
+}
 
 double Properties::number(const std::string &name) {
     const Parameter &parameter = declared(name, {Takes::number});

@@ -37,6 +37,10 @@ struct NestedObject {
 /// Objects of that tag in an element, referenced ones too.
 std::vector<NestedObject> nested_objects(const Element &element, const std::string &tag,
                                          const ResolveReference &resolve);
+/// The first of objects of which one alone counts, with a warning for each other; nullptr where there is none.
+const Element *the_one_of(const std::vector<NestedObject> &found, Diagnostics &diagnostics);
+/// The warning for all but one of them.
+void warn_of_others(const std::vector<NestedObject> &found, const NestedObject &kept, Diagnostics &diagnostics);
 /// Of the element's plugin, as in <bsdf type="diffuse">.
 std::string type_of(const Element &element);
 /// For messages: <bsdf type="diffuse">.
@@ -58,6 +62,8 @@ class Properties {
     Diagnostics &diagnostics() { return diagnostics_; }
 
     bool has(const std::string &name);
+    /// Of a parameter of any type the very text, without blanks around it; empty where the file has none.
+    std::string written(const std::string &name);
 
     double number(const std::string &name);
     std::int64_t integer(const std::string &name);

@@ -28,7 +28,9 @@ const Element &SceneBuilder::innermost_integrator(const Element &element) const 
         seen.push_back(innermost);
         const auto known = std::ranges::find_if(
             nested, [](const NestedObject &one) { return bool(find_plugin<RenderSettings>(type_of(*one.element))); });
-        innermost = (known == nested.end() ? nested.front() : *known).element;
+        const NestedObject &kept = known == nested.end() ? nested.front() : *known;
+        warn_of_others(nested, kept, diagnostics_);
+        innermost = kept.element;
     }
     return *innermost;
 }
@@ -63,8 +65,8 @@ void SceneBuilder::build_sensor(const Element &element) {
         return;
     }
     sensor_ = &element;
-    if (const auto films = nested_objects(element, "film", resolve_); !films.empty()) {
-        const Element &film = *films.front().element;
+    if (const Element *const its_film = the_one_of(nested_objects(element, "film", resolve_), diagnostics_)) {
+        const Element &film = *its_film;
         const std::string type = type_of(film);
         if (!type.empty() && !find_plugin<FilmSettings>(type)) {
             // Of a film that we do not have, size, crop and filter still count. One for display loses nothing.
@@ -76,8 +78,8 @@ void SceneBuilder::build_sensor(const Element &element) {
         }
     }
     check_media(element);
-    if (const auto samplers = nested_objects(element, "sampler", resolve_); !samplers.empty())
-        scene_.settings.samples_per_pixel = read_as<SampleCount>(*samplers.front().element, "any").count;
+    if (const Element *const sampler = the_one_of(nested_objects(element, "sampler", resolve_), diagnostics_))
+        scene_.settings.samples_per_pixel = read_as<SampleCount>(*sampler, "any").count;
     scene_.camera = build_object<Camera>(element);
 }
 

@@ -270,6 +270,7 @@ void SceneBuilder::add_shape(const Element &element, std::variant<BuiltMesh, Sph
     shape.material =
         is_boundary && nested_objects(element, "bsdf", resolve_).empty() ? boundary_material() : material_of(element);
     shape.emitter = emitter_of(element);
+    shape.is_black_lamp = shape.emitter < 0 && !nested_objects(element, "emitter", resolve_).empty();
     const Material &material = scene_.materials[shape.material];
     if (shape.emitter < 0 && is_never_met(material))
         return;

@@ -53,6 +53,11 @@ Double3 components(const Element &step, double otherwise) {
             number_attribute(step, "z", otherwise)};
 }
 
+/// As it is where a file has columns for rows.
+bool has_last_column_of_affine_maps(const std::vector<double> &matrix) {
+    return matrix[3] == 0 && matrix[7] == 0 && matrix[11] == 0 && matrix[15] == 1;
+}
+
 Matrix4 read_matrix(const Element &step) {
     const std::vector<double> values = list_attribute(step, "value");
     Matrix4 result;
@@ -62,7 +67,10 @@ Matrix4 read_matrix(const Element &step) {
         constexpr double tolerance = 1e-6; // what an inverse in single precision may leave there
         const double most = tolerance * std::fabs(values[15]);
         if (!(most > 0) || std::fabs(values[12]) > most || std::fabs(values[13]) > most || std::fabs(values[14]) > most)
-            fail(step, "the last row must be 0 0 0 1; projective maps are not supported");
+            fail(step, "the last row must be 0 0 0 1; projective maps are not supported" +
+                           std::string(has_last_column_of_affine_maps(values)
+                                           ? ". The last column is 0 0 0 1: is the matrix transposed?"
+                                           : ""));
         for (int i = 0; i < 12; ++i)
             result.m[i] /= values[15];
         for (int i = 12; i < 15; ++i)

@@ -104,10 +104,17 @@ std::vector<int> channels_of(const std::string &path, const OIIO::ImageSpec &spe
     }
     if (y >= 0)
         return {y};
-    if (spec.nchannels <= 2)
-        return {0};
+    std::vector<int> others_than_alpha;
+    for (int c = 0; c < spec.nchannels; ++c)
+        if (c != spec.alpha_channel)
+            others_than_alpha.push_back(c);
+    if (spec.nchannels == 1 || others_than_alpha.size() == 1)
+        return {others_than_alpha.empty() ? 0 : others_than_alpha.front()};
+    if (others_than_alpha.size() == 2)
+        refuse(path, fmt::format("its channels are {}: gray has one, with or without alpha, and colour R, G and B",
+                                 OIIO::Strutil::join(spec.channelnames, ", ")));
     if (spec.nchannels <= 4)
-        return {0, 1, 2};
+        return {others_than_alpha[0], others_than_alpha[1], others_than_alpha[2]};
     refuse(path, fmt::format("of its {} channels none are R, G, B or Y", spec.nchannels));
 }
 

@@ -137,14 +137,16 @@ std::vector<Vector3> smooth_vertex_normals(const Mesh &mesh) {
         });
         for (std::size_t number = 0; number < count; ++number)
             for (int i = 0; i < 3; ++i) {
-                Double3 &sum = sums[mesh.triangles[begin + number][i]];
+                const std::uint32_t vertex = mesh.triangles[begin + number][i];
+                Double3 &sum = sums[mesh.normal_of.empty() ? vertex : mesh.normal_of[vertex]];
                 sum = add(sum, parts[number][i]);
             }
     }
     std::vector<Vector3> normals(sums.size(), Vector3{0, 0, 1});
     for_each_in_parallel(sums.size(), [&](std::size_t i) {
-        if (const double size = length(sums[i]); size > 1e-12)
-            normals[i] = to_float(scale(sums[i], 1 / size));
+        const Double3 &sum = sums[mesh.normal_of.empty() ? i : mesh.normal_of[i]];
+        if (const double size = length(sum); size > 1e-12)
+            normals[i] = to_float(scale(sum, 1 / size));
     });
     return normals;
 }
@@ -184,6 +186,7 @@ BuiltMesh build_mesh(Mesh mesh, const Matrix4 &to_world, const MeshOptions &opti
     if (mesh.normals.empty() && options.compute_normals && !options.face_normals)
         mesh.normals = smooth_vertex_normals(mesh);
     settle_normals(mesh);
+    mesh.normal_of = {};
 
     if (options.flip_normals) {
         reverse_winding(mesh);

@@ -76,6 +76,8 @@ const std::map<std::string, std::string> instead = {
     {"bsdf normalmap bsdf", picture + metal},
     {"bsdf mask bsdf", metal},
     {"bsdf twosided bsdf", metal},
+    {"bsdf twosided allow_transmission",
+     named("boolean", "allow_transmission", "true") + "<bsdf type=\"thindielectric\"/>"},
     {"shape instance shape", "<shape type=\"shapegroup\">" + cube + cube + "</shape>"},
     {"shape merge shape", cube + cube},
     {"shape shapegroup shape", cube + cube},

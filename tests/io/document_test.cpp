@@ -429,6 +429,33 @@ TEST(Warnings, SecondSensorIsIgnored) {
     EXPECT_NE(loaded.scene.camera.fov, 3);
 }
 
+TEST(Warnings, SecondPartsOfASensorAreIgnored) {
+    const LoadedScene loaded = load_text(
+        "<scene version=\"3.0.0\"><sensor type=\"perspective\">\n<film type=\"hdrfilm\"><integer name=\"width\" "
+        "value=\"40\"/><rfilter type=\"box\"/>\n<rfilter type=\"tent\"/></film>\n<film type=\"hdrfilm\"><integer "
+        "name=\"width\" value=\"50\"/></film>\n<sampler type=\"independent\"><integer name=\"sample_count\" "
+        "value=\"12\"/></sampler>\n<sampler type=\"independent\"><integer name=\"sample_count\" value=\"13\"/>"
+        "</sampler></sensor><emitter type=\"constant\"/></scene>");
+    EXPECT_THAT(
+        loaded.warnings,
+        UnorderedElementsAre(testing::MatchesRegex(".*scene.xml:3: a second <rfilter> is ignored.*scene.xml:2"),
+                             testing::MatchesRegex(".*scene.xml:4: a second <film> is ignored.*scene.xml:2"),
+                             testing::MatchesRegex(".*scene.xml:6: a second <sampler> is ignored.*scene.xml:5")));
+    EXPECT_EQ(loaded.scene.film.width, 40u);
+    EXPECT_EQ(loaded.scene.film.filter, FilmSettings::Filter::box);
+    EXPECT_EQ(loaded.scene.settings.samples_per_pixel, 12u);
+}
+
+TEST(Warnings, SecondWrappedIntegratorIsIgnored) {
+    const LoadedScene loaded = load_text(scene_around(
+        "<integrator type=\"aov\">\n<integrator type=\"direct\"/>\n<integrator type=\"path\"/></integrator>"
+        "<emitter type=\"constant\"/>"));
+    EXPECT_THAT(loaded.warnings,
+                Contains(HasSubstr("scene.xml:5: a second <integrator> is ignored; the one that counts "
+                                   "is at")));
+    EXPECT_EQ(loaded.scene.settings.max_depth, 2);
+}
+
 TEST(Values, BlanksSignsAndExponents) {
     for (const auto &[text, value] : std::vector<std::pair<std::string, double>>{
              {" 40 ", 40}, {"+4e1", 40}, {"4.0E+001", 40}, {"\t4e001\n", 40}, {".5", 0.5}, {"5.", 5}})

@@ -106,6 +106,7 @@ TEST_F(ObjMaterials, OfLibrariesAreTheBsdfsThatTheySay) {
         {"illum 5", bsdf("conductor", "<string name=\"material\" value=\"Al\"/>")},
         {"illum 8", bsdf("conductor", "<string name=\"material\" value=\"Al\"/>")},
         {"map_Kd kd.pfm", bsdf("diffuse", texture("reflectance"))},
+        {"map_Kd \"kd.pfm\"", bsdf("diffuse", texture("reflectance"))},
         {"map_Kd C:\\pictures\\kd.pfm", bsdf("diffuse", texture("reflectance"))},
         {"map_Kd ../meshes/kd.pfm\nKd 0.8 0.4 0.2", bsdf("diffuse", kd)},
         {"Kd 0.8 0.4 0.2\nbump kd.pfm", bsdf("bumpmap", raised + bsdf("diffuse", kd))},
@@ -145,6 +146,25 @@ TEST_F(ObjMaterials, OfLibrariesCountWhereTheShapeHasNoBsdfForThem) {
     EXPECT_EQ(load("", "3.0.0").scene.shapes.size(), 1u);
     write_mtl("newmtl one\nKd 1 0 0\nnewmtl two\nKd 0 1 0\nnewmtl one\nKd 0 0 1\n");
     EXPECT_EQ(triangles(load("").scene), (Found{{0, 3}})) << "the last of a name counts";
+}
+
+TEST_F(ObjMaterials, OneLineMayNameSeveralLibraries) {
+    const std::string faces = two_materials.substr(two_materials.find('\n'));
+    folder_.write("meshes/b.mtl", "newmtl two\nKd 0 1 0\n");
+    write_mtl("newmtl one\nKd 1 0 0\n");
+    folder_.write("meshes/a.obj", "mtllib a.mtl  b.mtl" + faces);
+    const LoadedScene both = load("");
+    EXPECT_THAT(both.warnings, IsEmpty());
+    EXPECT_EQ(triangles(both.scene), (Found{{1, 1}, {0, 2}}));
+    folder_.write("meshes/a.obj", "mtllib a.mtl gone.mtl b.mtl" + faces);
+    const LoadedScene lacks = load("");
+    EXPECT_THAT(lacks.warnings, ElementsAre(HasSubstr("a.obj:1: cannot find the material library \"gone.mtl\"")));
+    EXPECT_EQ(triangles(lacks.scene), (Found{{1, 1}, {0, 2}}));
+    folder_.write("meshes/a.obj", "mtllib a.mtl b.mtl" + faces);
+    folder_.write("meshes/a.mtl b.mtl", "newmtl one\nKd 1 0 0\nnewmtl two\nKd 1 0 0\n");
+    EXPECT_EQ(triangles(load("").scene), (Found{{1, 3}})) << "a file of the very name goes before";
+    folder_.write("meshes/a.obj", "mtllib gone c.mtl" + faces);
+    EXPECT_THAT(load("").warnings, Contains(HasSubstr("cannot find the material library \"gone c.mtl\"")));
 }
 
 /// A line `newmtl` that names nothing is no material of faces that have none.

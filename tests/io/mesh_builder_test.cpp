@@ -136,5 +136,22 @@ TEST(BuildMesh, OverflowDropsTheTriangle) {
     EXPECT_TRUE(built.mesh.triangles.empty());
 }
 
+TEST(MeshBuilder, VerticesThatWereOneShareAComputedNormal) {
+    // Two triangles at a right angle along one edge, whose vertices are there twice.
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {0, 0, -1}};
+    mesh.triangles = {{0, 1, 2}, {3, 5, 4}};
+    const auto normals = [&] { return build_mesh(mesh, Matrix4(), {}).mesh.normals; };
+    EXPECT_NE(normals()[0], normals()[3]);
+    mesh.normal_of = {0, 1, 2, 0, 1, 5};
+    const std::vector<Vector3> shared = normals();
+    EXPECT_EQ(shared[0], shared[3]);
+    EXPECT_EQ(shared[1], shared[4]);
+    EXPECT_NEAR(shared[0].y, -shared[0].z, 1e-6);
+    EXPECT_GT(shared[0].z, 0.7f);
+    EXPECT_NE(shared[2], shared[5]);
+    EXPECT_TRUE(build_mesh(mesh, Matrix4(), {}).mesh.normal_of.empty());
+}
+
 } // namespace
 } // namespace gradus

@@ -140,7 +140,8 @@ TEST(Obj, LinesGoOnAfterABackslash) {
         EXPECT_THAT(mesh.triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
         const std::string head = lines({"v 0 0 0", "v 1 0 0", "v 1 1 0"});
         EXPECT_THAT(obj_error(head + lines({"f 1 \\", "2 3", "f 1 2 9"})), HasSubstr("m.obj:6: face index"));
-        EXPECT_THAT(obj_error(head + "f 1 2 \\"), HasSubstr("three corners")) << "where the file ends";
+        EXPECT_THAT(parse_obj(head + "f 1 2 \\", "m.obj").triangles, ElementsAre(Triangle{0, 1, 1}))
+            << "where the file ends";
     }
 }
 
@@ -150,6 +151,14 @@ TEST(Obj, PositionsWithSeveralNormalsAreSplit) {
                                 "m.obj");
     EXPECT_EQ(mesh.positions.size(), 6u); // 3, then 1 and 3 once more and 4
     EXPECT_THAT(mesh.triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{3, 4, 5}, Triangle{0, 2, 5}));
+}
+
+/// They come to triangles without area, which are counted where such are left out.
+TEST(Obj, FacesOfOneOrTwoCornersAreTrianglesWithoutArea) {
+    const std::string text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2\nf 1 2 3\nusemtl a\nf 3\nf \nf #\n";
+    EXPECT_THAT(parse_obj(text, "m.obj").triangles,
+                ElementsAre(Triangle{0, 1, 1}, Triangle{0, 1, 2}, Triangle{2, 2, 2}));
+    EXPECT_THAT(ObjFile(text, "m.obj").mesh({{"a"}, false}).triangles, ElementsAre(Triangle{0, 0, 0}));
 }
 
 /// As Microsoft's library writes it, where others write "nan".
@@ -169,7 +178,6 @@ TEST(Obj, Errors) {
     EXPECT_THAT(obj_error(head + "f 1 2 -4\n"), HasSubstr("-4"));
     EXPECT_THAT(obj_error(head + "f 1/1 2/1 3/1\n"), HasSubstr("vt 1 of 0"));
     EXPECT_THAT(obj_error(head + "f 1//1 2//1 3//1\n"), HasSubstr("vn 1 of 0"));
-    EXPECT_THAT(obj_error(head + "f 1 2\n"), HasSubstr("three corners"));
     EXPECT_THAT(obj_error(head + "f a b c\n"), HasSubstr("\"a b c"));
     EXPECT_THAT(obj_error(head + "f 1,2 2 3\n"), HasSubstr("m.obj:4: a face corner"));
     EXPECT_THAT(obj_error("v 0 zero 0\n"), HasSubstr("m.obj:1: \"zero 0"));
@@ -192,6 +200,45 @@ TEST(Ply, Ascii) {
     EXPECT_EQ(mesh.positions[3], (Vector3{0, 1, 0.1f}));
     EXPECT_EQ(mesh.texcoords[2], (std::array{1.0f, 1.0f}));
     EXPECT_THAT(mesh.triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}, Triangle{2, 1, 0}));
+}
+
+TEST(Ply, FacesOfFewerThanThreeCornersAreTrianglesWithoutArea) {
+    const std::string text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
+                             "float z\nelement face 4\nproperty list uchar int vertex_index\nend_header\n"
+                             "0 0 0\n1 0 0\n0 1 0\n2 1 2\n3 0 1 2\n1 2\n0\n";
+    EXPECT_THAT(parse_ply(text, "m.ply").triangles,
+                ElementsAre(Triangle{1, 2, 2}, Triangle{0, 1, 2}, Triangle{2, 2, 2}, Triangle{0, 0, 0}));
+}
+
+/// Three faces as MeshLab writes them, of which the second has no coordinates.
+std::string ply_with_corner_texcoords(const std::string &texcoords_of_last) {
+    return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty "
+           "float heat_x\nelement face 3\nproperty list uchar int vertex_indices\nproperty list uchar float "
+           "texcoord\nproperty int "
+           "texnumber\nend_header\n0 0 0 10\n1 0 0 11\n1 1 0 12\n0 1 0 13\n"
+           "3 0 1 2 6 0 0 1 0 1 1 0\n3 1 2 3 0 0\n3 0 2 3 " +
+           texcoords_of_last + " 0\n";
+}
+
+TEST(Ply, TextureCoordinatesOfCornersSplitVertices) {
+    const Mesh mesh = parse_ply(ply_with_corner_texcoords("6 0 0 0.5 0.25 0 1"), "m.ply", {"vertex_heat"});
+    ASSERT_EQ(mesh.triangles.size(), 3u);
+    using Pair = std::array<float, 2>;
+    const Pair expected[3][3] = {{{0, 0}, {1, 0}, {1, 1}}, {{0, 0}, {0, 0}, {0, 0}}, {{0, 0}, {0.5f, 0.25f}, {0, 1}}};
+    const float vertices[3][3] = {{0, 1, 2}, {1, 2, 3}, {0, 2, 3}};
+    ASSERT_EQ(mesh.attributes.at(0).values.size(), mesh.positions.size());
+    for (int triangle = 0; triangle < 3; ++triangle)
+        for (int corner = 0; corner < 3; ++corner) {
+            const std::uint32_t vertex = mesh.triangles[std::size_t(triangle)][std::size_t(corner)];
+            EXPECT_EQ(mesh.texcoords.at(vertex), expected[triangle][corner]) << triangle << ' ' << corner;
+            EXPECT_EQ(mesh.attributes[0].values[vertex], 10 + vertices[triangle][corner]);
+        }
+    EXPECT_EQ(mesh.positions.size(), 1 + 2 + 3 + 2u) << "a vertex for each of its coordinates";
+    EXPECT_EQ(mesh.triangles[0][0], mesh.triangles[2][0]);
+    EXPECT_EQ(mesh.normal_of.at(mesh.triangles[0][1]), mesh.normal_of.at(mesh.triangles[1][0]));
+    EXPECT_NE(mesh.normal_of.at(mesh.triangles[0][1]), mesh.normal_of.at(mesh.triangles[0][0]));
+    for (const char *wrong : {"5 0 0 1 1 2", "4 0 0 1 1", "8 0 0 0 0 0 0 0 0"})
+        EXPECT_THAT(ply_error(ply_with_corner_texcoords(wrong)), HasSubstr("a face of 3 corners has ")) << wrong;
 }
 
 TEST(Ply, BinaryOfBothByteOrders) {
@@ -223,6 +270,13 @@ TEST(Ply, Errors) {
     EXPECT_EQ(ply_error(points + "element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n3 0 0 "
                                  "0\n"),
               "m.ply: the file has vertices but no element \"face\"; not read: \"tristrips\"");
+    const std::string faces = "element face 1\nproperty list uchar int ";
+    EXPECT_EQ(ply_error(points + faces + "vind\nproperty uchar vertex_indices\nend_header\n0 0 0\n3 0 0 0 1\n"),
+              "m.ply: the faces have no property list \"vertex_indices\" or \"vertex_index\"; not read: \"vind\", "
+              "\"vertex_indices\"");
+    EXPECT_THAT(ply_error(points + "element face 1\nend_header\n0 0 0\n"),
+                HasSubstr("the faces have no property list"));
+    EXPECT_EQ(ply_error(points + "element face 0\nend_header\n0 0 0\n"), "");
     EXPECT_THAT(ply_error("ply\nformat binary_little_endian 1.0\nelement vertex 1000000000000\nproperty float "
                           "x\nproperty float y\nproperty float z\nend_header\n"),
                 HasSubstr("1000000000000"));

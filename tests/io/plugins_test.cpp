@@ -212,6 +212,28 @@ TEST(BsdfPlugin, TwoSidesOfOtherKinds) {
     EXPECT_THROW(material_of("<bsdf type=\"twosided\">" + inner + "<bsdf type=\"diffuse\"/></bsdf>"), Error);
 }
 
+/// Mitsuba's image is that without twosided where both sides are alike; else it has light enter by both sides.
+TEST(BsdfPlugin, TwoSidesThatLetLightThrough) {
+    const std::string allows = "<boolean name=\"allow_transmission\" value=\"true\"/>";
+    const auto twosided = [](const std::string &inside) { return "<bsdf type=\"twosided\">" + inside + "</bsdf>"; };
+    for (const std::string kind : {"thindielectric", "principledthin", "null"}) {
+        const std::string nested = "<bsdf type=\"" + kind + "\"/>";
+        const Material alone = material_of(nested), both = material_of(twosided(allows + nested));
+        EXPECT_EQ(both.front, alone.front) << kind;
+        EXPECT_FALSE(both.two_sided) << kind;
+        EXPECT_THROW(material_of(twosided(nested)), Error) << kind;
+    }
+    EXPECT_TRUE(material_of(twosided(allows + "<bsdf type=\"diffuse\"/>")).two_sided);
+    for (const std::string kind : {"dielectric", "roughdielectric"})
+        EXPECT_THAT(error_of_text(scene_around("<shape type=\"cube\">" +
+                                               twosided(allows + "<bsdf type=\"" + kind + "\"/>") + "</shape>")),
+                    HasSubstr("leave twosided away"));
+    EXPECT_THROW(material_of(twosided(allows + "<bsdf type=\"thindielectric\"/><bsdf type=\"diffuse\"/>")), Error);
+    EXPECT_THROW(material_of(twosided(allows + "<bsdf type=\"bumpmap\"><texture type=\"mesh_attribute\"/><bsdf "
+                                               "type=\"thindielectric\"/></bsdf>")),
+                 Error);
+}
+
 TEST(BsdfPlugin, DistributionsOf0xAreReadAsBeckmann) {
     for (const std::string name : {"phong", "as"}) {
         const LoadedScene loaded = load_text(
@@ -715,6 +737,8 @@ TEST(EmitterPlugin, AreaOfATexture) {
         "<shape type=\"rectangle\"><emitter type=\"area\"><texture type=\"checkerboard\" name=\"radiance\"><rgb "
         "name=\"color0\" value=\"0\"/><rgb name=\"color1\" value=\"0\"/></texture></emitter></shape>"));
     EXPECT_TRUE(black.scene.emitters.empty());
+    EXPECT_TRUE(black.scene.shapes.at(0).is_black_lamp);
+    EXPECT_FALSE(black.scene.shapes.at(1).is_black_lamp);
     EXPECT_THAT(error_of_text(scene_around("<emitter type=\"point\"><texture type=\"checkerboard\" "
                                            "name=\"intensity\"/></emitter>")),
                 HasSubstr("cannot be a texture"));
@@ -922,6 +946,15 @@ TEST(SensorPlugin, PrincipalPointAndPlanes) {
     EXPECT_EQ(camera.far_clip, 5);
 }
 
+TEST(SensorPlugin, FarClipMayBeInfinite) {
+    for (const char *text : {"inf", " Inf "}) {
+        const Camera camera =
+            scene_with_sensor(std::string("<float name=\"far_clip\" value=\"") + text + "\"/>").camera;
+        EXPECT_EQ(camera.far_clip, 1e30);
+        EXPECT_EQ(camera.near_clip, 0.01);
+    }
+}
+
 LoadedScene scene_of_sensor(const std::string &sensor, const std::string &version) {
     return load_text("<scene version=\"" + version + "\">" + sensor +
                      "<shape type=\"cube\"/><emitter type=\"constant\"/></scene>");
@@ -1052,6 +1085,21 @@ TEST(FilmPlugin, OtherKindsWarnAndKeepSizeCropAndFilter) {
         EXPECT_EQ(loaded.scene.film.crop_width, 20u);
         EXPECT_EQ(loaded.scene.film.filter, FilmSettings::Filter::box);
     }
+}
+
+TEST(FilmPlugin, PixelFormatsThatMakeOtherImagesWarn) {
+    const auto warnings = [](const std::string &format) {
+        return load_text("<scene version=\"0.6.0\"><sensor type=\"perspective\"><film type=\"hdrfilm\">\n<string "
+                         "name=\"pixelFormat\" value=\"" +
+                         format + "\"/></film></sensor><emitter type=\"constant\"/></scene>")
+            .warnings;
+    };
+    for (const char *format : {"luminance", "XYZ", "spectrum", "rgb, luminance"})
+        EXPECT_THAT(warnings(format),
+                    ElementsAre(AllOf(HasSubstr("scene.xml:2: pixel_format \""), HasSubstr("has no effect here"))))
+            << format;
+    for (const char *format : {"rgb", "RGBA", "rgb, rgba"})
+        EXPECT_THAT(warnings(format), IsEmpty()) << format;
 }
 
 TEST(FilmPlugin, OneForDisplayIsReadInSilence) {

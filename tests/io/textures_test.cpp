@@ -371,6 +371,18 @@ TEST_F(TexturePlugin, ChannelsXYZAreNoGray) {
 }
 
 // Of 32 bits in OpenEXR: no shares of the largest.
+TEST_F(TexturePlugin, TwoChannelsAreNoGrayUnlessOneIsAlpha) {
+    const float values[] = {0.25f, 0.5f, 0.75f};
+    write_values("rg.exr", 1, 1, 2, OIIO::TypeDesc::FLOAT, values, {"R", "G"});
+    EXPECT_THAT(error(bitmap_text("rg.exr")), AllOf(HasSubstr("rg.exr"), HasSubstr("its channels are R, G: gray")));
+    EXPECT_EQ(texel(texture(bitmap_text("rg.exr", "<string name=\"channel\" value=\"g\"/>"), "0.6.0"), 0, 0),
+              (std::array<double, 3>{0.5, 0.5, 0.5}));
+    write_values("rga.exr", 1, 1, 3, OIIO::TypeDesc::FLOAT, values, {"R", "G", "A"});
+    EXPECT_THAT(error(bitmap_text("rga.exr")), HasSubstr("its channels are R, G, A: gray"));
+    write_values("ra.exr", 1, 1, 2, OIIO::TypeDesc::FLOAT, values, {"R", "A"});
+    EXPECT_EQ(texel(texture(bitmap_text("ra.exr")), 0, 0), (std::array<double, 3>{0.25, 0.25, 0.25}));
+}
+
 TEST_F(TexturePlugin, WholeNumbersOfOpenExrAreWhatTheySay) {
     write<std::uint32_t>("u.exr", 3, OIIO::TypeDesc::UINT32, 16);
     const Texture found = load(bitmap_text("u.exr")).scene.textures.at(0);

@@ -21,9 +21,26 @@ Declaration declare_film_hdrfilm() {
                              "gamma", "tonemap_method"})})};
 }
 
+namespace {
+
+/// Mitsuba's image is then gray or of other primaries.
+void warn_of_pixel_format(Properties &properties) {
+    const std::string format = properties.written("pixel_format");
+    for (const std::string_view part : split_list(format))
+        if (const std::string name = lower_case(part); name != "rgb" && name != "rgba") {
+            properties.diagnostics().warn(properties.location_of("pixel_format"),
+                                          "pixel_format " + quoted_excerpt(format) +
+                                              " has no effect here: images are red, green and blue");
+            return;
+        }
+}
+
+} // namespace
+
 FilmSettings film_hdrfilm(Properties &properties, SceneBuilder &builder) {
     FilmSettings film;
     constexpr std::int64_t most = 0x7fffffff;
+    warn_of_pixel_format(properties);
     film.width = std::uint32_t(properties.integer("width"));
     film.height = std::uint32_t(properties.integer("height"));
     if (std::int64_t(film.width) * film.height > most)
@@ -40,8 +57,8 @@ FilmSettings film_hdrfilm(Properties &properties, SceneBuilder &builder) {
         film.crop_height =
             properties.has("crop_height") ? std::uint32_t(properties.integer("crop_height", 1, high)) : high;
     }
-    if (const auto filters = properties.objects("rfilter"); !filters.empty()) {
-        const Element &element = *filters.front().element;
+    if (const Element *const its_filter = the_one_of(properties.objects("rfilter"), properties.diagnostics())) {
+        const Element &element = *its_filter;
         const std::string type = element.attribute_or("type", "");
         ReconstructionFilter filter; // a Gaussian
         if (type.empty() || find_plugin<ReconstructionFilter>(std::string(trimmed(type))))

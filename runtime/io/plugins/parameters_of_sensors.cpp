@@ -10,6 +10,8 @@ namespace gradus {
 
 namespace {
 
+constexpr double no_far_clip = 1e30;
+
 Camera::FovAxis read_axis(Properties &properties) {
     const std::string name = properties.choice("fov_axis");
     if (name == "x")
@@ -42,8 +44,9 @@ ParameterList parameters_of_camera() {
         {{{"to_world", Takes::transform, nullptr, "from a camera at the origin that looks along +z, +y up"},
           Parameter{"near_clip", Takes::number, "0.01", "what is nearer along the line of sight is not seen"}.in(
               "lengths"),
-          Parameter{"far_clip", Takes::number, "10000", "what is farther is not seen, nor through holes of a mask"}.in(
-              "lengths"),
+          Parameter{"far_clip", Takes::number, "10000",
+                    "what is farther is not seen, nor through holes of a mask; or inf"}
+              .in("lengths"),
           {"film", Takes::objects, nullptr, "one"},
           {"sampler", Takes::objects, nullptr, "one"},
           {"medium", Takes::objects, nullptr, "an error, or left out"}},
@@ -63,12 +66,13 @@ void read_camera(Properties &properties, Camera &camera) {
     if (!is_invertible(camera.to_world))
         throw properties.error("to_world", "the camera's to_world has no inverse");
     camera.near_clip = properties.number("near_clip");
-    camera.far_clip = properties.number("far_clip");
+    const bool sees_all = lower_case(properties.written("far_clip")) == "inf";
+    camera.far_clip = sees_all ? no_far_clip : properties.number("far_clip");
     if (!(camera.near_clip > 0 && camera.far_clip > camera.near_clip)) {
         properties.diagnostics().warn(properties.location_of(properties.has("near_clip") ? "near_clip" : "far_clip"),
                                       "near_clip and far_clip are not in order, or not above 0, and are ignored");
         camera.near_clip = 0;
-        camera.far_clip = 1e30;
+        camera.far_clip = no_far_clip;
     }
 }
 

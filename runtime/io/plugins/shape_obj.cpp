@@ -5,9 +5,12 @@
 #include "runtime/io/text.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <set>
+#include <sstream>
+#include <string>
 #include <vector>
 
 namespace gradus {
@@ -46,13 +49,36 @@ std::string name_of(const Element &child) {
     return name == "bsdf" ? "" : name;
 }
 
+/// The libraries one by one: a line whose whole is no file names several where one of its words is.
+std::vector<ObjNames::Library> single_libraries(const ObjNames &names, const std::filesystem::path &obj,
+                                                const SceneBuilder &builder) {
+    constexpr std::size_t longest_line = 4096; // each word is looked for
+    std::vector<ObjNames::Library> libraries;
+    for (const ObjNames::Library &library : names.libraries) {
+        if (library.name.size() > longest_line) {
+            libraries.push_back(library);
+            continue;
+        }
+        std::vector<ObjNames::Library> words;
+        std::istringstream line(library.name);
+        for (std::string word; line >> word;)
+            words.push_back({word, library.line});
+        const auto is_there = [&](const ObjNames::Library &one) { return builder.look_for(one.name, obj).has_value(); };
+        if (!is_there(library) && std::ranges::any_of(words, is_there))
+            libraries.insert(libraries.end(), words.begin(), words.end());
+        else
+            libraries.push_back(library);
+    }
+    return libraries;
+}
+
 /// BSDFs of the material libraries that a file names, by material.
 std::map<std::string, Element> read_libraries(const ObjNames &names, MeshFile &file, const Location &shape,
                                               SceneBuilder &builder) {
     std::map<std::string, Element> bsdfs;
     std::set<std::string> read;
     const auto obj = std::make_shared<const std::string>(file.path().string());
-    for (const auto &[name, line] : names.libraries) {
+    for (const auto &[name, line] : single_libraries(names, file.path(), builder)) {
         const Location location{obj, line};
         if (!read.insert(name).second)
             continue;
