@@ -1,5 +1,6 @@
 #include "driver/comparison.h"
 
+#include "driver/place_in_frame.h"
 #include "runtime/error.h"
 #include "runtime/io/image_io.h"
 
@@ -47,12 +48,12 @@ void check_variance(const Image &variance, const Image &reference, const std::st
                             fmt::format("{}: a variance is below 0 in channel {}: {:g}", path, channel->name, value));
 }
 
-/// Crops of different places have no pixel in common.
-void check_crop(const std::string &path, const Image &image, const Image &reference) {
-    const auto ours = image.metadata.find("crop"), theirs = reference.metadata.find("crop");
-    if (ours != image.metadata.end() && theirs != reference.metadata.end() && ours->second != theirs->second)
-        throw Error(ExitCode::image, fmt::format("{}: it is the crop {} of its image, and the reference is {}", path,
-                                                 ours->second, theirs->second));
+/// Images of different places have no pixel in common.
+void check_place(const std::string &path, const Image &image, const std::string &other_path, const Image &other) {
+    const PlaceInFrame ours = place_in_frame(image), theirs = place_in_frame(other);
+    if (!may_be_one_place(ours, theirs))
+        throw Error(ExitCode::image, fmt::format("'{}' is {}, and '{}' is {}: they have not the same pixels", path,
+                                                 place_text(ours), other_path, place_text(theirs)));
 }
 
 /// Samples a pixel as our own files state them; 0 where the file does not say.
@@ -235,13 +236,16 @@ Comparison compare_images(const CompareRequest &request) {
     const Image reference = read_selected(request.reference, request);
     const Image variance = result.variance_given ? read_variance(request) : Image();
     if (result.variance_given) {
+        check_place(request.variance, variance, request.reference, reference);
         result.reference_relative_mse = relative_variance(variance, reference);
         check_variance(variance, reference, request.variance);
     }
     std::vector<Image> images;
     for (const std::string &path : request.images) {
         images.push_back(read_selected(path, request));
-        check_crop(path, images.back(), reference);
+        check_place(path, images.back(), request.reference, reference);
+        // Of each other they may tell what the reference does not.
+        check_place(path, images.back(), request.images.front(), images.front());
         result.images.push_back(figures_of(path, images.back(), reference));
         if (request.layer.empty())
             result.images.back().error_layer = error_calibration(images.back(), reference, variance);

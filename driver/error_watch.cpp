@@ -2,12 +2,10 @@
 
 namespace gradus {
 
-ErrorWatch::ErrorWatch(Method &method, double aim, std::uint64_t pixels) : method_(method), aim_(aim), pixels_(pixels) {
-    method_.pause_at(next_look());
-}
+ErrorWatch::ErrorWatch(Method &method, double aim) : method_(method), aim_(aim) { method_.pause_at(next_look()); }
 
 bool ErrorWatch::is_reached() {
-    if (pixels_ == 0 || method_.done_samples() < next_look())
+    if (method_.done_samples() < next_look())
         return false;
     method_.image();
     estimate_ = method_.statistics().estimated_error;

@@ -22,8 +22,8 @@ namespace gradus {
 
 class ErrorWatch {
   public:
-    /// `aim`: the estimated relMSE to end by, above 0. `pixels`: of the image.
-    ErrorWatch(Method &method, double aim, std::uint64_t pixels);
+    /// `aim`: the estimated relMSE to end by, above 0.
+    ErrorWatch(Method &method, double aim);
 
     /// To be called after each batch: whether the image is good enough. It is made anew at each look.
     bool is_reached();
@@ -34,7 +34,7 @@ class ErrorWatch {
     std::optional<double> estimate() const { return estimate_; }
     std::uint64_t samples() const { return next_ / 2; }
     /// The samples of all pixels together at which it looks again.
-    std::uint64_t next_look() const { return next_ * pixels_; }
+    std::uint64_t next_look() const { return next_ * method_.frame_samples(); }
 
     static constexpr std::uint64_t first_look = 16;
     /// A render that nothing else ends has no more samples of each pixel than this.
@@ -43,7 +43,6 @@ class ErrorWatch {
   private:
     Method &method_;
     const double aim_;
-    const std::uint64_t pixels_;
     std::uint64_t next_ = first_look; ///< samples of each pixel
     std::optional<double> estimate_;
 };

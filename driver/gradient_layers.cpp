@@ -1,5 +1,6 @@
 #include "driver/gradient_layers.h"
 
+#include "driver/place_in_frame.h"
 #include "runtime/error.h"
 #include "runtime/io/image_io.h"
 
@@ -116,6 +117,7 @@ struct Found {
     std::uint32_t width = 0, height = 0;
     std::vector<std::string> channels;
     std::vector<float> values; ///< one plane after the other
+    PlaceInFrame place;
 };
 
 /// The channels that stand for an image, in their order. Throws where they are not there.
@@ -147,7 +149,8 @@ Found take_channels(GradientLayer layer, const Image &image, const std::vector<c
         if (letter != "A")
             there[letter] = channel;
     }
-    Found found{where, image.width, image.height, channels_to_take(layer, there, where, letters_of(channels)), {}};
+    Found found{where, image.width,          image.height, channels_to_take(layer, there, where, letters_of(channels)),
+                {},    place_in_frame(image)};
     for (const std::string &letter : found.channels) {
         const std::vector<float> &values = there.at(letter)->values;
         found.values.insert(found.values.end(), values.begin(), values.end());
@@ -224,8 +227,10 @@ void read_file(const std::string &path, const std::vector<GradientLayer> &wanted
                                      layer_name(layer), list_of(layers), remedy(layer, sources)));
         const std::string where = name->empty() ? fmt::format("'{}'", path) : fmt::format("{} of '{}'", *name, path);
         found[layer] = take_channels(layer, image, layers.at(*name), where);
-        if (layer == main_layer(sources))
+        if (layer == main_layer(sources)) {
             images.metadata = image.metadata;
+            images.origin = image.origin;
+        }
     }
 }
 
@@ -234,6 +239,9 @@ void check_equal(const Found &primal, GradientLayer layer, const Found &other) {
     if (other.width != primal.width || other.height != primal.height)
         fail_to_read(fmt::format("sizes differ: {} is {}x{}, {} is {}x{}", primal.where, primal.width, primal.height,
                                  other.where, other.width, other.height));
+    if (!may_be_one_place(primal.place, other.place))
+        fail_to_read(fmt::format("places differ: {} is {}, {} is {}", primal.where, place_text(primal.place),
+                                 other.where, place_text(other.place)));
     if (other.channels != primal.channels && !is_feature(layer))
         fail_to_read(fmt::format("channels differ: {} has {}, {} has {}", primal.where,
                                  fmt::join(primal.channels, ", "), other.where, fmt::join(other.channels, ", ")));

@@ -1,9 +1,12 @@
 // The images that a reconstruction starts from, as renderers write them: a file each, or layers of one file.
 #pragma once
 
+#include "runtime/film/image.h"
+
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -97,6 +100,7 @@ struct GradientImages {
     /// Planes: channel c at row y and column x is element (c * height + y) * width + x. What is not there is left out.
     std::map<GradientLayer, std::vector<float>> planes;
     std::map<std::string, std::string> metadata; ///< of the primal's file
+    std::optional<PixelPlace> origin;            ///< of the first pixel, as Image has it
 
     /// The planes of a layer, or nullptr.
     const float *find(GradientLayer layer) const;
@@ -110,7 +114,7 @@ struct GradientImages {
 /// is primal or direct. Colours are the channels R, G and B, or Y where it stands alone; alpha is ignored.
 ///
 /// Throws Error(ExitCode::usage) where an image has neither file nor layer, Error(ExitCode::image) for files that
-/// cannot be read, layers that are missing, and sizes or channels that differ.
+/// cannot be read, layers that are missing, and sizes, channels or places in the frame that differ.
 GradientImages read_gradient_images(const GradientSources &sources);
 
 } // namespace gradus

@@ -99,9 +99,11 @@ class RenderJob {
             scene.settings.samples_per_pixel =
                 request_.until_error > 0 ? ErrorWatch::most_samples : endless_samples_per_pixel;
         own_scale_ = bring_to_own_frame(scene);
-        crop_ = scene.film.crop_width > 0 ? fmt::format("{},{},{},{}", scene.film.crop_x, scene.film.crop_y,
-                                                        scene.film.crop_width, scene.film.crop_height)
-                                          : std::string();
+        // A crop that is the whole is none.
+        const bool is_cropped = image_size(scene.film) != std::array{scene.film.width, scene.film.height};
+        crop_ = is_cropped ? fmt::format("{},{},{},{}", scene.film.crop_x, scene.film.crop_y, scene.film.crop_width,
+                                         scene.film.crop_height)
+                           : std::string();
         const auto [width, height] = image_size(scene.film);
         record_.width = width;
         record_.height = height;
@@ -177,12 +179,10 @@ class RenderJob {
         if (error_watch_) {
             state.error_limit = error_watch_->aim();
             state.error = error_watch_->estimate();
-            state.samples_of_error = error_watch_->samples() * pixels();
+            state.samples_of_error = error_watch_->samples() * prepared_.method->frame_samples();
         }
         return state;
     }
-
-    std::uint64_t pixels() const { return std::uint64_t(record_.width) * record_.height; }
 
     /// Whether there is not one sample, though there should be.
     bool has_nothing_to_show() const {
@@ -191,7 +191,8 @@ class RenderJob {
 
     /// Whether there are pixels without a sample.
     bool has_holes() const {
-        return prepared_.method->done_samples() < std::min(pixels(), prepared_.method->total_samples());
+        return prepared_.method->done_samples() <
+               std::min(prepared_.method->frame_samples(), prepared_.method->total_samples());
     }
 
     bool is_done() const { return prepared_.method->done_samples() >= prepared_.method->total_samples(); }
@@ -220,7 +221,8 @@ class RenderJob {
         constexpr std::uint64_t long_render = 1u << 20;
         if (request_.time_limit > 0 || prepared_.method->total_samples() > long_render) {
             const std::uint64_t done = prepared_.method->done_samples();
-            const std::uint64_t next = done + std::max(request_.time_limit > 0 ? done : 3 * done, pixels());
+            const std::uint64_t next =
+                done + std::max(request_.time_limit > 0 ? done : 3 * done, prepared_.method->frame_samples());
             prepared_.method->pause_at(error_watch_ ? std::min(next, error_watch_->next_look()) : next);
         }
         try {
@@ -237,7 +239,7 @@ class RenderJob {
         auto last_partial = Clock::now();
         progress_.update(state());
         if (request_.until_error > 0)
-            error_watch_.emplace(*prepared_.method, request_.until_error, pixels());
+            error_watch_.emplace(*prepared_.method, request_.until_error);
         bool more = true;
         while (more) {
             more = render_batch();
@@ -336,8 +338,7 @@ class RenderJob {
                     value = float(value / own_scale_);
         black_pixels_ = std::max(settle_values(image).pixels, statistics_.lost_pixels);
         const std::uint64_t done = prepared_.method->done_samples();
-        const double pixels = double(image.width) * double(image.height);
-        record_.samples_per_pixel = pixels > 0 ? double(done) / pixels : 0;
+        record_.samples_per_pixel = double(done) / double(prepared_.method->frame_samples());
         image.metadata["version"] = version();
         image.metadata["scene"] = record_.scene;
         image.metadata["method"] = record_.method;

@@ -21,6 +21,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <new>
 #include <optional>
 
@@ -75,6 +76,7 @@ class SolveJob {
         images_ = read_gradient_images(request_.sources);
         warn_of_other_reconstruction();
         warn_of_brightness();
+        take_out_pixels_without_samples();
         if (request_.sources.variances)
             check_variances();
         if (request_.sources.features && images_.channels.size() != 3)
@@ -151,10 +153,45 @@ class SolveJob {
                              request_.options.alpha));
     }
 
+    /// Of the layers, where the render says it: without those around the image, which a filter reaches.
+    std::optional<std::uint64_t> stated_samples() const {
+        for (const char *key : {"layer_samples", "samples"})
+            if (const auto text = images_.metadata.find(key); text != images_.metadata.end())
+                return std::strtoull(text->second.c_str(), nullptr, 10);
+        return {};
+    }
+
+    /// Of a render that was stopped during its first frame the first so many; the layers hold the others as black.
+    std::size_t pixels_with_samples() const {
+        const std::size_t pixels = std::size_t(images_.width) * images_.height;
+        const auto partial = images_.metadata.find("partial");
+        const bool is_partial = partial != images_.metadata.end() && partial->second == "true";
+        return is_partial ? std::size_t(std::min<std::uint64_t>(stated_samples().value_or(pixels), pixels)) : pixels;
+    }
+
+    /// As the render takes them: for missing.
+    void take_out_pixels_without_samples() {
+        const std::size_t pixels = std::size_t(images_.width) * images_.height, known = pixels_with_samples();
+        if (known == pixels)
+            return;
+        warn("the render that wrote these layers was stopped before each pixel had a sample: the others are black");
+        for (const GradientLayer layer : {GradientLayer::primal, GradientLayer::dx, GradientLayer::dy}) {
+            const auto plane = images_.planes.find(layer);
+            if (plane == images_.planes.end()) // halves, of which so few samples are refused
+                continue;
+            // A difference to the pixel below is of both.
+            const std::size_t first =
+                layer == GradientLayer::dy ? known - std::min<std::size_t>(known, images_.width) : known;
+            for (std::size_t c = 0; c < images_.channels.size(); ++c)
+                std::fill_n(plane->second.begin() + std::ptrdiff_t(c * pixels + first), pixels - first,
+                            std::numeric_limits<float>::quiet_NaN());
+        }
+    }
+
     void warn_of_brightness() const {
         const std::size_t values = std::size_t(images_.width) * images_.height * images_.channels.size();
         std::string note;
-        for (const GradientLayer layer : {GradientLayer::primal, GradientLayer::primal_even})
+        for (const GradientLayer layer : {GradientLayer::primal, GradientLayer::primal_even, GradientLayer::primal_odd})
             if (const float *plane = images_.find(layer); plane && note.empty())
                 note = note_of_brightness({{plane, values}});
         if (!note.empty())
@@ -189,6 +226,10 @@ class SolveJob {
         if (const float *direct = planes.direct; direct && request_.sources.halves)
             for (std::size_t i = 0; i < result_.size(); ++i)
                 result_[i] += direct[i];
+        // What the solver tells of pixels without samples comes from those beside them.
+        const std::size_t pixels = std::size_t(images_.width) * images_.height, known = pixels_with_samples();
+        for (std::size_t c = 0; c < channels; ++c)
+            std::fill_n(result_.begin() + std::ptrdiff_t(c * pixels + known), pixels - known, 0.0f);
         images_.planes.clear();
     }
 
@@ -223,9 +264,7 @@ class SolveJob {
 
     /// As the render's file says; as many in both halves where it does not.
     std::array<std::uint64_t, 2> samples_of_halves() const {
-        const auto text = images_.metadata.find("samples");
-        const std::uint64_t samples =
-            text == images_.metadata.end() ? 0 : std::strtoull(text->second.c_str(), nullptr, 10);
+        const std::uint64_t samples = stated_samples().value_or(0);
         const std::uint64_t pixels = std::uint64_t(images_.width) * images_.height;
         if (samples == 0)
             return {1, 1};
@@ -242,6 +281,7 @@ class SolveJob {
         Image image;
         image.width = images_.width;
         image.height = images_.height;
+        image.origin = images_.origin;
         const std::size_t pixels = std::size_t(images_.width) * images_.height;
         for (std::size_t c = 0; c < images_.channels.size(); ++c) {
             const auto plane = result_.begin() + static_cast<std::ptrdiff_t>(c * pixels);

@@ -54,6 +54,7 @@ def main():
         parameters["max_depth"] = arguments.max_depth
     scene = mitsuba_setup.load_scene_at_size(mitsuba, arguments.scene, width, height, **parameters)
     render(mitsuba, scene, 1, 0, width * height)
+    arguments.folder.mkdir(parents=True, exist_ok=True)
     records = []
     for seed in arguments.seeds:
         for spp in arguments.spp:

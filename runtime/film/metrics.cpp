@@ -272,6 +272,7 @@ Image select_layer(const Image &image, const std::string &layer) {
     result.width = image.width;
     result.height = image.height;
     result.metadata = image.metadata;
+    result.origin = image.origin;
     std::set<std::string> layers;
     for (const Channel &channel : image.channels) {
         const std::size_t dot = channel.name.rfind('.');

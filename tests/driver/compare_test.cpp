@@ -59,9 +59,60 @@ TEST_F(Compare, CropsOfDifferentPlacesHaveNothingInCommon) {
     write_image(image, at("second.exr"));
     const Outcome outcome = run({"compare", "first.exr", "second.exr"});
     EXPECT_EQ(outcome.exit_code, 6);
-    EXPECT_THAT(outcome.err, HasSubstr("it is the crop 0,0,64,64 of its image, and the reference is 64,0,64,64"));
+    EXPECT_THAT(outcome.err, HasSubstr("'first.exr' is the crop 0,0,64,64 of an image, and 'second.exr' is the crop "
+                                       "64,0,64,64 of an image: they have not the same pixels"));
     EXPECT_EQ(run({"compare", "first.exr", "first.exr"}).exit_code, 0);
     EXPECT_EQ(run({"compare", "first.exr", "reference.exr"}).exit_code, 0) << "which does not say";
+    EXPECT_EQ(run({"compare", "first.exr", "second.exr", "reference.exr"}).exit_code, 6) << "they say it of each other";
+    EXPECT_EQ(run({"compare", "first.exr", "reference.exr", "--variance", "reference.exr"}).exit_code, 0);
+    const Outcome variance = run({"compare", "reference.exr", "first.exr", "--variance", "second.exr"});
+    EXPECT_EQ(variance.exit_code, 6);
+    EXPECT_THAT(variance.err, HasSubstr("second.exr"));
+}
+
+/// Renders say where they are crops, so that one of ours without a word of it is whole.
+TEST_F(Compare, ACropIsNoWholeImage) {
+    Image image = make_gray(side, side, std::vector<float>(side * side, 1));
+    image.metadata = {{"version", "1"}, {"scene", "scene.xml"}};
+    write_image(image, at("whole.exr"));
+    image.metadata["crop"] = "64,0,64,64";
+    write_image(image, at("crop.exr"));
+    for (const auto &[first, second] : {std::pair{"whole.exr", "crop.exr"}, {"crop.exr", "whole.exr"}}) {
+        const Outcome outcome = run({"compare", first, second});
+        EXPECT_EQ(outcome.exit_code, 6);
+        EXPECT_THAT(outcome.err, HasSubstr("'whole.exr' is a whole image"));
+        EXPECT_THAT(outcome.err, HasSubstr("'crop.exr' is the crop 64,0,64,64 of an image"));
+    }
+    EXPECT_EQ(run({"compare", "whole.exr", "whole.exr"}).exit_code, 0);
+}
+
+TEST_F(Compare, ImagesAtDifferentPlacesOfTheirFramesAreRefused) {
+    Image image = make_gray(side, side, std::vector<float>(side * side, 1));
+    write_image(image, at("first.exr"));
+    image.origin = PixelPlace{0, 64};
+    write_image(image, at("second.exr"));
+    const Outcome outcome = run({"compare", "first.exr", "second.exr"});
+    EXPECT_EQ(outcome.exit_code, 6);
+    EXPECT_THAT(outcome.err, HasSubstr("'first.exr' is at pixel (0, 0) of its frame, and 'second.exr' is at pixel "
+                                       "(0, 64) of its frame"));
+    EXPECT_EQ(run({"compare", "second.exr", "second.exr"}).exit_code, 0);
+    write_png(image, at("picture.png")); // whose format has no places
+    EXPECT_EQ(run({"compare", "second.exr", "picture.png"}).exit_code, 0);
+    image.channels.push_back({"albedo.R", image.channels[0].values});
+    write_image(image, at("layered.exr"));
+    image.origin = PixelPlace{};
+    write_image(image, at("reference.exr"));
+    EXPECT_EQ(run({"compare", "layered.exr", "reference.exr", "--layer", "albedo"}).exit_code, 6);
+    // Ours begin at (0, 0) wherever the crop is, and those of other programs there or where it is.
+    image.origin = {};
+    image.metadata["crop"] = "0,64,64,64";
+    write_image(image, at("crop.exr"));
+    EXPECT_EQ(run({"compare", "crop.exr", "first.exr"}).exit_code, 0);
+    EXPECT_EQ(run({"compare", "crop.exr", "second.exr"}).exit_code, 0);
+    image.metadata["crop"] = "64,0,64,64";
+    write_image(image, at("crop.exr"));
+    EXPECT_EQ(run({"compare", "crop.exr", "second.exr"}).exit_code, 6);
+    EXPECT_EQ(run({"compare", "second.exr", "crop.exr"}).exit_code, 6);
 }
 
 /// Of 64 x 64 values with normal errors; 3 standard errors of a share of so many are 0.022.

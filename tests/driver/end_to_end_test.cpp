@@ -208,6 +208,19 @@ TEST_P(EndToEndLayers, HaveBothHalvesForTheWeightedReconstruction) {
     EXPECT_THAT(none.err, ::testing::HasSubstr("primal_even"));
 }
 
+/// With a filter samples are taken around the image, too. Of five the halves have three and two.
+TEST_P(EndToEndLayers, AreOfTheImageAloneWithAFilter) {
+    ASSERT_EQ(run(render("halves.exr", {"-D", "rfilter=gaussian", "--spp", "5", "--method", GetParam(), "--photons",
+                                        "2000", "--reconstruction", "weighted", "--layers"}))
+                  .exit_code,
+              0);
+    EXPECT_EQ(read_image(at("halves.exr")).metadata.at("layer_samples"), std::to_string(5 * 32 * 32));
+    ASSERT_EQ(run({"solve", "halves.exr", "-o", "again.exr", "--reconstruction", "weighted", "-q"}).exit_code, 0);
+    const Image image = read_image(at("halves.exr")), again = read_image(at("again.exr"));
+    for (const char *color : {"R", "G", "B"})
+        EXPECT_EQ(image.find(color)->values, again.find(color)->values);
+}
+
 INSTANTIATE_TEST_SUITE_P(Methods, EndToEndLayers, ::testing::Values("gpt", "gpm"), testing::name_of_method);
 
 class EndToEndGuided : public EndToEndLayers {};
@@ -229,6 +242,49 @@ TEST_P(EndToEndGuided, LayersMakeTheImageAgain) {
     const Outcome unguided = run({"solve", "halves.exr", "-o", "x.exr", "--guide", "filter"});
     EXPECT_EQ(unguided.exit_code, 2);
     EXPECT_THAT(unguided.err, ::testing::HasSubstr("--reconstruction guided"));
+}
+
+TEST_P(EndToEndGuided, LayersMakeAFilteredImageAgain) {
+    ASSERT_EQ(run(render("halves.exr", {"-D", "rfilter=gaussian", "--spp", "5", "--method", GetParam(), "--photons",
+                                        "2000", "--reconstruction", "guided", "--layers"}))
+                  .exit_code,
+              0);
+    ASSERT_EQ(run({"solve", "halves.exr", "-o", "again.exr", "--reconstruction", "guided"}).exit_code, 0);
+    const Image image = read_image(at("halves.exr")), again = read_image(at("again.exr"));
+    for (const char *color : {"R", "G", "B"})
+        EXPECT_EQ(image.find(color)->values, again.find(color)->values);
+}
+
+/// Interrupted during its first frame, of the upper rows alone: each batch has an image written, which takes a while.
+TEST_F(EndToEnd, LayersOfAStoppedRenderMakeItsImageAgain) {
+    for (const char *filter : {"box", "gaussian"}) {
+        ChildProcess process({"render", scene, "-o", "part.exr", "--size", "256x256", "-D",
+                              std::string("rfilter=") + filter, "--method", "gpt", "--reconstruction", "l1", "--spp",
+                              "16", "--batch-size", "2000", "--layers", "--write-partial", "1e-9"},
+                             folder);
+        ASSERT_TRUE(wait_for_file("part.exr"));
+        process.send(SIGINT);
+        EXPECT_EQ(process.wait().exit_code, 130);
+        const Image image = read_image(at("part.exr"));
+        const std::uint64_t samples = std::stoull(image.metadata.at("layer_samples"));
+        ASSERT_LT(samples, 256u * 256) << "it went on for too long";
+        EXPECT_GT(samples, 256u);
+        EXPECT_EQ(image.metadata.at("alpha"), "0.2") << "as `gradus solve` has it";
+        const Outcome solved = run({"solve", "part.exr", "-o", "again.exr"});
+        ASSERT_EQ(solved.exit_code, 0) << solved.err;
+        EXPECT_THAT(solved.err, HasSubstr("was stopped before each pixel had a sample"));
+        const Image again = read_image(at("again.exr"));
+        for (const char *color : {"R", "G", "B"})
+            EXPECT_EQ(image.find(color)->values, again.find(color)->values) << filter;
+        std::filesystem::remove(at("part.exr"));
+    }
+}
+
+TEST_F(EndToEnd, ACropOfAllIsNone) {
+    ASSERT_EQ(run(render("whole.exr", {"--method", "pt", "--spp", "1", "--crop", "0,0,32,32"})).exit_code, 0);
+    EXPECT_EQ(read_image(at("whole.exr")).metadata.count("crop"), 0u);
+    ASSERT_EQ(run(render("crop.exr", {"--method", "pt", "--spp", "1", "--crop", "0,0,32,31"})).exit_code, 0);
+    EXPECT_EQ(read_image(at("crop.exr")).metadata.at("crop"), "0,0,32,31");
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, EndToEndGuided, ::testing::Values("pt", "gpt", "gpm"), testing::name_of_method);

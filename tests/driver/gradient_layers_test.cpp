@@ -70,6 +70,26 @@ TEST_F(GradientLayers, ThreeFiles) {
     EXPECT_EQ(images.find(GradientLayer::direct), nullptr);
 }
 
+TEST_F(GradientLayers, OfDifferentPlacesHaveNothingInCommon) {
+    GradientSources sources = three_files();
+    Image image = counting_image(3, 2, colours("", 200));
+    image.origin = PixelPlace{-3, 5};
+    sources.files[GradientLayer::dx] = write("apart.exr", image);
+    expect_error(sources, ExitCode::image,
+                 AllOf(HasSubstr("places differ: "), HasSubstr("p.exr' is at pixel (0, 0) of its frame, "),
+                       HasSubstr("apart.exr' is at pixel (-3, 5) of its frame")));
+    for (const GradientLayer layer : {GradientLayer::primal, GradientLayer::dx, GradientLayer::dy})
+        sources.files[layer] = sources.files[GradientLayer::dx];
+    EXPECT_EQ(read_gradient_images(sources).origin, image.origin);
+    image.origin = {};
+    image.metadata["crop"] = "6,0,3,2";
+    sources = three_files();
+    sources.files[GradientLayer::dy] = write("crop.exr", image);
+    image.metadata["crop"] = "3,0,3,2";
+    sources.files[GradientLayer::primal] = write("beside.exr", image);
+    expect_error(sources, ExitCode::image, HasSubstr("crop.exr' is the crop 6,0,3,2 of an image"));
+}
+
 TEST_F(GradientLayers, AlphaDepthAndTheOrderOfChannelsDoNotMatter) {
     GradientSources sources = three_files();
     sources.files[GradientLayer::dx] =

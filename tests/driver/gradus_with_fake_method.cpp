@@ -76,6 +76,7 @@ class FakeMethod : public Method {
             std::this_thread::sleep_for(std::chrono::milliseconds(std::stoi(parameter("pilot_ms"))));
     }
     std::uint64_t total_samples() const override { return pixels() * samples_per_pixel_; }
+    std::uint64_t frame_samples() const override { return pixels(); }
     std::uint64_t done_samples() const override {
         return pixels() * done_ - (parameter("holes").empty() || done_ == 0 ? 0 : std::stoull(parameter("holes")));
     }

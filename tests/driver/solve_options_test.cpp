@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <new>
 #include <optional>
@@ -249,6 +250,67 @@ TEST_F(SolveOptions, ValuesWithoutSquaresAreTold) {
     write_image(layers, at("dark.exr"));
     EXPECT_THAT(run({at("dark.exr"), "-o", at("out.exr")}).err,
                 ::testing::HasSubstr("make the lights brighter or darker"));
+}
+
+TEST_F(SolveOptions, ValuesWithoutSquaresAreToldOfTheOddHalf) {
+    const std::string path = write_halves("halves.exr", 4);
+    EXPECT_THAT(run({path, "-o", at("out.exr"), "--reconstruction", "weighted"}).err, Not(HasSubstr("the lights")));
+    Image layers = read_image(path);
+    for (Channel &channel : layers.channels)
+        if (channel.name.starts_with("primal_odd."))
+            channel.values.assign(channel.values.size(), 1e-18f);
+    write_image(layers, path);
+    EXPECT_THAT(run({path, "-o", at("out.exr"), "--reconstruction", "weighted"}).err,
+                HasSubstr("make the lights brighter or darker"));
+}
+
+/// Of a render that was stopped during its first frame the layers hold 0 where no sample was taken.
+TEST_F(SolveOptions, PixelsWithoutSamplesAreMissingAndBlack) {
+    Image image = counting_image(3, 2, layers({{"primal", 100}, {"dx", 200}, {"dy", 300}, {"direct", 400}}));
+    image.metadata = {{"partial", "true"}, {"samples", "4"}};
+    const auto known_of = [](const std::vector<float> &plane) {
+        std::vector<std::size_t> known;
+        for (std::size_t i = 0; i < plane.size(); ++i)
+            if (std::isfinite(plane[i]))
+                known.push_back(i);
+        return known;
+    };
+    const auto expect_four = [&] {
+        const Result result = run({write("stopped.exr", image), "-o", at("out.exr")});
+        EXPECT_EQ(result.exit_code, 0);
+        EXPECT_THAT(result.err, HasSubstr("was stopped before each pixel had a sample: the others are black"));
+        EXPECT_THAT(known_of(asked.primal), ElementsAre(0, 1, 2, 3, 6, 7, 8, 9, 12, 13, 14, 15));
+        EXPECT_EQ(known_of(asked.dx), known_of(asked.primal));
+        EXPECT_THAT(known_of(asked.dy), ElementsAre(0, 6, 12));
+        EXPECT_THAT(read_image(at("out.exr")).find("G")->values, ElementsAre(110.5f, 111.5f, 112.5f, 113.5f, 0, 0));
+    };
+    expect_four();
+    // Around the image are samples, too, where its filter reaches them: those of the layers are what counts.
+    image.metadata["samples"] = "9";
+    image.metadata["layer_samples"] = "4";
+    expect_four();
+    image.metadata["partial"] = "false"; // another program may call something else samples
+    image.metadata.erase("layer_samples");
+    image.metadata["samples"] = "4";
+    EXPECT_THAT(run({write("whole.exr", image), "-o", at("out.exr")}).err, Not(HasSubstr("stopped")));
+    EXPECT_EQ(known_of(asked.dy).size(), 18u);
+}
+
+TEST_F(SolveOptions, HalvesAreOfTheImagesOwnSamples) {
+    Image halves = read_image(write_halves("halves.exr", 5));
+    halves.metadata["samples"] = std::to_string(5 * 7 * 6); // with a border of two pixels
+    halves.metadata["layer_samples"] = std::to_string(5 * 6);
+    ASSERT_EQ(run({write("bordered.exr", halves), "-o", at("out.exr"), "--reconstruction", "weighted"}).exit_code, 0);
+    EXPECT_THAT(asked.samples, ElementsAre(3 * 6, 2 * 6));
+    halves.metadata["layer_samples"] = std::to_string(3 * 6);
+    EXPECT_EQ(run({write("bordered.exr", halves), "-o", at("out.exr"), "--reconstruction", "weighted"}).exit_code, 6);
+}
+
+TEST_F(SolveOptions, TheImageIsWhereItsLayersAre) {
+    Image image = counting_image(3, 2, layers({{"primal", 100}, {"dx", 200}, {"dy", 300}}));
+    image.origin = PixelPlace{7, -2};
+    ASSERT_EQ(run({write("cut.exr", image), "-o", at("out.exr")}).exit_code, 0);
+    EXPECT_EQ(read_image(at("out.exr")).origin, image.origin);
 }
 
 TEST_F(SolveOptions, VariancesAreReadWhereTheyAreUsed) {

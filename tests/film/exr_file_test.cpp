@@ -8,6 +8,8 @@
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIntAttribute.h>
+#include <OpenEXR/ImfMultiPartOutputFile.h>
+#include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfRgbaFile.h>
 #include <OpenEXR/ImfStringAttribute.h>
@@ -89,9 +91,39 @@ TEST_F(ExrFile, TilesOfHalvesAndWholeNumbersFarFromTheOrigin) {
         EXPECT_EQ(image.find("R")->values[i], float(i) / 8) << i;
         EXPECT_EQ(image.find("object")->values[i], 65536 + float(i)) << i;
     }
+    EXPECT_EQ(image.origin, (PixelPlace{-5, 100}));
     EXPECT_EQ(image.metadata.at("comments"), "of another program");
     EXPECT_EQ(image.metadata.at("frame"), "-7");
     EXPECT_EQ(image.metadata.at("gain"), "0.5");
+    write_image(image, path_);
+    const Image again = read_image(path_);
+    EXPECT_EQ(again.origin, image.origin);
+    EXPECT_EQ(again.find("object")->values, image.find("object")->values);
+}
+
+TEST_F(ExrFile, PartsOfDifferentPlacesAreRefused) {
+    const auto write_parts = [&](int y) {
+        std::vector<Imf::Header> headers;
+        for (const int top : {0, y}) {
+            headers.emplace_back(Imath::Box2i({0, 0}, {9, 9}), Imath::Box2i({0, top}, {3, top + 1}));
+            headers.back().setType(Imf::SCANLINEIMAGE);
+            headers.back().setName("part " + std::to_string(headers.size()));
+            headers.back().channels().insert("R", Imf::Channel(Imf::FLOAT));
+        }
+        Imf::MultiPartOutputFile output(path_.c_str(), headers.data(), int(headers.size()));
+        std::vector<float> red(4 * 2, 1.0f);
+        for (int part = 0; part < 2; ++part) {
+            Imf::FrameBuffer planes;
+            planes.insert("R", Imf::Slice::Make(Imf::FLOAT, red.data(), headers[std::size_t(part)].dataWindow()));
+            Imf::OutputPart lines(output, part);
+            lines.setFrameBuffer(planes);
+            lines.writePixels(2);
+        }
+    };
+    write_parts(2);
+    EXPECT_THAT(error(), HasSubstr("part 1 begins at pixel (0, 2), the first one at (0, 0)"));
+    write_parts(0);
+    EXPECT_EQ(error(), "");
 }
 
 TEST_F(ExrFile, ColoursComeInTheirOrderLayerByLayer) {
