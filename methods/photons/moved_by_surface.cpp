@@ -25,7 +25,8 @@ bool keeps_photons(const Bsdf &bsdf) { return bsdf_kind_traits(bsdf.kind).is_dir
 /// section 4.2): held where it is, it would scatter what it sends to its left another way.
 bool is_walked(const Bsdf &bsdf, const RenderOptions &options) {
     const BsdfKindTraits &kind = bsdf_kind_traits(bsdf.kind);
-    return !has_textures(bsdf) && (kind.is_dirac || (!is_rough(bsdf, options.gather_roughness) && !kind.is_mixed));
+    return !has_textures(bsdf) &&
+           (kind.is_dirac || (!gathers_photons(bsdf, options.gather_roughness) && !kind.is_mixed));
 }
 
 } // namespace
@@ -67,7 +68,7 @@ std::vector<std::uint32_t> bins_of_leaving(const Scene &scene, const std::vector
 }
 
 std::vector<std::uint32_t> kinds_for_walks(const Scene &scene, double gather_roughness) {
-    std::vector<std::uint32_t> kinds = material_kinds(scene, gather_roughness);
+    std::vector<std::uint32_t> kinds = material_kinds(scene, gather_roughness, gathers_photons);
     const std::vector<Bsdf> records = material_records(scene);
     for (std::size_t i = 0; i < kinds.size(); ++i)
         if (keeps_photons(records[i]))

@@ -7,6 +7,30 @@
 
 namespace gradus {
 
+namespace {
+
+// A microfacet that is tilted by t turns what it mirrors by 2 t, and what it refracts by |eta - 1| t on the way out of
+// an index eta (by Walter et al. 2007, eq. 16 and 17, of small t): with an index near 1 that lobe is nearly a Dirac one
+// at any roughness. Ice (1.31), water and glass bend enough to count by roughness alone, as what mirrors does.
+constexpr float least_bend = 0.3f;
+
+/// How wide what passes the surface is, over what roughness says: 1 of glass of this index and of all that bends more,
+/// or that lets nothing pass.
+float width_of_passed(const Bsdf &bsdf) {
+    if (!bsdf_kind_traits(bsdf.kind).refracts)
+        return 1;
+    if (bsdf.kind == BsdfKind::principledthin) {
+        // It mirrors what passes to the other side, off microfacets of this share of the roughness, whose square is
+        // alpha (kernels/lib/bsdf_principledthin.h), and so twice as far as they are tilted.
+        const float share = 0.65f * bsdf.ior - 0.35f;
+        return std::min(1.0f, 2 * share * share / least_bend);
+    }
+    const float bend = bsdf.ior > 0 ? std::max(float(bsdf.ior), 1 / bsdf.ior) - 1 : 1;
+    return std::min(1.0f, bend / least_bend);
+}
+
+} // namespace
+
 bool is_rough(const Bsdf &bsdf, double threshold) {
     const BsdfKindTraits &kind = bsdf_kind_traits(bsdf.kind);
     // As float, which the scene's are: 0.02 is not below 0.02.
@@ -15,7 +39,10 @@ bool is_rough(const Bsdf &bsdf, double threshold) {
 }
 
 bool gathers_photons(const Bsdf &bsdf, double threshold) {
-    return is_rough(bsdf, threshold) && !bsdf_kind_traits(bsdf.kind).is_mixed;
+    const BsdfKindTraits &kind = bsdf_kind_traits(bsdf.kind);
+    if (!is_rough(bsdf, threshold) || kind.is_mixed)
+        return false;
+    return !kind.has_roughness || std::min(bsdf.alpha_u, bsdf.alpha_v) * width_of_passed(bsdf) >= float(threshold);
 }
 
 GatheringSurfaces gathering_surfaces(const Scene &scene, double threshold) {

@@ -13,8 +13,9 @@ namespace gradus {
 /// a Dirac lobe beside rough ones, whether these count.
 bool is_rough(const Bsdf &bsdf, double threshold);
 
-/// Whether photons are kept and gathered there: where it counts as rough and has no Dirac lobe. Paths go on from others
-/// as from glossy ones, so that either lobe is sampled.
+/// Whether photons are kept and gathered there: where it counts as rough, has no Dirac lobe, and what passes it is wide
+/// enough, too, which it is not with an index near 1. Paths go on from others as from glossy ones, so that either lobe
+/// is sampled.
 bool gathers_photons(const Bsdf &bsdf, double threshold);
 
 /// BSDFs of materials that shapes have, by the name of their kind; a material with two sides counts twice.

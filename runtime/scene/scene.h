@@ -78,6 +78,8 @@ struct Mesh {
     std::vector<std::array<float, 2>> texcoords; ///< by vertex; may be empty
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::vector<MeshAttribute> attributes = {}; ///< those that textures of the scene name
+    std::vector<std::uint32_t> normal_of = {};  ///< by vertex, until the mesh is built: the one whose computed normal
+                                                ///< it shares, as both were one; empty: each has its own
 };
 
 /// Whether an attribute of that name is by triangle; it is by vertex else.
@@ -119,6 +121,9 @@ struct Shape {
     /// A mesh of that group, in its frame: seen where instances of the group are, and neither emits. Else it is seen
     /// where it is.
     std::int32_t group = no_group;
+    bool is_black_lamp = false; ///< bears an emitter of radiance 0, which is none but hidden from the camera as one
+
+    bool bears_emitter() const { return emitter >= 0 || is_black_lamp; }
 };
 
 /// A group of shapes once more.

@@ -29,7 +29,7 @@ bool has_passable_shapes(const Scene &scene) {
 }
 
 bool is_asked_about(const Scene &scene, const Shape &shape) {
-    return is_passable(scene, shape) || (scene.settings.hide_emitters && shape.emitter >= 0);
+    return is_passable(scene, shape) || (scene.settings.hide_emitters && shape.bears_emitter());
 }
 
 std::uint32_t Opacity::own_texture(const Scene &scene, std::int32_t texture) {
@@ -43,7 +43,8 @@ void Opacity::add(const Scene &scene, const Shape &shape, std::size_t triangle, 
     const Number &opacity = scene.materials[shape.material].opacity;
     const bool is_sphere = shape.kind == Shape::Kind::sphere;
     const bool emits = shape.emitter >= 0;
-    primitives_.push_back({primitive, emits ? 1 : opacity.value, -1, Sphere::Side::both, is_sphere, emits});
+    primitives_.push_back(
+        {primitive, emits ? 1 : opacity.value, -1, Sphere::Side::both, is_sphere, shape.bears_emitter()});
     if (is_sphere)
         primitives_.back().side = scene.spheres[shape.geometry].side;
     if (opacity.texture == no_texture || emits)

@@ -16,7 +16,7 @@ namespace gradus {
 bool is_passable(const Scene &scene, const Shape &shape);
 
 bool has_passable_shapes(const Scene &scene);
-/// The same, or it emits and rays of the camera pass it.
+/// The same, or it is a lamp, a black one too, and rays of the camera pass it.
 bool is_asked_about(const Scene &scene, const Shape &shape);
 
 /// Decides whether rays meet the surfaces that are passable. A ray meets one with the probability of its opacity there
@@ -29,6 +29,7 @@ class Opacity {
     /// that holds them.
     void add(const Scene &scene, const Shape &shape, std::size_t triangle, std::uint32_t primitive);
     bool empty() const { return primitives_.empty(); }
+    /// Whether the i-th primitive is of a lamp, a black one too.
     bool emits(std::size_t i) const { return primitives_[i].emits; }
     /// In the scene's numbering.
     std::uint32_t primitive(std::size_t i) const { return primitives_[i].number; }
