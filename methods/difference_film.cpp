@@ -10,7 +10,6 @@
 #include "solver/squared_errors.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <chrono>
 #include <utility>
@@ -26,11 +25,11 @@ Image mean_of(const Image &image) {
     return {image.width, image.height, {image.channels.begin(), image.channels.begin() + 3}, {}};
 }
 
-/// The arguments of gradient_accumulate that say what the frames before each of a launch weigh.
-constexpr std::array<const char *, accumulated_frames> weights_before = {"weights_0", "weights_1", "weights_2",
-                                                                         "weights_3"},
-                                                       squares_before = {"squares_0", "squares_1", "squares_2",
-                                                                         "squares_3"};
+std::vector<std::string> numbers_of_launch_of_differences(const Session &session) {
+    if (session.has_frame())
+        return {"first_pixel", "frames_before", "filter_x", "filter_y"};
+    return {"first_slot", "first_pixel", "first_above", "is_carried", "has_above", "frames", "frames_before"};
+}
 
 std::vector<std::string> film_names(std::uint32_t parts) {
     std::vector<std::string> names;
@@ -43,17 +42,17 @@ std::vector<std::string> film_names(std::uint32_t parts) {
 
 DifferenceFilm::DifferenceFilm(Session &session, Stages &stages, const RenderOptions &options, const char *counts,
                                bool may_tell_error)
-    : session_(session), stages_(stages), options_(options), counts_(counts),
+    : session_(session), options_(options), counts_(counts),
       tells_error_(may_tell_error && has_error_layer(options, keeps_halves(options))),
       film_names_(film_names(1u << session.traits.at("TRAIT_PART_BITS"))),
       combine_(stages.add({.name = "gradient_combine", .strict = true})), film_(session, stages, tells_error_),
-      accumulate_(stages.add({.name = "gradient_accumulate",
-                              .strict = true,
-                              .numbers = {"first_slot", "first_pixel", "first_above", "is_carried", "has_above",
-                                          "frames", "frames_before"}})),
+      frame_(stages.add({.name = "gradient_frame",
+                         .is_wanted = session.has_frame(),
+                         .strict = true,
+                         .numbers = {"first_slot", "first_pixel", "has_above"}})),
+      accumulate_(stages.add(
+          {.name = "gradient_accumulate", .strict = true, .numbers = numbers_of_launch_of_differences(session)})),
       carry_(stages.add({.name = "gradient_carry", .numbers = {"first_slot"}})) {
-    for (std::uint32_t frame = 0; frame < accumulated_frames; ++frame)
-        session.reals[weights_before[frame]] = session.reals[squares_before[frame]] = 0; // add() says them
     check_guide(options);
     if (options.threads != 1)
         compilers_ = keep_compilers(session.device);
@@ -66,7 +65,10 @@ TableList DifferenceFilm::tables() const {
                             {{.name = "direct", .rows = RowsOf::slot, .columns = radiance_columns},
                              {.name = "prefix", .rows = RowsOf::slot, .columns = prefix_columns},
                              {.name = "difference", .rows = RowsOf::slot, .multiple = 4, .columns = difference_columns},
-                             {.name = "carry", .rows = RowsOf::image_row, .columns = carry_columns}});
+                             {.name = "carry", .rows = RowsOf::image_row, .columns = carry_columns},
+                             {.name = "gradient_frame",
+                              .rows = RowsOf::pixel,
+                              .columns = session_.has_frame() ? std::uint32_t(gradient_frame_columns) : 0u}});
     for (const std::string &name : film_names_)
         list.push_back({.name = name, .rows = RowsOf::pixel, .columns = gradient_film_columns, .is_cleared = true});
     return list;
@@ -108,7 +110,7 @@ const std::vector<DirectPixel> &DifferenceFilm::edges(std::uint64_t samples, boo
 
 std::vector<float> DifferenceFilm::direct_variance(std::uint64_t samples, const std::vector<DirectPixel> &edges) const {
     const GradientFilms films = this->films(samples);
-    const std::size_t pixels = session_.pixels();
+    const std::size_t pixels = session_.image_pixels();
     std::vector<float> direct[2], primal(pixels);
     for (int half = 0; half < 2; ++half) {
         direct[half].resize(3 * pixels);
@@ -122,7 +124,7 @@ std::vector<float> DifferenceFilm::direct_variance(std::uint64_t samples, const 
                 plane[i] -= primal[i];
         }
     }
-    const double share = double(films.half(0).samples()) / double(samples);
+    const double share = double(films.half(0).samples()) / double(films.samples());
     std::vector<float> variance = errors_of_halves(direct[0], direct[1], share).variance;
     for (const DirectPixel &edge : edges)
         for (std::size_t c = 0; c < 3; ++c)
@@ -138,9 +140,20 @@ void DifferenceFilm::clear_slots() {
 }
 
 void DifferenceFilm::add(std::uint32_t first, std::uint32_t rows, std::uint32_t frames, std::uint64_t number) {
-    const std::uint32_t width = session_.film.crop_width, pixels = rows * width;
+    const std::uint32_t width = session_.width(), pixels = rows * width;
     combine_.run(frames * pixels);
     film_.add(frames * pixels, first * width, number);
+    if (session_.has_frame())
+        for (std::uint32_t frame = 0; frame < frames; ++frame)
+            add_filtered(first, rows, frame * pixels, number + frame);
+    else
+        add_slots(first, rows, frames, number);
+    if (first + rows < session_.height())
+        carry_.run(width, {{"first_slot", pixels - width}});
+}
+
+void DifferenceFilm::add_slots(std::uint32_t first, std::uint32_t rows, std::uint32_t frames, std::uint64_t number) {
+    const std::uint32_t width = session_.width(), pixels = rows * width;
     const auto apart = std::uint32_t(film_names_.size()); // frames of a film
     for (std::uint32_t film = 0; film < apart; ++film) {
         // Of a part the first frame of its own, and from there on each that is as many further as there are parts.
@@ -150,15 +163,9 @@ void DifferenceFilm::add(std::uint32_t first, std::uint32_t rows, std::uint32_t 
         for (std::uint32_t frame = first_frame; frame < frames; frame += apart * accumulated_frames) {
             const std::uint32_t together = std::min(accumulated_frames, (frames - frame + apart - 1) / apart);
             const std::uint64_t before = number + frame - first_sample_; // of all films
-            if (film_.weights().are_there())
-                for (std::uint32_t more = 0; more < accumulated_frames; ++more) {
-                    const SharedWeights::Sums weighed = film_.weights().sums(before + more * apart, film, apart);
-                    stages_.set_real(weights_before[more], weighed.weights);
-                    stages_.set_real(squares_before[more], weighed.squares);
-                }
             accumulate_.run(width, {{"first_slot", frame * pixels},
                                     {"first_pixel", first * width},
-                                    {"first_above", ((first > 0 ? first : session_.film.crop_height) - 1) * width},
+                                    {"first_above", ((first > 0 ? first : session_.height()) - 1) * width},
                                     {"is_carried", 1},
                                     {"has_above", first > 0},
                                     {"frames", together},
@@ -172,8 +179,23 @@ void DifferenceFilm::add(std::uint32_t first, std::uint32_t rows, std::uint32_t 
                                              {"frames_before", static_cast<std::uint32_t>(before / apart)}});
         }
     }
-    if (first + rows < session_.film.crop_height)
-        carry_.run(width, {{"first_slot", pixels - width}});
+}
+
+/// Of one frame, from `first_slot` on.
+void DifferenceFilm::add_filtered(std::uint32_t first, std::uint32_t rows, std::uint32_t first_slot,
+                                  std::uint64_t number) {
+    const std::uint32_t width = session_.width();
+    const Range samples{first * width, rows * width};
+    frame_.run(samples.count, {{"first_slot", first_slot}, {"first_pixel", samples.first}, {"has_above", first > 0}});
+    const auto apart = std::uint32_t(film_names_.size());
+    if (apart > 1)
+        accumulate_.bind("gradient_film", (*tables_)[film_names_[number % apart]]);
+    const Range filtered = filtered_pixels(session_, samples);
+    const FramePlace place = film_.place_of(number);
+    accumulate_.run(filtered.count, {{"first_pixel", filtered.first},
+                                     {"frames_before", static_cast<std::uint32_t>((number - first_sample_) / apart)},
+                                     {"filter_x", place.x},
+                                     {"filter_y", place.y}});
 }
 
 Image DifferenceFilm::image(std::uint64_t samples, bool layers, bool last, std::uint64_t &non_finite) {
@@ -212,23 +234,16 @@ Image DifferenceFilm::image(std::uint64_t samples, bool layers, bool last, std::
         solver_.reset();
         mean_.reset();
     }
-    if (used_.accuracy == accuracy_name(Accuracy::unbiased))
-        used_.accuracy = accuracy_name(accuracy_of_mean(film_.weights()));
     return image;
 }
 
 GradientFilms DifferenceFilm::films(std::uint64_t samples) const {
     GradientFilms films(session_.tracer, keeps_halves(options_), has_replicates(session_.options));
     const auto parts = std::uint32_t(film_names_.size());
-    const std::uint64_t frames = samples / session_.pixels();
-    for (std::uint32_t part = 0; part < parts; ++part) {
-        const SharedWeights &shared = film_.weights();
-        // A frame more for the upper pixels is one of a single part.
-        const GradientFilm::Weights weights{shared.of_samples(frames, part, parts),
-                                            shared.of_samples(frames + 1, part, parts)};
-        films.add((*tables_)[film_names_[part]], session_.film.crop_width, session_.film.crop_height,
-                  options_.precision, samples_of_part(samples, session_.pixels(), part, parts), weights);
-    }
+    const GradientFilm::Area area{session_.film.crop_width, session_.film.crop_height, session_.border};
+    for (std::uint32_t part = 0; part < parts; ++part)
+        films.add((*tables_)[film_names_[part]], area, options_.precision,
+                  samples_of_part(session_.filtered_samples(samples), session_.pixels(), part, parts));
     return films;
 }
 
@@ -238,9 +253,8 @@ Image DifferenceFilm::mean(std::uint64_t samples) const {
 }
 
 void DifferenceFilm::add_to(Statistics &statistics) const {
-    statistics.reconstruction = mean_ ? ReconstructionUsed{"none", accuracy_name(accuracy_of_mean(film_.weights())),
-                                                           "the reconstruction failed"}
-                                      : used_;
+    statistics.reconstruction =
+        mean_ ? ReconstructionUsed{"none", accuracy_name(Accuracy::unbiased), "the reconstruction failed"} : used_;
     statistics.estimated_error = relative_error_;
     statistics.lost_pixels = lost_pixels_;
     statistics.rays["edge"] = edge_rays_;

@@ -53,12 +53,14 @@ class DifferenceFilm {
 
     /// All sums and counts zero again, of samples from this number on. Edges of lights that have been sampled stay.
     void clear(std::uint64_t first_sample = 0);
-    /// What samples weigh.
-    const SharedWeights &weights() const { return film_.weights(); }
+    /// Film::count_for_own().
+    void count_for_own(bool own) { film_.count_for_own(own); }
     /// Adds what sampling the edges of lights took, and how the last image was reconstructed.
     void add_to(Statistics &statistics) const;
 
   private:
+    void add_slots(std::uint32_t first, std::uint32_t rows, std::uint32_t frames, std::uint64_t number);
+    void add_filtered(std::uint32_t first, std::uint32_t rows, std::uint32_t first_slot, std::uint64_t number);
     /// What the camera sees of lights at their edges, for an image of so many samples. Images under way take that of a
     /// power of two, whichever were asked for before.
     const std::vector<DirectPixel> &edges(std::uint64_t samples, bool last);
@@ -67,14 +69,13 @@ class DifferenceFilm {
     std::vector<float> direct_variance(std::uint64_t samples, const std::vector<DirectPixel> &edges) const;
 
     Session &session_;
-    Stages &stages_;
     const RenderOptions &options_;
     const std::string counts_;
     const bool tells_error_;                    ///< whether an image says its error
     const std::vector<std::string> film_names_; ///< the tables of the sums: one, or one for each part of the samples
     Stage &combine_;
     Film film_;
-    Stage &accumulate_, &carry_;
+    Stage &frame_, &accumulate_, &carry_;
     Tables *tables_ = nullptr;
     std::uint64_t first_sample_ = 0; ///< the number of the first one
     std::vector<DirectPixel> edges_;

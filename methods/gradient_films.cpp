@@ -17,22 +17,29 @@ using Values = std::array<double, GradientFilm::most_at_once>;
 
 double GradientFilm::sum(Layer layer, std::uint32_t color, std::size_t pixel) const {
     const int number = 3 * layer + int(color);
-    return table_.real(gradient_film_primal_r + number, pixel) +
-           table_.real(gradient_film_correction_first + number, pixel);
+    if (is_outside(layer, pixel))
+        return 0;
+    return table_.real(gradient_film_primal_r + number, row_of(pixel)) +
+           table_.real(gradient_film_correction_first + number, row_of(pixel));
 }
 
 void GradientFilm::add_sums(Layer layer, std::uint32_t color, std::size_t first, std::size_t end, double *to) const {
     const int number = 3 * layer + int(color);
     Values sums{};
-    table_.add_reals(gradient_film_primal_r + number, first, end, sums.data());
-    table_.add_reals(gradient_film_correction_first + number, first, end, sums.data());
+    const std::size_t row = row_of(first), end_of_rows = row + end - first;
+    table_.add_reals(gradient_film_primal_r + number, row, end_of_rows, sums.data());
+    table_.add_reals(gradient_film_correction_first + number, row, end_of_rows, sums.data());
     for (std::size_t i = 0; i < end - first; ++i)
-        to[i] += sums[i];
+        to[i] += is_outside(layer, first + i) ? 0 : sums[i];
 }
 
 void GradientFilm::add_deviations(Layer layer, std::uint32_t color, std::size_t first, std::size_t end,
                                   double *to) const {
-    table_.add_reals(gradient_film_deviation_first + 3 * layer + int(color), first, end, to);
+    Values deviations{};
+    const std::size_t row = row_of(first);
+    table_.add_reals(gradient_film_deviation_first + 3 * layer + int(color), row, row + end - first, deviations.data());
+    for (std::size_t i = 0; i < end - first; ++i)
+        to[i] += is_outside(layer, first + i) ? 0 : deviations[i];
 }
 
 std::uint64_t GradientFilms::samples() const {
@@ -40,6 +47,13 @@ std::uint64_t GradientFilms::samples() const {
     for (const auto &film : films_)
         samples += film->samples();
     return samples;
+}
+
+std::uint64_t GradientFilms::frames() const {
+    std::uint64_t frames = 0;
+    for (const auto &film : films_)
+        frames += film->frames();
+    return frames;
 }
 
 GradientFilms GradientFilms::half(int number) const {
@@ -65,13 +79,13 @@ PlaneSource GradientFilms::mean(GradientFilm::Layer layer, float of_none) const 
     return [this, layer, of_none](std::uint32_t color, float *plane) {
         for_each_block(layer, [&](std::size_t first, std::size_t end) {
             Values sums{};
-            double weight = 0;
+            double count = 0;
             for (const auto &film : films_) {
                 film->add_sums(layer, color, first, end, sums.data());
-                weight += film->weight(layer, first).of_mean;
+                count += film->count(layer, first);
             }
             for (std::size_t i = 0; i < end - first; ++i)
-                plane[first + i] = weight > 0 ? static_cast<float>(sums[i] / weight) : of_none;
+                plane[first + i] = count > 0 ? static_cast<float>(sums[i] / count) : of_none;
         });
     };
 }
@@ -84,8 +98,7 @@ PlaneSource GradientFilms::variance(GradientFilm::Layer layer) const {
             std::vector<Replicate> replicates(films_.size());
             for (std::size_t pixel = first; pixel < end; ++pixel) {
                 for (std::size_t part = 0; part < films_.size(); ++part)
-                    replicates[part] = {films_[part]->sum(layer, color, pixel),
-                                        films_[part]->weight(layer, pixel).of_mean};
+                    replicates[part] = {films_[part]->sum(layer, color, pixel), films_[part]->count(layer, pixel)};
                 plane[pixel] = static_cast<float>(variance_of_mean(replicates));
             }
         });
@@ -96,36 +109,34 @@ PlaneSource GradientFilms::variance_of_samples(GradientFilm::Layer layer) const 
     return [this, layer](std::uint32_t color, float *plane) {
         for_each_block(layer, [&](std::size_t first, std::size_t end) {
             const std::size_t pixels = end - first;
-            double count = 0, weight = 0;
-            for (const auto &film : films_) {
+            double count = 0;
+            for (const auto &film : films_)
                 count += film->count(layer, first);
-                weight += film->weight(layer, first).of_mean;
-            }
             // A half of one sample tells no variance, while samples of both halves are independent of each other.
             const std::size_t halves = has_halves_ && count >= 4 ? 2 : 1;
             Values variance{};
             for (std::size_t half = 0; half < halves; ++half) {
-                SampleWeights of_half;
+                double of_half = 0;
                 Values sum{}, deviations{};
                 for (std::size_t part = half; part < films_.size(); part += halves) {
-                    const GradientFilm &film = *films_[part];
-                    if (film.count(layer, first) == 0)
+                    const double of_part = films_[part]->count(layer, first);
+                    if (of_part == 0)
                         continue;
-                    const SampleWeights &of_part = film.weight(layer, first);
                     Values sum_of_part{};
-                    film.add_sums(layer, color, first, end, sum_of_part.data());
-                    film.add_deviations(layer, color, first, end, deviations.data());
-                    const double apart = of_half.apart(of_part);
+                    films_[part]->add_sums(layer, color, first, end, sum_of_part.data());
+                    films_[part]->add_deviations(layer, color, first, end, deviations.data());
+                    // Chan et al. 1983: deviations from the mean of both.
+                    const double apart = of_half * of_part * (of_half + of_part);
                     for (std::size_t i = 0; i < pixels; ++i) {
-                        const double off = sum_of_part[i] * of_half.of_mean - sum[i] * of_part.of_mean;
+                        const double off = sum_of_part[i] * of_half - sum[i] * of_part;
                         deviations[i] += apart > 0 ? off * off / apart : 0;
                         sum[i] += sum_of_part[i];
                     }
-                    of_half.add(of_part);
+                    of_half += of_part;
                 }
-                if (of_half.of_deviations <= 0)
+                if (of_half < 2)
                     continue;
-                const double of_mean = of_half.squares / (of_half.of_deviations * weight * weight);
+                const double of_mean = of_half / ((of_half - 1) * count * count);
                 for (std::size_t i = 0; i < pixels; ++i)
                     variance[i] += of_mean * deviations[i];
             }

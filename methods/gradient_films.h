@@ -3,7 +3,6 @@
 
 #include "runtime/trace/tracer.h"
 #include "runtime/wavefront/host_table.h"
-#include "runtime/wavefront/sample_weights.h"
 #include "solver/poisson_solver.h"
 
 #include <algorithm>
@@ -17,32 +16,32 @@ namespace gradus {
 /// A table of GRADUS_GRADIENT_FILM_COLUMNS after so many samples. It is read a column at a time, where it lies.
 class GradientFilm {
   public:
-    /// Of the frames that a pixel has, and with one more.
-    struct Weights {
-        SampleWeights of_frames, with_one_more;
+    /// What the table has rows for: the pixels of an image, line by line, and a border around it.
+    struct Area {
+        std::uint32_t width = 0, height = 0, border = 0; ///< of the image, in pixels
+        std::size_t width_of_all() const { return width + 2 * std::size_t(border); }
+        std::size_t pixels_of_all() const { return width_of_all() * (height + 2 * std::size_t(border)); }
     };
-    /// Samples were taken frame by frame, and of the last one perhaps only the upper rows.
-    GradientFilm(const Buffer &film, std::uint32_t width, std::uint32_t height, Precision precision,
-                 std::uint64_t samples, const Weights &weights)
-        : table_(film, std::size_t(width) * height, precision), pixels_(std::size_t(width) * height), width_(width),
-          frames_(samples / pixels_), more_(samples % pixels_), weights_(weights) {}
+    /// Samples were taken frame by frame, of the border too, and of the last one perhaps only the upper rows.
+    GradientFilm(const Buffer &film, const Area &area, Precision precision, std::uint64_t samples)
+        : table_(film, area.pixels_of_all(), precision), area_(area), frames_(samples / area.pixels_of_all()),
+          more_(samples % area.pixels_of_all()) {}
 
     enum Layer { primal, dx, dy };
-    std::size_t pixels() const { return pixels_; }
-    std::uint64_t samples() const { return frames_ * pixels_ + more_; }
+    /// Of the image; all else here is about these, by number.
+    std::size_t pixels() const { return std::size_t(area_.width) * area_.height; }
+    std::uint64_t frames() const { return frames_; } ///< that all pixels have
+    std::uint64_t samples() const { return frames_ * pixels() + pixels_with_more(primal); }
     /// The sum of a pixel's samples for one of R, G and B, and their number: of a difference to the pixel below, that
     /// of both pixels.
     double sum(Layer layer, std::uint32_t color, std::size_t pixel) const;
     /// to[i] += the sum of pixel first + i, for pixels [first, end), at most most_at_once.
     void add_sums(Layer layer, std::uint32_t color, std::size_t first, std::size_t end, double *to) const;
     double count(Layer layer, std::size_t pixel) const { return double(frames_) + (has_more(layer, pixel) ? 1 : 0); }
-    /// The first pixel after this one whose number, and weight, may be others.
+    /// The first pixel after this one that has another number, or whose row does not follow in the table.
     std::size_t end_of_count(Layer layer, std::size_t pixel) const {
-        return has_more(layer, pixel) ? more_ - (layer == dy ? width_ : 0) : pixels_;
-    }
-    /// What these samples weigh together (SharedWeights).
-    const SampleWeights &weight(Layer layer, std::size_t pixel) const {
-        return has_more(layer, pixel) ? weights_.with_one_more : weights_.of_frames;
+        const std::size_t end = has_more(layer, pixel) ? pixels_with_more(layer) : pixels();
+        return area_.border == 0 ? end : std::min(end, (pixel / area_.width + 1) * area_.width);
     }
     /// As add_sums(), of their squared deviations from their mean.
     void add_deviations(Layer layer, std::uint32_t color, std::size_t first, std::size_t end, double *to) const;
@@ -50,13 +49,38 @@ class GradientFilm {
     static constexpr std::size_t most_at_once = 512; ///< what stays in a first-level cache
 
   private:
-    bool has_more(Layer layer, std::size_t pixel) const { return pixel + (layer == dy ? width_ : 0) < more_; }
+    bool has_more(Layer layer, std::size_t pixel) const { return pixel < pixels_with_more(layer); }
+    /// The first so many have a sample more than the others.
+    std::size_t pixels_with_more(Layer layer) const {
+        const std::size_t lag = layer == dy ? area_.width_of_all() : 0; // the sample of the pixel below belongs to it
+        return more_ > lag ? pixels_before(more_ - lag) : 0;
+    }
+    /// How many pixels of the image are among the first so many rows of the table.
+    std::size_t pixels_before(std::size_t rows) const {
+        const std::size_t line = rows / area_.width_of_all(), column = rows % area_.width_of_all();
+        const auto inside = [this](std::size_t place, std::size_t size) {
+            return std::min<std::size_t>(place > area_.border ? place - area_.border : 0, size);
+        };
+        const bool is_inside = line >= area_.border && line < area_.border + std::size_t(area_.height);
+        return inside(line, area_.height) * area_.width + (is_inside ? inside(column, area_.width) : 0);
+    }
+    std::size_t row_of(std::size_t pixel) const {
+        return area_.border == 0
+                   ? pixel
+                   : (pixel / area_.width + area_.border) * area_.width_of_all() + pixel % area_.width + area_.border;
+    }
+    /// To a pixel of the border the image has no difference, while the table has.
+    bool is_outside(Layer layer, std::size_t pixel) const {
+        if (area_.border == 0)
+            return false;
+        return (layer == dx && pixel % area_.width + 1 == area_.width) ||
+               (layer == dy && pixel / area_.width + 1 == area_.height);
+    }
 
     HostTable table_;
-    std::size_t pixels_, width_;
-    std::uint64_t frames_; ///< samples of each pixel
-    std::uint64_t more_;   ///< pixels that have one more
-    Weights weights_;
+    Area area_;
+    std::uint64_t frames_; ///< samples of each row
+    std::uint64_t more_;   ///< rows that have one more
 };
 
 /// The film of a render, or those of the parts of its samples: of part p modulo their number, in this order.
@@ -68,9 +92,8 @@ class GradientFilms {
         : tracer_(&tracer), has_halves_(halves), has_replicates_(replicates) {}
 
     /// As GradientFilm has it.
-    void add(const Buffer &film, std::uint32_t width, std::uint32_t height, Precision precision, std::uint64_t samples,
-             const GradientFilm::Weights &weights) {
-        films_.push_back(std::make_shared<const GradientFilm>(film, width, height, precision, samples, weights));
+    void add(const Buffer &film, const GradientFilm::Area &area, Precision precision, std::uint64_t samples) {
+        films_.push_back(std::make_shared<const GradientFilm>(film, area, precision, samples));
     }
 
     /// Lets go of them.
@@ -83,7 +106,7 @@ class GradientFilms {
     std::size_t pixels() const { return films_.front()->pixels(); }
     std::uint64_t samples() const;
     /// Of each pixel.
-    std::uint64_t frames() const { return samples() / pixels(); }
+    std::uint64_t frames() const;
 
     /// The mean of all samples, or the variance of that mean, as they are read while this is there. The mean of no
     /// sample is `of_none`.

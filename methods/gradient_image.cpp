@@ -178,8 +178,10 @@ Image reconstruct(Device &device, PoissonSolver &solver, Image whole, GradientFi
         used.note = note_of_colors(whole);
     take_primal_off(whole, films, edges);
     std::vector<Channel> more;
-    if (layers)
+    if (layers) {
         more = layers_of(whole, films, tells_variance(options));
+        whole.metadata["layer_samples"] = std::to_string(films.samples());
+    }
     SquaredErrors errors;
     const bool tells_error = error && films.are_halves() && films.frames() >= 2;
     if (needs_halves(options.reconstruction) && halves_have_variances(films.samples(), films.pixels()))

@@ -20,7 +20,8 @@ struct ErrorOfImage {
     std::optional<double> relative;     ///< the estimate of relMSE; nothing where halves have no samples
 };
 
-/// `whole`, the mean of all samples, with R, G and B reconstructed; with `layers` also those that they were made from.
+/// `whole`, the mean of all samples, with R, G and B reconstructed; with `layers` also those that they were made from,
+/// and in the metadata how many samples these have.
 /// What `whole` has and the primal has not is what the camera sees of lights, and `edges` know it better where they
 /// are; it is added at last, as it is. alpha comes from the variances unless the options say otherwise. `films` are
 /// two where options need halves; they go once they have been read, and then `films_are_read` is called, before the

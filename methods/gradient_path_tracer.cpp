@@ -65,7 +65,7 @@ GradientPathTracer::GradientPathTracer(Device &device, const Scene &scene, const
           advance_stage("advance apart", "1", session_.has("TRAIT_APART"), session_.surface_columns() > 0))),
       join_(stages_.add({.name = "join", .by_kind = true, .dirac = DiracKinds::alike, .numbers = {"first", "keeps"}})),
       count_(stages_.add(count_stage())), film_(session_, stages_, options_, "outcome") {
-    const std::vector<std::uint32_t> kinds = material_kinds(scene, options.shift_threshold);
+    const std::vector<std::uint32_t> kinds = material_kinds(scene, options.shift_threshold, is_rough);
     session_.add_scene_buffer("material_kind", kinds);
     total_ = session_.pixels() * session_.settings.samples_per_pixel;
     allocate();
@@ -139,7 +139,7 @@ TableList GradientPathTracer::tables() const {
 
 void GradientPathTracer::allocate() {
     const TableList list = joined(joined(paths_.tables(), film_.tables()), tables());
-    const std::uint32_t width = session_.film.crop_width, height = session_.film.crop_height;
+    const std::uint32_t width = session_.width(), height = session_.height();
     const std::uint32_t batch =
         choose_batch_size(session_.device, options_.batch_size, total_, list, options_.precision);
     const std::uint64_t paths =
@@ -166,7 +166,7 @@ void GradientPathTracer::allocate() {
 }
 
 GradientPathTracer::Strip GradientPathTracer::next_strip() const {
-    const std::uint32_t width = session_.film.crop_width, height = session_.film.crop_height;
+    const std::uint32_t width = session_.width(), height = session_.height();
     const std::uint64_t left = samples_ahead();
     Strip strip;
     strip.first = static_cast<std::uint32_t>(done_ % session_.pixels() / width);
@@ -178,9 +178,9 @@ GradientPathTracer::Strip GradientPathTracer::next_strip() const {
 
 /// Tells the stages which pixels the slots belong to.
 void GradientPathTracer::begin_pass(const Strip &strip) {
-    set_divisor(session_, "strip", "strip_pixels", strip.rows * session_.film.crop_width);
+    set_divisor(session_, "strip", "strip_pixels", strip.rows * session_.width());
     session_.numbers["strip_first"] = strip.first;
-    session_.numbers["primary_shift"] = strip.first > 0 ? session_.film.crop_width : 0;
+    session_.numbers["primary_shift"] = strip.first > 0 ? session_.width() : 0;
     const std::uint64_t sample = first_sample_ + done_ / session_.pixels();
     stages_.set("first_sample_low", std::uint32_t(sample));
     stages_.set("first_sample_high", std::uint32_t(sample >> 32));
@@ -190,8 +190,8 @@ void GradientPathTracer::begin_pass(const Strip &strip) {
 
 /// What the camera sees through each pixel of the strip and of the rows beside it.
 void GradientPathTracer::trace_primaries(const Strip &strip) {
-    const std::uint32_t width = session_.film.crop_width;
-    const std::uint32_t above = strip.first > 0, below = strip.first + strip.rows < session_.film.crop_height;
+    const std::uint32_t width = session_.width();
+    const std::uint32_t above = strip.first > 0, below = strip.first + strip.rows < session_.height();
     paths_.begin_pass(strip.frames * (strip.rows + above + below) * width);
     primaries_beside_ += std::uint64_t(above + below) * width;
     for (;;) {
@@ -210,12 +210,16 @@ std::uint32_t GradientPathTracer::begin_primaries(std::uint32_t first_pixel) {
     if (all_rows_ == 0)
         return begin_camera_paths(camera_, paths_, first_pixel, sample);
     // A launch for each pair of rows: it lies elsewhere than by its number.
-    const std::uint32_t width = session_.film.crop_width, pairs = session_.film.crop_height / 2;
+    const std::uint32_t width = session_.width(), pairs = session_.film.crop_height / 2;
     std::uint32_t slot;
     const Range fresh = paths_.refill(slot);
     for (std::uint32_t done = 0; done < fresh.count;) {
-        const std::uint32_t pixel = (first_pixel + slot + done) % session_.pixels(), pair = pixel / (2 * width);
-        const std::uint32_t count = std::min(fresh.count - done, 2 * width - pixel % (2 * width));
+        const std::uint32_t pixel = (first_pixel + slot + done) % session_.pixels();
+        // The border's rows, which count for nothing here, go with the pairs beside them.
+        const std::uint32_t row = pixel / width, in_image = row > session_.border ? row - session_.border : 0;
+        const std::uint32_t pair = std::min(in_image / 2, pairs - 1);
+        const std::uint32_t end_row = pair + 1 == pairs ? session_.height() : session_.border + 2 * (pair + 1);
+        const std::uint32_t count = std::min(fresh.count - done, end_row * width - pixel);
         const auto place = std::uint32_t((2 * std::uint64_t(pair) + 1) * all_rows_ / (2 * pairs)) - 1;
         stages_.set("crop_y", session_.film.crop_y + place - 2 * pair);
         camera_.run(count, {{"first_row", fresh.first + done},
@@ -231,7 +235,7 @@ std::uint32_t GradientPathTracer::begin_primaries(std::uint32_t first_pixel) {
 /// How many rows the image has, for all stages.
 void GradientPathTracer::set_rows(std::uint32_t rows) {
     session_.film.crop_height = rows;
-    session_.numbers["crop_height"] = rows;
+    session_.numbers["crop_height"] = session_.height();
     session_.numbers["crop_y"] = session_.film.crop_y;
     set_divisor(session_, "pixels", "pixels", session_.pixels());
     for (const char *number : {"crop_height", "crop_y", "pixels", "pixels_multiplier", "pixels_shift"})
@@ -240,20 +244,22 @@ void GradientPathTracer::set_rows(std::uint32_t rows) {
 
 GradientPathTracer::Rows GradientPathTracer::render_rows(std::uint32_t rows, std::uint64_t first_sample,
                                                          std::uint64_t samples) {
-    const std::uint32_t all = session_.film.crop_height, width = session_.film.crop_width, strip_rows = strip_rows_,
+    const std::uint32_t all = session_.film.crop_height, width = session_.width(), strip_rows = strip_rows_,
                         strip_frames = strip_frames_;
     const std::uint32_t slots = tables_->rows().slots;
     all_rows_ = all;
     set_rows(rows);
-    strip_rows_ = std::min(rows, slots / width);
-    if (strip_rows_ < rows) // with the rows beside
+    film_.count_for_own(true); // neighbouring rows may be of different pairs
+    strip_rows_ = std::min(session_.height(), slots / width);
+    if (strip_rows_ < session_.height()) // with the rows beside
         strip_rows_ = std::max(strip_rows_, 3u) - 2;
-    strip_frames_ = std::max(slots / (rows * width), 1u);
+    strip_frames_ = std::max(slots / session_.pixels(), 1u);
     restart(first_sample, samples);
     while (render_batch()) {
     }
     Rows found{film_.films(done_), film_.mean(done_), primaries_beside_};
     set_rows(all);
+    film_.count_for_own(false);
     all_rows_ = 0;
     strip_rows_ = strip_rows;
     strip_frames_ = strip_frames;
@@ -385,7 +391,7 @@ bool GradientPathTracer::render_batch() {
     const AddedSeconds render_seconds(statistics_.render_seconds);
     film_.begin();
     const Strip strip = next_strip();
-    const std::uint32_t paths = strip.frames * strip.rows * session_.film.crop_width;
+    const std::uint32_t paths = strip.frames * strip.rows * session_.width();
     begin_pass(strip);
     const bool is_black = session_.max_depth() == 0; // no path begins
     if (is_black)
@@ -427,8 +433,6 @@ void GradientPathTracer::restart(std::uint64_t first_sample, std::uint64_t sampl
     total_ = session_.pixels() * samples_per_pixel;
     primaries_beside_ = 0;
     film_.clear(first_sample);
-    if (film_.weights().are_there()) // which start at a place of their own
-        stages_.set("shared_start", session_.numbers["shared_start"] = film_.weights().chosen_start());
     (*tables_)["outcome"].clear();
     statistics_ = Statistics();
     session_.rays.clear();

@@ -27,6 +27,7 @@ class GradientPathTracer final : public Method {
 
     std::uint64_t total_samples() const override { return total_; }
     std::uint64_t done_samples() const override { return done_; }
+    std::uint64_t frame_samples() const override { return session_.pixels(); }
     bool render_batch() override;
     /// R, G, B reconstructed; with `layers` then direct, primal, dx, dy, and with aov also their variances; with aov
     /// the path tracer's layers.

@@ -128,7 +128,7 @@ void GradientPhotonMapper::allocate() {
     list = joined(list, joined(joined(order_.tables(), moved_.tables()), tables()));
     if (manifold_walk_)
         list = joined(list, manifold_walk_->tables());
-    const std::uint32_t width = session_.film.crop_width, height = session_.film.crop_height;
+    const std::uint32_t width = session_.width(), height = session_.height();
     const std::uint64_t paths = planes * std::uint64_t(session_.pixels());
     const std::uint32_t batch =
         choose_batch_size(session_.device, options_.batch_size,
@@ -160,10 +160,10 @@ void GradientPhotonMapper::allocate() {
 }
 
 GradientPhotonMapper::Strip GradientPhotonMapper::next_strip() const {
-    const std::uint32_t width = session_.film.crop_width;
+    const std::uint32_t width = session_.width();
     Strip strip;
     strip.first = static_cast<std::uint32_t>(done_ % session_.pixels() / width);
-    strip.rows = std::min(strip_rows_, session_.film.crop_height - strip.first);
+    strip.rows = std::min(strip_rows_, session_.height() - strip.first);
     strip.pixels = strip.rows * width;
     return strip;
 }
@@ -190,7 +190,7 @@ bool GradientPhotonMapper::render_batch() {
         film_.clear_slots();
     } else {
         photons_.begin(pass);
-        paths_.trace(planes * strip.pixels, strip.first * session_.film.crop_width, pass, [](const Hits &) {});
+        paths_.trace(planes * strip.pixels, strip.first * session_.width(), pass, [](const Hits &) {});
         gather_photons(strip);
     }
     film_.add(strip.first, strip.rows, 1, pass);
@@ -222,7 +222,7 @@ void GradientPhotonMapper::gather_photons(const Strip &strip) {
     }
     gradient_gather_.run(strip.pixels);
     bias_.add({0, strip.pixels});
-    bias_.keep(strip.pixels, strip.first * session_.film.crop_width, done_ / session_.pixels());
+    bias_.keep(strip.pixels, strip.first * session_.width(), done_ / session_.pixels());
 }
 
 /// The differences of the pairs in a window, whose gather points are of one BSDF kind.
@@ -295,7 +295,7 @@ std::uint32_t GradientPhotonMapper::light_bin() const {
 
 Image GradientPhotonMapper::make_image(bool layers, bool last) {
     statistics_.non_finite = 0;
-    const std::optional<BiasEstimates> bias = bias_.estimates(done_, film_.weights());
+    const std::optional<BiasEstimates> bias = bias_.estimates(done_);
     Image image = film_.image(done_, layers, last, statistics_.non_finite);
     add_pass_errors(bias, image, statistics_);
     return image;

@@ -38,6 +38,7 @@ class GradientPhotonMapper final : public Method {
 
     std::uint64_t total_samples() const override { return total_; }
     std::uint64_t done_samples() const override { return done_; }
+    std::uint64_t frame_samples() const override { return session_.pixels(); }
     bool render_batch() override;
     /// The channels of GradientPathTracer::image().
     Image image() override { return make_image(options_.layers, false); }

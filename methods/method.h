@@ -69,9 +69,11 @@ class Method {
   public:
     virtual ~Method() = default;
 
-    /// Samples (pixels times samples per pixel) that the whole render takes, and how many are done.
+    /// Samples that the whole render takes, and how many are done; those of one frame: one for each pixel, and for each
+    /// around the image that the pixel filter reaches.
     virtual std::uint64_t total_samples() const = 0;
     virtual std::uint64_t done_samples() const = 0;
+    virtual std::uint64_t frame_samples() const = 0;
     /// Renders the next batch. Returns false once all samples are done. The image depends neither on the batch
     /// size nor on the number of threads.
     virtual bool render_batch() = 0;

@@ -44,7 +44,7 @@ TableList joined(TableList a, const TableList &b) {
 }
 
 TableRows table_rows(const Session &session, std::uint32_t batch, std::uint32_t slots) {
-    return {batch, odd_lines(slots), session.pixels(), session.film.crop_width, chunks_of(batch), odd_lines(batch)};
+    return {batch, odd_lines(slots), session.pixels(), session.width(), chunks_of(batch), odd_lines(batch)};
 }
 
 std::uint32_t begin_camera_paths(Stage &camera, Wavefront &paths, std::uint32_t first_pixel,
@@ -67,13 +67,14 @@ void run_shade(Stage &shade, const Hits &hits, Range rows, std::size_t kind) {
     shade.run_kind(kind, rows.count, {{"first", hits.place(rows.first)}, {"to", rows.first}});
 }
 
-std::vector<std::uint32_t> material_kinds(const Scene &scene, double threshold) {
+std::vector<std::uint32_t> material_kinds(const Scene &scene, double threshold,
+                                          bool (*counts_as_rough)(const Bsdf &, double)) {
     std::vector<std::uint32_t> kinds;
     for (const Bsdf &bsdf : material_records(scene))
         // Only the parts of a blend have one.
         kinds.push_back(bsdf.blend != no_blend
                             ? kind_none
-                            : bsdf_kind_number(bsdf) | (is_rough(bsdf, threshold) ? kind_is_rough : 0) |
+                            : bsdf_kind_number(bsdf) | (counts_as_rough(bsdf, threshold) ? kind_is_rough : 0) |
                                   (bsdf_kind_traits(bsdf.kind).is_dirac ? kind_is_dirac : 0) |
                                   (bsdf_kind_traits(bsdf.kind).is_mixed ? kind_is_mixed : 0));
     return kinds;

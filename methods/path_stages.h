@@ -31,9 +31,10 @@ void run_on_places(Stage &stage, const Hits &hits, Range rows);
 /// The new vertices of one BSDF kind.
 void run_shade(Stage &shade, const Hits &hits, Range rows, std::size_t kind);
 
-/// By material record, the kind with what `kind` in kernels/shared/tables.h says of it, surfaces being rough from this
-/// roughness on.
-std::vector<std::uint32_t> material_kinds(const Scene &scene, double threshold);
+/// By material record, the kind with what `kind` in kernels/shared/tables.h says of it. Which surfaces are rough from
+/// this roughness on is_rough tells of shifts, gathers_photons of photons (runtime/scene/roughness.h).
+std::vector<std::uint32_t> material_kinds(const Scene &scene, double threshold,
+                                          bool (*counts_as_rough)(const Bsdf &, double));
 
 /// `counted` with what session and stages know: rays, seconds by stage and of compiling, memory. `more`: what other
 /// stages took.

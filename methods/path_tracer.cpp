@@ -101,7 +101,7 @@ Image PathTracer::mean_image() {
 }
 
 std::vector<float> PathTracer::half_image(int half) const {
-    const std::size_t pixels = session_.pixels();
+    const std::size_t pixels = session_.image_pixels();
     std::vector<float> image(3 * pixels);
     for (int c = 0; c < 3; ++c)
         film_.half_mean(half, done_, c, image.data() + c * pixels);
@@ -109,15 +109,20 @@ std::vector<float> PathTracer::half_image(int half) const {
 }
 
 void PathTracer::guide(Image &image, SquaredErrors *errors) {
-    const std::uint64_t pixels = session_.pixels();
+    const std::uint64_t pixels = session_.image_pixels();
     std::vector<Channel> layers;
     if (has_halves()) {
         Device &device = session_.device;
+        // The image's alone, as `gradus solve` counts them. Of a frame that is under way those are not known where
+        // pixels around the image have samples, too: it counts for nothing then.
+        const std::uint64_t samples = session_.has_frame() ? done_ / session_.pixels() * pixels : done_;
+        if (options_.layers)
+            image.metadata["layer_samples"] = std::to_string(samples);
         HalvedImages halves;
         for (int i = 0; i < 2; ++i) {
             const std::vector<float> image_of_half = half_image(i);
             halves[i].primal = Buffer(device, "primal", image_of_half.data(), image_of_half.size() * sizeof(float));
-            halves[i].samples = samples_of_part(done_, pixels, std::uint32_t(i), 2);
+            halves[i].samples = samples_of_part(samples, pixels, std::uint32_t(i), 2);
             for (int c = 0; options_.layers && c < 3; ++c) {
                 const float *plane = image_of_half.data() + c * pixels;
                 layers.push_back({fmt::format("primal_{}.{}", i == 0 ? "even" : "odd", "RGB"[c]),
@@ -146,7 +151,7 @@ Statistics PathTracer::statistics() const {
                             statistics_.reconstruction.note, guide_name(options_.guide)};
     else
         s.reconstruction = {
-            "none", accuracy_name(accuracy_of_mean(film_.weights())),
+            "none", accuracy_name(Accuracy::unbiased),
             is_guided() && !has_halves() ? "guided needs two samples of each pixel; with less it is their mean" : ""};
     return s;
 }

@@ -18,6 +18,7 @@ class PathTracer final : public Method {
 
     std::uint64_t total_samples() const override { return total_; }
     std::uint64_t done_samples() const override { return done_; }
+    std::uint64_t frame_samples() const override { return session_.pixels(); }
     bool render_batch() override;
     Image image() override;
     Image mean_image() override;

@@ -96,7 +96,7 @@ void PhotonMapper::gather_photons(const Hits &hits) {
 Image PhotonMapper::image() {
     statistics_.non_finite = 0;
     Image image = film_.image(done_, statistics_.non_finite);
-    add_pass_errors(bias_.estimates(done_, film_.weights()), image, statistics_);
+    add_pass_errors(bias_.estimates(done_), image, statistics_);
     return image;
 }
 

@@ -34,6 +34,7 @@ class PhotonMapper final : public Method {
 
     std::uint64_t total_samples() const override { return total_; }
     std::uint64_t done_samples() const override { return done_; }
+    std::uint64_t frame_samples() const override { return session_.pixels(); }
     bool render_batch() override;
     Image image() override;
     Statistics statistics() const override;

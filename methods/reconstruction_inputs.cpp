@@ -35,10 +35,6 @@ void check_guide(const RenderOptions &options) {
         Denoiser();
 }
 
-Accuracy accuracy_of_mean(const SharedWeights &weights) {
-    return weights.are_there() ? Accuracy::consistent : Accuracy::unbiased;
-}
-
 std::uint64_t pixels_without_a_color(const Image &image) {
     std::uint64_t count = 0;
     for (std::size_t i = 0; i < image.channels[0].values.size(); ++i) {

@@ -4,7 +4,6 @@
 #include "methods/method.h"
 #include "runtime/device/buffer.h"
 #include "runtime/film/image.h"
-#include "runtime/wavefront/shared_weights.h"
 #include "solver/poisson_solver.h"
 #include "solver/reconstruction.h"
 
@@ -21,9 +20,6 @@ Buffer uploaded_features(Device &device, const Image &image);
 
 /// Throws Error(ExitCode::usage) where the guide that options ask for is not there: before anything is rendered.
 void check_guide(const RenderOptions &options);
-
-/// What the mean of samples tends to: a sum of weights is not independent of what it divides.
-Accuracy accuracy_of_mean(const SharedWeights &weights);
 
 /// Pixels whose R, G or B, the first channels, is no finite number: a reconstruction takes them as missing.
 std::uint64_t pixels_without_a_color(const Image &image);

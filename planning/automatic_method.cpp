@@ -25,6 +25,7 @@ class ChosenMethod final : public Method {
 
     std::uint64_t total_samples() const override { return method_->total_samples(); }
     std::uint64_t done_samples() const override { return method_->done_samples(); }
+    std::uint64_t frame_samples() const override { return method_->frame_samples(); }
     bool render_batch() override { return method_->render_batch(); }
     void pause_at(std::uint64_t samples) override { method_->pause_at(samples); }
     Image image() override { return method_->image(); }

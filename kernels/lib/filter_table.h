@@ -1,34 +1,57 @@
-/* Pixel filters with negative lobes, by a table that follows the camera's record. */
+/* Pixel filters other than a box: where within their pixels the samples of a frame lie, which all pixels share, and
+ * what each of them weighs for the pixels around (runtime/scene/filter_table.h). */
 #ifndef GRADUS_LIB_FILTER_TABLE_H
 #define GRADUS_LIB_FILTER_TABLE_H
-#include "kernels/shared/scene_records.h"
+#include "kernels/shared/compat.h"
 
 GRADUS_LIB_BEGIN
 
-/* The table: filter_cells + 1 offsets in pixels, between each two of which a sample is as likely; then of each cell the
- * weights at its two ends, the filter over the density of samples there. */
+/* Along each axis the places within a pixel are so many cells, in each of which a sample is as likely. */
 #define filter_cells 4096u
-#define filter_table_size (3u * filter_cells + 1u)
 
+/* A place within a pixel along one axis: a cell, and how far in it, in [0, 1). */
 typedef struct {
-    real offset; /* from the pixel's center, in pixels */
-    real weight; /* negative in the negative lobes; their mean is 1 */
+    uint cell;
+    real share;
     GRADUS_NOT_IN_REGISTERS
-} filter_sample;
+} filter_place;
 
-/* Draws along one axis by |filter|. u in [0, 1). */
-GRADUS_FN filter_sample filter_table_sample(GRADUS_GLOBAL const real *camera, uint unit, real u) {
+/* u in [0, 1). */
+GRADUS_FN filter_place filter_place_of(real u) {
     const real place = u * (real)filter_cells;
     const uint whole = (uint)place;
-    const uint cell = whole < filter_cells ? whole : filter_cells - 1u;
-    const size_t first = (size_t)(camera_stride + cell) * unit;
-    const real from = camera[first], to = camera[first + unit];
-    filter_sample drawn;
-    const size_t weights = (size_t)(camera_stride + filter_cells + 1u + 2u * cell) * unit;
-    const real at_from = camera[weights], at_to = camera[weights + unit], share = place - (real)cell;
-    drawn.offset = from + share * (to - from);
-    drawn.weight = at_from + share * (at_to - at_from);
-    return drawn;
+    filter_place found;
+    found.cell = whole < filter_cells ? whole : filter_cells - 1u;
+    found.share = place - (real)found.cell;
+    return found;
+}
+
+/* Such a place in one number, as kernels take it: the cell, of which there is one more (runtime/scene/filter_table.h),
+ * and the share of it in filter_share_bits, more than it has. */
+#define filter_share_bits 19u
+GRADUS_FN uint filter_number(filter_place place) {
+    return (place.cell << filter_share_bits) + (uint)(place.share * (real)(1u << filter_share_bits));
+}
+GRADUS_FN filter_place filter_place_at(uint number) {
+    filter_place place;
+    place.cell = number >> filter_share_bits;
+    place.share = (real)(number & ((1u << filter_share_bits) - 1u)) * (R(1) / (real)(1u << filter_share_bits));
+    return place;
+}
+
+/* From the pixel's center, in pixels; `filter_offsets` has those of the cells' borders. */
+GRADUS_FN real filter_offset(GRADUS_GLOBAL const real *filter_offsets, filter_place place) {
+    const real from = filter_offsets[place.cell], to = filter_offsets[place.cell + 1u];
+    return from + place.share * (to - from);
+}
+
+/* What a sample at such a place weighs for the pixel `tap` - reach pixels away from its own, of taps 0 to 2 reach,
+ * along that axis: by cell the weights at its beginning, and those at its end. All taps sum up to 1. */
+GRADUS_FN real filter_tap(GRADUS_GLOBAL const real *filter_taps, uint reach, filter_place place, uint tap) {
+    const uint taps = 2u * reach + 1u;
+    const size_t first = (size_t)place.cell * (2u * taps) + tap;
+    const real begin = filter_taps[first], end = filter_taps[first + taps];
+    return begin + place.share * (end - begin);
 }
 
 GRADUS_LIB_END

@@ -126,8 +126,6 @@
     FIELD(camera, down_x, "change of that direction by one pixel down")                                                \
     FIELD(camera, down_y, "")                                                                                          \
     FIELD(camera, down_z, "")                                                                                          \
-    FIELD(camera, filter_radius, "tent, gaussian: half the support, in pixels")                                        \
-    FIELD(camera, filter_stddev, "gaussian, in pixels")                                                                \
     FIELD(camera, forward_x, "unit vector")                                                                            \
     FIELD(camera, forward_y, "")                                                                                       \
     FIELD(camera, forward_z, "")                                                                                       \

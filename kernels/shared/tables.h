@@ -78,9 +78,6 @@
     REAL(radiance, value_g, "")                                                                                        \
     REAL(radiance, value_b, "")
 
-/* The pixel filter over the density of a sample's place in it, by slot; only of filters with negative lobes. */
-#define GRADUS_FILTERED_COLUMNS(REAL, UINT) REAL(filtered, weight, "negative in the negative lobes")
-
 /* Features by slot (kernels/lib/seen_features.h), only with TRAIT_AOV. */
 #define GRADUS_FEATURE_COLUMNS(REAL, UINT)                                                                             \
     REAL(feature, albedo_r, "")                                                                                        \
@@ -91,6 +88,20 @@
     REAL(feature, normal_z, "")                                                                                        \
     REAL(feature, depth, "length of the way from the camera; negative where mirrors and glass alone were met")         \
     REAL(feature, weight, "how many paths it counts as")
+
+/* One sample of each pixel, all of one frame: only with filters by which samples count for the pixels around too
+ * (kernels/lib/filter_frame.h). The features only with TRAIT_AOV. */
+#define GRADUS_FRAME_COLUMNS(REAL, UINT)                                                                               \
+    REAL(frame, value_r, "")                                                                                           \
+    REAL(frame, value_g, "")                                                                                           \
+    REAL(frame, value_b, "")                                                                                           \
+    REAL(frame, albedo_r, "columns of `feature`, times the weight")                                                    \
+    REAL(frame, albedo_g, "")                                                                                          \
+    REAL(frame, albedo_b, "")                                                                                          \
+    REAL(frame, normal_x, "")                                                                                          \
+    REAL(frame, normal_y, "")                                                                                          \
+    REAL(frame, normal_z, "")                                                                                          \
+    REAL(frame, depth, "")
 
 /* Sums over the samples of each pixel of the crop. The sums are compensated (sum + correction is the value), so that
  * many samples lose nothing; they are added in the order of the samples, whatever the batches are. */
@@ -103,7 +114,7 @@
     REAL(film, correction_b, "")                                                                                       \
     UINT(film, rejected, "samples left out because they were NaN or infinite")
 
-/* More sums, only with --aov; the squares not with replicates, whose spread tells the variance (sample_number.h). */
+/* More sums, only with --aov; the deviations not with replicates, whose spread tells the variance (sample_number.h). */
 #define GRADUS_FEATURE_FILM_COLUMNS(REAL, UINT)                                                                        \
     REAL(feature_film, albedo_r, "means of the columns of `feature`")                                                  \
     REAL(feature_film, albedo_g, "")                                                                                   \
@@ -112,12 +123,9 @@
     REAL(feature_film, normal_y, "")                                                                                   \
     REAL(feature_film, normal_z, "")                                                                                   \
     REAL(feature_film, depth, "")                                                                                      \
-    REAL(feature_film, square_r, "sums of squares, for the variance")                                                  \
-    REAL(feature_film, square_g, "")                                                                                   \
-    REAL(feature_film, square_b, "")                                                                                   \
-    REAL(feature_film, square_correction_r, "")                                                                        \
-    REAL(feature_film, square_correction_g, "")                                                                        \
-    REAL(feature_film, square_correction_b, "")
+    REAL(feature_film, deviation_r, "sums of squared deviations from the mean, for the variance")                      \
+    REAL(feature_film, deviation_g, "")                                                                                \
+    REAL(feature_film, deviation_b, "")
 
 /* What paths add to pixels that are not their own. The pixel is in a table of uints of its own, by which they are
  * sorted. The sums are those of `film`, in a table `splat_film` of the same columns. */
@@ -381,6 +389,18 @@
     REAL(carry, value_g, "")                                                                                           \
     REAL(carry, value_b, "")
 
+/* As `frame` has samples: those without what the camera sees of lights, and differences. */
+#define GRADUS_GRADIENT_FRAME_COLUMNS(REAL, UINT)                                                                      \
+    REAL(gradient_frame, primal_r, "")                                                                                 \
+    REAL(gradient_frame, primal_g, "")                                                                                 \
+    REAL(gradient_frame, primal_b, "")                                                                                 \
+    REAL(gradient_frame, right_r, "I(x + 1, y) - I(x, y)")                                                             \
+    REAL(gradient_frame, right_g, "")                                                                                  \
+    REAL(gradient_frame, right_b, "")                                                                                  \
+    REAL(gradient_frame, above_r, "I(x, y) - I(x, y - 1)")                                                             \
+    REAL(gradient_frame, above_g, "")                                                                                  \
+    REAL(gradient_frame, above_b, "")
+
 /* Sums over the samples of each pixel, compensated as in `film`, and sums of squares for the variances. */
 #define GRADUS_GRADIENT_FILM_COLUMNS(REAL, UINT)                                                                       \
     REAL(gradient_film, primal_r, "without what the camera sees of lights")                                            \
@@ -418,7 +438,7 @@
     TABLE(shadow, GRADUS_SHADOW_COLUMNS)                                                                               \
     TABLE(path, GRADUS_PATH_COLUMNS)                                                                                   \
     TABLE(radiance, GRADUS_RADIANCE_COLUMNS)                                                                           \
-    TABLE(filtered, GRADUS_FILTERED_COLUMNS)                                                                           \
+    TABLE(frame, GRADUS_FRAME_COLUMNS)                                                                                 \
     TABLE(feature, GRADUS_FEATURE_COLUMNS)                                                                             \
     TABLE(film, GRADUS_FILM_COLUMNS)                                                                                   \
     TABLE(feature_film, GRADUS_FEATURE_FILM_COLUMNS)                                                                   \
@@ -449,6 +469,7 @@
     TABLE(prefix, GRADUS_PREFIX_COLUMNS)                                                                               \
     TABLE(difference, GRADUS_DIFFERENCE_COLUMNS)                                                                       \
     TABLE(carry, GRADUS_CARRY_COLUMNS)                                                                                 \
+    TABLE(gradient_frame, GRADUS_GRADIENT_FRAME_COLUMNS)                                                               \
     TABLE(gradient_film, GRADUS_GRADIENT_FILM_COLUMNS)                                                                 \
     GRADUS_WALK_TABLES(TABLE)
 
@@ -556,7 +577,7 @@ GRADUS_LIB_END
 #define ROWS_OF_shadow capacity
 #define ROWS_OF_path capacity
 #define ROWS_OF_radiance slots
-#define ROWS_OF_filtered slots
+#define ROWS_OF_frame pixels
 #define ROWS_OF_feature slots
 #define ROWS_OF_film pixels
 #define ROWS_OF_feature_film pixels
@@ -588,6 +609,7 @@ GRADUS_LIB_END
 #define ROWS_OF_prefix slots
 #define ROWS_OF_difference (4u * slots)
 #define ROWS_OF_carry crop_width
+#define ROWS_OF_gradient_frame pixels
 #define ROWS_OF_gradient_film pixels
 
 /* Element access: AT(ray, origin_x, row) is a real, AT_UINT(ray, primitive, row) a uint. The table's pointer has the

@@ -1,16 +1,15 @@
-/* accumulate: adds one sample to each of `count` pixels from `first_pixel` on: slots `first_slot` on. A sample with a
- * NaN or an infinity is left out and counted. Samples of filters with negative lobes have a weight. Squares are summed
- * where the spread of the samples is to tell the variance: not where replicates do, the films of which are many.
+/* accumulate: adds one sample to each of `count` pixels from `first_pixel` on: slots `first_slot` on, or what the
+ * samples around add up to (kernels/lib/filter_frame.h). A sample with a NaN or an infinity is left out and counted.
  *
- * With weights the squares are those of deviations from the mean of the samples before in the same film, of which there
- * are film_samples_before, whose weights have the sum weights_before, and their squares squares_before. From plain
- * squares the mean's could not be taken off: what the weights are would be left, times mean and deviation.
+ * Where the spread of the samples is to tell the variance, and not replicates, whose films are many, each adds its
+ * squared deviation from the mean of those before, of which the film has had `film_samples_before` (Welford 1962): of a
+ * sum of squares the square of the mean would be taken off, which leaves rounding where the spread is small beside it.
  *
  * Of features the film has means over the samples of a pixel, of which there are `samples_before` already: sums without
  * corrections would lose what a sample adds, once they are large beside it. One that is left out counts as 0 there. */
-//! traits: TRAIT_AOV TRAIT_LOBE_LEVELS TRAIT_FILTER_SIGNED TRAIT_PART_BITS
+//! traits: TRAIT_AOV TRAIT_PART_BITS
 #include "kernels/lib/compensated.h"
-#include "kernels/lib/filter_weight.h"
+#include "kernels/lib/filter_frame.h"
 #include "kernels/lib/finite.h"
 #include "kernels/lib/seen_features.h"
 #include "kernels/shared/stage.h"
@@ -25,57 +24,67 @@
         AT(table, correction_column, pixel) = s.correction;                                                            \
     }
 
-#define ADD_FEATURE(column, x)                                                                                         \
-    AT(feature_film, column, pixel) += ((finite ? WEIGHTED(x) : R(0)) - AT(feature_film, column, pixel)) * share;
+#define ADD_DEVIATION(channel)                                                                                         \
+    {                                                                                                                  \
+        const real deviation = value.channel - AT(film, sum_##channel, pixel) * of_mean;                               \
+        AT(feature_film, deviation_##channel, pixel) += deviation * (deviation * scale);                               \
+    }
 
-#if TRAIT_FILTER_SIGNED
-#define SQUARE(channel)                                                                                                \
-    (finite ? weighted_deviation(filter_weight, weights_before * kept, squares_before * kept, value.channel,           \
-                                 AT(film, sum_##channel, pixel))                                                       \
-            : R(0))
-#else
-#define SQUARE(channel) (value.channel * value.channel)
+#define ADD_FEATURE(column, x)                                                                                         \
+    AT(feature_film, column, pixel) += ((finite ? (x) : R(0)) - AT(feature_film, column, pixel)) * share;
+
+#if HAS_FRAME
+#define SAMPLE(column) FILTERED(frame, frame_##column, pixel)
 #endif
 
-STAGE accumulate(uint count, uint slots, uint pixels, uint first_slot, uint first_pixel, uint samples_before,
-                 __global const real *radiance, __global real *film
+STAGE accumulate(uint count, uint pixels, uint first_pixel, uint samples_before, uint film_samples_before,
+                 __global real *film,
+#if HAS_FRAME
+                 __global const real *frame, FILTER_ARGUMENTS
+#else
+                 uint slots, uint first_slot, __global const real *radiance
+#endif
 #if TRAIT_AOV
                  ,
-                 __global const real *feature, __global real *feature_film
-#endif
-#if TRAIT_FILTER_SIGNED
+                 __global real *feature_film
+#if !HAS_FRAME
                  ,
-                 __global const real *filtered
-#if TRAIT_AOV && TRAIT_PART_BITS < 2
-                 ,
-                 real film_samples_before, real weights_before, real squares_before
+                 __global const real *feature
 #endif
 #endif
 ) {
     const size_t i = work_item();
     if (i >= count)
         return;
-    const size_t slot = (size_t)first_slot + i, pixel = (size_t)first_pixel + i;
-    FILTER_WEIGHT(slot)
+    const size_t pixel = (size_t)first_pixel + i;
+#if HAS_FRAME
+    FILTER_TAPS
+    rgb value = rgb3(SAMPLE(value_r), SAMPLE(value_g), SAMPLE(value_b));
+#else
+    const size_t slot = (size_t)first_slot + i;
     rgb value = AT_RGB(radiance, value, slot);
-    value = rgb3(WEIGHTED(value.r), WEIGHTED(value.g), WEIGHTED(value.b));
+#endif
 #if TRAIT_AOV
+#if HAS_FRAME
+    const rgb albedo = rgb3(SAMPLE(albedo_r), SAMPLE(albedo_g), SAMPLE(albedo_b));
+    const vec3 normal = v3(SAMPLE(normal_x), SAMPLE(normal_y), SAMPLE(normal_z));
+    const real depth = SAMPLE(depth);
+#else
     const real counts = SEEN_WEIGHT(slot);
     const rgb albedo = rgb_scale(AT_RGB(feature, albedo, slot), counts);
     const vec3 normal = v3_scale(AT_V3(feature, normal, slot), counts);
     /* Negative where a path has met mirrors and glass alone. */
     const real depth = r_abs(AT(feature, depth, slot)) * counts;
 #endif
+#endif
     const int finite = is_finite(value.r) && is_finite(value.g) && is_finite(value.b);
     value = rgb3(finite ? value.r : R(0), finite ? value.g : R(0), finite ? value.b : R(0));
 #if TRAIT_AOV && TRAIT_PART_BITS < 2
-#if TRAIT_FILTER_SIGNED
-    /* Samples that were left out weigh nothing, and which ones these were is not known. */
-    const real kept = R(1) - (real)AT_UINT(film, rejected, pixel) / r_max(film_samples_before, R(1));
-#endif
-    ADD(feature_film, square_r, square_correction_r, SQUARE(r))
-    ADD(feature_film, square_g, square_correction_g, SQUARE(g))
-    ADD(feature_film, square_b, square_correction_b, SQUARE(b))
+    const real before = (real)(film_samples_before - AT_UINT(film, rejected, pixel));
+    const real of_mean = R(1) / r_max(before, R(1)), scale = finite ? before / (before + R(1)) : R(0);
+    ADD_DEVIATION(r)
+    ADD_DEVIATION(g)
+    ADD_DEVIATION(b)
 #endif
     ADD(film, sum_r, correction_r, value.r)
     ADD(film, sum_g, correction_g, value.g)

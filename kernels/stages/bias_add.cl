@@ -2,17 +2,11 @@
  * `slot_bias`: twice what all of the disc says less what the inner half of its area says
  * (methods/photons/radius_bias.h). What is not finite is left out. BY_SLOT: gather points are in the rows of their
  * slots, and their radius is 0 where there is none. */
-//! traits: TRAIT_FILTER_SIGNED
 #include "kernels/lib/finite.h"
 #include "kernels/shared/stage.h"
 
 STAGE bias_add(uint count, uint first, uint gather_rows, uint slots, real flux_scale, __global const real *gather,
-               __global const real *gather_inner, __global real *slot_bias
-#if TRAIT_FILTER_SIGNED
-               ,
-               __global const real *filtered
-#endif
-) {
+               __global const real *gather_inner, __global real *slot_bias) {
     const size_t i = work_item();
     if (i >= count)
         return;
@@ -24,14 +18,11 @@ STAGE bias_add(uint count, uint first, uint gather_rows, uint slots, real flux_s
     const int is_known = is_there & (rgb_max(sum) > R(0));
     const real scale = R(2) * flux_scale / (is_there ? distance * distance : R(1));
     const rgb inner = rgb_scale(AT_RGB(gather_inner, value, row), R(2));
-    rgb more = rgb_scale(rgb_mul(AT_RGB(gather, throughput, row), rgb_sub(sum, inner)), scale);
+    const rgb more = rgb_scale(rgb_mul(AT_RGB(gather, throughput, row), rgb_sub(sum, inner)), scale);
 #if BY_SLOT
     const uint slot = (uint)row;
 #else
     const int slot = AT_ROW(gather, slot, row);
-#endif
-#if TRAIT_FILTER_SIGNED
-    more = rgb_scale(more, AT(filtered, weight, slot));
 #endif
     const int counts = is_known & is_finite(more.r) & is_finite(more.g) & is_finite(more.b);
     SET_RGB(slot_bias, value, slot, rgb_select(counts, more, rgb_gray(R(0))));

@@ -7,7 +7,7 @@
  * PLANES: gradient-domain photon mapping. Slots come in five planes of `strip_pixels`: the paths of the pixels, then
  * their offset paths, which are those of the neighbours (gradient_neighbour in kernels/lib/gradient.h) with the pixel's
  * own random numbers. */
-//! traits: TRAIT_FILTER_TENT TRAIT_FILTER_GAUSSIAN TRAIT_FILTER_SIGNED TRAIT_AOV TRAIT_SHARED_JITTER
+//! traits: TRAIT_FILTER TRAIT_AOV TRAIT_SHARED_JITTER
 //! traits: TRAIT_SHARED_START TRAIT_HIDE_EMITTERS
 #include "kernels/lib/additive_sequence.h"
 #include "kernels/lib/begin_path.h"
@@ -17,33 +17,18 @@
 #include "kernels/lib/path_draw.h"
 #include "kernels/lib/sample_number.h"
 
-/* Filter importance sampling (Ernst et al. 2006): the offset from the pixel's center is drawn from the filter. */
-GRADUS_FN real filter_offset(__global const real *camera, uint unit, real u) {
-#if TRAIT_FILTER_TENT
-    return FIELD_OF(camera, camera, 0, filter_radius) * warp_tent(u);
-#elif TRAIT_FILTER_GAUSSIAN
-    return warp_gaussian(u, FIELD_OF(camera, camera, 0, filter_radius), FIELD_OF(camera, camera, 0, filter_stddev));
-#else
-    return u - R(0.5);
-#endif
-}
-
 STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ray, __global real *path,
              __global real *radiance, __global const real *camera, uint first_row, uint first_slot, uint first_pixel,
              uint first_sample_low, uint first_sample_high, uint pixels, uint pixels_multiplier, uint pixels_shift,
              uint width_multiplier, uint width_shift, uint crop_x, uint crop_y, uint crop_width, uint film_width,
              uint seed_low, uint seed_high
-#if TRAIT_SHARED_JITTER
-             ,
-             uint shared_start
-#endif
 #if TRAIT_AOV
              ,
              __global real *feature
 #endif
-#if TRAIT_FILTER_SIGNED
+#if TRAIT_FILTER
              ,
-             __global real *filtered
+             __global const real *filter_offsets
 #endif
 #if PLANES
              ,
@@ -80,7 +65,7 @@ STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ra
     /* All pixels of a sample share their place within the pixel. TRAIT_SHARED_START: and their point of the lens, so
      * that base and offset paths are each other's first segments. */
     const sample_place shared = shared_number_at(place);
-    const random_bits start = random_key(seed_low, seed_high, 0xFFFFFFFFu, shared_start, shared.high);
+    const random_bits start = random_key(seed_low, seed_high, 0xFFFFFFFFu, 0u, shared.high);
 #if TRAIT_STRATIFIED
     /* In a sequence that fills the pixel evenly: what all pixels share does not average out over the image. */
     const point2 jitter = additive_sequence(start.x, start.y, shared.low);
@@ -102,12 +87,13 @@ STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ra
 #else
     const random4 u = PATH_DRAW(key.x, key.y, random_dimension_camera);
 #endif
-#if TRAIT_FILTER_SIGNED
-    const filter_sample across = filter_table_sample(camera, unit, u.a), down = filter_table_sample(camera, unit, u.b);
-    const real offset_x = across.offset, offset_y = down.offset;
-    AT(filtered, weight, slot) = across.weight * down.weight;
+#if TRAIT_FILTER
+    /* The film has the pixels around it, too, for which samples beyond it count. */
+    const real border = R(TRAIT_FILTER - 1);
+    const real offset_x = filter_offset(filter_offsets, filter_place_of(u.a)) - border;
+    const real offset_y = filter_offset(filter_offsets, filter_place_of(u.b)) - border;
 #else
-    const real offset_x = filter_offset(camera, unit, u.a), offset_y = filter_offset(camera, unit, u.b);
+    const real offset_x = u.a - R(0.5), offset_y = u.b - R(0.5);
 #endif
 #if PLANES
     const int is_offset = plane > 0u, is_across = plane - 1u < 2u;

@@ -12,53 +12,74 @@
  * that from the mean of all (Welford 1962): of a sum of squares the square of the mean would be taken off, which leaves
  * rounding where the spread is small beside it.
  *
- * Where frames weigh other than 1 (a filter with negative lobes), samples are times the weight of theirs, and means are
- * sums over the sum of the weights before (weights_0 of the first frame), whose squares sum up to squares_0.
+ * Where samples count for the pixels around (kernels/lib/filter_frame.h), it adds what those of one frame add up to.
  *
  * TRAIT_PART_BITS: frames are those of one part of the samples, from `first_slot` on each 2^TRAIT_PART_BITS-th one. */
-//! traits: TRAIT_PART_BITS TRAIT_FILTER_SIGNED
+//! traits: TRAIT_PART_BITS
 #include "kernels/lib/compensated.h"
-#include "kernels/lib/filter_weight.h"
+#include "kernels/lib/filter_frame.h"
 #include "kernels/lib/gradient.h"
 
 #define NEXT_FRAME (strip_pixels << TRAIT_PART_BITS)
-#if TRAIT_FILTER_SIGNED
-/* Of each frame by itself: a sum that went on from frame to frame would depend on where a launch begins. */
-#define BEFORE                                                                                                         \
-    const real weights[accumulated_frames] = {weights_0, weights_1, weights_2, weights_3};                             \
-    const real squares[accumulated_frames] = {squares_0, squares_1, squares_2, squares_3};
-#define SQUARED_DEVIATION(at, frame, value, sum)                                                                       \
-    weighted_deviation(AT(filtered, weight, at), weights[frame], squares[frame], value, sum)
-#else
-#define BEFORE
-#define SQUARED_DEVIATION(at, frame, value, sum) squared_deviation((real)(frames_before + frame), value, sum)
 GRADUS_FN real squared_deviation(real before, real value, real sum) {
     const real deviation = value - sum * (R(1) / r_max(before, R(1)));
     return deviation * (deviation * (before / (before + R(1))));
 }
-#endif
+#define LOAD(number, to)                                                                                               \
+    compensated s;                                                                                                     \
+    s.sum = FILM(gradient_film_primal_r + number, to);                                                                 \
+    s.correction = FILM(gradient_film_correction_first + number, to);                                                  \
+    real spread = FILM(gradient_film_deviation_first + number, to);
+#define STORE(number, to)                                                                                              \
+    FILM(gradient_film_primal_r + number, to) = s.sum;                                                                 \
+    FILM(gradient_film_correction_first + number, to) = s.correction;                                                  \
+    FILM(gradient_film_deviation_first + number, to) = spread;
+#define FILM(column, to) gradient_film[(size_t)(column)*pixels + (to)]
+
+#if HAS_FRAME
+#define ADD(number, to, column)                                                                                        \
+    {                                                                                                                  \
+        LOAD(number, to)                                                                                               \
+        const real value = FILTERED(gradient_frame, gradient_frame_##column, pixel);                                   \
+        spread += squared_deviation((real)frames_before, value, s.sum);                                                \
+        s = compensated_add(s, value);                                                                                 \
+        STORE(number, to)                                                                                              \
+    }
+
+STAGE gradient_accumulate(uint count, uint pixels, uint first_pixel, uint frames_before,
+                          __global const real *gradient_frame, __global real *gradient_film, FILTER_ARGUMENTS) {
+    const size_t i = work_item();
+    if (i >= count)
+        return;
+    const size_t pixel = (size_t)first_pixel + i, above = pixel - crop_width;
+    FILTER_TAPS
+    ADD(0, pixel, primal_r)
+    ADD(1, pixel, primal_g)
+    ADD(2, pixel, primal_b)
+    ADD(3, pixel, right_r)
+    ADD(4, pixel, right_g)
+    ADD(5, pixel, right_b)
+    ADD(6, above, above_r)
+    ADD(7, above, above_g)
+    ADD(8, above, above_b)
+}
+
+#else
 /* `sample` is that of slot `at`, for pixel `to` of the film. */
 #define ADD(number, to, sample)                                                                                        \
     {                                                                                                                  \
-        compensated s;                                                                                                 \
-        s.sum = FILM(gradient_film_primal_r + number, to);                                                             \
-        s.correction = FILM(gradient_film_correction_first + number, to);                                              \
-        real spread = FILM(gradient_film_deviation_first + number, to);                                                \
-        BEFORE                                                                                                         \
+        LOAD(number, to)                                                                                               \
         _Pragma("unroll") for (uint frame = 0; frame < accumulated_frames; ++frame) {                                  \
             const int is_there = frame < frames;                                                                       \
             const size_t at = slot + (is_there ? frame * NEXT_FRAME : 0u);                                             \
             const real value = sample;                                                                                 \
-            spread += is_there ? SQUARED_DEVIATION(at, frame, value, s.sum) : R(0);                                    \
+            spread += is_there ? squared_deviation((real)(frames_before + frame), value, s.sum) : R(0);                \
             const compensated added = compensated_add(s, value);                                                       \
             s.sum = is_there ? added.sum : s.sum;                                                                      \
             s.correction = is_there ? added.correction : s.correction;                                                 \
         }                                                                                                              \
-        FILM(gradient_film_primal_r + number, to) = s.sum;                                                             \
-        FILM(gradient_film_correction_first + number, to) = s.correction;                                              \
-        FILM(gradient_film_deviation_first + number, to) = spread;                                                     \
+        STORE(number, to)                                                                                              \
     }
-#define FILM(column, to) gradient_film[(size_t)(column)*pixels + (to)]
 #define DIFFERENCE(j, channel, of) AT(difference, value_##channel, (size_t)(j)*slots + (of))
 /* Of the pixel above slot `at`, to below. */
 #define FROM_ABOVE(channel) (is_carried ? AT(carry, value_##channel, i) : DIFFERENCE(2, channel, at - crop_width))
@@ -66,13 +87,7 @@ GRADUS_FN real squared_deviation(real before, real value, real sum) {
 STAGE gradient_accumulate(uint count, uint slots, uint pixels, uint first_slot, uint first_pixel, uint first_above,
                           uint is_carried, uint has_above, uint frames, uint frames_before, __global const real *prefix,
                           __global const real *difference, __global real *gradient_film, __global const real *carry,
-                          STRIP_PLACE
-#if TRAIT_FILTER_SIGNED
-                          ,
-                          real weights_0, real weights_1, real weights_2, real weights_3, real squares_0,
-                          real squares_1, real squares_2, real squares_3, __global const real *filtered
-#endif
-) {
+                          STRIP_PLACE) {
     const size_t i = work_item();
     if (i >= count)
         return;
@@ -89,3 +104,4 @@ STAGE gradient_accumulate(uint count, uint slots, uint pixels, uint first_slot, 
     ADD(7, above, has_above ? FROM_ABOVE(g) - DIFFERENCE(3, g, at) : R(0))
     ADD(8, above, has_above ? FROM_ABOVE(b) - DIFFERENCE(3, b, at) : R(0))
 }
+#endif

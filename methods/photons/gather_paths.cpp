@@ -57,7 +57,7 @@ GatherPaths::GatherPaths(Session &session, Stages &stages, const Scene &scene, c
       travel_(stages.add(wanted_if({.name = "travel", .numbers = {"first"}}, has_smooth_))),
       gather_(stages.add(gather_stage(features_, planes))),
       shade_(stages.add(wanted_if(shade_stage(false), has_smooth_ || samples_lights_))) {
-    session.add_scene_buffer("material_kind", material_kinds(scene, options.gather_roughness));
+    session.add_scene_buffer("material_kind", material_kinds(scene, options.gather_roughness, gathers_photons));
     session.numbers["bins_of_phase"] = static_cast<std::uint32_t>(2 * session.scene.kinds.size());
 }
 

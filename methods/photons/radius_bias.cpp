@@ -4,7 +4,6 @@
 #include "runtime/film/metrics.h"
 #include "runtime/wavefront/host_table.h"
 
-#include <array>
 #include <string>
 
 namespace gradus {
@@ -115,7 +114,7 @@ void RadiusBias::keep(std::uint32_t slots, std::uint32_t first_pixel, std::uint6
     keep_.run(slots, {{"first_pixel", first_pixel}, {"half_number", std::uint32_t(pass % 2)}});
 }
 
-std::optional<BiasEstimates> RadiusBias::estimates(std::uint64_t samples, const SharedWeights &weights) const {
+std::optional<BiasEstimates> RadiusBias::estimates(std::uint64_t samples) const {
     if (!is_wanted_)
         return std::nullopt;
     const std::size_t pixels = session_.pixels();
@@ -123,22 +122,37 @@ std::optional<BiasEstimates> RadiusBias::estimates(std::uint64_t samples, const 
     const std::uint64_t of_all = samples / pixels, with_one_more = samples % pixels;
     BiasEstimates found;
     found.has_halves = of_all >= 2;
-    // What the passes weigh, and with a pass more: all, even and odd ones.
-    const auto weight_of = [&](std::uint64_t passes) {
-        return std::array{weights.of_part(passes, 0, 1), weights.of_part(passes, 0, 2), weights.of_part(passes, 1, 2)};
-    };
-    const std::array weighed = {weight_of(of_all), weight_of(of_all + 1)};
-    const auto mean_of = [](double sum, double weight) { return weight > 0 ? sum / weight : 0.0; };
-    for (int color = 0; color < 3; ++color)
+    const auto mean_of = [](double sum, std::uint64_t count) { return count > 0 ? sum / double(count) : 0.0; };
+    std::vector<double> mean(pixels), of_even(pixels), of_odd(pixels);
+    for (int color = 0; color < 3; ++color) {
         for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
-            const auto &[all, of_even, of_odd] = weighed[pixel < with_one_more ? 1 : 0];
+            const std::uint64_t passes = of_all + (pixel < with_one_more ? 1 : 0);
             const double even = table.real(radius_bias_value_r + color, pixel);
             const double odd = table.real(radius_bias_value_r + color, pixels + pixel);
-            found.mean.push_back(mean_of(even + odd, all));
-            found.even.push_back(mean_of(even, of_even));
-            found.odd.push_back(mean_of(odd, of_odd));
+            mean[pixel] = mean_of(even + odd, passes);
+            of_even[pixel] = mean_of(even, (passes + 1) / 2);
+            of_odd[pixel] = mean_of(odd, passes / 2);
         }
+        add_filtered(mean, found.mean);
+        add_filtered(of_even, found.even);
+        add_filtered(of_odd, found.odd);
+    }
     return found;
+}
+
+/// Adds the image's pixels of what each sampled pixel has, each with what the filter's samples have on average.
+void RadiusBias::add_filtered(const std::vector<double> &sampled, std::vector<double> &image) const {
+    const std::vector<double> none = {1.0};
+    const std::vector<double> &taps = session_.has_frame() ? session_.scene.filter.mean_taps : none;
+    const std::size_t width = session_.width();
+    for (std::size_t i = 0; i < session_.image_pixels(); ++i) {
+        double sum = 0;
+        const std::size_t last = session_.sampled_pixel(i) + session_.filter_lag();
+        for (std::size_t y = 0; y < taps.size(); ++y)
+            for (std::size_t x = 0; x < taps.size(); ++x)
+                sum += taps[y] * taps[x] * sampled[last - y * width - x];
+        image.push_back(sum);
+    }
 }
 
 } // namespace gradus

@@ -12,7 +12,6 @@
 #include "methods/photons/photon_pairs.h"
 #include "runtime/film/image.h"
 #include "runtime/wavefront/session.h"
-#include "runtime/wavefront/shared_weights.h"
 #include "runtime/wavefront/stage.h"
 #include "runtime/wavefront/table.h"
 
@@ -59,10 +58,12 @@ class RadiusBias {
     /// After all gather points: only now the batch counts. Slot 0 is that of pixel `first_pixel`.
     void keep(std::uint32_t slots, std::uint32_t first_pixel, std::uint64_t pass);
 
-    /// After `samples` samples, which weigh so much. Nothing where nobody asked for it.
-    std::optional<BiasEstimates> estimates(std::uint64_t samples, const SharedWeights &weights) const;
+    /// After `samples` samples; filtered as the image is. Nothing where nobody asked for it.
+    std::optional<BiasEstimates> estimates(std::uint64_t samples) const;
 
   private:
+    void add_filtered(const std::vector<double> &sampled, std::vector<double> &image) const;
+
     Session &session_;
     bool is_wanted_, by_slot_;
     Stage &sum_, &add_, &keep_;

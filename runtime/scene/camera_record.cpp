@@ -1,7 +1,6 @@
 #include "runtime/scene/camera_record.h"
 
 #include "kernels/shared/scene_records.h"
-#include "runtime/scene/filter_table.h"
 
 #include <array>
 #include <cmath>
@@ -75,13 +74,9 @@ std::vector<float> make_camera_record(const Camera &camera, const FilmSettings &
             put(camera_lens_up_x, camera.aperture_radius * up[axis]);
         }
     }
-    record[camera_filter_radius] = film.filter_radius;
-    record[camera_filter_stddev] = film.filter_stddev;
     record[camera_inverse_focus] = static_cast<float>(1 / camera.focus_distance);
     record[camera_near_clip] = clips.near_clip ? static_cast<float>(near_plane(camera)) : 0;
     record[camera_far_clip] = clips.far_clip ? static_cast<float>(far_plane(camera)) : 3e38f;
-    const std::vector<float> filter = make_filter_table(film);
-    record.insert(record.end(), filter.begin(), filter.end());
     return record;
 }
 

@@ -27,97 +27,112 @@ double mitchell(double x, double b, double c) {
 
 double sinc(double x) { return x == 0 ? 1 : std::sin(pi * x) / (pi * x); }
 
-/// Shares of what cells go by that are of widths alone, among lobes and within one: less, and the cells of small lobes
-/// and beside zeros are so wide that the filter is no straight line in them; more, and weights differ more.
-constexpr double share_by_width = 0.1, evenness = 0.1;
+/// The filter's value for each pixel around the one that `offset` lies in: of tap t where t - reach pixels further on
+/// is the center.
+std::vector<double> values_around(const FilmSettings &film, int reach, double offset) {
+    std::vector<double> values;
+    for (int d = -reach; d <= reach; ++d)
+        values.push_back(filter_value(film, offset - d));
+    return values;
+}
 
-/// Between two zeros.
-struct Lobe {
-    std::size_t begin, end; ///< steps of the grid
-    double mass;            ///< its integral, signed
-};
+double sum_of(const std::vector<double> &values) {
+    double sum = 0;
+    for (const double value : values)
+        sum += value;
+    return sum;
+}
 
 } // namespace
 
-bool is_signed(FilmSettings::Filter filter) {
-    return filter == FilmSettings::Filter::mitchell || filter == FilmSettings::Filter::catmullrom ||
-           filter == FilmSettings::Filter::lanczos;
-}
-
-double signed_filter(const FilmSettings &film, double x) {
-    if (std::fabs(x) >= film.filter_radius)
+double filter_value(const FilmSettings &film, double x) {
+    const double radius = film.filter == FilmSettings::Filter::box ? 0.5 : film.filter_radius;
+    if (std::fabs(x) >= radius)
         return 0;
-    if (film.filter == FilmSettings::Filter::mitchell)
+    switch (film.filter) {
+    case FilmSettings::Filter::box:
+        return 1;
+    case FilmSettings::Filter::tent:
+        return 1 - std::fabs(x) / radius;
+    case FilmSettings::Filter::gaussian:
+        return std::exp(-0.5 * x * x / (double(film.filter_stddev) * film.filter_stddev));
+    case FilmSettings::Filter::mitchell:
         return mitchell(x, film.mitchell_b, film.mitchell_c);
-    if (film.filter == FilmSettings::Filter::catmullrom)
+    case FilmSettings::Filter::catmullrom:
         return mitchell(x, 0, 0.5);
-    return sinc(x) * sinc(x / film.filter_radius);
+    case FilmSettings::Filter::lanczos:
+        return sinc(x) * sinc(x / radius);
+    }
+    return 0;
 }
 
-std::vector<float> make_filter_table(const FilmSettings &film) {
-    if (!is_signed(film.filter))
-        return {};
-    // Midpoints of a grid so fine that its own error is below that of floats.
-    constexpr std::size_t steps = std::size_t(1) << 16;
-    const double radius = film.filter_radius, step = 2 * radius / double(steps);
-    std::vector<double> masses(steps);
-    std::vector<Lobe> lobes;
-    double whole = 0, of_both_signs = 0;
-    for (std::size_t i = 0; i < steps; ++i) {
-        masses[i] = step * signed_filter(film, (double(i) + 0.5) * step - radius);
-        whole += masses[i];
-        of_both_signs += std::fabs(masses[i]);
-        if (lobes.empty() || (masses[i] < 0) != (lobes.back().mass < 0))
-            lobes.push_back({i, i, 0});
-        lobes.back().end = i + 1;
-        lobes.back().mass += masses[i];
-    }
-    // To each lobe cells by its mass and its width, and to the largest what rounding leaves.
-    std::vector<std::size_t> cells;
-    std::size_t left = filter_cells;
-    for (const Lobe &lobe : lobes) {
-        const double by_width = double(lobe.end - lobe.begin) / double(steps);
-        const double share = double(filter_cells) *
-                             (share_by_width * by_width + (1 - share_by_width) * std::fabs(lobe.mass) / of_both_signs);
-        cells.push_back(std::max<std::size_t>(1, std::size_t(share)));
-        left -= cells.back();
-    }
-    cells[std::size_t(std::max_element(cells.begin(), cells.end()) - cells.begin())] += left;
+std::uint32_t filter_reach(const FilmSettings &film) {
+    // A sample is at most half a pixel from its pixel's center.
+    return film.filter == FilmSettings::Filter::box
+               ? 0
+               : static_cast<std::uint32_t>(std::max(0.0, std::ceil(double(film.filter_radius) + 0.5) - 1));
+}
 
-    std::vector<float> table, weights;
-    for (std::size_t l = 0; l < lobes.size(); ++l) {
-        const Lobe &lobe = lobes[l];
-        // Evenly by the filter and a little by width: or the cells beside its zeros would be wide.
-        const double least = evenness * std::fabs(lobe.mass) / double(lobe.end - lobe.begin);
-        const double of_cell = (1 + evenness) * std::fabs(lobe.mass) / double(cells[l]);
-        double even = 0, mass = 0, mass_before = 0, value_before = 0; // up to step i, and up to the cell
-        std::size_t i = lobe.begin;
-        for (std::size_t cell = 0; cell <= cells[l]; ++cell) {
-            const double target = of_cell * double(cell);
-            for (; i < lobe.end && even + std::fabs(masses[i]) + least <= target; ++i) {
-                even += std::fabs(masses[i]) + least;
-                mass += masses[i];
-            }
-            const bool is_end = i == lobe.end || cell == cells[l];
-            const double part = is_end ? 0 : std::clamp((target - even) / (std::fabs(masses[i]) + least), 0.0, 1.0);
-            const double up_to_here = is_end ? lobe.mass : mass + part * masses[i];
-            const double place = (double(is_end ? lobe.end : i) + part) * step - radius;
-            const double value = is_end ? 0 : signed_filter(film, place); // of one sign, and none at a lobe's ends
-            if (cell > 0) {
-                // Straight lines that hold the cell's share.
-                const double height = (up_to_here - mass_before) * double(filter_cells) / whole;
-                const double sum = value_before + value;
-                weights.push_back(float(sum != 0 ? 2 * height * value_before / sum : height));
-                weights.push_back(float(sum != 0 ? 2 * height * value / sum : height));
-            }
-            if (cell < cells[l])
-                table.push_back(float(place));
-            mass_before = up_to_here;
-            value_before = cell == 0 && i == lobe.begin ? 0 : value;
-        }
+FilterTable make_filter_table(const FilmSettings &film) {
+    FilterTable table;
+    if (film.filter == FilmSettings::Filter::box)
+        return table;
+    // Midpoints of a grid so fine that its own error is below that of floats, over the part of the pixel that has any.
+    constexpr std::size_t steps = std::size_t(1) << 16;
+    const int reach = int(filter_reach(film));
+    const std::size_t taps = 2 * std::size_t(reach) + 1;
+    const double half = std::min(0.5, double(film.filter_radius)), step = 2 * half / double(steps);
+    // Up to each border of the grid, what there is of each tap, and of all.
+    std::vector<double> up_to((steps + 1) * taps, 0.0), whole_up_to(steps + 1, 0.0);
+    for (std::size_t i = 0; i < steps; ++i) {
+        const std::vector<double> values = values_around(film, reach, (double(i) + 0.5) * step - half);
+        for (std::size_t tap = 0; tap < taps; ++tap)
+            up_to[(i + 1) * taps + tap] = up_to[i * taps + tap] + step * values[tap];
+        whole_up_to[i + 1] = whole_up_to[i] + step * sum_of(values);
     }
-    table.push_back(float(radius));
-    table.insert(table.end(), weights.begin(), weights.end());
+    const double whole = whole_up_to.back(), of_cell = whole / double(filter_cells);
+    table.mean_taps.assign(up_to.end() - std::ptrdiff_t(taps), up_to.end());
+    for (double &mean : table.mean_taps)
+        mean /= whole;
+
+    std::size_t i = 0;
+    double begin = -half;
+    std::vector<double> before(taps, 0.0);
+    table.offsets.push_back(float(begin));
+    for (std::uint32_t cell = 1; cell <= filter_cells; ++cell) {
+        const double target = of_cell * cell;
+        while (i + 1 < steps && whole_up_to[i + 1] < target)
+            ++i;
+        const double of_step = whole_up_to[i + 1] - whole_up_to[i];
+        const double part =
+            cell == filter_cells ? 1 : std::clamp((target - whole_up_to[i]) / std::max(of_step, 1e-300), 0.0, 1.0);
+        const double end = cell == filter_cells ? half : (double(i) + part) * step - half;
+        const std::vector<double> first = values_around(film, reach, begin), last = values_around(film, reach, end);
+        std::vector<double> at[2];
+        for (std::size_t tap = 0; tap < taps; ++tap) {
+            const double here = cell == filter_cells ? up_to[steps * taps + tap]
+                                                     : up_to[i * taps + tap] +
+                                                           part * (up_to[(i + 1) * taps + tap] - up_to[i * taps + tap]);
+            // Straight lines, from value to value, that hold the cell's share.
+            const double scale = (end - begin) / of_cell;
+            const double off = (here - before[tap]) / of_cell - 0.5 * scale * (first[tap] + last[tap]);
+            at[0].push_back(scale * first[tap] + off);
+            at[1].push_back(scale * last[tap] + off);
+            before[tap] = here;
+        }
+        // They sum up to nearly 1, but where the cell is wide beside what the filter has there: there they stay as they
+        // are on average.
+        if (std::fabs(sum_of(at[0]) - 1) > 0.5)
+            for (std::size_t tap = 0; tap < taps; ++tap)
+                at[0][tap] = at[1][tap] = 0.5 * (at[0][tap] + at[1][tap]);
+        for (const std::vector<double> &weights : at)
+            for (const double weight : weights)
+                table.taps.push_back(float(weight / sum_of(weights)));
+        table.offsets.push_back(float(end));
+        begin = end;
+    }
+    for (std::size_t tap = 0; tap < 2 * taps; ++tap)
+        table.taps.push_back(tap % taps == std::size_t(reach) ? 1.0f : 0.0f);
     return table;
 }
 

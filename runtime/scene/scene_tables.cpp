@@ -438,6 +438,7 @@ SceneTables make_scene_tables(const Scene &scene, const TraitMap &traits, const 
         tables.camera_clips = camera_clips(scene);
     tables.camera_kind = scene.camera.kind;
     tables.camera = make_camera_record(scene.camera, scene.film, tables.camera_clips);
+    tables.filter = make_filter_table(scene.film);
     // Kernels compiled for both kinds of primitives read a record of each, whichever they then take.
     if (tables.triangles.empty())
         tables.triangles.resize(triangle_stride, 0.0f);

@@ -3,6 +3,7 @@
 
 #include "runtime/scene/bounds.h"
 #include "runtime/scene/camera_clips.h"
+#include "runtime/scene/filter_table.h"
 #include "runtime/scene/light_tree.h"
 #include "runtime/scene/material_class.h"
 #include "runtime/scene/scene.h"
@@ -66,6 +67,7 @@ struct SceneTables {
     float scene_diameter = 1;               ///< longer than any segment within the scene; of a sphere that holds it
     std::array<float, 3> scene_center = {}; ///< of that sphere
     CameraClips camera_clips;
+    FilterTable filter;
     Camera::Kind camera_kind = Camera::Kind::perspective;
 
     bool is_indexed() const { return vertex_numbers > 0; }

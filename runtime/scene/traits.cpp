@@ -51,9 +51,7 @@ constexpr TraitText descriptions[] = {
     {"TRAIT_TEXTURED_NORMALS", "1: normal maps, 2: bump maps"},
     {"TRAIT_NORMAL_TEXTURES", "what textures of these have, a bit each"},
     {"TRAIT_BLEND_LEVELS", "depths of nesting at which weights of blends are textures, a bit each"},
-    {"TRAIT_FILTER_TENT", "tent pixel filter"},
-    {"TRAIT_FILTER_GAUSSIAN", "Gaussian pixel filter"},
-    {"TRAIT_FILTER_SIGNED", "pixel filter with negative lobes"},
+    {"TRAIT_FILTER", "a pixel filter other than a box: one more than its reach in pixels"},
     {"TRAIT_ORTHOGRAPHIC", "orthographic camera"},
     {"TRAIT_THIN_LENS", "camera with a lens"},
     {"TRAIT_NEAR_CLIP", "surfaces before the camera's near plane"},
@@ -335,9 +333,8 @@ TraitMap scene_traits(const Scene &scene) {
         }
     }
     traits["TRAIT_HIDE_EMITTERS"] = scene.settings.hide_emitters;
-    traits["TRAIT_FILTER_TENT"] = scene.film.filter == FilmSettings::Filter::tent;
-    traits["TRAIT_FILTER_GAUSSIAN"] = scene.film.filter == FilmSettings::Filter::gaussian;
-    traits["TRAIT_FILTER_SIGNED"] = is_signed(scene.film.filter);
+    traits["TRAIT_FILTER"] =
+        scene.film.filter == FilmSettings::Filter::box ? 0 : 1 + static_cast<int>(filter_reach(scene.film));
     const CameraClips clips = camera_clips(scene);
     traits["TRAIT_ORTHOGRAPHIC"] = scene.camera.kind == Camera::Kind::orthographic;
     traits["TRAIT_THIN_LENS"] = scene.camera.kind == Camera::Kind::thin_lens;
@@ -372,11 +369,10 @@ TraitMap with_all_traits(TraitMap traits) {
     for (auto &[name, value] : traits) {
         // The filter and hidden emitters change the picture, TRAIT_INDEXED and TRAIT_INSTANCES how tables lie; the rest
         // only makes room for what is not there.
-        const bool setting = name.starts_with("TRAIT_FILTER") || name == "TRAIT_HIDE_EMITTERS" ||
-                             name == "TRAIT_INDEXED" || name == "TRAIT_INSTANCES" ||
-                             name.starts_with("TRAIT_TEXTURE") || name == "TRAIT_MATERIAL" || name == "TRAIT_LOOKUPS" ||
-                             name == "TRAIT_NORMAL_TEXTURES" || name == "TRAIT_LIGHT_TEXTURES" ||
-                             name.starts_with("TRAIT_BLEND");
+        const bool setting = name == "TRAIT_FILTER" || name == "TRAIT_HIDE_EMITTERS" || name == "TRAIT_INDEXED" ||
+                             name == "TRAIT_INSTANCES" || name.starts_with("TRAIT_TEXTURE") ||
+                             name == "TRAIT_MATERIAL" || name == "TRAIT_LOOKUPS" || name == "TRAIT_NORMAL_TEXTURES" ||
+                             name == "TRAIT_LIGHT_TEXTURES" || name.starts_with("TRAIT_BLEND");
         if (!setting)
             value = 1;
     }

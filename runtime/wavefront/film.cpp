@@ -9,6 +9,7 @@
 #include <array>
 #include <deque>
 #include <optional>
+#include <utility>
 
 namespace gradus {
 
@@ -21,28 +22,23 @@ double film_sum(const HostTable &table, int color, std::size_t pixel) {
     return table.real(film_sum_r + color, pixel) + table.real(film_correction_r + color, pixel);
 }
 
-/// The sums of all parts, on the host, and how many samples they are of.
+/// The sums of all parts, on the host, and how many samples they are of. Pixels are those that are sampled.
 class FilmSums {
   public:
-    FilmSums(const Tables &tables, std::uint32_t parts, std::size_t pixels, std::uint64_t samples,
-             const SharedWeights &weights)
+    FilmSums(const Tables &tables, std::uint32_t parts, std::size_t pixels, std::uint64_t samples)
         : pixels_(pixels), samples_(samples) {
-        const std::uint64_t frames = samples / pixels;
-        for (std::uint32_t part = 0; part < parts; ++part) {
+        for (std::uint32_t part = 0; part < parts; ++part)
             films_.emplace_back(tables[name_of_part("film", part)], pixels, tables.precision());
-            for (const std::uint64_t more : {0, 1})
-                weights_[more].push_back(weights.of_samples(frames + more, part, parts));
-        }
     }
 
     double samples_of(std::size_t pixel) const { return double(samples_ / pixels_) + (has_more(pixel) ? 1 : 0); }
     std::uint32_t rejected(std::size_t pixel) const {
         std::uint32_t rejected = 0;
-        for (std::uint32_t part = 0; part < films_.size(); ++part)
-            rejected += rejected_of(part, pixel);
+        for (const HostTable &film : films_)
+            rejected += film.uint(film_rejected, pixel);
         return rejected;
     }
-    /// What parts have of a pixel, for one of R, G and B: `step` apart, from `first` on. Counts are what samples weigh.
+    /// What parts have of a pixel, for one of R, G and B: `step` apart, from `first` on.
     Replicate sum(int color, std::size_t pixel, std::uint32_t first = 0, std::uint32_t step = 1) const {
         Replicate all;
         for (std::uint32_t part = first; part < films_.size(); part += step) {
@@ -58,74 +54,48 @@ class FilmSums {
             replicates[part] = part_of(color, pixel, part);
         return variance_of_mean(replicates);
     }
-    /// The same of samples that are independent and weigh 1, from the sum of their squares: (mean of squares - square
-    /// of mean) / (n - 1).
-    double variance_of_samples(double square, int color, std::size_t pixel) const {
-        const Replicate all = sum(color, pixel);
-        const double n = all.count;
-        return n > 1 ? std::max(0.0, square - all.sum * all.sum / n) / (n * (n - 1)) : 0;
-    }
-    /// The same of samples that weigh other than 1, from the sum of the squared deviations that all parts have.
-    double variance_of_weighted_samples(double deviations, int color, std::size_t pixel) const {
-        double sum_before = 0;
-        SampleWeights before;
+    /// The same of samples that are independent, from their squared deviations from the means of their parts, summed.
+    double variance_of_samples(double deviations, int color, std::size_t pixel) const {
+        Replicate all;
         for (std::uint32_t part = 0; part < films_.size(); ++part) {
-            const double count = count_of(part, pixel), kept = count - rejected_of(part, pixel);
-            if (kept <= 0)
-                continue;
-            SampleWeights here = weights_of(part, pixel);
-            for (double *weight : {&here.of_mean, &here.squares, &here.of_deviations})
-                *weight *= kept / count;
-            const double sum = film_sum(films_[part], color, pixel);
-            const double off = sum * before.of_mean - sum_before * here.of_mean;
-            if (const double apart = before.apart(here); apart > 0)
-                deviations += off * off / apart;
-            before.add(here);
-            sum_before += sum;
+            const Replicate one = part_of(color, pixel, part);
+            // Chan et al. 1983: those from the mean of both.
+            if (all.count > 0 && one.count > 0)
+                deviations += std::pow(one.sum * all.count - all.sum * one.count, 2) /
+                              (one.count * all.count * (one.count + all.count));
+            all.sum += one.sum;
+            all.count += one.count;
         }
-        const double count = sum(color, pixel).count;
-        return before.of_deviations > 0 ? deviations * before.squares / (before.of_deviations * count * count) : 0;
+        return all.count > 1 ? deviations / (all.count * (all.count - 1)) : 0;
     }
 
   private:
-    std::uint32_t rejected_of(std::uint32_t part, std::size_t pixel) const {
-        return films_[part].uint(film_rejected, pixel);
-    }
-    const SampleWeights &weights_of(std::uint32_t part, std::size_t pixel) const {
-        return weights_[has_more(pixel) ? 1 : 0][part];
-    }
     bool has_more(std::size_t pixel) const { return pixel < samples_ % pixels_; }
-    /// Samples, those that were rejected too.
-    double count_of(std::uint32_t part, std::size_t pixel) const {
-        const auto parts = static_cast<std::uint32_t>(films_.size());
-        return double(count_of_part(samples_ / pixels_ + (has_more(pixel) ? 1 : 0), part, parts));
-    }
     Replicate part_of(int color, std::size_t pixel, std::uint32_t part) const {
-        const double count = count_of(part, pixel), of_one = count > 0 ? weights_of(part, pixel).of_mean / count : 1;
-        return {film_sum(films_[part], color, pixel), of_one * (count - rejected_of(part, pixel))};
+        const auto parts = static_cast<std::uint32_t>(films_.size());
+        const auto count = double(count_of_part(samples_ / pixels_ + (has_more(pixel) ? 1 : 0), part, parts));
+        return {film_sum(films_[part], color, pixel), count - films_[part].uint(film_rejected, pixel)};
     }
     std::deque<HostTable> films_;
-    std::array<std::vector<SampleWeights>, 2> weights_; ///< of each part, and with a frame more
     std::size_t pixels_;
     std::uint64_t samples_;
 };
 
-/// The arguments of accumulate that say what the samples before in a film weigh.
-constexpr const char *film_samples_before = "film_samples_before", *weights_before = "weights_before",
-                     *squares_before = "squares_before";
+std::vector<std::string> numbers_of_launch(const Session &session) {
+    if (session.has_frame())
+        return {"first_pixel", "samples_before", "film_samples_before", "filter_x", "filter_y"};
+    return {"first_slot", "first_pixel", "samples_before", "film_samples_before"};
+}
 
 double mean_of(const Replicate &all) { return all.count > 0 ? all.sum / all.count : 0.0; }
 
 } // namespace
 
 Film::Film(Session &session, Stages &stages, bool halves)
-    : session_(session), stages_(stages), weights_(session),
-      accumulate_(stages.add(
-          {.name = "accumulate", .strict = true, .numbers = {"first_slot", "first_pixel", "samples_before"}})),
-      parts_(1u << part_bits(session.options, halves)) {
-    for (const char *name : {film_samples_before, weights_before, squares_before})
-        session.reals[name] = 0; // add() says them
-}
+    : session_(session),
+      frame_(stages.add({.name = "frame", .is_wanted = session.has_frame(), .numbers = {"first_slot", "first_pixel"}})),
+      accumulate_(stages.add({.name = "accumulate", .strict = true, .numbers = numbers_of_launch(session)})),
+      parts_(1u << part_bits(session.options, halves)) {}
 
 std::vector<std::string> Film::table_names() const {
     std::vector<std::string> names;
@@ -137,13 +107,15 @@ std::vector<std::string> Film::table_names() const {
 
 TableList Film::tables() const {
     const bool aov = session_.has("TRAIT_AOV");
-    const int feature_sums = has_replicates() ? feature_film_square_r : feature_film_columns; // squares are the last
+    const int feature_sums =
+        has_replicates() ? feature_film_deviation_r : feature_film_columns; // deviations are the last
     const auto with_aov = [&](int columns) { return aov ? std::uint32_t(columns) : 0u; };
-    TableList list = {
-        {.name = "radiance", .rows = RowsOf::slot, .columns = radiance_columns},
-        {.name = "filtered", .rows = RowsOf::slot, .columns = session_.has("TRAIT_FILTER_SIGNED") ? 1u : 0u},
-        {.name = "feature", .rows = RowsOf::slot, .columns = with_aov(feature_columns)},
-        {.name = "feature_film", .rows = RowsOf::pixel, .columns = with_aov(feature_sums)}};
+    TableList list = {{.name = "radiance", .rows = RowsOf::slot, .columns = radiance_columns},
+                      {.name = "feature", .rows = RowsOf::slot, .columns = with_aov(feature_columns)},
+                      {.name = "frame",
+                       .rows = RowsOf::pixel,
+                       .columns = session_.has_frame() ? std::uint32_t(aov ? frame_columns : frame_albedo_r) : 0u},
+                      {.name = "feature_film", .rows = RowsOf::pixel, .columns = with_aov(feature_sums)}};
     for (std::uint32_t part = 0; part < parts_; ++part)
         list.push_back({.name = name_of_part("film", part), .rows = RowsOf::pixel, .columns = film_columns});
     return list;
@@ -156,7 +128,6 @@ void Film::attach(Tables &tables) {
 
 void Film::clear(std::uint64_t first_sample) {
     first_sample_ = first_sample;
-    weights_.begin_at(first_sample);
     std::vector<std::string> names = table_names();
     names.emplace_back("splat_film");
     for (const std::string &name : names)
@@ -165,7 +136,7 @@ void Film::clear(std::uint64_t first_sample) {
 }
 
 void Film::clear_slots() {
-    for (const char *table : {"radiance", "feature", "filtered"})
+    for (const char *table : {"radiance", "feature"})
         if (tables_->has(table))
             (*tables_)[table].clear();
 }
@@ -178,35 +149,42 @@ void Film::add(std::uint32_t count, std::uint32_t first_pixel, std::uint64_t fir
         if (parts_ > 1)
             accumulate_.bind("film",
                              (*tables_)[name_of_part("film", static_cast<std::uint32_t>(first_sample % parts_))]);
-        const std::uint64_t before = first_sample - first_sample_;
-        if (weights_.are_there() && session_.has("TRAIT_AOV") && !has_replicates()) {
-            const auto part = static_cast<std::uint32_t>(before % parts_);
-            const SharedWeights::Sums weighed = weights_.sums(before, part, parts_);
-            stages_.set_real(film_samples_before, double(count_of_part(before, part, parts_)));
-            stages_.set_real(weights_before, weighed.weights);
-            stages_.set_real(squares_before, weighed.squares);
+        const auto before = static_cast<std::uint32_t>(first_sample - first_sample_), of_film = before / parts_;
+        if (!session_.has_frame()) {
+            accumulate_.run(done, {{"first_slot", slot},
+                                   {"first_pixel", first_pixel},
+                                   {"samples_before", before},
+                                   {"film_samples_before", of_film}});
+            continue;
         }
-        accumulate_.run(done, {{"first_slot", slot},
-                               {"first_pixel", first_pixel},
-                               {"samples_before", static_cast<std::uint32_t>(before)}});
+        frame_.run(done, {{"first_slot", slot}, {"first_pixel", first_pixel}});
+        const Range filtered = filtered_pixels(session_, {first_pixel, done});
+        const FramePlace place = place_of(first_sample);
+        accumulate_.run(filtered.count, {{"first_pixel", filtered.first},
+                                         {"samples_before", before},
+                                         {"film_samples_before", of_film},
+                                         {"filter_x", place.x},
+                                         {"filter_y", place.y}});
     }
 }
 
 Image Film::image(std::uint64_t samples, std::uint64_t &non_finite, std::uint64_t light_paths) const {
-    const std::size_t count = session_.pixels();
-    const FilmSums films(*tables_, parts_, count, samples, weights_);
+    const std::size_t count = session_.image_pixels(), sampled = session_.pixels();
+    const FilmSums films(*tables_, parts_, sampled, session_.filtered_samples(samples));
     std::optional<HostTable> splats;
     if (light_paths > 0 && tables_->has("splat_film"))
-        splats.emplace((*tables_)["splat_film"], count, tables_->precision());
+        splats.emplace((*tables_)["splat_film"], sampled, tables_->precision());
     Image image;
     image.width = session_.film.crop_width;
     image.height = session_.film.crop_height;
-    for (std::size_t pixel = 0; pixel < count; ++pixel)
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t pixel = session_.sampled_pixel(i);
         non_finite += films.rejected(pixel) + (splats ? splats->uint(film_rejected, pixel) : 0);
+    }
     const auto add = [&](const std::string &name, auto mean) {
         Channel channel{name, std::vector<float>(count)};
-        for (std::size_t pixel = 0; pixel < count; ++pixel)
-            channel.values[pixel] = static_cast<float>(mean(pixel));
+        for (std::size_t i = 0; i < count; ++i)
+            channel.values[i] = static_cast<float>(mean(session_.sampled_pixel(i)));
         image.channels.push_back(std::move(channel));
     };
     const char *const colors[3] = {"R", "G", "B"};
@@ -218,7 +196,7 @@ Image Film::image(std::uint64_t samples, std::uint64_t &non_finite, std::uint64_
     if (!session_.has("TRAIT_AOV"))
         return image;
 
-    const HostTable features((*tables_)["feature_film"], count, tables_->precision());
+    const HostTable features((*tables_)["feature_film"], sampled, tables_->precision());
     const char *const axes[3] = {"X", "Y", "Z"};
     // The film has their mean over all samples; those that were left out do not count.
     const auto mean_feature = [&](int column, std::size_t pixel) {
@@ -238,19 +216,16 @@ Image Film::image(std::uint64_t samples, std::uint64_t &non_finite, std::uint64_
         add(std::string("variance.") + colors[c], [&](std::size_t pixel) {
             if (has_replicates())
                 return films.variance(c, pixel);
-            const double square = features.real(feature_film_square_r + c, pixel) +
-                                  features.real(feature_film_square_correction_r + c, pixel);
-            return weights_.are_there() ? films.variance_of_weighted_samples(square, c, pixel)
-                                        : films.variance_of_samples(square, c, pixel);
+            return films.variance_of_samples(features.real(feature_film_deviation_r + c, pixel), c, pixel);
         });
     return image;
 }
 
 void Film::half_mean(int half, std::uint64_t samples, int color, float *plane) const {
-    const std::size_t count = session_.pixels();
-    const FilmSums films(*tables_, parts_, count, samples, weights_);
-    for (std::size_t pixel = 0; pixel < count; ++pixel)
-        plane[pixel] = static_cast<float>(mean_of(films.sum(color, pixel, static_cast<std::uint32_t>(half), 2)));
+    const FilmSums films(*tables_, parts_, session_.pixels(), session_.filtered_samples(samples));
+    for (std::size_t i = 0; i < session_.image_pixels(); ++i)
+        plane[i] = static_cast<float>(
+            mean_of(films.sum(color, session_.sampled_pixel(i), static_cast<std::uint32_t>(half), 2)));
 }
 
 } // namespace gradus

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "runtime/film/image.h"
+#include "runtime/wavefront/frame_place.h"
 #include "runtime/wavefront/session.h"
-#include "runtime/wavefront/shared_weights.h"
 #include "runtime/wavefront/stage.h"
 #include "runtime/wavefront/table.h"
 
@@ -23,8 +23,8 @@ class Film {
     /// To be called once they are allocated; all is zero.
     void attach(Tables &tables);
 
-    /// Adds the samples of slots [0, count), which belong to the pixels from `first_pixel` on, cyclically.
-    /// `first_sample`: which sample of its pixel the first is.
+    /// Adds the samples of slots [0, count), which belong to the pixels from `first_pixel` on, of all that are sampled
+    /// (Session::pixels()), cyclically. `first_sample`: which sample of its pixel the first is.
     void add(std::uint32_t count, std::uint32_t first_pixel, std::uint64_t first_sample = 0);
 
     /// The means after `samples` samples: the first `samples` modulo pixels have one more than the rest. Where there
@@ -35,8 +35,12 @@ class Film {
     /// Writes the mean of a half of `samples` samples, 0: the even ones, for one of R, G and B.
     void half_mean(int half, std::uint64_t samples, int color, float *plane) const;
 
-    /// What its samples weigh.
-    const SharedWeights &weights() const { return weights_; }
+    /// Where the samples of that frame lie, for the filter.
+    FramePlace place_of(std::uint64_t frame) const {
+        return counts_for_own_ ? place_of_own() : frame_place(session_, frame);
+    }
+    /// Whether samples count for their own pixels alone, whatever the filter: where neighbouring rows are none.
+    void count_for_own(bool own) { counts_for_own_ = own; }
 
     /// All zero again, splats too. Samples are those from this number on.
     void clear(std::uint64_t first_sample = 0);
@@ -51,12 +55,20 @@ class Film {
     bool has_replicates() const { return parts_ > 2; }
 
     Session &session_;
-    Stages &stages_;
-    SharedWeights weights_;
-    Stage &accumulate_;
+    Stage &frame_, &accumulate_;
     std::uint32_t parts_; ///< of the samples, each with a table of its own
     std::uint64_t first_sample_ = 0;
+    bool counts_for_own_ = false;
     Tables *tables_ = nullptr;
 };
+
+/// Of a frame whose samples of these pixels have come, after those of the pixels before: the pixels that have had with
+/// them all that count for them, but for the border. Which of its columns are among them does not matter.
+inline Range filtered_pixels(const Session &session, Range samples) {
+    const std::uint32_t lag = session.filter_lag();
+    const auto known = [lag](std::uint32_t count) { return count > lag ? count - lag : 0; };
+    const std::uint32_t first = std::max(known(samples.first), lag), end = known(samples.end());
+    return {first, end > first ? end - first : 0};
+}
 
 } // namespace gradus

@@ -8,7 +8,6 @@
 #include "runtime/scene/vertex_table.h"
 #include "runtime/wavefront/invariant_division.h"
 #include "runtime/wavefront/sample_parts.h"
-#include "runtime/wavefront/shared_weights.h"
 
 #include <fmt/format.h>
 
@@ -48,8 +47,8 @@ TraitMap traits_for(const Scene &scene, const SessionOptions &options, const Tra
     traits["KINDS_BY_CLASS"] = 0;
     for (const auto &[name, value] : of_method)
         traits[name] = value;
-    // Where paths start alike, and where samples weigh, which they then do alike (shared_weights.h).
-    traits["TRAIT_SHARED_JITTER"] = traits["TRAIT_SHARED_START"] || traits["TRAIT_FILTER_SIGNED"];
+    // Where paths start alike, and where samples serve the pixels around (runtime/scene/filter_table.h).
+    traits["TRAIT_SHARED_JITTER"] = traits["TRAIT_SHARED_START"] || traits["TRAIT_FILTER"];
     if (options.all_traits || traits["TRAIT_MATERIAL"] == 0)
         traits["KINDS_BY_CLASS"] = 0;
     // Features are seen through mirrors and glass (kernels/lib/seen_features.h).
@@ -75,7 +74,8 @@ FilmSettings with_crop(FilmSettings film) {
         throw Error(ExitCode::usage,
                     fmt::format("the crop {}x{} at {},{} does not lie in the film of {}x{}", film.crop_width,
                                 film.crop_height, film.crop_x, film.crop_y, film.width, film.height));
-    if (std::uint64_t(film.width) * film.height >= std::numeric_limits<std::int32_t>::max())
+    const std::uint64_t around = 2 * std::uint64_t(filter_reach(film));
+    if ((film.width + around) * (film.height + around) >= std::numeric_limits<std::int32_t>::max())
         throw Error(ExitCode::usage, fmt::format("a film of {}x{} has too many pixels", film.width, film.height));
     return film;
 }
@@ -138,6 +138,10 @@ std::vector<Buffer> make_scene_buffers(Device &device, const SceneTables &t, Pre
     reals("materials", t.materials);
     reals("lights", t.lights);
     reals("camera", t.camera);
+    if (!t.filter.offsets.empty()) {
+        reals("filter_offsets", t.filter.offsets);
+        reals("filter_taps", t.filter.taps);
+    }
     numbers("material_back", t.material_back);
     numbers("light_kinds", t.light_kinds);
     numbers("light_alias", t.light_alias);
@@ -200,7 +204,7 @@ void add_class_numbers(Session &session) {
 Session::Session(Device &session_device, const Scene &s, const SessionOptions &session_options,
                  const TraitMap &method_traits)
     : device(session_device), options(session_options), settings(s.settings), film(with_crop(s.film)),
-      traits(traits_for(s, session_options, method_traits)),
+      border(filter_reach(film)), traits(traits_for(s, session_options, method_traits)),
       material_classes(material_classes_for(s, session_options, traits)),
       scene(in_phase(options.phases, phase_names::tables,
                      [&] {
@@ -231,8 +235,8 @@ Session::Session(Device &session_device, const Scene &s, const SessionOptions &s
                {"roulette_depth", settings.rr_depth < 0 ? 0xFFFFFFFFu : std::uint32_t(settings.rr_depth)},
                {"crop_x", film.crop_x},
                {"crop_y", film.crop_y},
-               {"crop_height", film.crop_height},
-               {"film_width", film.width},
+               {"crop_height", height()},
+               {"film_width", film.width + 2 * border},
                {"seed_low", static_cast<std::uint32_t>(options.seed)},
                {"seed_high", static_cast<std::uint32_t>(options.seed >> 32)},
                {"blend_bin", static_cast<std::uint32_t>(1 + 2 * scene.kinds.size())}};
@@ -241,9 +245,8 @@ Session::Session(Device &session_device, const Scene &s, const SessionOptions &s
         numbers["environment_rows"] = scene.environment->rows;
         numbers["environment_strip_count"] = static_cast<std::uint32_t>(scene.environment->strips.size() / 2);
     }
-    numbers["shared_start"] = SharedWeights(*this).chosen_start();
     set_divisor(*this, "pixels", "pixels", pixels());
-    set_divisor(*this, "width", "crop_width", film.crop_width);
+    set_divisor(*this, "width", "crop_width", width());
     if (traits["TRAIT_LIGHT_TREE"]) {
         reals["light_tree_x"] = scene.light_tree.origin[0];
         reals["light_tree_y"] = scene.light_tree.origin[1];

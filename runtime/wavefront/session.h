@@ -27,7 +27,8 @@ struct Session {
     Device &device;
     SessionOptions options;
     RenderSettings settings;
-    FilmSettings film; ///< with its crop set
+    FilmSettings film;    ///< with its crop set: the image
+    std::uint32_t border; ///< pixels around the image that are sampled too, as far as the filter reaches
     TraitMap traits;
     MaterialClasses material_classes; ///< where materials have textures, blends or maps
     SceneTables scene;
@@ -53,7 +54,25 @@ struct Session {
         scene_buffers.emplace_back(device, name, values.data(), values.size() * sizeof(values[0]));
     }
     bool has(const char *trait) const { return traits.at(trait) != 0; }
-    std::uint32_t pixels() const { return film.crop_width * film.crop_height; }
+    /// What is sampled: the image and its border, line by line. Tables of pixels have rows for all of these.
+    std::uint32_t width() const { return film.crop_width + 2 * border; }
+    std::uint32_t height() const { return film.crop_height + 2 * border; }
+    std::uint32_t pixels() const { return width() * height(); }
+    std::size_t image_pixels() const { return std::size_t(film.crop_width) * film.crop_height; }
+    /// Whether samples count for the pixels around: then they are kept until those are there.
+    bool has_frame() const { return border > 0; }
+    /// How many samples of a frame come after that of a pixel until all are there that count for it.
+    std::uint32_t filter_lag() const { return border * (width() + 1); }
+    /// After `samples` samples, frame by frame, how many pixels have had all that count for them: so many, frame by
+    /// frame, but for those of the border.
+    std::uint64_t filtered_samples(std::uint64_t samples) const {
+        const std::uint64_t more = samples % pixels();
+        return samples - std::min<std::uint64_t>(more, filter_lag());
+    }
+    /// Of a pixel of the image the number among those that are sampled.
+    std::size_t sampled_pixel(std::size_t pixel) const {
+        return border == 0 ? pixel : (pixel / film.crop_width + border) * width() + pixel % film.crop_width + border;
+    }
     std::uint32_t max_depth() const;
     /// Whether surfaces emit, and whether light is sampled at vertices.
     bool has_emission() const { return has("TRAIT_LIGHT_TRIANGLE") || has("TRAIT_LIGHT_SPHERE"); }

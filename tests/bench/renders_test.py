@@ -121,7 +121,7 @@ class RandomScenes(unittest.TestCase):
 class NothingToMeasure(unittest.TestCase):
     def test_is_an_error_in_words(self):
         for command in (["lights.py"], ["error_calibration.py", "--variants", "pt"],
-                        ["instances.py", "--only", "bogus"]):
+                        ["instances.py", "--only", "bogus"], ["filters.py", "no-such-scene.xml"]):
             result = subprocess.run([sys.executable, ROOT / "bench" / "render" / command[0], *command[1:]],
                                     capture_output=True, text=True)
             self.assertEqual(result.returncode, 2, command)

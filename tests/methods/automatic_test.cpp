@@ -309,8 +309,23 @@ TEST(RowPilot, RendersRowsOfTheImage) {
     }
 }
 
-/// Samples of a pilot have numbers of their own, and so weights, where these may be negative: what is as bright
-/// everywhere is so in its image, too.
+/// Its pairs of rows lie far apart: what of one would count for the next is of another place. So it tells the noise of
+/// samples by themselves, whichever the filter: a Gaussian would leave a third of it.
+TEST(Pilot, OfRowsKnowsNoFilter) {
+    const auto error_with = [](FilmSettings::Filter filter, float radius) {
+        Scene scene = own_scene("cornell-box.xml", 64, 64);
+        scene.film.filter = filter;
+        scene.film.filter_radius = radius;
+        scene.settings.samples_per_pixel = pilot_samples;
+        GradientPathTracer method(shared_device(), scene, RenderOptions());
+        return run_row_pilot(method, 32).error;
+    };
+    const double box = error_with(FilmSettings::Filter::box, 0.5f);
+    EXPECT_NEAR(error_with(FilmSettings::Filter::gaussian, 2) / box, 1, 0.25);
+    EXPECT_NEAR(error_with(FilmSettings::Filter::lanczos, 3) / box, 1, 0.25);
+}
+
+/// Samples of a pilot have numbers of their own: what is as bright everywhere is so in its image, too.
 TEST(Pilot, IsAsBrightAsTheImage) {
     for (const auto filter : {FilmSettings::Filter::lanczos, FilmSettings::Filter::mitchell})
         for (const std::uint64_t seed : {0, 1, 3}) {

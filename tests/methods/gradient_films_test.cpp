@@ -45,11 +45,8 @@ struct RandomFilm {
     }
 };
 
-/// Of `frames` frames that weigh 1, and of one more.
-GradientFilm::Weights even_weights(std::uint64_t frames) {
-    const auto of = [](double n) { return SampleWeights{n, n, std::max(n - 1, 0.0)}; };
-    return {of(double(frames)), of(double(frames + 1))};
-}
+/// Without a border.
+constexpr GradientFilm::Area film_area{film_width, film_height, 0};
 
 TEST(GradientFilms, AreSummedPixelByPixel) {
     SceneMaker maker(film_width, film_height);
@@ -64,8 +61,7 @@ TEST(GradientFilms, AreSummedPixelByPixel) {
         buffers.emplace_back(device, "gradient_film", film.values.data(), film.values.size() * sizeof(float));
     GradientFilms all(tracer, true);
     for (std::size_t i = 0; i < films.size(); ++i)
-        all.add(buffers[i], film_width, film_height, Precision::single, films[i].samples,
-                even_weights(films[i].samples / film_pixels));
+        all.add(buffers[i], film_area, Precision::single, films[i].samples);
 
     std::vector<float> mean(film_pixels), variance(film_pixels);
     for (const auto layer : {GradientFilm::primal, GradientFilm::dx, GradientFilm::dy})
@@ -110,8 +106,8 @@ TEST(GradientFilms, OfFewSamplesTellTheVarianceOfAll) {
     std::vector<Buffer> buffers;
     for (const RandomFilm *film : {&even, &odd})
         buffers.emplace_back(device, "gradient_film", film->values.data(), film->values.size() * sizeof(float));
-    films.add(buffers[0], film_width, film_height, Precision::single, even.samples, even_weights(1));
-    films.add(buffers[1], film_width, film_height, Precision::single, odd.samples, even_weights(1));
+    films.add(buffers[0], film_area, Precision::single, even.samples);
+    films.add(buffers[1], film_area, Precision::single, odd.samples);
     std::vector<float> variance(film_pixels);
     for (const auto layer : {GradientFilm::primal, GradientFilm::dx, GradientFilm::dy}) {
         films.variance(layer)(0, variance.data());
@@ -135,7 +131,7 @@ TEST(GradientFilms, WithoutASampleAreMissing) {
     const RandomFilm film(1, 3 * film_width);
     const Buffer buffer(device, "gradient_film", film.values.data(), film.values.size() * sizeof(float));
     GradientFilms films(tracer);
-    films.add(buffer, film_width, film_height, Precision::single, film.samples, even_weights(0));
+    films.add(buffer, film_area, Precision::single, film.samples);
     EXPECT_EQ(films.pixels_with_samples(), 3 * film_width);
     const ImageSources images = films.images();
     std::vector<float> mean(film_pixels), solved(film_pixels);
@@ -151,6 +147,44 @@ TEST(GradientFilms, WithoutASampleAreMissing) {
                 ASSERT_EQ(solved[pixel], mean[pixel]) << layer << ", pixel " << pixel;
             else
                 ASSERT_TRUE(std::isnan(solved[pixel])) << layer << ", pixel " << pixel;
+        }
+    }
+}
+
+/// A film whose table has rows for a border too: the image is what lies within, and has no difference to what does not.
+/// Of the last frame the upper rows have a sample more, the border's counted in.
+TEST(GradientFilms, LeaveTheirBorderOut) {
+    SceneMaker maker(film_width, film_height);
+    maker.floor(-1, 1, 1, maker.material(diffuse(0.5)), 0);
+    Tracer tracer(maker.scene, 2);
+    Device device;
+    for (const std::uint32_t border : {1u, 3u}) {
+        const GradientFilm::Area area{film_width - 2 * border, film_height - 2 * border, border};
+        // Up to the middle of a row, within the border beside it, above the image, below it, and all.
+        for (const std::size_t more :
+             {std::size_t(15 * film_width + 20), std::size_t(16 * film_width + 1), std::size_t(17 * film_width - 1),
+              std::size_t(5), std::size_t((film_height - border) * film_width + 4), std::size_t(0)}) {
+            const RandomFilm film(1, 2 * film_pixels + more);
+            const Buffer buffer(device, "gradient_film", film.values.data(), film.values.size() * sizeof(float));
+            GradientFilms films(tracer);
+            films.add(buffer, area, Precision::single, film.samples);
+            ASSERT_EQ(films.pixels(), std::size_t(area.width) * area.height);
+            EXPECT_EQ(films.frames(), 2u);
+            std::vector<float> mean(films.pixels());
+            std::size_t samples = 0;
+            for (const auto layer : {GradientFilm::primal, GradientFilm::dx, GradientFilm::dy}) {
+                films.mean(layer)(1, mean.data());
+                for (std::size_t pixel = 0; pixel < films.pixels(); ++pixel) {
+                    const std::size_t x = pixel % area.width, y = pixel / area.width;
+                    const std::size_t row = (y + border) * film_width + x + border;
+                    const bool is_outside = (layer == GradientFilm::dx && x + 1 == area.width) ||
+                                            (layer == GradientFilm::dy && y + 1 == area.height);
+                    const double expected = is_outside ? 0 : film.sum(layer, 1, row) / film.count(layer, row);
+                    ASSERT_FLOAT_EQ(mean[pixel], float(expected)) << layer << ", " << x << ", " << y << ", " << more;
+                    samples += layer == GradientFilm::primal ? std::size_t(film.count(layer, row)) : 0;
+                }
+            }
+            EXPECT_EQ(films.samples(), samples) << more;
         }
     }
 }

@@ -31,7 +31,7 @@ TEST_P(GradientInvariance, ToTheBatchSize) {
     }
 }
 
-/// Its samples weigh, and variances tell of the weights of those before.
+/// Its samples count for pixels of other strips.
 TEST(GradientInvarianceOfAFilter, WithNegativeLobesToTheBatchSize) {
     Scene scene = own_scene("cornell-box.xml", 21, 31);
     scene.settings.samples_per_pixel = 7;

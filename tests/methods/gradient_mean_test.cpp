@@ -48,7 +48,7 @@ TEST(GradientMean, OfL2IsUnbiased) {
     }
 }
 
-/// The sign of a sample is the same for all pixels, and so is its place in the lens.
+/// The place of a sample in the pixel is the same for all pixels, and so is that in the lens.
 TEST(GradientMean, OfAFilterWithNegativeLobesAndALens) {
     Scene scene = own_scene("cornell-box.xml", 32, 32);
     scene.camera.kind = Camera::Kind::thin_lens;
@@ -64,8 +64,9 @@ TEST(GradientMean, OfAFilterWithNegativeLobesAndALens) {
         << bias.differences.squared << ", standard error " << bias.differences.standard_error;
 }
 
-/// Weights that all pixels share are a factor of the whole image. Of few samples the brightness of a plain wall was
-/// anything between half and twice what it is, in single renders, where the mean of many was right.
+/// Weights that all pixels share are a factor of the whole image, unless they sum up to 1: with importance sampling of
+/// the filter's magnitude the brightness of a plain wall was anything between half and twice what it is, in single
+/// renders of few samples, where the mean of many was right.
 TEST(GradientStability, OfTheBrightnessWithNegativeLobes) {
     SceneMaker maker(24, 1);
     maker.parallelogram({-20, -20, 1}, {0, 40, 0}, {40, 0, 0}, maker.material(two_sided(diffuse(0.5))));
@@ -90,7 +91,7 @@ TEST(GradientStability, OfTheBrightnessWithNegativeLobes) {
                 }
     record_stability({"Gradients", "weights of negative lobes that all pixels share: a factor of the whole image",
                       "a wall under an even sky, Lanczos' and Mitchell's filters, 1 to 16 samples, 3 seeds",
-                      "sums go over the weights' sum, and sequences start where few do not cancel out",
+                      "a sample serves all pixels that the filter reaches, by weights whose sum is 1",
                       "relative error of a render's brightness", off, 0.05});
 }
 

@@ -1,7 +1,9 @@
 // Images of photon mapping: in closed form, and against path tracing.
 #include "methods/photon_mapper.h"
 #include "runtime/error.h"
+#include "runtime/scene/traits.h"
 #include "tests/methods/photon_case.h"
+#include "tests/methods/photon_scenes.h"
 #include "tests/methods/reference_scene.h"
 #include "tests/support/render.h"
 #include "tests/support/small_scenes.h"
@@ -280,6 +282,45 @@ TEST(PathLength, CountsBothSides) {
         EXPECT_EQ(spread_of(render(maker.scene, options, "sppm").image).most, 0);
         maker.scene.settings.max_depth = 3;
         EXPECT_GT(spread_of(render(maker.scene, options, "sppm").image).mean, 0);
+    }
+}
+
+// Of an index near 1, which rough glass hardly scatters what passes: a lobe that next to no photons fall into. Lamp and
+// camera see a floor through a block of it, so camera paths and light paths both have to pass it.
+TEST(NearlyClearGlass, IsPassedByCameraAndLightPathsHoweverRough) {
+    Bsdf principled = rough_glass(0.36, 1.002);
+    principled.kind = BsdfKind::principled_clear;
+    principled.reflectance = {1, 1, 1};
+    principled.roughness = 0.6f;
+    principled.spec_trans = 1;
+    for (const Bsdf &bsdf : {rough_glass(0.377, 1.002), principled}) {
+        SceneMaker maker(12, 32);
+        maker.look({0, 0.8, -2.5}, {0, 0.2, 0}, 18);
+        maker.scene.settings.max_depth = 10;
+        const std::uint32_t white = maker.material(diffuse(0.8));
+        maker.floor(-2, 2, 2, white);
+        maker.lamp({0, 3, 0}, 1.5f, 1.5f, 10, white);
+        add_glass(maker, "a block", maker.material(bsdf));
+        RenderOptions options = with_radius(1, false);
+        options.photons = 20'000;
+        options.reconstruction = Reconstruction::l2; // which keeps the mean
+        const auto mean = [&](const char *method, std::uint64_t samples) {
+            maker.scene.settings.samples_per_pixel = samples;
+            std::vector<double> means;
+            for (const Image &image : render_seeds(maker.scene, 6, options, 1, method))
+                means.push_back(spread_of(image).mean);
+            return spread_of(means);
+        };
+        const Spread expected = mean("pt", 256);
+        for (const char *method : {"sppm", "gpm"}) {
+            const Spread found = mean(method, 8);
+            const double error = std::hypot(expected.standard_error, found.standard_error);
+            fmt::print("{}, {}: {:.5f} +- {:.5f}, pt {:.5f} +- {:.5f}\n", bsdf_kind_name(bsdf), method, found.mean,
+                       found.standard_error, expected.mean, expected.standard_error);
+            // As of PathKinds, without the bias at corners.
+            EXPECT_NEAR(found.mean, expected.mean, 6 * error + 0.005 * expected.mean) << method;
+            EXPECT_LT(error, 0.01 * expected.mean) << "too noisy to tell";
+        }
     }
 }
 

@@ -67,8 +67,7 @@ TEST(Variances, OfThreeIndependentSamplesAreTheirs) {
                      std::string("gpt: ") + layer);
 }
 
-/// Samples of a frame have a weight in common, of either sign: their spread is that of what is weighed. That of what
-/// they are times it would tell four times the variance.
+/// Samples count for all pixels around: the spread is that of what they add up to at a pixel.
 TEST(Variances, OfFiltersWithNegativeLobesAreTheirs) {
     RenderOptions options = with_aov();
     options.sampler = RenderOptions::Sampler::independent;
@@ -83,8 +82,8 @@ TEST(Variances, OfFiltersWithNegativeLobesAreTheirs) {
                      std::string("gpt: ") + layer);
 }
 
-/// An evenly lit wall: noise is some 1e-4 of the value. What is left of the weights' own spread, times the value, would
-/// tell a thousand times the variance, and none in half of the pixels. Halves have films of their own.
+/// An evenly lit wall: noise is some 1e-4 of the value. From sums of squares the mean's could not be taken off: half of
+/// the pixels would tell none. Halves have films of their own.
 TEST(Variances, OfFiltersWithNegativeLobesAreTheirsWhereNoiseIsSmall) {
     SceneMaker maker(side, 16);
     maker.look({0, 1.5, -3}, {0, 0, 0}, 20, {0, 0, 1});
@@ -106,7 +105,7 @@ TEST(Variances, OfFiltersWithNegativeLobesAreTheirsWhereNoiseIsSmall) {
     }
 }
 
-/// Edges: what samples weigh and what they show go by the same places.
+/// Edges: what samples weigh for the pixels around and what they show go by the same places.
 TEST(FullVariances, OfFiltersWithNegativeLobesAreTheirsAtEdges) {
     RenderOptions options = with_aov();
     options.sampler = RenderOptions::Sampler::independent;
@@ -178,7 +177,7 @@ TEST(Variances, CostOthersNothing) {
     }
 }
 
-/// Batches end anywhere: replicates, and the weights of those before, go by a sample's number.
+/// Batches end anywhere: replicates, and the places in the pixel, go by a sample's number.
 TEST(Variances, DoNotDependOnBatches) {
     Scene scene = strips(7);
     for (const bool is_signed : {false, true}) {

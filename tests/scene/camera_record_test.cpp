@@ -91,16 +91,6 @@ TEST(CameraRecord, FollowsTheTransformButNotItsScale) {
     expect_direction(ray_through(record, 50, 50), {1, 0, 0});
 }
 
-TEST(CameraRecord, HoldsTheFilter) {
-    FilmSettings film = film_of(10, 10);
-    film.filter_radius = 1.75f;
-    film.filter_stddev = 0.4f;
-    const std::vector<float> record = make_camera_record(Camera{}, film);
-    ASSERT_EQ(record.size(), std::size_t(camera_stride)); // without a table
-    EXPECT_EQ(record[camera_filter_radius], 1.75f);
-    EXPECT_EQ(record[camera_filter_stddev], 0.4f);
-}
-
 /// On a film of 4 x 2 pixels, at (x, y) of it; the middle of the lens is at lens_1 = 0.
 camera_sight sight_of(const Camera &camera, double x, double y, double lens_1 = 0, double lens_2 = 0) {
     const std::vector<float> record = make_camera_record(camera, film_of(4, 2), {true, true});

@@ -13,6 +13,7 @@
 #include <limits>
 
 // After GoogleTest, which has template parameters of the names of its macros.
+#include "kernels/lib/filter_table.h"
 #include "kernels/shared/tables.h"
 
 namespace gradus {
@@ -35,7 +36,7 @@ struct FilmUnderTest {
     FilmUnderTest(Device &device, std::uint32_t slots, const Scene &scene, const SessionOptions &options, bool halves)
         : session(device, scene, options, {{"TRAIT_PART_BITS", part_bits(options, halves)}}),
           film(session, stages, halves),
-          tables(device, film.tables(), {64, slots, session.pixels(), scene.film.width, 1}, Precision::single) {
+          tables(device, film.tables(), {64, slots, session.pixels(), session.width(), 1}, Precision::single) {
         session.numbers["slots"] = slots;
         stages.build(session, tables);
         film.attach(tables);
@@ -60,6 +61,14 @@ struct FilmUnderTest {
         for (int c = 0; c < 3; ++c)
             for (std::uint32_t slot = 0; slot < count; ++slot)
                 radiance[std::size_t(radiance_value_r + c) * tables.rows().slots + slot] = float(value(slot, c));
+    }
+
+    /// Sets the depth of slots [0, count) to value(slot).
+    template <class Value>
+    void set_depth(std::uint32_t count, Value value) {
+        const auto view = tables["feature"].map(Access::read_write);
+        for (std::uint32_t slot = 0; slot < count; ++slot)
+            view.template as<float>()[std::size_t(feature_depth) * tables.rows().slots + slot] = float(value(slot));
     }
 
     /// Sets all features of all slots.
@@ -209,44 +218,127 @@ TEST_F(FilmTest, KnowsTheMeanOfFeatures) {
     EXPECT_NEAR(image.find("albedo.R")->values[0], albedo, 4 * std::sqrt(count / 3.0) * 0x1p-25 * albedo);
 }
 
+/// Also where halves are films of their own, and where noise is a hundred-thousandth of the value.
 TEST_F(FilmTest, KnowsTheVarianceOfItsMean) {
-    FilmUnderTest test(device, 64, 1, 1, true);
-    test.tables["feature"].clear();
-    test.set_radiance(4, [](std::uint32_t slot, int c) { return (c + 1) * double(slot); }); // 0, 1, 2, 3
-    test.film.add(4, 0);
-    std::uint64_t non_finite = 0;
-    const Image image = test.film.image(4, non_finite);
-    // Sample variance 5/3, over 4.
-    EXPECT_FLOAT_EQ(image.find("variance.R")->values[0], float(5.0 / 12));
-    EXPECT_FLOAT_EQ(image.find("variance.B")->values[0], float(9 * 5.0 / 12));
+    for (const bool halves : {false, true})
+        for (const double apart : {1.0, 0x1p-15}) {
+            FilmUnderTest test(device, 64, FilmUnderTest::scene_of(1, 1),
+                               FilmUnderTest::options_with(true, FilmUnderTest::Sampler::independent), halves);
+            test.tables["feature"].clear();
+            // 0, 1, 2, 3 times that, upon 1.
+            test.set_radiance(4, [apart](std::uint32_t slot, int c) { return (c + 1) * (1 + apart * slot); });
+            test.film.add(4, 0);
+            std::uint64_t non_finite = 0;
+            const Image image = test.film.image(4, non_finite);
+            // Sample variance 5/3, over 4.
+            const double expected = 5.0 / 12 * apart * apart;
+            EXPECT_NEAR(image.find("variance.R")->values[0], expected, 1e-3 * expected) << halves << ", " << apart;
+            EXPECT_NEAR(image.find("variance.B")->values[0], 9 * expected, 9e-3 * expected) << halves << ", " << apart;
+        }
 }
 
-/// Two samples tell (x - y)^2 / 2, whatever they weigh, and whether each is a half by itself or not.
-TEST_F(FilmTest, KnowsTheVarianceOfItsMeanWhereSamplesWeigh) {
-    Scene scene = FilmUnderTest::scene_of(1, 1);
-    scene.film.filter = FilmSettings::Filter::lanczos;
-    scene.film.filter_radius = 3;
-    const double values[] = {1, 1.001};
-    for (const bool halves : {false, true}) {
-        FilmUnderTest test(device, 64, scene, FilmUnderTest::options_with(true, FilmUnderTest::Sampler::independent),
-                           halves);
-        test.tables["feature"].clear();
-        test.set_radiance(2, [&](std::uint32_t slot, int c) { return (c + 1) * values[slot]; });
-        const SharedWeights::Sums first = test.film.weights().sums(1, 0, 1), both = test.film.weights().sums(2, 0, 1);
-        {
-            const auto view = test.tables["filtered"].map(Access::write);
-            view.as<float>()[0] = float(first.weights);
-            view.as<float>()[1] = float(both.weights - first.weights);
+/// A film whose samples count for the pixels around.
+Scene scene_with_filter(std::uint32_t width, std::uint32_t height, FilmSettings::Filter filter, float radius) {
+    Scene scene = FilmUnderTest::scene_of(width, height);
+    scene.film.filter = filter;
+    scene.film.filter_radius = radius;
+    return scene;
+}
+
+/// What samples of a frame add up to at a pixel of the image, in double; `sample(x, y)` of the film and what is around.
+template <class Sample>
+double filtered(const Session &session, std::uint64_t frame, int x, int y, const Sample &sample) {
+    const FramePlace place = frame_place(session, frame);
+    const auto reach = int(session.border);
+    const float *taps = session.scene.filter.taps.data();
+    double sum = 0;
+    for (int j = -reach; j <= reach; ++j)
+        for (int i = -reach; i <= reach; ++i)
+            sum += double(filter_tap(taps, session.border, filter_place_at(place.x), std::uint32_t(reach - i))) *
+                   filter_tap(taps, session.border, filter_place_at(place.y), std::uint32_t(reach - j)) *
+                   sample(x + i, y + j);
+    return sum;
+}
+
+/// Whatever the batches are; and of a frame that is there in part only the pixels that have all around them.
+TEST_F(FilmTest, FiltersWhatIsAround) {
+    constexpr std::uint32_t width = 6, height = 4, frames = 5;
+    using Filter = FilmSettings::Filter;
+    for (const auto &[filter, radius] : {std::pair{Filter::gaussian, 2.0f},
+                                         {Filter::tent, 1.0f},
+                                         {Filter::lanczos, 3.0f},
+                                         {Filter::tent, 5.0f},
+                                         {Filter::tent, 0.4f}}) {
+        const auto value = [](std::uint64_t sample, int c) { return double(sample * 7919 % 1009) / 1009 + c; };
+        std::vector<float> first;
+        for (const std::uint32_t batch : {1000u, 37u, 16u}) {
+            FilmUnderTest test(device, 1024, scene_with_filter(width, height, filter, radius),
+                               FilmUnderTest::options_with(true, FilmUnderTest::Sampler::independent), false);
+            const std::uint32_t wide = test.session.width(), pixels = test.session.pixels();
+            const auto border = int(test.session.border);
+            ASSERT_EQ(pixels, (width + 2 * border) * (height + 2 * border));
+            // All of some frames, and of one more the image's first two rows with what is around them, and a pixel.
+            const std::uint32_t samples = frames * pixels + (2 * border + 2) * wide + 2 * border + 1;
+            test.set_features(0.5f);
+            for (std::uint32_t done = 0, count; done < samples; done += count) {
+                count = std::min(batch, samples - done);
+                test.set_radiance(count, [&](std::uint32_t slot, int c) { return value(done + slot, c); });
+                test.set_depth(count, [&](std::uint32_t slot) { return value(done + slot, 3); });
+                test.film.add(count, done % pixels, done / pixels);
+            }
+            std::uint64_t non_finite = 0;
+            const Image image = test.film.image(samples, non_finite);
+            ASSERT_EQ(image.width, width);
+            ASSERT_EQ(image.height, height);
+            for (std::uint32_t pixel = 0; pixel < width * height; ++pixel) {
+                const int x = int(pixel % width), y = int(pixel / width);
+                const std::uint32_t count = frames + (pixel <= 2 * width ? 1 : 0);
+                double mean = 0; // of what is about a half
+                for (std::uint32_t frame = 0; frame < count; ++frame)
+                    mean +=
+                        filtered(test.session, frame, x, y,
+                                 [&](int column, int row) {
+                                     return value(std::uint64_t(frame) * pixels + std::uint64_t(row + border) * wide +
+                                                      std::uint64_t(column + border),
+                                                  0);
+                                 }) /
+                        count;
+                ASSERT_NEAR(image.find("G")->values[pixel], 1 + mean, 1e-5)
+                    << radius << ", batches of " << batch << ", " << x << ", " << y;
+                ASSERT_NEAR(image.find("depth.Z")->values[pixel], 3 + mean, 1e-5) << radius << ", " << x << ", " << y;
+            }
+            EXPECT_NEAR(image.find("albedo.R")->values[width], 0.5, 1e-6); // constant
+            std::vector<float> all;
+            for (const Channel &channel : image.channels)
+                all.insert(all.end(), channel.values.begin(), channel.values.end());
+            if (first.empty())
+                first = all;
+            EXPECT_EQ(first, all) << radius << ", batches of " << batch;
         }
-        test.film.add(2, 0);
-        std::uint64_t non_finite = 0;
-        const Image image = test.film.image(2, non_finite);
-        const double weight = test.film.weights().of_part(2, 0, 1);
-        // The values are a thousandth apart, which is what leaves rounding.
-        const double expected = 1e-6 / 2 * both.squares / (weight * weight);
-        EXPECT_NEAR(image.find("variance.R")->values[0], expected, 1e-3 * expected) << halves;
-        EXPECT_NEAR(image.find("variance.B")->values[0], 9 * expected, 9e-3 * expected) << halves;
     }
+}
+
+/// What is not finite is left out of all pixels that it counts for, and of no others.
+TEST_F(FilmTest, LeavesOutWhatIsNotFiniteAround) {
+    constexpr std::uint32_t size = 9;
+    FilmUnderTest test(device, 512, scene_with_filter(size, size, FilmSettings::Filter::tent, 1),
+                       FilmUnderTest::options_with(false, FilmUnderTest::Sampler::independent), false);
+    const std::uint32_t pixels = test.session.pixels();
+    const std::size_t bad = test.session.sampled_pixel(4 * size + 3);
+    for (std::uint32_t frame = 0; frame < 2; ++frame) {
+        test.set_radiance(pixels, [&](std::uint32_t slot, int) {
+            return frame == 1 && slot == bad ? std::numeric_limits<double>::quiet_NaN() : frame + 1.0;
+        });
+        test.film.add(pixels, 0, frame);
+    }
+    std::uint64_t non_finite = 0;
+    const Image image = test.film.image(2 * pixels, non_finite);
+    EXPECT_EQ(non_finite, 9u);
+    for (int y = 0; y < int(size); ++y)
+        for (int x = 0; x < int(size); ++x)
+            EXPECT_NEAR(image.find("R")->values[std::size_t(y) * size + std::size_t(x)],
+                        std::abs(x - 3) <= 1 && std::abs(y - 4) <= 1 ? 1 : 1.5, 1e-6)
+                << x << ", " << y;
 }
 
 /// A place and a width whose sum is small in 32 bits.
