@@ -51,7 +51,7 @@ std::vector<DirectPixel> sample_direct_edges(const SceneTables &tables, const Fi
     DirectRays direct(tables, tracer, rays);
     const int reach = int(filter_reach(film));
     // Rays that serve many pixels take longer, and fewer are needed.
-    const double taps_of_usual = 25, taps_of_this = (2.0 * reach + 1) * (2 * reach + 1);
+    const double taps_of_usual = 49, taps_of_this = (2.0 * reach + 1) * (2 * reach + 1);
     const double budget =
         rays_a_sample * samples * film.crop_width * film.crop_height * std::min(taps_of_usual / taps_of_this, 1.0);
     const double most = std::min<double>(least_of_most + double(most_a_sample) * samples, most_samples);
