@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <functional>
 #include <numeric>
 
@@ -114,6 +115,29 @@ TEST_P(Filter, IsThatOfGradientsToo) {
         const Spread primal = spread_of(primals), step = spread_of(steps);
         EXPECT_NEAR(primal.mean, expected(x), 6 * primal.standard_error + 1e-3) << x;
         EXPECT_NEAR(step.mean, expected(x + 1) - expected(x), 6 * step.standard_error + 1e-3) << x;
+    }
+}
+
+/// At its edges too: samples around it are those of the whole image.
+TEST_P(Filter, OfACropIsThatOfTheWhole) {
+    Scene scene = own_scene("cornell-box.xml", 24, 18);
+    scene.settings.samples_per_pixel = 4;
+    GetParam().set(scene.film);
+    RenderOptions options;
+    options.aov = true;
+    const Image whole = render(scene, options).image;
+    for (const auto &[x, y, width, height] : {std::array{0u, 0u, 5u, 4u}, {19u, 14u, 5u, 4u}, {7u, 3u, 1u, 9u}}) {
+        scene.film.crop_x = x;
+        scene.film.crop_y = y;
+        scene.film.crop_width = width;
+        scene.film.crop_height = height;
+        const Image crop = render(scene, options).image;
+        for (const char *name : {"R", "albedo.G", "depth.Z", "variance.B"})
+            for (std::uint32_t row = 0; row < height; ++row)
+                for (std::uint32_t column = 0; column < width; ++column)
+                    ASSERT_EQ(crop.find(name)->values[row * width + column],
+                              whole.find(name)->values[(y + row) * whole.width + x + column])
+                        << name << " at " << x + column << ", " << y + row;
     }
 }
 
