@@ -64,7 +64,8 @@ nlohmann::json camera_json(const Camera &camera) {
 /// What the method holds for all pixels, with its own reconstruction.
 std::uint64_t image_bytes(const Scene &scene, const std::string &method) {
     const auto [width, height] = image_size(scene.film);
-    return std::uint64_t(width) * height * bytes_of_pixel(method, {}, scene.settings.samples_per_pixel);
+    return std::uint64_t(width) * height * bytes_of_pixel(method, {}, scene.settings.samples_per_pixel) +
+           bytes_around(scene, method, {});
 }
 
 std::string summary_text(const Scene &scene, const SceneSummary &summary, const Traits &traits, double roughness) {

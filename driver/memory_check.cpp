@@ -2,8 +2,10 @@
 
 #include "driver/scene_request.h"
 #include "driver/scene_summary.h"
+#include "kernels/lib/filter_table.h"
 #include "methods/method.h"
 #include "runtime/error.h"
+#include "runtime/scene/filter_table.h"
 #include "runtime/wavefront/sample_parts.h"
 
 #include <fmt/format.h>
@@ -120,6 +122,21 @@ std::uint64_t bytes_of_pixel(const std::string &method, const RenderOptions &opt
     return has_parts ? 140 : options.aov ? 80 : options.error ? 56 : 28;
 }
 
+std::uint64_t bytes_around(const Scene &scene, const std::string &method, const RenderOptions &options) {
+    const std::uint64_t reach = filter_reach(scene.film);
+    if (reach == 0)
+        return 0;
+    const auto [width, height] = image_size(scene.film);
+    const std::uint64_t pixels = std::uint64_t(width) * height, sampled = (width + 2 * reach) * (height + 2 * reach);
+    const bool has_differences = method == "gpt" || method == "gpm";
+    const std::uint64_t parts = has_replicates(options) ? 4 : options.error || has_differences ? 2 : 1;
+    // Films have rows for what is around, too, and a frame is kept of all.
+    const std::uint64_t film = parts * (has_differences ? 136 : 28);
+    const std::uint64_t frame = (has_differences ? 48 : 12) + (needs_features(options) ? 28 : 0);
+    const std::uint64_t table = (filter_cells + 1) * (2 * (2 * reach + 1) + 1) * sizeof(float);
+    return (sampled - pixels) * film + sampled * frame + table;
+}
+
 std::uint64_t least_render_bytes(const Scene &scene, const std::string &method, const RenderOptions &options) {
     std::uint64_t channels = 3;
     if (needs_features(options))
@@ -137,7 +154,7 @@ std::uint64_t least_render_bytes(const Scene &scene, const std::string &method, 
     const std::uint64_t of_pixel =
         std::max(bytes_of_pixel(method, options, scene.settings.samples_per_pixel), channels * 2 * sizeof(float));
     return summary.geometry_bytes + summary.instance_bytes + 2 * summary.texture_bytes + summary.tree_bytes +
-           std::uint64_t(width) * height * of_pixel;
+           std::uint64_t(width) * height * of_pixel + bytes_around(scene, method, options);
 }
 
 std::uint64_t container_bytes(const std::filesystem::path &groups, const std::filesystem::path &trees) {

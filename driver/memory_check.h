@@ -13,6 +13,8 @@ struct Scene;
 /// What a method holds for each pixel at one time: its films, and what it reconstructs with. `auto`: the least of those
 /// that it picks from.
 std::uint64_t bytes_of_pixel(const std::string &method, const RenderOptions &options, std::uint64_t samples_per_pixel);
+/// What it holds more where the pixel filter reaches beyond its pixel: samples around the image, and those of a frame.
+std::uint64_t bytes_around(const Scene &scene, const std::string &method, const RenderOptions &options);
 
 /// Bytes of memory that rendering this scene takes at the least: its geometry and the ray tracer's tree, the film and
 /// the reconstruction, or the image and the file that it is written as. Batches and what the OpenCL implementation

@@ -63,8 +63,9 @@ STAGE camera(uint count, uint unit, uint capacity, uint slots, __global real *ra
 #endif
 #if TRAIT_SHARED_JITTER
     /* All pixels of a sample share their place within the pixel. TRAIT_SHARED_START: and their point of the lens, so
-     * that base and offset paths are each other's first segments. */
-    const sample_place shared = shared_number_at(place);
+     * that base and offset paths are each other's first segments; else halves, which are to tell the image's error,
+     * have a sequence of their own each. */
+    const sample_place shared = TRAIT_SHARED_START ? shared_number_at(place) : sample;
     const random_bits start = random_key(seed_low, seed_high, 0xFFFFFFFFu, 0u, shared.high);
 #if TRAIT_STRATIFIED
     /* In a sequence that fills the pixel evenly: what all pixels share does not average out over the image. */

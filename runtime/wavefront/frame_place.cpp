@@ -9,9 +9,10 @@ namespace gradus {
 using namespace lib_float;
 
 FramePlace frame_place(const Session &session, std::uint64_t frame) {
-    // Where parts are more than two, each has a sequence of its own (kernels/lib/sample_number.h).
+    // Where parts have a sequence of their own each (kernels/lib/sample_number.h).
     const int bits = session.traits.at("TRAIT_PART_BITS");
-    const std::uint64_t number = bits > 1 ? frame >> bits | frame << (64 - bits) : frame;
+    const bool is_apart = bits > 1 || (bits == 1 && !session.has("TRAIT_SHARED_START"));
+    const std::uint64_t number = is_apart ? frame >> bits | frame << (64 - bits) : frame;
     const std::uint64_t seed = session.options.seed;
     const random_bits start =
         random_key(std::uint32_t(seed), std::uint32_t(seed >> 32), 0xFFFFFFFFu, 0, std::uint32_t(number >> 32));

@@ -46,8 +46,13 @@ RenderOptions options_of(const MemoryCase &c) {
 }
 
 /// At the most at one time, for an image so wide and high: so large that the solver takes one channel after the other.
-double allocated(const MemoryCase &c, double side) {
+/// `radius`: of a tent filter; 0: a box.
+double allocated(const MemoryCase &c, double side, float radius = 0) {
     Scene scene = own_scene("cornell-box.xml", std::uint32_t(side), std::uint32_t(side));
+    if (radius > 0) {
+        scene.film.filter = FilmSettings::Filter::tent;
+        scene.film.filter_radius = radius;
+    }
     scene.settings.max_depth = 2;
     scene.settings.samples_per_pixel = c.samples;
     Device device;
@@ -69,6 +74,22 @@ TEST_P(BytesOfPixel, AreWhatRendersAllocate) {
     EXPECT_LE(told, of_large / (large * large)) << "renders that fit would be refused";
     // Small images grow by more: by the borders of the solver's planes.
     EXPECT_GE(told, growth * 0.8) << "renders that do not fit would be begun";
+}
+
+/// Where samples are taken around the image.
+TEST(BytesAround, AreWhatFiltersAllocate) {
+    constexpr double side = 320;
+    for (const float radius : {2.0f, 20.0f}) {
+        Scene scene = own_scene("cornell-box.xml", std::uint32_t(side), std::uint32_t(side));
+        scene.film.filter = FilmSettings::Filter::tent;
+        scene.film.filter_radius = radius;
+        const MemoryCase c{"pt"};
+        const double more = allocated(c, side, radius) - allocated(c, side);
+        const auto told = double(bytes_around(scene, c.method, options_of(c)));
+        fmt::print("radius {}: {:.0f} bytes more, told {:.0f}\n", radius, more, told);
+        EXPECT_NEAR(told / more, 1, 0.15);
+    }
+    EXPECT_EQ(bytes_around(own_scene("cornell-box.xml", 8, 8), "gpt", {}), 0u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, BytesOfPixel,

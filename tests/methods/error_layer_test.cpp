@@ -206,6 +206,36 @@ INSTANTIATE_TEST_SUITE_P(Reconstructions, ErrorOfRenders,
                                            RenderedErrors{"gpt", Reconstruction::guided, 0.4, 2.5},
                                            RenderedErrors{"pt", Reconstruction::guided, 0.4, 2.5}));
 
+/// With a filter all pixels share their places, so that the halves of one sequence of places would differ by twice the
+/// error and more at a lamp whose sides lie like the film's.
+TEST(ErrorLayer, OfPathTracingKnowsOfPlacesThatAllPixelsShare) {
+    const auto scene = [](std::uint64_t samples) {
+        SceneMaker maker(32, samples);
+        maker.scene.settings.max_depth = 1;
+        maker.look({0, 0, -1}, {0, 0, 0}, 90); // the film is 2 wide at z = 0
+        maker.environment(1);
+        const std::int32_t lamp = maker.emitter(Emitter::Kind::area, {5, 5, 5});
+        maker.parallelogram({-0.53f, -0.47f, 0}, {0, 1.07f, 0}, {0.91f, 0, 0}, maker.material(diffuse(0.5)), lamp);
+        maker.scene.film.filter = FilmSettings::Filter::gaussian;
+        maker.scene.film.filter_radius = 2;
+        return maker.scene;
+    };
+    RenderOptions options;
+    options.seed = 100;
+    const Image truth = render(scene(1 << 14), options, "pt").image;
+    constexpr int seeds = 16;
+    double told = 0, right = 0;
+    options.error = true;
+    for (options.seed = 1; options.seed <= seeds; ++options.seed) {
+        const Rendered rendered = render(scene(32), options, "pt");
+        told += rendered.statistics.estimated_error.value() / seeds;
+        right += relative_mse(rendered.image, truth) / seeds;
+    }
+    std::printf("relMSE %.3g, told %.3g\n", right, told);
+    EXPECT_GT(told / right, 0.6);
+    EXPECT_LT(told / right, 1.7);
+}
+
 /// Nothing but lamps that are seen: few, whose edges gpt samples anew, and so many that it does not.
 TEST(ErrorLayer, KnowsOfTheLightsThatAreSeen) {
     for (const int lamps : {8, 200}) {
