@@ -337,10 +337,10 @@ TEST_F(Render, TooManySamplesToCountAreRefused) {
 }
 
 TEST_F(Render, MemoryIsCheckedBeforeTheRender) {
-    // 2^32 pixels of 240 bytes.
+    // 2^32 pixels of 240 bytes, and a frame of 48 for its Gaussian filter.
     const Outcome outcome = render({"-o", "out.exr", "--size", "65536x65536", "--spp", "1", "-D", "batch_ms=60000"});
     EXPECT_EQ(outcome.exit_code, 4);
-    EXPECT_THAT(outcome.err, HasSubstr("not enough memory: rendering 65536x65536 pixels takes 983040 MB"));
+    EXPECT_THAT(outcome.err, HasSubstr("not enough memory: rendering 65536x65536 pixels takes 1179809 MB"));
     EXPECT_THAT(files(), ElementsAre("scene.xml"));
 }
 
