@@ -64,7 +64,7 @@ TEST(DirectEdges, AreWhatTheFilterHasOfTheLamp) {
         double whole = 0;
         for (int i = 0; i < steps; ++i)
             whole += filter_value(scene.film, ((i + 0.5) / steps * 2 - 1) * radius);
-        const auto share = [&](double low, double high, double pixel) {
+        const auto share = [&, radius = radius](double low, double high, double pixel) {
             double sum = 0;
             for (int i = 0; i < steps; ++i) {
                 const double x = ((i + 0.5) / steps * 2 - 1) * radius, at = pixel + 0.5 + x;
