@@ -240,9 +240,8 @@ Image DifferenceFilm::image(std::uint64_t samples, bool layers, bool last, std::
 GradientFilms DifferenceFilm::films(std::uint64_t samples) const {
     GradientFilms films(session_.tracer, keeps_halves(options_), has_replicates(session_.options));
     const auto parts = std::uint32_t(film_names_.size());
-    const GradientFilm::Area area{session_.film.crop_width, session_.film.crop_height, session_.border};
     for (std::uint32_t part = 0; part < parts; ++part)
-        films.add((*tables_)[film_names_[part]], area, options_.precision,
+        films.add((*tables_)[film_names_[part]], session_.area(), options_.precision,
                   samples_of_part(session_.filtered_samples(samples), session_.pixels(), part, parts));
     return films;
 }

@@ -19,14 +19,14 @@ double GradientFilm::sum(Layer layer, std::uint32_t color, std::size_t pixel) co
     const int number = 3 * layer + int(color);
     if (is_outside(layer, pixel))
         return 0;
-    return table_.real(gradient_film_primal_r + number, row_of(pixel)) +
-           table_.real(gradient_film_correction_first + number, row_of(pixel));
+    return table_.real(gradient_film_primal_r + number, area_.number_of(pixel)) +
+           table_.real(gradient_film_correction_first + number, area_.number_of(pixel));
 }
 
 void GradientFilm::add_sums(Layer layer, std::uint32_t color, std::size_t first, std::size_t end, double *to) const {
     const int number = 3 * layer + int(color);
     Values sums{};
-    const std::size_t row = row_of(first), end_of_rows = row + end - first;
+    const std::size_t row = area_.number_of(first), end_of_rows = row + end - first;
     table_.add_reals(gradient_film_primal_r + number, row, end_of_rows, sums.data());
     table_.add_reals(gradient_film_correction_first + number, row, end_of_rows, sums.data());
     for (std::size_t i = 0; i < end - first; ++i)
@@ -36,7 +36,7 @@ void GradientFilm::add_sums(Layer layer, std::uint32_t color, std::size_t first,
 void GradientFilm::add_deviations(Layer layer, std::uint32_t color, std::size_t first, std::size_t end,
                                   double *to) const {
     Values deviations{};
-    const std::size_t row = row_of(first);
+    const std::size_t row = area_.number_of(first);
     table_.add_reals(gradient_film_deviation_first + 3 * layer + int(color), row, row + end - first, deviations.data());
     for (std::size_t i = 0; i < end - first; ++i)
         to[i] += is_outside(layer, first + i) ? 0 : deviations[i];

@@ -3,6 +3,7 @@
 
 #include "runtime/trace/tracer.h"
 #include "runtime/wavefront/host_table.h"
+#include "runtime/wavefront/sampled_area.h"
 #include "solver/poisson_solver.h"
 
 #include <algorithm>
@@ -16,20 +17,14 @@ namespace gradus {
 /// A table of GRADUS_GRADIENT_FILM_COLUMNS after so many samples. It is read a column at a time, where it lies.
 class GradientFilm {
   public:
-    /// What the table has rows for: the pixels of an image, line by line, and a border around it.
-    struct Area {
-        std::uint32_t width = 0, height = 0, border = 0; ///< of the image, in pixels
-        std::size_t width_of_all() const { return width + 2 * std::size_t(border); }
-        std::size_t pixels_of_all() const { return width_of_all() * (height + 2 * std::size_t(border)); }
-    };
     /// Samples were taken frame by frame, of the border too, and of the last one perhaps only the upper rows.
-    GradientFilm(const Buffer &film, const Area &area, Precision precision, std::uint64_t samples)
+    GradientFilm(const Buffer &film, const SampledArea &area, Precision precision, std::uint64_t samples)
         : table_(film, area.pixels_of_all(), precision), area_(area), frames_(samples / area.pixels_of_all()),
           more_(samples % area.pixels_of_all()) {}
 
     enum Layer { primal, dx, dy };
     /// Of the image; all else here is about these, by number.
-    std::size_t pixels() const { return std::size_t(area_.width) * area_.height; }
+    std::size_t pixels() const { return area_.pixels(); }
     std::uint64_t frames() const { return frames_; } ///< that all pixels have
     std::uint64_t samples() const { return frames_ * pixels() + pixels_with_more(primal); }
     /// The sum of a pixel's samples for one of R, G and B, and their number: of a difference to the pixel below, that
@@ -53,21 +48,7 @@ class GradientFilm {
     /// The first so many have a sample more than the others.
     std::size_t pixels_with_more(Layer layer) const {
         const std::size_t lag = layer == dy ? area_.width_of_all() : 0; // the sample of the pixel below belongs to it
-        return more_ > lag ? pixels_before(more_ - lag) : 0;
-    }
-    /// How many pixels of the image are among the first so many rows of the table.
-    std::size_t pixels_before(std::size_t rows) const {
-        const std::size_t line = rows / area_.width_of_all(), column = rows % area_.width_of_all();
-        const auto inside = [this](std::size_t place, std::size_t size) {
-            return std::min<std::size_t>(place > area_.border ? place - area_.border : 0, size);
-        };
-        const bool is_inside = line >= area_.border && line < area_.border + std::size_t(area_.height);
-        return inside(line, area_.height) * area_.width + (is_inside ? inside(column, area_.width) : 0);
-    }
-    std::size_t row_of(std::size_t pixel) const {
-        return area_.border == 0
-                   ? pixel
-                   : (pixel / area_.width + area_.border) * area_.width_of_all() + pixel % area_.width + area_.border;
+        return more_ > lag ? area_.pixels_among(more_ - lag) : 0;
     }
     /// To a pixel of the border the image has no difference, while the table has.
     bool is_outside(Layer layer, std::size_t pixel) const {
@@ -78,7 +59,7 @@ class GradientFilm {
     }
 
     HostTable table_;
-    Area area_;
+    SampledArea area_;     ///< which the table has rows for
     std::uint64_t frames_; ///< samples of each row
     std::uint64_t more_;   ///< rows that have one more
 };
@@ -92,7 +73,7 @@ class GradientFilms {
         : tracer_(&tracer), has_halves_(halves), has_replicates_(replicates) {}
 
     /// As GradientFilm has it.
-    void add(const Buffer &film, const GradientFilm::Area &area, Precision precision, std::uint64_t samples) {
+    void add(const Buffer &film, const SampledArea &area, Precision precision, std::uint64_t samples) {
         films_.push_back(std::make_shared<const GradientFilm>(film, area, precision, samples));
     }
 

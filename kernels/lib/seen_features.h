@@ -33,6 +33,11 @@ GRADUS_LIB_END
 #define SEEN_WEIGHT(slot) R(1)
 #endif
 
+/* What a path adds to sums of features. Its depth is negative where it has met mirrors and glass alone. */
+#define SEEN_ALBEDO(slot) rgb_scale(AT_RGB(feature, albedo, slot), SEEN_WEIGHT(slot))
+#define SEEN_NORMAL(slot) v3_scale(AT_V3(feature, normal, slot), SEEN_WEIGHT(slot))
+#define SEEN_DEPTH(slot) (r_abs(AT(feature, depth, slot)) * SEEN_WEIGHT(slot))
+
 /* Of a path's vertex; `vertices` are those before it, `from_last` the way from the last one or the camera, and
  * `passed` the throughput so far. */
 #if TRAIT_AOV == 2

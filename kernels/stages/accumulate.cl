@@ -2,8 +2,7 @@
  * samples around add up to (kernels/lib/filter_frame.h). A sample with a NaN or an infinity is left out and counted.
  *
  * Where the spread of the samples is to tell the variance, and not replicates, whose films are many, each adds its
- * squared deviation from the mean of those before, of which the film has had `film_samples_before` (Welford 1962): of a
- * sum of squares the square of the mean would be taken off, which leaves rounding where the spread is small beside it.
+ * squared deviation from the mean of those before, of which the film has had `film_samples_before`.
  *
  * Of features the film has means over the samples of a pixel, of which there are `samples_before` already: sums without
  * corrections would lose what a sample adds, once they are large beside it. One that is left out counts as 0 there. */
@@ -12,6 +11,7 @@
 #include "kernels/lib/filter_frame.h"
 #include "kernels/lib/finite.h"
 #include "kernels/lib/seen_features.h"
+#include "kernels/lib/squared_deviation.h"
 #include "kernels/shared/stage.h"
 
 #define ADD(table, column, correction_column, x)                                                                       \
@@ -25,10 +25,8 @@
     }
 
 #define ADD_DEVIATION(channel)                                                                                         \
-    {                                                                                                                  \
-        const real deviation = value.channel - AT(film, sum_##channel, pixel) * of_mean;                               \
-        AT(feature_film, deviation_##channel, pixel) += deviation * (deviation * scale);                               \
-    }
+    AT(feature_film, deviation_##channel, pixel) +=                                                                    \
+        finite ? squared_deviation(before, value.channel, AT(film, sum_##channel, pixel)) : R(0);
 
 #define ADD_FEATURE(column, x)                                                                                         \
     AT(feature_film, column, pixel) += ((finite ? (x) : R(0)) - AT(feature_film, column, pixel)) * share;
@@ -70,18 +68,15 @@ STAGE accumulate(uint count, uint pixels, uint first_pixel, uint samples_before,
     const vec3 normal = v3(SAMPLE(normal_x), SAMPLE(normal_y), SAMPLE(normal_z));
     const real depth = SAMPLE(depth);
 #else
-    const real counts = SEEN_WEIGHT(slot);
-    const rgb albedo = rgb_scale(AT_RGB(feature, albedo, slot), counts);
-    const vec3 normal = v3_scale(AT_V3(feature, normal, slot), counts);
-    /* Negative where a path has met mirrors and glass alone. */
-    const real depth = r_abs(AT(feature, depth, slot)) * counts;
+    const rgb albedo = SEEN_ALBEDO(slot);
+    const vec3 normal = SEEN_NORMAL(slot);
+    const real depth = SEEN_DEPTH(slot);
 #endif
 #endif
     const int finite = is_finite(value.r) && is_finite(value.g) && is_finite(value.b);
     value = rgb3(finite ? value.r : R(0), finite ? value.g : R(0), finite ? value.b : R(0));
 #if TRAIT_AOV && TRAIT_PART_BITS < 2
     const real before = (real)(film_samples_before - AT_UINT(film, rejected, pixel));
-    const real of_mean = R(1) / r_max(before, R(1)), scale = finite ? before / (before + R(1)) : R(0);
     ADD_DEVIATION(r)
     ADD_DEVIATION(g)
     ADD_DEVIATION(b)

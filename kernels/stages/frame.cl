@@ -17,10 +17,8 @@ STAGE frame(uint count, uint slots, uint pixels, uint first_slot, uint first_pix
     const size_t slot = (size_t)first_slot + i, pixel = (size_t)first_pixel + i;
     SET_RGB(frame, value, pixel, AT_RGB(radiance, value, slot));
 #if TRAIT_AOV
-    const real counts = SEEN_WEIGHT(slot);
-    SET_RGB(frame, albedo, pixel, rgb_scale(AT_RGB(feature, albedo, slot), counts));
-    SET_V3(frame, normal, pixel, v3_scale(AT_V3(feature, normal, slot), counts));
-    /* Negative where a path has met mirrors and glass alone. */
-    AT(frame, depth, pixel) = r_abs(AT(feature, depth, slot)) * counts;
+    SET_RGB(frame, albedo, pixel, SEEN_ALBEDO(slot));
+    SET_V3(frame, normal, pixel, SEEN_NORMAL(slot));
+    AT(frame, depth, pixel) = SEEN_DEPTH(slot);
 #endif
 }

@@ -9,8 +9,7 @@
  * adds.
  *
  * The film has had `frames_before` frames. Each sample adds its squared deviation from their mean, so that the sum is
- * that from the mean of all (Welford 1962): of a sum of squares the square of the mean would be taken off, which leaves
- * rounding where the spread is small beside it.
+ * that from the mean of all.
  *
  * Where samples count for the pixels around (kernels/lib/filter_frame.h), it adds what those of one frame add up to.
  *
@@ -19,12 +18,9 @@
 #include "kernels/lib/compensated.h"
 #include "kernels/lib/filter_frame.h"
 #include "kernels/lib/gradient.h"
+#include "kernels/lib/squared_deviation.h"
 
 #define NEXT_FRAME (strip_pixels << TRAIT_PART_BITS)
-GRADUS_FN real squared_deviation(real before, real value, real sum) {
-    const real deviation = value - sum * (R(1) / r_max(before, R(1)));
-    return deviation * (deviation * (before / (before + R(1))));
-}
 #define LOAD(number, to)                                                                                               \
     compensated s;                                                                                                     \
     s.sum = FILM(gradient_film_primal_r + number, to);                                                                 \

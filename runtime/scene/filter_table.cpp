@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <numeric>
 
 namespace gradus {
 
@@ -36,12 +37,7 @@ std::vector<double> values_around(const FilmSettings &film, int reach, double of
     return values;
 }
 
-double sum_of(const std::vector<double> &values) {
-    double sum = 0;
-    for (const double value : values)
-        sum += value;
-    return sum;
-}
+double sum_of(const std::vector<double> &values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
 } // namespace
 

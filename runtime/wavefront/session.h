@@ -8,6 +8,7 @@
 #include "runtime/scene/scene_tables.h"
 #include "runtime/scene/traits.h"
 #include "runtime/trace/tracer.h"
+#include "runtime/wavefront/sampled_area.h"
 #include "runtime/wavefront/segments.h"
 #include "runtime/wavefront/session_options.h"
 #include "runtime/wavefront/statistics.h"
@@ -54,11 +55,12 @@ struct Session {
         scene_buffers.emplace_back(device, name, values.data(), values.size() * sizeof(values[0]));
     }
     bool has(const char *trait) const { return traits.at(trait) != 0; }
-    /// What is sampled: the image and its border, line by line. Tables of pixels have rows for all of these.
+    SampledArea area() const { return {film.crop_width, film.crop_height, border}; }
+    /// Of all that is sampled: tables of pixels have rows for these.
     std::uint32_t width() const { return film.crop_width + 2 * border; }
     std::uint32_t height() const { return film.crop_height + 2 * border; }
     std::uint32_t pixels() const { return width() * height(); }
-    std::size_t image_pixels() const { return std::size_t(film.crop_width) * film.crop_height; }
+    std::size_t image_pixels() const { return area().pixels(); }
     /// Whether samples count for the pixels around: then they are kept until those are there.
     bool has_frame() const { return border > 0; }
     /// How many samples of a frame come after that of a pixel until all are there that count for it.
@@ -70,9 +72,7 @@ struct Session {
         return samples - std::min<std::uint64_t>(more, filter_lag());
     }
     /// Of a pixel of the image the number among those that are sampled.
-    std::size_t sampled_pixel(std::size_t pixel) const {
-        return border == 0 ? pixel : (pixel / film.crop_width + border) * width() + pixel % film.crop_width + border;
-    }
+    std::size_t sampled_pixel(std::size_t pixel) const { return area().number_of(pixel); }
     std::uint32_t max_depth() const;
     /// Whether surfaces emit, and whether light is sampled at vertices.
     bool has_emission() const { return has("TRAIT_LIGHT_TRIANGLE") || has("TRAIT_LIGHT_SPHERE"); }

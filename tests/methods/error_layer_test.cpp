@@ -206,6 +206,24 @@ INSTANTIATE_TEST_SUITE_P(Reconstructions, ErrorOfRenders,
                                            RenderedErrors{"gpt", Reconstruction::guided, 0.4, 2.5},
                                            RenderedErrors{"pt", Reconstruction::guided, 0.4, 2.5}));
 
+/// relMSE as so many seeds tell it, and as it is.
+struct MeanErrors {
+    double told = 0, right = 0;
+};
+MeanErrors mean_errors(const Scene &scene, const char *method, int seeds, const Scene &of_truth) {
+    RenderOptions options;
+    options.seed = 100;
+    const Image truth = render(of_truth, options, "pt").image;
+    MeanErrors errors;
+    options.error = true;
+    for (options.seed = 1; options.seed <= std::uint64_t(seeds); ++options.seed) {
+        const Rendered rendered = render(scene, options, method);
+        errors.told += rendered.statistics.estimated_error.value() / seeds;
+        errors.right += relative_mse(rendered.image, truth) / seeds;
+    }
+    return errors;
+}
+
 /// With a filter all pixels share their places, so that the halves of one sequence of places would differ by twice the
 /// error and more at a lamp whose sides lie like the film's.
 TEST(ErrorLayer, OfPathTracingKnowsOfPlacesThatAllPixelsShare) {
@@ -220,17 +238,7 @@ TEST(ErrorLayer, OfPathTracingKnowsOfPlacesThatAllPixelsShare) {
         maker.scene.film.filter_radius = 2;
         return maker.scene;
     };
-    RenderOptions options;
-    options.seed = 100;
-    const Image truth = render(scene(1 << 14), options, "pt").image;
-    constexpr int seeds = 16;
-    double told = 0, right = 0;
-    options.error = true;
-    for (options.seed = 1; options.seed <= seeds; ++options.seed) {
-        const Rendered rendered = render(scene(32), options, "pt");
-        told += rendered.statistics.estimated_error.value() / seeds;
-        right += relative_mse(rendered.image, truth) / seeds;
-    }
+    const auto [told, right] = mean_errors(scene(32), "pt", 16, scene(1 << 14));
     std::printf("relMSE %.3g, told %.3g\n", right, told);
     EXPECT_GT(told / right, 0.6);
     EXPECT_LT(told / right, 1.7);
@@ -253,17 +261,7 @@ TEST(ErrorLayer, KnowsOfTheLightsThatAreSeen) {
             }
             return maker.scene;
         };
-        RenderOptions options;
-        options.seed = 100;
-        const Image truth = render(scene(1024), options, "pt").image;
-        constexpr int seeds = 3;
-        double told = 0, right = 0;
-        options.error = true;
-        for (options.seed = 1; options.seed <= seeds; ++options.seed) {
-            const Rendered rendered = render(scene(16), options, "gpt");
-            told += rendered.statistics.estimated_error.value() / seeds;
-            right += relative_mse(rendered.image, truth) / seeds;
-        }
+        const auto [told, right] = mean_errors(scene(16), "gpt", 3, scene(1024));
         std::printf("%d lamps: relMSE %.5f, told %.5f\n", lamps, right, told);
         EXPECT_GT(told / right, 0.7);
         EXPECT_LT(told / right, 4); // halves of one sequence of places differ by more than it is wrong

@@ -46,7 +46,7 @@ struct RandomFilm {
 };
 
 /// Without a border.
-constexpr GradientFilm::Area film_area{film_width, film_height, 0};
+constexpr SampledArea film_area{film_width, film_height, 0};
 
 TEST(GradientFilms, AreSummedPixelByPixel) {
     SceneMaker maker(film_width, film_height);
@@ -159,7 +159,7 @@ TEST(GradientFilms, LeaveTheirBorderOut) {
     Tracer tracer(maker.scene, 2);
     Device device;
     for (const std::uint32_t border : {1u, 3u}) {
-        const GradientFilm::Area area{film_width - 2 * border, film_height - 2 * border, border};
+        const SampledArea area{film_width - 2 * border, film_height - 2 * border, border};
         // Up to the middle of a row, within the border beside it, above the image, below it, and all.
         for (const std::size_t more :
              {std::size_t(15 * film_width + 20), std::size_t(16 * film_width + 1), std::size_t(17 * film_width - 1),
