@@ -37,8 +37,9 @@ GRADUS_CLONES void make_keys(const KeyInput &input, std::size_t count, std::uint
     const float scale_x = input.scale[0], scale_y = input.scale[1], scale_z = input.scale[2];
     const std::uint32_t octant_step = input.octant_step, wanted = input.wanted, unwanted = input.unwanted_key;
     for (std::size_t i = 0; i < count; ++i) {
-        const std::uint32_t octant =
-            std::uint32_t(dx[i] < 0) | std::uint32_t(dy[i] < 0) << 1 | std::uint32_t(dz[i] < 0) << 2;
+        const std::uint32_t octant = std::uint32_t(dx[i] <= -least_component) |
+                                     std::uint32_t(dy[i] <= -least_component) << 1 |
+                                     std::uint32_t(dz[i] <= -least_component) << 2;
         const std::uint32_t cell = spread(step((ox[i] - low_x) * scale_x)) |
                                    spread(step((oy[i] - low_y) * scale_y)) << 1 |
                                    spread(step((oz[i] - low_z) * scale_z)) << 2;

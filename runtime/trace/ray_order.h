@@ -9,6 +9,10 @@
 
 namespace gradus {
 
+/// Components of directions below this are traced as 0. Embree divides by 1e-18 for them whatever their sign, and takes
+/// the signs of a beam's rays from what they are: beside rays of the other sign all would be lost.
+constexpr float least_component = 1e-18f;
+
 /// How rays are put in order before they are traced.
 enum class RayOrder {
     none,   ///< as they come
