@@ -9,8 +9,8 @@
 
 namespace gradus {
 
-/// Components of directions below this are traced as 0. Embree divides by 1e-18 for them whatever their sign, and takes
-/// the signs of a beam's rays from what they are: beside rays of the other sign all would be lost.
+/// Components of directions below this have no sign. Embree divides by 1e-18 for them, and takes the sides of a beam
+/// from the least of its rays' quotients: one of them beside rays of negative components would lose all.
 constexpr float least_component = 1e-18f;
 
 /// How rays are put in order before they are traced.

@@ -2,8 +2,6 @@
 
 #include "runtime/trace/clones.h"
 
-#include <cmath>
-
 namespace gradus {
 
 namespace {
@@ -15,18 +13,12 @@ __attribute__((always_inline)) inline void gather(const float *__restrict column
         lanes[lane] = column[rows[lane]];
 }
 
-__attribute__((always_inline)) inline void flush_tiny(float *__restrict lanes) {
-    for (int lane = 0; lane < packet_width; ++lane)
-        lanes[lane] = std::abs(lanes[lane]) < least_component ? 0 : lanes[lane];
-}
-
 } // namespace
 
 GRADUS_CLONES void gather_segments(const SegmentColumns &rays, const std::uint32_t *rows, const SegmentLanes &lanes) {
     for (int axis = 0; axis < 3; ++axis) {
         gather(rays.origin[axis], rows, lanes.origin[axis]);
         gather(rays.direction[axis], rows, lanes.direction[axis]);
-        flush_tiny(lanes.direction[axis]);
     }
 }
 
