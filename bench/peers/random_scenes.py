@@ -12,8 +12,8 @@ third had no answer.
 
 Left out is what Mitsuba is known to do in another way (docs/scene-format.md): axes of rotation that are no unit
 vectors, blends with smooth parts or rough glass, masks within blends and maps, checkerboards as numbers, short paths
-through masks, lights without an area behind them, textured lamps other than rectangles, closed lamps that shine inwards
-(a little of its light gets out). Nor are there environments beside instances, which end the process of
+through masks, lights without an area behind them, textured lamps other than rectangles and those that are flipped,
+closed lamps that shine inwards (a little of its light gets out). Nor are there environments beside instances, which end the process of
 its scalar variants.
 """
 
@@ -177,7 +177,7 @@ class Maker:
             shape = self.shape_kind()
             inside = (f'<bsdf type="diffuse"><rgb name="reflectance" value="{self.color()}"/></bsdf>'
                       f'<emitter type="area">{self.radiance(2, 12, shape == "rectangle")}</emitter>')
-            return self.shape(inside, shape, shape in ("rectangle", "disk"))
+            return self.shape(inside, shape, shape in ("rectangle", "disk") and 'name="radiance"><string' not in inside)
         if kind == "constant":
             return f'<emitter type="constant">{self.plain("radiance", 0.2, 1)}</emitter>'
         if kind == "envmap":

@@ -261,26 +261,6 @@ GRADUS_FN real approx_gauss_excess(real x) {
 #endif
 }
 
-/* erf(x) for every x. Error at most 2 ULP. */
-GRADUS_FN real approx_erf(real x) {
-#ifdef GRADUS_DOUBLE
-    return GRADUS_ACCURATE(erf)(x);
-#else
-    const real magnitude = r_abs(x);
-    const real z = magnitude * magnitude;
-    real p = R(7.85385763e-05);
-    p = p * z + R(-0.0008010192498);
-    p = p * z + R(0.005188327557);
-    p = p * z + R(-0.02685381187);
-    p = p * z + R(0.1128358515);
-    p = p * z + R(-0.3761262582);
-    p = p * z + R(0.128379166);
-    const real near_zero = x + x * p;
-    const real far = R(1) - approx_exp(-z) * approx_scaled_erfc(magnitude);
-    return magnitude < R(0.9375) ? near_zero : (x < R(0) ? -far : far);
-#endif
-}
-
 /* The inverse of erf at x, with complement = (1 - x)(1 + x) given apart so that it may be exact near |x| = 1.
  * After Giles (2010), with coefficients of our own: x times a polynomial in w = -log(complement), or in its root. */
 GRADUS_FN real approx_inverse_erf_from(real x, real complement) {
@@ -356,20 +336,6 @@ GRADUS_FN real approx_inverse_erf_rough(real u, real one_minus_u) {
     p = p * w + R(0.24763316);
     p = p * w + R(0.87884008);
     return (u - one_minus_u) * p;
-}
-
-/* The inverse of erf at x in [-1, 1]; |x| is taken as at most 1 - 2^-24. Relative error at most 4 ULP in float. */
-GRADUS_FN real approx_inverse_erf(real x) {
-    const real magnitude = r_min(r_abs(x), R(0.99999994039535522461));
-    const real start = approx_inverse_erf_from(magnitude, (R(1) - magnitude) * (R(1) + magnitude));
-#ifdef GRADUS_DOUBLE
-    real y = start;
-    y -= (GRADUS_ACCURATE(erf)(y) - magnitude) * R(0.88622692545275801365) * GRADUS_ACCURATE(exp)(y * y);
-    y -= (GRADUS_ACCURATE(erf)(y) - magnitude) * R(0.88622692545275801365) * GRADUS_ACCURATE(exp)(y * y);
-#else
-    const real y = start;
-#endif
-    return x < R(0) ? -y : y;
 }
 
 GRADUS_LIB_END

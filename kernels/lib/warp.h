@@ -64,21 +64,5 @@ GRADUS_FN point2 warp_uniform_triangle(real u1, real u2) {
     return p;
 }
 
-/* Offset in [-1, 1] with density 1 - |x|: importance samples a tent filter of radius 1. */
-GRADUS_FN real warp_tent(real u) {
-    const real left = r_sqrt(R(2) * u) - R(1);
-    const real right = R(1) - r_sqrt(r_max(R(2) - R(2) * u, R(0)));
-    return u < R(0.5) ? left : right;
-}
-
-/* Offset in [-radius, radius] with density proportional to exp(-x^2 / (2 deviation^2)): importance samples a
- * gaussian filter cut at its radius. Radius and deviation in one unit, both positive. */
-GRADUS_FN real warp_gaussian(real u, real radius, real deviation) {
-    const real scale = R(1.41421356237309504880) * deviation;
-    const real mass = approx_erf(radius / scale);
-    const real x = scale * approx_inverse_erf((R(2) * u - R(1)) * mass);
-    return r_clamp(x, -radius, radius);
-}
-
 GRADUS_LIB_END
 #endif

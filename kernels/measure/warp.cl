@@ -1,5 +1,5 @@
 /* Maps from the unit square. In: u1, u2, 1 - cosine of a cone. Out: directions in hemisphere, sphere and cone,
- * barycentrics, places in a tent and in a gaussian. */
+ * barycentrics. */
 #include "kernels/lib/warp.h"
 #include "kernels/measure/function.h"
 
@@ -15,6 +15,4 @@ STAGE measure_warp(MEASURE_ARGUMENTS) {
     const point2 triangle = warp_uniform_triangle(u1, u2);
     OUT(9) = triangle.x;
     OUT(10) = triangle.y;
-    OUT(11) = warp_tent(u1);
-    OUT(12) = warp_gaussian(u2, R(2), R(0.5));
 }

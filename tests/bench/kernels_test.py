@@ -52,10 +52,6 @@ BOUNDS = {
     ("warp", "cosine hemisphere"): 4e-7,
     ("warp", "uniform sphere"): 4e-7,
     ("warp", "uniform triangle"): 2e-7,
-    ("warp", "tent"): 2e-7,
-    # The inverse of erf is steepest where the gaussian is cut off, at 4 deviations: one rounding times
-    # sqrt(pi) / 2 exp(8) sqrt(1/2) 2.
-    ("warp", "gaussian"): 2.3e-4,
     # Two cosines of at least 0.01, known to 1e-7 of the distance.
     ("reconnection", "Jacobian"): 1e-4,
     # As tests/kernels/shift_precision_test.cpp, which says why.
