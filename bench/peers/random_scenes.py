@@ -385,21 +385,38 @@ def compare_scene(arguments, number, folder):
     return found
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--scenes", type=int, default=20)
+def add_scene_options(parser, scenes):
+    """Those of which scenes are rendered by what."""
+    parser.add_argument("--scenes", type=int, default=scenes)
     parser.add_argument("--first", type=int, default=0, help="number of the first scene")
     parser.add_argument("--method", nargs="+", default=["pt"])
-    parser.add_argument("--keep", help="folder of the scenes (default: a temporary one)")
     parser.add_argument("--gradus", default=str(ROOT / "build" / "gradus"))
     parser.add_argument("--json", help="write what was found to this file")
-    parser.add_argument("--one", action="store_true", help=argparse.SUPPRESS)  # the first scene alone, as JSON
+    parser.add_argument("--one", help=argparse.SUPPRESS)  # the first scene alone, in this folder, as JSON
     mitsuba_setup.add_mitsuba_options(parser)
     parser.set_defaults(variant="scalar_rgb")
+
+
+def answers(script, python, arguments, folder_of, options=()):
+    """Scene after scene, its number and what the script says of it alone, in a process each: some scenes end Mitsuba's.
+    Those without an answer are named and left out."""
+    for number in range(arguments.first, arguments.first + arguments.scenes):
+        command = [python, script, "--one", str(folder_of(number)), "--first", str(number), "--gradus",
+                   arguments.gradus, "--variant", arguments.variant, "--method", *arguments.method, *options]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        if done.returncode == 0:
+            yield number, json.loads(done.stdout.strip().splitlines()[-1])
+        else:
+            print(f"scene {number}: no answer: {done.stderr.strip()[-200:] or done.returncode}", flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    add_scene_options(parser, 20)
+    parser.add_argument("--keep", help="folder of the scenes (default: a temporary one)")
     arguments = parser.parse_args()
     if arguments.one:
-        folder = pathlib.Path(arguments.keep) / str(arguments.first)
-        print(json.dumps(compare_scene(arguments, arguments.first, folder)))
+        print(json.dumps(compare_scene(arguments, arguments.first, pathlib.Path(arguments.one))))
         return 0
     python = find_python(["mitsuba"], mitsuba_setup.PYTHON_VARIABLE)
     if not python:
@@ -407,15 +424,7 @@ def main():
         return 0
     folder = pathlib.Path(arguments.keep or tempfile.mkdtemp(prefix="gradus-scenes-"))
     records, differing, compared = [], 0, 0
-    for number in range(arguments.first, arguments.first + arguments.scenes):
-        # A process each: some scenes end Mitsuba's.
-        command = [python, __file__, "--one", "--first", str(number), "--keep", str(folder), "--gradus",
-                   arguments.gradus, "--variant", arguments.variant, "--method", *arguments.method]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        if done.returncode != 0:
-            print(f"scene {number}: no answer: {done.stderr.strip()[-200:] or done.returncode}", flush=True)
-            continue
-        found = json.loads(done.stdout.strip().splitlines()[-1])
+    for number, found in answers(__file__, python, arguments, lambda number: folder / str(number)):
         records.append({"scene": number, "found": found})
         differing += any(found.values())
         compared += any(difference is not None for difference in found.values())

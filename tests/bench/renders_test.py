@@ -18,6 +18,7 @@ sys.path[:0] = [str(ROOT / "bench" / "render"), str(ROOT / "bench" / "peers")]
 import convergence  # noqa: E402
 import gradient  # noqa: E402
 import photons  # noqa: E402
+import random_noise  # noqa: E402
 import random_scenes  # noqa: E402
 import references  # noqa: E402
 import renders  # noqa: E402
@@ -116,6 +117,17 @@ class RandomScenes(unittest.TestCase):
         self.assertEqual(self.code(None, None), (1, False))
         self.assertEqual(self.code({"pt": None}, {"pt": None}), (1, False))
         self.assertEqual(self.code({"pt": ""}, None), (1, False))
+
+
+class RandomNoise(unittest.TestCase):
+    def test_summary_counts_what_was_compared(self):
+        records = [{"scene": 7, "found": {"box pt": [0.5, 0.25]}}, {"scene": 8, "found": {"box pt": [1.5, 0.75]}},
+                   {"scene": 9, "found": {"box pt": None}}]
+        printed = io.StringIO()
+        with contextlib.redirect_stdout(printed):
+            self.assertEqual(random_noise.print_summary(records), 2)
+            self.assertEqual(random_noise.print_summary([]), 0)
+        self.assertIn("box pt: median 1.00, worst 1.50 (scene 8), above 1 in 1 of 2", printed.getvalue())
 
 
 class NothingToMeasure(unittest.TestCase):
