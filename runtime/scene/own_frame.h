@@ -1,16 +1,18 @@
 // What a scene goes through before it is rendered, wherever it lies and in whatever unit.
 #pragma once
 
+#include "runtime/scene/long_triangles.h"
 #include "runtime/scene/own_origin.h"
 #include "runtime/scene/own_scale.h"
 
 namespace gradus {
 
 /// bring_to_own_scale(), whose factor it returns, and bring_to_own_origin(): in that order, so that errors tell places
-/// as the file has them.
+/// as the file has them. Then begin_at_widest_corners().
 inline double bring_to_own_frame(Scene &scene) {
     const double factor = bring_to_own_scale(scene);
     bring_to_own_origin(scene);
+    begin_at_widest_corners(scene);
     return factor;
 }
 

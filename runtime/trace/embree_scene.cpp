@@ -2,6 +2,7 @@
 
 #include "runtime/error.h"
 #include "runtime/scene/instances.h"
+#include "runtime/scene/long_triangles.h"
 #include "runtime/trace/flush_denormals.h"
 #include "runtime/trace/ray_packets.h"
 #include "runtime/trace/sphere_geometry.h"
@@ -74,8 +75,9 @@ EmbreeScene::EmbreeScene(const Scene &s, int threads, tbb::task_arena &arena, co
             return true;
         },
         &bytes_);
-    scene_.reset(rtcNewScene(device_.get()));
-    rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_HIGH);
+    // Robust tests cost a tenth of tracing and more.
+    flags_ = has_long_triangles(s) ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE;
+    scene_ = new_scene();
     arena.execute([&] {
         add_geometry(s, tables);
         rtcCommitScene(scene_.get());
@@ -85,6 +87,13 @@ EmbreeScene::EmbreeScene(const Scene &s, int threads, tbb::task_arena &arena, co
     rtcGetSceneBounds(scene_.get(), &bounds);
     low_ = {bounds.lower_x, bounds.lower_y, bounds.lower_z};
     high_ = {bounds.upper_x, bounds.upper_y, bounds.upper_z};
+}
+
+std::unique_ptr<RTCSceneTy, EmbreeScene::Release> EmbreeScene::new_scene() const {
+    std::unique_ptr<RTCSceneTy, Release> scene(rtcNewScene(device_.get()));
+    rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
+    rtcSetSceneFlags(scene.get(), flags_);
+    return scene;
 }
 
 float EmbreeScene::opacity_of(unsigned instance, unsigned geometry, unsigned number, const Vector3 &origin,
@@ -262,10 +271,8 @@ void EmbreeScene::drop_passed_in_instance(const RTCFilterFunctionNArguments *hit
 /// Acceleration structures of groups, in their own frames.
 void EmbreeScene::add_groups(const Scene &s, const SceneTables *tables) {
     std::uint32_t first = 0;
-    for (Group &group : groups_) {
-        group.scene.reset(rtcNewScene(device_.get()));
-        rtcSetSceneBuildQuality(group.scene.get(), RTC_BUILD_QUALITY_HIGH);
-    }
+    for (Group &group : groups_)
+        group.scene = new_scene();
     for (const Shape &shape : s.shapes) {
         if (shape.kind != Shape::Kind::mesh)
             continue;

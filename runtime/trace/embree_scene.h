@@ -70,6 +70,7 @@ class EmbreeScene {
     };
 
     void check(const char *doing);
+    std::unique_ptr<RTCSceneTy, Release> new_scene() const;
     template <class Element>
     Element *new_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::size_t count);
     void add_geometry(const Scene &s, const SceneTables *tables);
@@ -100,6 +101,7 @@ class EmbreeScene {
 
     std::atomic<long long> bytes_{0}; ///< which Embree counts until it is released
     std::unique_ptr<RTCDeviceTy, Release> device_;
+    RTCSceneFlags flags_ = RTC_SCENE_FLAG_NONE;
     std::unique_ptr<RTCSceneTy, Release> scene_;
     std::uint32_t triangles_ = 0, spheres_ = 0;
     std::array<std::vector<std::uint32_t>, 2> numbers_; ///< of the opaque ones; empty: in the scene's order

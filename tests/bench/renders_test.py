@@ -10,11 +10,13 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+import types
 import unittest
 from unittest import mock
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "bench" / "render"), str(ROOT / "bench" / "peers")]
+import compare  # noqa: E402
 import convergence  # noqa: E402
 import gradient  # noqa: E402
 import photons  # noqa: E402
@@ -22,6 +24,7 @@ import random_noise  # noqa: E402
 import random_scenes  # noqa: E402
 import references  # noqa: E402
 import renders  # noqa: E402
+import replicates  # noqa: E402
 
 
 class FindScene(unittest.TestCase):
@@ -178,6 +181,11 @@ class ProcessTime(unittest.TestCase):
         # 64 samples of pt: 6.4 s of rendering, 1 s beside. Into gpt's 13.8 s go 128, and half of the error.
         self.assertAlmostEqual(gradient.equal_process_time([0.1, 1.0, 7.4], [0.2, 0.5, 13.8], 64), 1.0)
 
+    def test_is_unknown_where_less_than_a_sample_fits(self):
+        # The process of pt takes 0.292 s beside rendering, and that of gpt less in all; or no more.
+        self.assertIsNone(gradient.equal_process_time([0.001, 0.5, 0.300], [0.003, 0.1, 0.284], 16))
+        self.assertIsNone(gradient.equal_process_time([0.25, 0.5, 5.0], [0.5, 0.1, 1.0], 16))
+
 
 class PhotonRates(unittest.TestCase):
     def record(self, seconds, light_paths):
@@ -194,6 +202,65 @@ class PhotonRates(unittest.TestCase):
         turns = [photons.rates_of(self.record(seconds, 3e6)) for seconds in (1, 2, 8)]
         self.assertEqual(photons.median_of(turns)["seconds_a_pass"], 0.5)
         self.assertIsNone(photons.median_of(turns + [{**turns[0], "seconds_a_pass": None}])["seconds_a_pass"])
+
+    def test_are_of_the_same_depth_and_roulette_on_both_sides(self):
+        ours, theirs = [], []
+
+        def run(*command):
+            command = [str(part) for part in command]
+            said = tuple(command[command.index(option) + 1] for option in ("--max-depth", "--rr-depth"))
+            if "render" in command:
+                ours.append(said)
+                pathlib.Path(command[command.index("--stats") + 1]).write_text(json.dumps(self.record(2, 3e6)))
+                return ""
+            if command[command.index("--integrator") + 1] == "ptracer":
+                theirs.append(said)
+            return json.dumps({"samples_per_second": {"median": 1e6}})
+
+        arguments = types.SimpleNamespace(gradus="gradus", passes=4, turns=1)
+        with mock.patch.object(renders, "run", side_effect=run):
+            found = photons.measure_rates(arguments, ["gpm"], "python")
+        self.assertEqual(theirs, [("13", str(renders.NO_ROULETTE)), ("30", "5")])
+        self.assertEqual(list(dict.fromkeys(ours)), theirs)
+        printed = io.StringIO()
+        with contextlib.redirect_stdout(printed):
+            photons.print_rates(found)
+        for setting in found["settings"]:
+            self.assertIn(f"{setting['name']}: Mitsuba 3's particle tracer, 1.00 M", printed.getvalue())
+            self.assertEqual(setting["methods"]["gpm"]["over_ptracer"], 1.5)
+
+
+class Compare(unittest.TestCase):
+    def rate(self, record):
+        def run(*command):
+            pathlib.Path(command[command.index("--stats") + 1]).write_text(json.dumps(record))
+
+        arguments = types.SimpleNamespace(gradus="gradus", max_depth=13, nthreads=0, device=None)
+        with tempfile.TemporaryDirectory() as folder, mock.patch.object(renders, "run", side_effect=run):
+            return compare.gradus_rate(arguments, "scene.xml", (64, 48), 2, folder)
+
+    def test_counts_the_samples_of_the_image_and_not_those_of_the_filter_around_it(self):
+        self.assertEqual(self.rate({"samples": 7072, "spp": 2, "render_seconds": 2.0}), 3072)
+        with self.assertRaises(SystemExit):
+            self.rate({"samples": 6144, "spp": 1.5, "render_seconds": 2.0})
+
+
+class Replicates(unittest.TestCase):
+    def measured(self, method):
+        """What is printed, where comparing by an image's own variance gives 0.5 and by the reference's 0.25 of it."""
+        def figures(gradus, image, reference):
+            return {"relative_mse": 1.25, "reference_relative_mse": 0.5 if reference.variance == image else 0.25}
+
+        printed = io.StringIO()
+        arguments = types.SimpleNamespace(gradus="gradus", method=method, seeds=2)
+        with contextlib.redirect_stdout(printed), mock.patch.object(renders, "render"), \
+                mock.patch.object(renders, "compare", side_effect=figures) as compared:
+            replicates.measure(arguments, renders.find_scene("holes-28"), 4, pathlib.Path("image.exr"))
+        return printed.getvalue().split()[-1], compared.call_count
+
+    def test_compare_by_the_image_s_own_variance_only_where_it_tells_it(self):
+        self.assertEqual(self.measured("pt"), ("0.500", 6))
+        self.assertEqual(self.measured("gpt"), ("-", 4))
 
 
 if __name__ == "__main__":

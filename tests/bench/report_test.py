@@ -74,9 +74,11 @@ def photons():
     own = convergence()
     for point in own["points"]:
         point["method"] = {"gpt": "gpm", "denoised": "sppm"}.get(point["method"], point["method"])
-    return {**own, "command": ["photons.py"], "notes": ["gbdpt: skipped"], "rates": {"methods": {
-        "gpm": {"light_paths_per_second": 2.5e6, "over_ptracer": 1.6, "seconds_a_pass": 0.25, "over_survey": 6.4},
-        "sppm": {"light_paths_per_second": 2e6, "seconds_a_pass": 0.125}}}}
+    return {**own, "command": ["photons.py"], "notes": ["gbdpt: skipped"], "rates": {"settings": [
+        {"name": "depth 30, roulette from 5", "methods": {"gpm": {
+            "light_paths_per_second": 2.5e6, "over_ptracer": 1.6, "seconds_a_pass": 0.25, "over_survey": 6.4}}},
+        {"name": "depth 13, no roulette",
+         "methods": {"sppm": {"light_paths_per_second": 2e6, "seconds_a_pass": 0.125}}}]}}
 
 
 def chains():
@@ -155,8 +157,8 @@ class DrawOnly(unittest.TestCase):
         self.assertIn(html.escape("box 8x8 4 spp, after 4 passes: error of the reconstruction 0.25 of the "
                                   "throughput's, of the gradients 0.50 of its differences'; 12% of the shifts fail."),
                       page)
-        self.assertIn("<td>gpm</td><td>2.5e+06</td><td>1.60</td><td>0.25</td><td>6.40</td>", page)
-        self.assertIn("<td>sppm</td><td>2e+06</td><td></td><td>0.125</td><td></td>", page)
+        self.assertIn("<td>gpm</td><td>depth 30, roulette from 5</td><td>2.5e+06</td><td>1.60</td><td>0.25</td><td>6.40</td>", page)
+        self.assertIn("<td>sppm</td><td>depth 13, no roulette</td><td>2e+06</td><td></td><td>0.125</td><td></td>", page)
         self.assertIn("a processor, 2 processors; a device", page)
         self.assertIn("<td>gpt</td><td>-1.00</td><td>5.00</td>", page)
         self.assertIn("<td>torus 8x8 4 spp</td><td>pt</td><td>1.25</td><td>0.62 to 2.50</td><td>1.5</td>", page)

@@ -133,6 +133,26 @@ TEST(Memory, OfOneChannelAfterTheOther) {
     EXPECT_LE(planes_of(l2_options(LinearMethod::automatic), 1), 15 + 3 + 4 / 3. + 3 * 4 / 3. + 1 + 3 + 2);
 }
 
+/// docs/solver.md, "Memory". A page in whole planes is right to half of one; small things are less where images are
+/// larger than this one.
+TEST(Memory, IsWhatThePageSays) {
+    PoissonOptions l1;
+    l1.alpha_from_variances = true;
+    PoissonOptions weighted = l2_options(LinearMethod::automatic);
+    weighted.weigh_by_variance = weighted.alpha_from_variances = true;
+    const PoissonOptions uniform = l2_options(LinearMethod::automatic);
+    const auto expect = [](const PoissonOptions &options, double one_by_one, double together) {
+        EXPECT_NEAR(planes_of(options, 1), one_by_one, 0.75);
+        EXPECT_NEAR(planes_of(options, 3), together, 0.75);
+    };
+    expect(l1, 34, 51);
+    expect(uniform, 29, 40);
+    expect(weighted, 49, 65);
+    l1.joint_channels = weighted.joint_channels = false;
+    expect(l1, 58, 74);
+    expect(weighted, 66, 82);
+}
+
 TEST(Sources, AreReadOnceAndGiveTheSameBits) {
     const PoissonProblem problem = make_poisson_problem(129, 65, 3, 1);
     const std::vector<float> direct(problem.primal.size(), 0.5f);
