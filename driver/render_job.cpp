@@ -99,6 +99,8 @@ class RenderJob {
             scene.settings.samples_per_pixel =
                 request_.until_error > 0 ? ErrorWatch::most_samples : endless_samples_per_pixel;
         own_scale_ = bring_to_own_frame(scene);
+        if (const std::string warning = warning_of_far_camera(scene); !warning.empty())
+            progress_.message("gradus: warning: " + warning);
         // A crop that is the whole is none.
         const bool is_cropped = image_size(scene.film) != std::array{scene.film.width, scene.film.height};
         crop_ = is_cropped ? fmt::format("{},{},{},{}", scene.film.crop_x, scene.film.crop_y, scene.film.crop_width,

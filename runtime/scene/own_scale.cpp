@@ -27,8 +27,10 @@ constexpr double least_area = 4e-19;
 constexpr double least_share_of_edge = 1e-11;
 /// Past it differences of coordinates overflow.
 constexpr double largest_float_extent = 1e37;
-/// Of the camera's place over the scene: from farther, all of it is one direction.
+/// Of the camera's distance over the scene: from farther, all of it is one direction.
 constexpr double most_away = 1e15;
+/// The same: from farther, places on the scene are off by hundredths of it.
+constexpr double far_away = 1e5;
 
 void multiply(Vector3 &v, float factor) { v = {v.x * factor, v.y * factor, v.z * factor}; }
 
@@ -88,6 +90,25 @@ double scale_of(const Scene &scene, double extent) {
 }
 
 } // namespace
+
+std::string warning_of_far_camera(const Scene &scene) {
+    const Bounds bounds = world_bounds(scene);
+    const double extent = bounds.extent();
+    if (!(extent > 0))
+        return "";
+    const Double3 eye = transform_point(scene.camera.to_world, {0, 0, 0});
+    double square = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double outside = std::max({bounds.lower[axis] - eye[axis], eye[axis] - bounds.upper[axis], 0.0});
+        square += outside * outside;
+    }
+    const double away = std::sqrt(square) / extent;
+    return away > far_away
+               ? fmt::format("the camera is {:.1g} times as far away as the scene is large: outlines are ragged "
+                             "in single precision; bring it nearer and widen its fov",
+                             away)
+               : "";
+}
 
 double bring_to_own_scale(Scene &scene) {
     Bounds all;

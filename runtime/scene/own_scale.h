@@ -3,6 +3,8 @@
 
 #include "runtime/scene/scene.h"
 
+#include <string>
+
 namespace gradus {
 
 /// Multiplies all lengths of a scene by the returned power of two, by which it becomes about 1 large; by 1, so not at
@@ -14,5 +16,9 @@ namespace gradus {
 /// Throws Error(ExitCode::scene) where a shape is a billion times smaller than the scene, or the scene is larger than
 /// floats are: then one shape or the other cannot be seen.
 double bring_to_own_scale(Scene &scene);
+
+/// What is to be said of a camera so far away that places on the scene are known worse than they are seen; empty where
+/// it is not.
+std::string warning_of_far_camera(const Scene &scene);
 
 } // namespace gradus

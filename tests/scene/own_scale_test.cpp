@@ -107,6 +107,16 @@ TEST(OwnScale, WhatNoFloatHoldsIsRefusedWithItsName) {
     EXPECT_EQ(refusal(room(1).scene), "");
 }
 
+// At ten million times a scene's extent its picture was of blocks, or black, without a word.
+TEST(OwnScale, CamerasFarAwayAreWarnedOf) {
+    for (const double away : {10.0, 5e4, 5e5, 1e8}) {
+        Scene scene = room(1).scene;
+        scene.camera.to_world = look_at({0, 0, away * world_bounds(scene).extent()}, {0, 0, 0}, {0, 1, 0});
+        EXPECT_EQ(warning_of_far_camera(scene).empty(), away < 1e5) << away;
+    }
+    EXPECT_EQ(warning_of_far_camera(Scene()), "");
+}
+
 // A vertex far away that no face uses made a scene of 1e37 once.
 TEST(OwnScale, VerticesThatNothingUsesDoNotCount) {
     Mesh mesh;
