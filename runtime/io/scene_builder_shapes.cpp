@@ -5,6 +5,7 @@
 #include "runtime/phases.h"
 #include "runtime/scene/bounds.h"
 #include "runtime/scene/instances.h"
+#include "runtime/scene/mesh_builder.h"
 #include "runtime/scene/own_origin.h"
 
 #include <tbb/parallel_for.h>
@@ -249,6 +250,18 @@ void SceneBuilder::finish(ShapeInLine &shape, std::vector<Prototype> *group) {
         add_shape(*shape.element, std::move(geometry));
 }
 
+namespace {
+/// Whether a mesh is so narrow that its coordinates' rounding is a percent of that.
+bool is_rounded_away(const Mesh &mesh) {
+    constexpr double least = 1e-5;
+    const Bounds bounds = bounds_of(mesh);
+    double farthest = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        farthest = std::max({farthest, std::abs(bounds.lower[axis]), std::abs(bounds.upper[axis])});
+    return std::min(bounds.extent(), surface_area(mesh) / bounds.extent()) < least * farthest;
+}
+} // namespace
+
 void SceneBuilder::add_shape(const Element &element, std::variant<BuiltMesh, Sphere> geometry, std::int32_t group) {
     Shape shape;
     shape.group = group;
@@ -278,6 +291,11 @@ void SceneBuilder::add_shape(const Element &element, std::variant<BuiltMesh, Sph
     check_attributes(shape, with_mesh ? &with_mesh->mesh : nullptr, element.location);
     if (shape.emitter >= 0 && material.opacity < 1)
         diagnostics_.warn(element.location, "shape \"" + shape.name + "\" emits: its opacity is taken as 1");
+    if (shape.emitter >= 0 && with_mesh && is_rounded_away(with_mesh->mesh))
+        diagnostics_.warn(element.location, "shape \"" + shape.name +
+                                                "\" emits and is so narrow, as far from the origin as it is, that "
+                                                "its area is off by a percent or more in single precision, and its "
+                                                "light with it: move the scene to the origin, or take a sphere");
     if (const auto *sphere = std::get_if<Sphere>(&geometry)) {
         shape.kind = Shape::Kind::sphere;
         shape.geometry = std::uint32_t(scene_.spheres.size());

@@ -576,6 +576,23 @@ TEST(EmitterPlugin, LightWithoutAreaIsDropped) {
     EXPECT_THAT(loaded.warnings, ElementsAre(HasSubstr("2 degenerate triangles"), HasSubstr("\"flat\" has no area")));
 }
 
+// A square of 2e-7 at 0.5 was 9 % too bright, and one of 2e-8 more than twice as bright as it should be.
+TEST(EmitterPlugin, LampsThatRoundingMakesLargerAreWarnedOf) {
+    const auto warnings = [](const std::string &scale) {
+        return load_text(
+                   scene_around("<shape type=\"rectangle\" id=\"lamp\"><transform name=\"to_world\"><scale value=\"" +
+                                scale + "\"/><translate x=\"0.5\"/></transform><emitter type=\"area\"/></shape>"))
+            .warnings;
+    };
+    EXPECT_THAT(warnings("1e-4"), IsEmpty());
+    EXPECT_THAT(warnings("1e-7"), ElementsAre(HasSubstr("\"lamp\" emits and is so narrow")));
+    EXPECT_THAT(
+        load_text(scene_around("<shape type=\"rectangle\" id=\"strip\"><transform name=\"to_world\"><scale "
+                               "x=\"1e-7\"/><translate x=\"0.5\"/></transform><emitter type=\"area\"/></shape>"))
+            .warnings,
+        ElementsAre(HasSubstr("\"strip\" emits and is so narrow")));
+}
+
 TEST(EmitterPlugin, Constant) {
     const Emitter emitter =
         emitter_of("<emitter type=\"constant\"><spectrum name=\"radiance\" value=\"5000\"/></emitter>", "0.6.0");
