@@ -55,7 +55,8 @@ class Tracer {
     ~Tracer();
 
     /// Traces rows [0, rays) and [0, shadows), on all threads; returns how many were really traced. Which hit a ray
-    /// gets depends on the ray alone (docs/design.md, "The same image, always", has the exception). Rows that are alike (SegmentColumns::line) go side by side.
+    /// gets depends on the ray alone (docs/design.md, "The same image, always", has the exception). Rows that are alike
+    /// (SegmentColumns::line) go side by side.
     TraceCounts trace(const RayColumns &ray, std::size_t rays, const ShadowColumns &shadow, std::size_t shadows);
 
     /// Runs `work` on the parts [begin, end) of [0, count), on the threads that trace.
