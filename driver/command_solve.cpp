@@ -172,7 +172,8 @@ void add_problem_options(CLI::App &command, SolveRequest &request) {
     command
         .add_flag_callback(
             "--per-channel", [&options] { options.joint_channels = false; },
-            "L1: channels apart, where colours may drift; else one weight for all channels of a pixel")
+            "L1 and --weights variance: channels apart, where colours may drift; else one weight for all channels of "
+            "a pixel")
         ->group(group);
     command
         .add_flag_callback(

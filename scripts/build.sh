@@ -3,6 +3,11 @@
 #
 #   scripts/build.sh [TARGET...]
 set -euo pipefail
+usage() { sed -n '2,/^set /{ /^set /d; s/^# \{0,1\}//p }' "$0"; }
+case "${1:-}" in
+-h | --help) usage; exit 0 ;;
+-*) usage >&2; exit 2 ;;
+esac
 cd "$(dirname "$0")/.."
 
 # A tree that is configured keeps its generator.

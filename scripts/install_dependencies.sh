@@ -7,6 +7,16 @@
 # --bench adds what bench/report takes. --list prints the packages, one a line, and installs nothing. Needs root or sudo
 # only where something is missing.
 set -euo pipefail
+usage() { sed -n '2,/^set /{ /^set /d; s/^# \{0,1\}//p }' "$0"; }
+bench=no list=no
+for argument in "$@"; do
+    case "$argument" in
+    --bench) bench=yes ;;
+    --list) list=yes ;;
+    -h | --help) usage; exit 0 ;;
+    *) usage >&2; exit 2 ;;
+    esac
+done
 
 packages=(
     # Tools.
@@ -23,11 +33,8 @@ packages=(
 # Checks every memory access of the kernels. Where there is none, as in Debian 13, the tests that take it are skipped.
 optional=(oclgrind)
 
-if [ "${1:-}" = --bench ]; then
-    packages+=(python3-venv) # the virtual environment of the rivals
-    shift
-fi
-if [ "${1:-}" = --list ]; then
+[ "$bench" = no ] || packages+=(python3-venv) # the virtual environment of the rivals
+if [ "$list" = yes ]; then
     printf '%s\n' "${packages[@]}" "${optional[@]}"
     exit 0
 fi

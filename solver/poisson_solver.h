@@ -37,7 +37,7 @@ struct PoissonImages {
     Planes dy{};     ///< Gy(x, y), an estimate of I(x, y + 1) - I(x, y); the last row is not read
     Planes direct{}; ///< added to the reconstruction as it is
     Planes start{};  ///< where the iteration starts, else at or near I0; for L1 only where its norm is less than there
-    /// Variances of primal, dx and dy, by pixel and channel: all three or none.
+    /// Variances of primal, dx and dy, by pixel and channel: read where an option asks for them, and then all three.
     Planes primal_variance{}, dx_variance{}, dy_variance{};
     /// Of BufferSources: the variances have one plane, for all channels.
     bool one_variance = false;

@@ -32,7 +32,9 @@ METHODS = {
     "denoised": (BLUE, "^", "--"),
     "mitsuba": (GREEN, "v", ":"),
 }
-OTHERS = [(GREY, "*", "-"), (YELLOW, "p", "-"), (GREY, "h", "--")]
+BROWN = "#7F5F3F"
+OTHERS = [(GREY, "*", "-"), (YELLOW, "p", "-"), (BROWN, "h", "--"), (SKY, "<", "-."), (GREEN, ">", "-"),
+          (PURPLE, "H", "--"), (VERMILLION, "8", "-."), (BLUE, "p", ":")]
 METHOD_TEXTS = {
     "pt": "pt, path tracing",
     "gpt": "gpt, gradient-domain path tracing",

@@ -12,7 +12,7 @@ PARTS = [
     ("shift", "shifts"), ("evaluate", "shifts"), ("weigh", "shifts"), ("advance", "shifts"), ("join", "shifts"),
     ("gradient_begin", "shifts"), ("gradient_connect", "shifts"), ("gradient escape", "shifts"),
     ("gradient emission", "shifts"),
-    ("accumulate", "film"), ("gradient_accumulate", "film"), ("gradient_combine", "film"),
+    ("frame", "film"), ("gradient_frame", "film"), ("accumulate", "film"), ("gradient_accumulate", "film"), ("gradient_combine", "film"),
     ("gradient_gather", "film"), ("gradient_carry", "film"),
 ]
 COLOURS = {
@@ -22,7 +22,7 @@ COLOURS = {
     "shading": plotting.BLUE,
     "light paths": plotting.GREEN,
     "photons": plotting.ORANGE,
-    "walks": "#7F5F3F",
+    "walks": plotting.BROWN,
     "shifts": plotting.VERMILLION,
     "film": plotting.PURPLE,
     "reconstruction": plotting.INK,

@@ -34,7 +34,7 @@ def main():
     parser = argparse.ArgumentParser(description="each kernel on two OpenCL implementations")
     parser.add_argument("--bench", type=pathlib.Path, default=renders.ROOT / "build" / "gradus-bench-kernels")
     parser.add_argument("--gradus", type=pathlib.Path, default=renders.ROOT / "build" / "gradus")
-    parser.add_argument("--repeats", type=int, default=5, help="runs of each build in a turn")
+    parser.add_argument("--repeats", type=renders.at_least(1), default=5, help="runs of each build in a turn")
     parser.add_argument("--quick", action="store_true", help="two kinds, no large queue, one turn")
     parser.add_argument("--json", type=pathlib.Path, help="also write all figures to this file")
     arguments = parser.parse_args()

@@ -39,9 +39,10 @@ def gradus_rate(arguments, scene, size, spp, folder):
     command += ["--rr-depth", renders.NO_ROULETTE, "--nthreads", arguments.nthreads]
     renders.run(*command, *(["--device", arguments.device] if arguments.device else []))
     record = json.loads(file.read_text())
-    if record["samples"] != size[0] * size[1] * spp:
-        sys.exit(f"{scene}: gradus took {record['samples']} samples, not {size[0] * size[1] * spp}")
-    return record["samples"] / record["render_seconds"]
+    if record["spp"] != spp:
+        sys.exit(f"{scene}: gradus took {record['spp']} samples a pixel, not {spp}")
+    # Those of the image: `samples` counts what a pixel filter takes around it, too, and Mitsuba's count does not.
+    return size[0] * size[1] * spp / record["render_seconds"]
 
 
 def mitsuba_record(arguments, python, scene, size):
@@ -80,15 +81,13 @@ def main():
     parser.add_argument("jobs", nargs="*", type=parse_job, metavar="SCENE.xml:WxH", help="default: two known scenes")
     parser.add_argument("--gradus", type=pathlib.Path, default=renders.ROOT / "build" / "gradus")
     parser.add_argument("--python", help="a Python that has Mitsuba (default: GRADUS_MITSUBA_PYTHON, then this one)")
-    parser.add_argument("--spp", type=int, default=64)
+    parser.add_argument("--spp", type=renders.at_least(1), default=64)
     parser.add_argument("--max-depth", type=int, default=13)
-    parser.add_argument("--pairs", type=int, default=5)
+    parser.add_argument("--pairs", type=renders.at_least(1), default=5)
     parser.add_argument("--nthreads", type=int, default=0, help="processor threads of both; 0: all")
     parser.add_argument("--device", help="OpenCL device of gradus")
     parser.add_argument("--json", action="store_true", help="print JSON only")
     arguments = parser.parse_args()
-    if arguments.pairs < 1:
-        parser.error("--pairs must be at least 1")
 
     python = find_python(["mitsuba"], mitsuba_setup.PYTHON_VARIABLE, arguments.python)
     if python is None:

@@ -4,8 +4,9 @@
 
     PYTHON-WITH-MITSUBA bench/peers/mitsuba_images.py SCENE.xml FOLDER --size 128x128 --spp 4 16 --seeds 1 2
 
-Depth and Russian roulette are the file's unless given. Loading and compiling are left out of the seconds: a render of
-another seed comes first. A time ends when the image has been computed, not when it has been asked for.
+Depth and Russian roulette are the file's unless given. Loading and compiling are left out of the seconds: for each
+count of a call a render of another seed comes first, as Mitsuba compiles other kernels for many samples than for few. A
+time ends when the image has been computed, not when it has been asked for.
 """
 
 import argparse
@@ -20,15 +21,19 @@ import mitsuba_setup  # noqa: E402
 LARGEST_RENDER = 1 << 23  # samples in one call, which bounds its memory
 
 
+def parts_of(spp, pixels):
+    """The samples of each call."""
+    largest = max(1, LARGEST_RENDER // pixels)
+    return [min(largest, spp - done) for done in range(0, spp, largest)]
+
+
 def render(mitsuba, scene, spp, seed, pixels):
     """The image and its seconds. Many samples are taken in calls of seeds of their own."""
     import drjit
 
     started = time.perf_counter()
-    largest = max(1, LARGEST_RENDER // pixels)
-    parts = [min(largest, spp - done) for done in range(0, spp, largest)]
     total = 0
-    for number, part in enumerate(parts):
+    for number, part in enumerate(parts_of(spp, pixels)):
         image = mitsuba.render(scene, spp=part, seed=seed * 100_000 + number)
         total = total + image * (part / spp)
         drjit.eval(total)
@@ -53,7 +58,8 @@ def main():
     if arguments.max_depth is not None:
         parameters["max_depth"] = arguments.max_depth
     scene = mitsuba_setup.load_scene_at_size(mitsuba, arguments.scene, width, height, **parameters)
-    render(mitsuba, scene, 1, 0, width * height)
+    for part in sorted({part for spp in arguments.spp for part in parts_of(spp, width * height)}):
+        render(mitsuba, scene, part, 0, width * height)
     arguments.folder.mkdir(parents=True, exist_ok=True)
     records = []
     for seed in arguments.seeds:

@@ -3,10 +3,10 @@
 
     PYTHON-WITH-MITSUBA bench/peers/mitsuba_rate.py SCENE.xml --size 512x512 --spp 64 [--integrator ptracer]
 
-Russian roulette is off. Loading and compiling are left out: a render of another seed comes first. A time ends when the
-image has been computed (evaluated and synchronised), not when it has been asked for. A sample is one path of a
-pixel. Of the particle tracer it is one light path, as many of which are traced in all; it connects each of their
-vertices to the camera.
+Russian roulette is off unless --rr-depth says from which depth on. Loading and compiling are left out: a render of
+another seed comes first. A time ends when the image has been computed (evaluated and synchronised), not when it has been
+asked for. A sample is one path of a pixel. Of the particle tracer it is one light path, as many of which are traced in
+all; it connects each of their vertices to the camera.
 """
 
 import argparse
@@ -34,7 +34,7 @@ def measure(mitsuba, arguments):
         drjit.set_thread_count(arguments.nthreads)
     width, height = arguments.size
     scene = mitsuba_setup.load_scene_at_size(mitsuba, arguments.scene, width, height, spp=arguments.spp)
-    about = {"type": arguments.integrator, "max_depth": arguments.max_depth, "rr_depth": RR_DEPTH_OFF}
+    about = {"type": arguments.integrator, "max_depth": arguments.max_depth, "rr_depth": arguments.rr_depth}
     integrator = mitsuba.load_dict(about)
 
     def render(seed):
@@ -54,6 +54,7 @@ def measure(mitsuba, arguments):
         "height": height,
         "spp": arguments.spp,
         "max_depth": arguments.max_depth,
+        "rr_depth": arguments.rr_depth,
         "repeats": arguments.repeats,
         "samples_per_second": {
             "median": statistics.median(rates),
@@ -72,6 +73,7 @@ def main():
     parser.add_argument("--size", type=parse_size, default=(512, 512), metavar="WxH")
     parser.add_argument("--spp", type=int, default=64)
     parser.add_argument("--max-depth", type=int, default=13)
+    parser.add_argument("--rr-depth", type=int, default=RR_DEPTH_OFF, help="of Russian roulette (none)")
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--integrator", choices=["path", "ptracer"], default="path")
     parser.add_argument("--nthreads", type=int, default=0, help="processor threads; 0: all")

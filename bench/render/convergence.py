@@ -50,6 +50,7 @@ class Measurement:
     def __init__(self, arguments, scene, folder):
         self.arguments, self.scene, self.folder = arguments, scene, pathlib.Path(folder)
         self.points = []
+        self.notes = []
         self.to_denoise = []  # (image with its guides, statistics, budget, seed)
         self.device = None
 
@@ -72,6 +73,12 @@ class Measurement:
         self.device = record["device"]
         return image, record
 
+    def note_what_was_made(self, method, budget, record):
+        made = renders.made_instead(method, record)
+        note = f"{self.scene.name}: {method} at {budget[1]} {budget[0]} is {'their mean' if made == 'none' else made}"
+        if made and note not in self.notes:
+            self.notes.append(note)
+
     def warm_up(self, methods, denoised):
         """Fills the kernel caches."""
         for method in methods:
@@ -90,6 +97,7 @@ class Measurement:
                     if budget in longer and method != "pt":
                         continue
                     image, record = self.render(method, budget, seed)
+                    self.note_what_was_made(method, budget, record)
                     if (method, budget) not in reconstruction:
                         reconstruction[method, budget] = renders.reconstruction_seconds(self.arguments.gradus, image)
                     self.add(method, f"{budget[1]} {budget[0]}", record["spp"], seed,
@@ -165,10 +173,12 @@ def main():
     parser.add_argument("--gradus", type=pathlib.Path, default=renders.ROOT / "build" / "gradus")
     parser.add_argument("--method", nargs="+", default=["pt", "gpt"], metavar="METHOD[:RECONSTRUCTION[:GUIDE]]",
                         help="as gradus render takes them (pt gpt)")
-    parser.add_argument("--spp", type=int, nargs="*", help=f"samples a pixel ({FULL_SPP}; quick: {QUICK_SPP})")
+    parser.add_argument("--spp", type=renders.at_least(1), nargs="*",
+                        help=f"samples a pixel ({FULL_SPP}; quick: {QUICK_SPP})")
     parser.add_argument("--seconds", type=float, nargs="*", default=[], help="times of rendering")
-    parser.add_argument("--seeds", type=int, help="seeds of each (5; quick: 2)")
-    parser.add_argument("--reference-spp", type=int, default=16384, help="of references that are made (16384)")
+    parser.add_argument("--seeds", type=renders.at_least(1), help="seeds of each (5; quick: 2)")
+    parser.add_argument("--reference-spp", type=renders.at_least(1), default=16384,
+                        help="of references that are made (16384)")
     parser.add_argument("--no-rivals", action="store_true", help="leave Mitsuba and the denoiser out")
     parser.add_argument("--cache", type=pathlib.Path, default=renders.ROOT / "build" / "bench" / "cache")
     parser.add_argument("--json", type=pathlib.Path, default=renders.ROOT / "build" / "bench" / "convergence.json")
@@ -205,6 +215,9 @@ def main():
                 measurement.mitsuba(mitsuba, arguments.spp)
         results["machine"]["device"] = measurement.device
         results["points"] += measurement.points
+        for note in measurement.notes:
+            print(note, flush=True)
+        results["notes"] += measurement.notes
         own_error = measurement.points[0]["reference_error"]
         results["scenes"].append({"name": scene.name, "file": os.path.relpath(scene.file, renders.ROOT),
                                   "parameters": scene.parameters, "width": scene.width, "height": scene.height,

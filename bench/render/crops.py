@@ -55,7 +55,7 @@ class Renderer:
         self.arguments, self.scene, self.folder = arguments, scene, pathlib.Path(folder)
 
     def render(self, name, samples, seed):
-        """The image and its seconds."""
+        """The image, its seconds, and what was reconstructed instead of what the name says, or None."""
         output = self.folder / f"{name.replace(':', '-')}.exr"
         method, options = renders.split_variant("pt" if name == "denoised" else name)
         record = renders.render(self.arguments.gradus, self.scene, method, seed, output, samples=samples,
@@ -65,23 +65,24 @@ class Renderer:
             made = output.with_suffix(".denoised.exr")
             seconds += json.loads(renders.run(sys.executable, HERE.parent / "peers" / "denoise.py",
                                               "--clean-features", output, made).splitlines()[-1])[0]
-            return made, seconds
-        return output, seconds + renders.reconstruction_seconds(self.arguments.gradus, output)
+            return made, seconds, None
+        return (output, seconds + renders.reconstruction_seconds(self.arguments.gradus, output),
+                renders.made_instead(name, record))
 
     def all_methods(self):
-        """By method: image, samples, seconds; all of the time of gpt's."""
+        """By method: image, samples, seconds, what was made instead or None; all of the time of gpt's."""
         found, spp = {}, self.arguments.spp
         for name in METHODS:
             self.render(name, 4, 0)  # fills the kernel cache
-        image, budget = self.render("gpt:guided", spp, self.arguments.seed)
-        found["gpt:guided"] = (planes(image), spp, budget)
+        image, budget, instead = self.render("gpt:guided", spp, self.arguments.seed)
+        found["gpt:guided"] = (planes(image), spp, budget, instead)
         for name in METHODS[:-1]:
             samples = spp
             for _ in range(2):  # what more samples take, from what so many took
-                _, seconds = self.render(name, samples, 0)
+                _, seconds, _ = self.render(name, samples, 0)
                 samples = max(2, round(samples * budget / seconds))
-            image, seconds = self.render(name, samples, self.arguments.seed)
-            found[name] = (planes(image), samples, seconds)
+            image, seconds, instead = self.render(name, samples, self.arguments.seed)
+            found[name] = (planes(image), samples, seconds, instead)
         return found
 
 
@@ -105,24 +106,36 @@ def measure(arguments):
             rows.append({"scene": name, "crop": what, "place": [left, top], "relmse": errors,
                          "samples": {method: found[method][1] for method in METHODS},
                          "seconds": {method: found[method][2] for method in METHODS},
+                         "instead": {method: found[method][3] for method in METHODS if found[method][3]},
                          "pictures": [found[method][0][cut] for method in METHODS] + [reference[cut]]})
-            print(f"{name:14} {what:22} " + "  ".join(f"{method} {errors[method]:.2e} ({found[method][1]} spp)"
-                                                      for method in METHODS), flush=True)
+            print(f"{name:14} {what:22} " + "  ".join(
+                f"{label(rows[-1], method)} {errors[method]:.2e} ({found[method][1]} spp)" for method in METHODS),
+                flush=True)
     return rows
 
 
+def label(row, method):
+    """The method, and what was reconstructed instead, as from few samples."""
+    instead = row["instead"].get(method)
+    return method.replace(":", " ") + (f" (is {'their mean' if instead == 'none' else instead})" if instead else "")
+
+
+ROW_INCHES, TITLE_INCHES = 2.75, 0.45  # the latter of two lines over a picture
+
+
 def draw(pyplot, rows):
-    figure, grid = pyplot.subplots(len(rows), len(METHODS) + 1, squeeze=False,
-                                   figsize=(12, 2.55 * len(rows)))
+    height = ROW_INCHES * len(rows)
+    figure, grid = pyplot.subplots(len(rows), len(METHODS) + 1, squeeze=False, figsize=(12, height))
+    figure.subplots_adjust(left=0.005, right=0.995, wspace=0.02, bottom=0.05 / height, top=1 - TITLE_INCHES / height,
+                           hspace=TITLE_INCHES / (ROW_INCHES - TITLE_INCHES))
     for row, axes in zip(rows, grid):
-        titles = [f"{method.replace(':', ' ')}, {row['samples'][method]} samples: {row['relmse'][method]:.2g}"
+        titles = [f"{label(row, method)}, {row['samples'][method]} samples: {row['relmse'][method]:.2g}"
                   for method in METHODS] + ["reference"]
         titles[0] = f"{row['scene']}, {row['crop']}\n{titles[0]}"
         for place, picture, title in zip(axes, row["pictures"], titles):
             place.imshow(shown(picture), interpolation="nearest")
             place.set_title(title, fontsize=8)
             place.set_axis_off()
-    figure.tight_layout(pad=0.4)
     return figure
 
 
@@ -130,7 +143,7 @@ def main():
     parser = argparse.ArgumentParser(description="crops at equal time")
     parser.add_argument("--scene", nargs="+", choices=CROPS, default=list(CROPS), help="the scenes (default: all)")
     parser.add_argument("--gradus", type=pathlib.Path, default=renders.ROOT / "build" / "gradus")
-    parser.add_argument("--spp", type=int, default=16, help="samples a pixel of gpt (16)")
+    parser.add_argument("--spp", type=renders.at_least(1), default=16, help="samples a pixel of gpt (16)")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--output", type=pathlib.Path, default=renders.ROOT / "build" / "bench" / "crops.png",
                         help="the picture; a JSON of the figures is written beside it")

@@ -37,8 +37,8 @@ def main():
     parser = argparse.ArgumentParser(description="two OpenCL implementations side by side")
     parser.add_argument("scenes", nargs="+", metavar="SCENE.xml:WxH")
     parser.add_argument("--gradus", type=pathlib.Path, default=renders.ROOT / "build" / "gradus")
-    parser.add_argument("--spp", type=int, default=16)
-    parser.add_argument("--repeats", type=int, default=5)
+    parser.add_argument("--spp", type=renders.at_least(1), default=16)
+    parser.add_argument("--repeats", type=renders.at_least(1), default=5)
     parser.add_argument("--json", type=pathlib.Path, help="also write all figures to this file")
     arguments = parser.parse_args()
     results = []

@@ -3,10 +3,10 @@
 
     python3 bench/render/error_calibration.py [SCENE ...] [--spp 16 64 256] [--seeds 5] [--variants gpt:l1 pt:mean ...]
 
-SCENE as in convergence.py, of those with references; the default are six of them. A variant is METHOD:RECONSTRUCTION;
-mean is that of pt. Printed are, as medians over the seeds, the shares of values that are wrong by at most once and
-twice the layer (of normal errors 0.68 and 0.95), the variance of the reference added to its square; and the estimated
-relMSE over the true one, which is that against the reference less the reference's own.
+SCENE is a name in tests/references or of ../shared, where that has its reference; the default are six of them. A variant
+is METHOD:RECONSTRUCTION; mean is that of pt. Printed are, as medians over the seeds, the shares of values that are wrong
+by at most once and twice the layer (of normal errors 0.68 and 0.95), the variance of the reference added to its square;
+and the estimated relMSE over the true one, which is that against the reference less the reference's own.
 """
 
 import argparse
@@ -35,23 +35,19 @@ def calibration(arguments, scene, method, reconstruction, samples, seed, image):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scenes", nargs="*", default=SCENES)
-    parser.add_argument("--spp", nargs="+", type=int, default=[16, 64, 256])
-    parser.add_argument("--seeds", type=int, default=5)
+    parser.add_argument("--spp", nargs="+", type=renders.at_least(2), default=[16, 64, 256])
+    parser.add_argument("--seeds", type=renders.at_least(1), default=5)
     parser.add_argument("--variants", nargs="+", default=VARIANTS)
     parser.add_argument("--gradus", default=renders.ROOT / "build" / "gradus")
     arguments = parser.parse_args()
     variants = [variant.split(":") for variant in arguments.variants]
     if any(len(variant) != 2 for variant in variants):
         parser.error("a variant is METHOD:RECONSTRUCTION")
-    known = renders.scene_names()
+    scenes = renders.scenes_with_reference(arguments.scenes)
     print(f"{'scene':24} {'spp':>4} {'variant':14} {'within':>6} {'twice':>6} {'estimated/true':>14} {'relMSE':>8}")
     with tempfile.TemporaryDirectory() as folder:
         image = pathlib.Path(folder) / "image.exr"
-        for name in arguments.scenes:
-            if name not in known:
-                print(f"{name}: not there, left out")
-                continue
-            scene = renders.find_scene(name)
+        for scene in scenes:
             for samples in arguments.spp:
                 for variant in variants:
                     method, reconstruction = variant

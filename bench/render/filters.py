@@ -35,10 +35,11 @@ class Bench:
 
     def by_mitsuba(self, scene, pixel_filter, spp, seeds):
         """Its images."""
-        record = json.loads(renders.run(self.python, renders.ROOT / "bench" / "peers" / "mitsuba_images.py", scene,
-                                        self.folder, "--size", self.arguments.size, "--spp", spp, "--seeds", *seeds,
-                                        "-D", f"rfilter={pixel_filter}"))
-        return [image["image"] for image in record["images"]]
+        printed = renders.run(self.python, renders.ROOT / "bench" / "peers" / "mitsuba_images.py", scene, self.folder,
+                              "--size", self.arguments.size, "--spp", spp, "--seeds", *seeds,
+                              "-D", f"rfilter={pixel_filter}")
+        # Mitsuba may print warnings before the JSON, which is its last line.
+        return [image["image"] for image in json.loads(printed.strip().splitlines()[-1])["images"]]
 
     def by_gradus(self, scene, pixel_filter, method, spp, seeds):
         images = []
@@ -79,10 +80,10 @@ def main():
                         default=[renders.ROOT / "scenes" / f"{name}.xml" for name in OWN_SCENES])
     parser.add_argument("--filters", nargs="+", default=["box", "tent", "gaussian", "mitchell", "lanczos"])
     parser.add_argument("--methods", nargs="+", default=["pt", "gpt"])
-    parser.add_argument("--spp", type=int, default=16)
-    parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--spp", type=renders.at_least(1), default=16)
+    parser.add_argument("--seeds", type=renders.at_least(1), default=3)
     parser.add_argument("--size", default="96x72", metavar="WxH")
-    parser.add_argument("--reference-spp", type=int, default=8192)
+    parser.add_argument("--reference-spp", type=renders.at_least(1), default=8192)
     parser.add_argument("--gradus", type=pathlib.Path, default=renders.ROOT / "build" / "gradus")
     arguments = parser.parse_args()
     for scene in arguments.scenes:

@@ -104,7 +104,7 @@ nlohmann::json measure_floor(const Settings &settings, const Job &job) {
     fmt::print("{}, {}\n  render / Embree-only replay of the same rays: {:.2f} (target {}{})\n", job.name,
                settings.method, median(ratios), target, settings.method == "pt" ? ", aim 1.2" : "");
     fmt::print("  {:.1f} M rays/s against {:.1f} M rays/s; {:.2f} M samples/s, {:.2f} rays a sample, "
-               "{:.2f} M of {:.1f} M rays recorded\n",
+               "{:.3g} M of {:.3g} M rays recorded\n",
                median(render_rates), median(replay_rates), double(r.statistics.samples) / r.seconds() / 1e6,
                double(r.rays()) / double(r.statistics.samples), double(recorded) / 1e6, double(r.rays()) / 1e6);
     fmt::print("  over a replay in packets of 16 that are no beams: {:.2f} ({:.1f} M rays/s); ray by ray: {:.2f} "

@@ -32,8 +32,8 @@ def squared_error(gradus, image, scene):
 def main():
     parser = argparse.ArgumentParser(description="the gain of gradients against the density of occluders")
     parser.add_argument("--gradus", type=pathlib.Path, default=renders.ROOT / "build" / "gradus")
-    parser.add_argument("--spp", type=int, default=64)
-    parser.add_argument("--repeats", type=int, default=3)
+    parser.add_argument("--spp", type=renders.at_least(1), default=64)
+    parser.add_argument("--repeats", type=renders.at_least(1), default=3)
     parser.add_argument("--json", type=pathlib.Path, help="also write all figures to this file")
     arguments = parser.parse_args()
     results = {"machine": renders.machine(), "command": ["bench/render/holes.py", *sys.argv[1:]], "spp": arguments.spp,

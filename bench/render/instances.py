@@ -2,7 +2,7 @@
 """Memory and time of scenes with many instances: a million of a small group, a large mesh twice, and a field of trees
 small enough to be copies as well.
 
-    bench/render/instances.py [--program build/gradus] [--folder FOLDER] [--scale 1]
+    python3 bench/render/instances.py [--program build/gradus] [--folder FOLDER] [--scale 1]
 
 Prints for each scene, as instances and as copies where these fit, the largest memory of the process, the seconds that
 the samples took, and those of the phases before them. The difference of `quarter`, of 250,000 instances, to `million`

@@ -1,6 +1,7 @@
 #include "methods/photons/light_paths.h"
 #include "bench/render/measurements.h"
 #include "methods/path_stages.h"
+#include "runtime/error.h"
 #include "runtime/seconds_since.h"
 
 #include <fmt/format.h>
@@ -38,6 +39,8 @@ nlohmann::json measure_light_paths(const Settings &settings, const Job &job) {
     const std::uint32_t count = tracing.paths.paths_a_pass();
     recorder.session.tracer.record(every_third);
     recorder.paths.trace(0, count);
+    if (count == 0 || recorder.paths.rays() == 0 || recorder.session.tracer.replay(ReplayedAs::traced).rays == 0)
+        throw Error(ExitCode::failure, fmt::format("{}: no light path has a ray that could be timed", job.name));
     std::uint64_t first = 0;
     const auto trace = [&] {
         const auto start = std::chrono::steady_clock::now();
@@ -68,8 +71,9 @@ nlohmann::json measure_light_paths(const Settings &settings, const Job &job) {
     const std::vector<StageTime> after = tracing.paths.times();
     for (std::size_t i = 0; i < after.size(); ++i) {
         const double seconds = after[i].seconds - before[i].seconds, items = double(after[i].items - before[i].items);
-        fmt::print("  {:36} {:7.2f} ms a pass, {:6.2f} ns a row\n", after[i].name, 1e3 * seconds / turns,
-                   1e9 * seconds / items);
+        if (items > 0) // work-items: where a stage goes by chunks of rows, an item is a chunk
+            fmt::print("  {:36} {:7.2f} ms a pass, {:6.2f} ns an item\n", after[i].name, 1e3 * seconds / turns,
+                       1e9 * seconds / items);
     }
     return {{"job", job.name},
             {"light_paths", count},

@@ -15,9 +15,11 @@ import pathlib
 import re
 import statistics
 import subprocess
+import sys
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import renders  # noqa: E402
 
 
 def court(lamps):
@@ -78,10 +80,10 @@ def main():
     parser.add_argument("files", nargs="*", type=pathlib.Path)
     parser.add_argument("--lamps", nargs="*", type=int, default=[])
     parser.add_argument("--methods", nargs="+", default=["pt", "gpt"])
-    parser.add_argument("--spp", type=int, default=16)
-    parser.add_argument("--reference-spp", type=int, default=1024)
-    parser.add_argument("--seeds", type=int, default=5)
-    parser.add_argument("--gradus", default=ROOT / "build" / "gradus")
+    parser.add_argument("--spp", type=renders.at_least(1), default=16)
+    parser.add_argument("--reference-spp", type=renders.at_least(1), default=1024)
+    parser.add_argument("--seeds", type=renders.at_least(1), default=5)
+    parser.add_argument("--gradus", default=renders.ROOT / "build" / "gradus")
     arguments = parser.parse_args()
     if not arguments.files and not arguments.lamps:
         parser.error("nothing to measure: give files or --lamps")

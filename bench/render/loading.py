@@ -134,7 +134,7 @@ def main():
     parser.add_argument("--bench", type=pathlib.Path, default=renders.ROOT / "build" / "gradus-bench-render")
     parser.add_argument("--triangles", type=int, default=10_000_000)
     parser.add_argument("--texels", type=int, default=8192, help="each way")
-    parser.add_argument("--repeats", type=int, default=3)
+    parser.add_argument("--repeats", type=renders.at_least(1), default=3)
     parser.add_argument("--folder", type=pathlib.Path, help="where the files are made (a temporary one)")
     parser.add_argument("--json", type=pathlib.Path, help="also write all figures to this file")
     arguments = parser.parse_args()

@@ -9,14 +9,18 @@ times, so that no count of one must be weighed against that of another, and take
 
 curves: relMSE over seconds, as render/convergence.py measures them.
 rates: on the Cornell box, light paths a second over all of the rendering and over the stages of light paths alone, over
-those of Mitsuba 3's particle tracer; seconds a pass, as it comes and over what the survey's code takes for passes of a
-million stored photons, scaled to this machine by a path sample of Mitsuba 3 (0.45 us where that code was measured).
+those of Mitsuba 3's particle tracer; seconds a pass, as it comes and, with Russian roulette, over what the survey's code
+takes for passes of a million stored photons, scaled to this machine by a path sample of Mitsuba 3 (0.45 us where that
+code was measured). Twice, with the same depth and roulette for both renderers: depth 13 without roulette, where both
+trace the same paths; and depth 30 with roulette from 5 on, where ours is played from a light path's first vertex on, as
+our methods do wherever there is any, and Mitsuba's from the fifth, so that ours are shorter.
 scaling: on the Cornell box, seconds a pass over its photons and over its gather points, two decades of each, and the
 slopes of line fits.
 pictures: one scene, all methods at the longest time, with maps of the error.
 """
 
 import argparse
+import dataclasses
 import json
 import os
 import pathlib
@@ -44,19 +48,23 @@ SURVEY_SECONDS = {"sppm": 0.9, "gpm": 1.6}
 SURVEY_MICROSECONDS = 0.45
 SURVEY_PHOTONS = 1_000_000
 
+# What a rate is taken with, on both sides.
+NO_ROULETTE = {"name": "depth 13, no roulette", "max_depth": 13, "rr_depth": renders.NO_ROULETTE}
+ROULETTE = {"name": "depth 30, roulette from 5", "max_depth": 30, "rr_depth": 5}
+
 
 def measure_curves(arguments, scene, methods):
     with tempfile.TemporaryDirectory() as folder:
         measurement = convergence.Measurement(arguments, scene, folder)
         measurement.warm_up(methods, False)
         measurement.measure(methods, [("seconds", seconds) for seconds in arguments.seconds], False)
-    return measurement.points
+    return measurement.points, measurement.notes
 
 
-def mitsuba_rate(python, scene, integrator, spp):
+def mitsuba_rate(python, scene, integrator, spp, setting):
     """Samples, or light paths, a second: the median of five."""
     command = [python, PEERS / "mitsuba_rate.py", scene.file, "--size", f"{scene.width}x{scene.height}", "--spp", spp,
-               "--integrator", integrator]
+               "--integrator", integrator, "--max-depth", setting["max_depth"], "--rr-depth", setting["rr_depth"]]
     record = json.loads(renders.run(*command).strip().splitlines()[-1])
     return record["samples_per_second"]["median"]
 
@@ -77,41 +85,56 @@ def median_of(turns):
             for key in turns[0]}
 
 
+def own_rates(arguments, scene, method, setting):
+    """Of passes of a million photons."""
+    scene = dataclasses.replace(scene, max_depth=setting["max_depth"])
+    roulette = ["--rr-depth", setting["rr_depth"]]
+    with tempfile.TemporaryDirectory() as folder:
+        image = pathlib.Path(folder) / "image.exr"
+        first = renders.render(arguments.gradus, scene, method, 0, image, samples=1, options=roulette)
+        paths = ["--photons", round(SURVEY_PHOTONS * first["light_paths"] / first["photons"])]
+        return median_of([rates_of(renders.render(arguments.gradus, scene, method, seed, image,
+                                                  samples=arguments.passes, options=[*paths, *roulette]))
+                          for seed in range(1, arguments.turns + 1)])
+
+
 def measure_rates(arguments, methods, python):
     scene = renders.shared_scene("cornell-box-256")
     if not scene.file.exists():
         scene = renders.Scene("cornell-box", renders.ROOT / "scenes" / "cornell-box.xml", 256, 256)
-    found = {"scene": scene.name, "methods": {}}
+    found = {"scene": scene.name, "settings": []}
     if python:
-        found["mitsuba_microseconds_a_sample"] = 1e6 / mitsuba_rate(python, scene, "path", 64)
-        found["ptracer_light_paths_per_second"] = mitsuba_rate(python, scene, "ptracer", 16)
-    with tempfile.TemporaryDirectory() as folder:
-        image = pathlib.Path(folder) / "image.exr"
+        found["mitsuba_microseconds_a_sample"] = 1e6 / mitsuba_rate(python, scene, "path", 64, NO_ROULETTE)
+        scale = found["mitsuba_microseconds_a_sample"] / SURVEY_MICROSECONDS
+    for setting in (NO_ROULETTE, ROULETTE):
+        of_setting = {**setting, "methods": {}}
+        if python:
+            of_setting["ptracer_light_paths_per_second"] = mitsuba_rate(python, scene, "ptracer", 16, setting)
         for method in [method for method in methods if method in SURVEY_SECONDS]:
-            first = renders.render(arguments.gradus, scene, method, 0, image, samples=1)
-            paths = ["--photons", round(SURVEY_PHOTONS * first["light_paths"] / first["photons"])]
-            own = median_of([rates_of(renders.render(arguments.gradus, scene, method, seed, image,
-                                                     samples=arguments.passes, options=paths))
-                             for seed in range(1, arguments.turns + 1)])
+            own = own_rates(arguments, scene, method, setting)
             if python:
-                scale = found["mitsuba_microseconds_a_sample"] / SURVEY_MICROSECONDS
-                own["over_ptracer"] = own["light_paths_per_second"] / found["ptracer_light_paths_per_second"]
-                own["over_survey"] = SURVEY_SECONDS[method] * scale / own["seconds_a_pass"]
-            found["methods"][method] = own
+                own["over_ptracer"] = own["light_paths_per_second"] / of_setting["ptracer_light_paths_per_second"]
+                if setting is ROULETTE:
+                    own["over_survey"] = SURVEY_SECONDS[method] * scale / own["seconds_a_pass"]
+            of_setting["methods"][method] = own
+        found["settings"].append(of_setting)
     return found
 
 
 def print_rates(rates):
-    if "ptracer_light_paths_per_second" in rates:
-        print(f"\n{rates['scene']}: Mitsuba 3 takes {rates['mitsuba_microseconds_a_sample']:.2f} us a path sample; its "
-              f"particle tracer, {rates['ptracer_light_paths_per_second'] / 1e6:.2f} M light paths a second")
-    for method, own in rates["methods"].items():
-        alone = own["light_paths_per_second_of_their_stages"]
-        print(f"{method}: {own['light_paths_per_second'] / 1e6:.2f} M light paths a second"
-              + (f", {alone / 1e6:.2f} M by their stages alone" if alone else "")
-              + f"; {own['photons_a_pass']:.3g} photons and {own['seconds_a_pass']:.3f} s a pass"
-              + (f"; {own['over_ptracer']:.2f} times ptracer's rate; {own['over_survey']:.1f} times the survey's passes"
-                 if "over_ptracer" in own else ""))
+    if "mitsuba_microseconds_a_sample" in rates:
+        print(f"\n{rates['scene']}: Mitsuba 3 takes {rates['mitsuba_microseconds_a_sample']:.2f} us a path sample")
+    for setting in rates["settings"]:
+        ptracer = setting.get("ptracer_light_paths_per_second")
+        print(f"{setting['name']}" + (f": Mitsuba 3's particle tracer, {ptracer / 1e6:.2f} M light paths a second"
+                                      if ptracer else ""))
+        for method, own in setting["methods"].items():
+            alone = own["light_paths_per_second_of_their_stages"]
+            print(f"  {method}: {own['light_paths_per_second'] / 1e6:.2f} M light paths a second"
+                  + (f", {alone / 1e6:.2f} M by their stages alone" if alone else "")
+                  + f"; {own['photons_a_pass']:.3g} photons and {own['seconds_a_pass']:.3f} s a pass"
+                  + (f"; {own['over_ptracer']:.2f} times ptracer's rate" if "over_ptracer" in own else "")
+                  + (f"; {own['over_survey']:.1f} times the survey's passes" if "over_survey" in own else ""))
 
 
 # Light paths a pass, and the edge of the image in pixels: two decades of each. The other is held at the number named.
@@ -202,9 +225,11 @@ def main():
     parser.add_argument("--method", nargs="+", default=METHODS, help=f"as gradus render takes it ({' '.join(METHODS)})")
     parser.add_argument("--parts", nargs="+", choices=PARTS, default=PARTS)
     parser.add_argument("--seconds", type=float, nargs="+", help="times of rendering (2 8 32; quick: 2 8)")
-    parser.add_argument("--seeds", type=int, help="seeds of each (3; quick: 1)")
-    parser.add_argument("--passes", type=int, default=8, help="passes of a render whose rate is taken (8)")
-    parser.add_argument("--turns", type=int, default=5, help="renders of which a rate is the median (5)")
+    parser.add_argument("--seeds", type=renders.at_least(1), help="seeds of each (3; quick: 1)")
+    parser.add_argument("--passes", type=renders.at_least(1), default=8,
+                        help="passes of a render whose rate is taken (8)")
+    parser.add_argument("--turns", type=renders.at_least(1), default=5,
+                        help="renders of which a rate is the median (5)")
     parser.add_argument("--gradus", type=pathlib.Path, default=renders.ROOT / "build" / "gradus")
     parser.add_argument("--json", type=pathlib.Path, default=renders.ROOT / "build" / "bench" / "photons.json")
     arguments = parser.parse_args()
@@ -214,10 +239,7 @@ def main():
     if not arguments.gradus.exists():
         sys.exit(f"{arguments.gradus}: no such program; build it, or name it with --gradus")
     names = arguments.scenes or ([PICTURE_SCENE] if arguments.quick else renders.PHOTON_SCENES)
-    scenes = [renders.find_scene(name) for name in names]
-    without = [scene.name for scene in scenes if not scene.reference]
-    if without:
-        parser.error(f"no reference of {', '.join(without)}")
+    scenes = renders.scenes_with_reference(names)
     # Before anything is measured: this may start the program again with another Python.
     pyplot = plotting.pyplot() if "pictures" in arguments.parts else None
 
@@ -241,7 +263,9 @@ def main():
         arguments.json.write_text(json.dumps(results, indent=1) + "\n")
 
     for scene in scenes if "curves" in arguments.parts else []:
-        results["points"] += measure_curves(arguments, scene, methods)
+        points, measured_notes = measure_curves(arguments, scene, methods)
+        results["points"] += points
+        results["notes"] += measured_notes
         own_error = results["points"][-1]["reference_error"]
         results["scenes"].append({"name": scene.name, "width": scene.width, "height": scene.height,
                                   "reference": scene.reference.renderer, "reference_spp": scene.reference.spp,

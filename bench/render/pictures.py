@@ -80,8 +80,8 @@ def main():
     parser = argparse.ArgumentParser(description="pictures at equal time")
     parser.add_argument("--scene", nargs="+", choices=SCENES, default=list(SCENES), help="the rows (default: all)")
     parser.add_argument("--gradus", type=pathlib.Path, default=renders.ROOT / "build" / "gradus")
-    parser.add_argument("--spp", type=int, default=16, help="samples a pixel of gpt (16)")
-    parser.add_argument("--reference-spp", type=int, default=8192)
+    parser.add_argument("--spp", type=renders.at_least(1), default=16, help="samples a pixel of gpt (16)")
+    parser.add_argument("--reference-spp", type=renders.at_least(1), default=8192)
     parser.add_argument("--cache", type=pathlib.Path, default=renders.ROOT / "build" / "bench" / "cache")
     parser.add_argument("--output", type=pathlib.Path, default=renders.ROOT / "build" / "bench" / "pictures.png",
                         help="the picture; a JSON of the figures is written beside it")

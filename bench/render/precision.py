@@ -23,9 +23,9 @@ import renders  # noqa: E402
 METHODS, PRECISIONS = ("pt", "gpt"), ("single", "double", "relaxed")
 
 
-def measure(arguments, name, method, folder):
+def measure(arguments, scene, method, folder):
     """By precision the (seconds of a sample, relMSE) of each seed."""
-    scene, image = renders.find_scene(name), pathlib.Path(folder) / "image.exr"
+    image = pathlib.Path(folder) / "image.exr"
 
     def render(precision, seed, samples):
         record = renders.render(arguments.gradus, scene, method, seed, image, samples=samples,
@@ -47,18 +47,18 @@ def main():
     parser.add_argument("scenes", nargs="*", metavar="SCENE", default=["cornell-box", "materials", "torus-rough-glass"],
                         help="names in tests/references")
     parser.add_argument("--gradus", type=pathlib.Path, default=renders.ROOT / "build" / "gradus")
-    parser.add_argument("--spp", type=int, default=64)
-    parser.add_argument("--repeats", type=int, default=5, help="seeds, at least 2")
+    parser.add_argument("--spp", type=renders.at_least(1), default=64)
+    parser.add_argument("--repeats", type=renders.at_least(2), default=5,
+                        help="seeds, at least 2: a standard error needs them")
     parser.add_argument("--json", type=pathlib.Path, help="also write all figures to this file")
     arguments = parser.parse_args()
-    if arguments.repeats < 2:
-        parser.error("--repeats: a standard error needs at least 2")
+    scenes = renders.scenes_with_reference(arguments.scenes)
     results = []
     print(f"{'scene':<20} {'method':<6} {'relMSE single':>13} {'':<8} {'difference':>22} {'speed':>6}")
     with tempfile.TemporaryDirectory() as folder:
-        for name in arguments.scenes:
+        for scene in scenes:
             for method in METHODS:
-                turns = measure(arguments, name, method, folder)
+                turns = measure(arguments, scene, method, folder)
                 single = turns["single"]
                 error = statistics.mean(turn[1] for turn in single)
                 for precision in PRECISIONS[1:]:
@@ -66,9 +66,9 @@ def main():
                     mean = statistics.mean(excess)
                     deviation = statistics.stdev(excess) / math.sqrt(len(excess))
                     speed = statistics.median(one[0] / other[0] for other, one in zip(turns[precision], single))
-                    print(f"{name:<20} {method:<6} {error:13.3e} {precision:<8} {mean:+9.3f} +- {deviation:.3f} % "
+                    print(f"{scene.name:<20} {method:<6} {error:13.3e} {precision:<8} {mean:+9.3f} +- {deviation:.3f} % "
                           f"{speed:6.2f}", flush=True)
-                    results.append({"scene": name, "method": method, "precision": precision, "relmse_single": error,
+                    results.append({"scene": scene.name, "method": method, "precision": precision, "relmse_single": error,
                                     "difference_percent": mean, "standard_error_percent": deviation,
                                     "speed_ratio": speed, "turns": turns})
     if arguments.json:

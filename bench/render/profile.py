@@ -5,7 +5,8 @@
 
 The floor is the number of rays of the render times the seconds of a ray when Embree alone traces the rays of a path
 tracing of that scene again (gradus-bench-render --parts floor); rays of other kinds, such as gradients take, count as
-if they were those. Draw it with bench/report --draw-only.
+if they were those. Those through the edges of lights do not count: they are traced in a stage of their own. Draw it with
+bench/report --draw-only.
 """
 
 import argparse
@@ -32,6 +33,11 @@ def rays_per_second(arguments, scene, folder):
     return as_the_file_says["replay_mrays_per_second"]["median"] * 1e6
 
 
+def traced_rays(record):
+    """Those of the stage `trace`; edges of lights have another."""
+    return sum(kind["count"] for name, kind in record["rays"].items() if name != "edge")
+
+
 def main():
     parser = argparse.ArgumentParser(description="seconds by stage")
     parser.add_argument("scenes", nargs="*", metavar="SCENE", default=SCENES,
@@ -39,8 +45,8 @@ def main():
     parser.add_argument("--method", nargs="+", default=["pt", "gpt"], help="as gradus render takes it (pt gpt)")
     parser.add_argument("--gradus", type=pathlib.Path, default=renders.ROOT / "build" / "gradus")
     parser.add_argument("--bench", type=pathlib.Path, default=renders.ROOT / "build" / "gradus-bench-render")
-    parser.add_argument("--spp", type=int, default=64)
-    parser.add_argument("--repeats", type=int, default=5)
+    parser.add_argument("--spp", type=renders.at_least(1), default=64)
+    parser.add_argument("--repeats", type=renders.at_least(1), default=5)
     parser.add_argument("--json", type=pathlib.Path, default=renders.ROOT / "build" / "bench" / "profile.json")
     arguments = parser.parse_args()
     results = {"machine": renders.machine(), "command": ["bench/render/profile.py", *sys.argv[1:]], "profiles": []}
@@ -54,7 +60,7 @@ def main():
                          for seed in range(1, arguments.repeats + 1)]
                 turns.sort(key=lambda record: record["render_seconds"])
                 record = turns[len(turns) // 2]
-                rays = sum(kind["count"] for kind in record["rays"].values())
+                rays = traced_rays(record)
                 profile = {"scene": scene.name, "method": method, "spp": record["spp"],
                            "render_seconds": record["render_seconds"],
                            "reconstruction_seconds": renders.reconstruction_seconds(arguments.gradus, image),

@@ -4,6 +4,7 @@ A scene is a name in tests/references, whose reference another renderer made; th
 `../shared`, where that folder is present; or SCENE.xml:WxH, which has no reference (references.py makes one).
 """
 
+import argparse
 import dataclasses
 import json
 import os
@@ -103,6 +104,25 @@ def find_scene(text):
     return Scene(f"{pathlib.Path(path).stem} {size}", pathlib.Path(path).resolve(), int(width), int(height))
 
 
+def scenes_with_reference(names):
+    """find_scene() of each. Ends the program where one has no reference of another renderer to measure against."""
+    scenes = [find_scene(name) for name in names]
+    without = [scene.name for scene in scenes if not scene.reference]
+    if without:
+        sys.exit(f"no reference of {', '.join(without)}: errors are measured for {', '.join(scene_names())}")
+    return scenes
+
+
+def at_least(least):
+    """For argparse: the type of a whole number that is no less."""
+    def number(text):
+        value = int(text)
+        if value < least:
+            raise argparse.ArgumentTypeError(f"{text} is less than {least}")
+        return value
+    return number
+
+
 def box_filter(scene):
     """References are made with the box filter: the options that say so, where the scene has that parameter."""
     return ["-D", "rfilter=box"] if "$rfilter" in scene.file.read_text() else []
@@ -144,6 +164,13 @@ def split_variant(text):
     if len(more) > len(options):
         sys.exit(f"'{text}' is not METHOD, METHOD:RECONSTRUCTION or METHOD:guided:GUIDE")
     return method, [word for pair in zip(options, more) for word in pair]
+
+
+def made_instead(variant, record):
+    """The reconstruction that the statistics tell where it is not the one that the variant says, as with few samples;
+    else None."""
+    asked, made = variant.split(":")[1:2], record["reconstruction"]["name"]
+    return made if asked and made != asked[0] else None
 
 
 def known_methods(gradus):

@@ -25,15 +25,15 @@ TELL_THEMSELVES = ["pt", "sppm"]
 def main():
     parser = argparse.ArgumentParser(description="the price and the accuracy of variances")
     parser.add_argument("scenes", nargs="*", metavar="SCENE", default=["cornell-box", "materials", "textures", "sundial"])
-    parser.add_argument("--spp", type=int, nargs="+", default=[16, 64, 256])
-    parser.add_argument("--seeds", type=int, default=5)
+    parser.add_argument("--spp", type=renders.at_least(1), nargs="+", default=[16, 64, 256])
+    parser.add_argument("--seeds", type=renders.at_least(1), default=5)
     parser.add_argument("--method", default="pt")
     parser.add_argument("--gradus", type=pathlib.Path, default=renders.ROOT / "build" / "gradus")
     arguments = parser.parse_args()
+    scenes = renders.scenes_with_reference(arguments.scenes)
     print(f"{'scene':<20} {'spp':>5} {'relMSE':>10} {'with variance':>14} {'ratio':>6} {'told over true':>15}")
     with tempfile.TemporaryDirectory() as folder:
-        for name in arguments.scenes:
-            scene = renders.find_scene(name)
+        for scene in scenes:
             for samples in arguments.spp:
                 measure(arguments, scene, samples, pathlib.Path(folder) / "image.exr")
 
@@ -46,13 +46,14 @@ def measure(arguments, scene, samples, image):
                            layers=False)
             figures = renders.compare(arguments.gradus, image, scene.reference)
             errors.append(figures["relative_mse"] - figures["reference_relative_mse"])
-        # The image's variance in place of the reference's, over the same values of the reference.
-        own = dataclasses.replace(scene.reference, variance=image)
-        told.append(renders.compare(arguments.gradus, image, own)["reference_relative_mse"])
-    ratio = statistics.mean(told) / statistics.mean(replicates)
+        if arguments.method in TELL_THEMSELVES:
+            # The image's variance in place of the reference's, over the same values of the reference.
+            own = dataclasses.replace(scene.reference, variance=image)
+            told.append(renders.compare(arguments.gradus, image, own)["reference_relative_mse"])
+    ratio = f"{statistics.mean(told) / statistics.mean(replicates):.3f}" if told else "-"
     print(f"{scene.name:<20} {samples:>5} {statistics.mean(plain):>10.3e} {statistics.mean(replicates):>14.3e} "
           f"{statistics.mean(replicates) / statistics.mean(plain):>6.2f} "
-          f"{f'{ratio:.3f}' if arguments.method in TELL_THEMSELVES else '-':>15}", flush=True)
+          f"{ratio:>15}", flush=True)
 
 
 if __name__ == "__main__":

@@ -96,9 +96,8 @@ def main():
     parser.add_argument("--method", nargs="+", default=["pt", "gpt"])
     parser.add_argument("--gradus", type=pathlib.Path, default=renders.ROOT / "build" / "gradus")
     parser.add_argument("--device", help="OpenCL device of gradus")
-    parser.add_argument("--repeats", type=int, default=5, help="starts with kernels in the cache")
-    parser.add_argument("--cold", type=int, default=1, choices=range(1, 100), metavar="N",
-                        help="starts with an empty one, at least 1")
+    parser.add_argument("--repeats", type=renders.at_least(1), default=5, help="starts with kernels in the cache")
+    parser.add_argument("--cold", type=renders.at_least(1), default=1, metavar="N", help="starts with an empty one")
     parser.add_argument("--json", type=pathlib.Path, help="also write all figures to this file")
     arguments = parser.parse_args()
     results = []

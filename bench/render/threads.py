@@ -31,8 +31,8 @@ def main():
     parser = argparse.ArgumentParser(description="two threads against one")
     parser.add_argument("scenes", nargs="+", metavar="SCENE.xml:WxH")
     parser.add_argument("--bench", type=pathlib.Path, default=renders.ROOT / "build" / "gradus-bench-render")
-    parser.add_argument("--spp", type=int, default=32)
-    parser.add_argument("--repeats", type=int, default=5)
+    parser.add_argument("--spp", type=renders.at_least(1), default=32)
+    parser.add_argument("--repeats", type=renders.at_least(1), default=5)
     parser.add_argument("--json", type=pathlib.Path, help="also write all figures to this file")
     arguments = parser.parse_args()
     results = []

@@ -1,9 +1,12 @@
 #!/usr/bin/env python3
 """Slopes, crossings and ratios of curves whose answers are known in closed form."""
 
+import json
 import math
 import pathlib
+import subprocess
 import sys
+import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
@@ -144,6 +147,35 @@ class Summaries(unittest.TestCase):
         left = ratios.without_reference_error(seeds)
         self.assertEqual(len(left), 5)
         self.assertAlmostEqual(curves.curves(left, "relmse")["box"]["gpt"][0]["error"]["median"], 0.05)
+
+
+class TablesOfRatios(unittest.TestCase):
+    def of(self, *options):
+        """Two seconds leave pt as many samples as one, and more light."""
+        measured = [{"scene": "box", "method": method, "budget": f"{seconds} seconds", "spp": spp, "seconds": seconds,
+                     "relmse": error, "trimmed": error, "reference_error": 0.0}
+                    for method, spp, errors in (("pt", 8, (2.0, 1.0)), ("gpt:guided:denoiser", 4, (0.5, 0.125)))
+                    for seconds, error in zip((1, 2), errors)]
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "convergence.json"
+            file.write_text(json.dumps({"points": measured}))
+            return subprocess.run([sys.executable, ratios.__file__, "--json", file, *options], capture_output=True,
+                                  text=True)
+
+    def test_have_a_row_for_each_budget_and_whole_names(self):
+        found = self.of("--over", "denoised", "pt")
+        self.assertEqual(found.returncode, 0, found.stderr)
+        head, title, *rows = found.stdout.splitlines()
+        self.assertIn("over that of pt", head)
+        self.assertEqual(title.split(), ["scene", "budget", "gpt:guided:denoiser"])
+        self.assertEqual([row.split() for row in rows[:2]], [["box", "1", "seconds", "0.25"],
+                                                             ["box", "2", "seconds", "0.12"]])
+        self.assertTrue(all(len(row) == len(title) for row in rows))
+
+    def test_over_what_was_not_measured_are_an_error(self):
+        found = self.of("--over", "gpt:g")
+        self.assertEqual(found.returncode, 2)
+        self.assertIn("which has pt, gpt:guided:denoiser", found.stderr)
 
 
 if __name__ == "__main__":

@@ -40,6 +40,14 @@ class Render(unittest.TestCase):
             self.assertEqual(old.read_text(), "figures")
             self.assertFalse(new.exists())
 
+    def test_light_paths_where_no_ray_of_one_could_be_timed(self):
+        ball = """<scene version="3.0.0"><integrator type="path"><integer name="max_depth" value="1"/></integrator>
+                  <sensor type="perspective"/><shape type="sphere"/></scene>"""
+        with tempfile.TemporaryDirectory() as folder:
+            dark = pathlib.Path(folder) / "dark.xml"
+            dark.write_text(ball)
+            self.assertIn("no light path has a ray", self.refusal(f"{dark}:8x8", "--parts", "light-paths"))
+
     def test_files_named_by_parameters_are_not_there(self):
         self.assertIn("there is no file", self.refusal(f"{SCENES}/holes.xml:8x8", "--parts", "loading"))
 

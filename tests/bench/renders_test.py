@@ -18,8 +18,12 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "bench" / "render"), str(ROOT / "bench" / "peers")]
 import compare  # noqa: E402
 import convergence  # noqa: E402
+import crops  # noqa: E402
+import filters  # noqa: E402
 import gradient  # noqa: E402
+import mitsuba_images  # noqa: E402
 import photons  # noqa: E402
+import profile  # noqa: E402
 import random_noise  # noqa: E402
 import random_scenes  # noqa: E402
 import references  # noqa: E402
@@ -47,6 +51,23 @@ class FindScene(unittest.TestCase):
         for text in ("nonsense", "none.xml:64x48", f"{ROOT / 'scenes' / 'holes.xml'}:64", "", ":64x48"):
             with self.assertRaises(SystemExit, msg=text):
                 renders.find_scene(text)
+
+
+class MadeInstead(unittest.TestCase):
+    def test_is_told_where_another_was_asked_for(self):
+        for variant, made, expected in (("gpt:guided", "l1", "l1"), ("gpt:guided:denoiser", "guided", None),
+                                        ("gpt", "l1", None), ("pt:guided", "none", "none")):
+            self.assertEqual(renders.made_instead(variant, {"reconstruction": {"name": made}}), expected, variant)
+
+    def test_is_in_notes_of_curves_once_and_in_titles_of_crops(self):
+        measurement = convergence.Measurement(None, renders.find_scene("holes-28"), ".")
+        for seed in (1, 2):
+            measurement.note_what_was_made("gpt:guided", ("samples", 2), {"reconstruction": {"name": "l1"}})
+            measurement.note_what_was_made("gpt:guided", ("samples", 4), {"reconstruction": {"name": "guided"}})
+        self.assertEqual(measurement.notes, ["holes-28: gpt:guided at 2 samples is l1"])
+        row = {"instead": {"gpt:guided": "l1", "pt:guided": "none"}}
+        self.assertEqual([crops.label(row, method) for method in crops.METHODS],
+                         ["denoised", "pt guided (is their mean)", "gpt guided (is l1)"])
 
 
 class KnownMethods(unittest.TestCase):
@@ -100,6 +121,39 @@ class ReconstructionSeconds(unittest.TestCase):
             self.of([b"B", b"G", b"R"], reconstruction=b"l1")
 
 
+class MitsubaImages(unittest.TestCase):
+    def test_each_count_of_a_call_has_its_kernels_before_it_is_timed(self):
+        rendered = []
+
+        def render(_, scene, spp, seed, pixels):
+            rendered.append((spp, seed))
+            return mock.MagicMock(), 1.0
+
+        mitsuba = mock.MagicMock(__version__="3")
+        with tempfile.TemporaryDirectory() as folder, \
+                mock.patch.object(mitsuba_images, "render", side_effect=render), \
+                mock.patch.object(mitsuba_images.mitsuba_setup, "start_mitsuba", return_value=mitsuba), \
+                mock.patch.object(mitsuba_images.mitsuba_setup, "load_scene_at_size"), \
+                mock.patch.object(sys, "argv", ["", "scene.xml", folder, "--size", "2048x1024", "--spp", "1", "4", "6",
+                                                "--seeds", "1", "2"]), contextlib.redirect_stdout(io.StringIO()):
+            mitsuba_images.main()
+        self.assertEqual(mitsuba_images.parts_of(6, 2048 * 1024), [4, 2])
+        self.assertEqual(rendered, [(1, 0), (2, 0), (4, 0), (1, 1), (4, 1), (6, 1), (1, 2), (4, 2), (6, 2)])
+
+
+class Filters(unittest.TestCase):
+    def test_mitsuba_may_say_something_before_its_images(self):
+        bench = filters.Bench(types.SimpleNamespace(size="8x8"), pathlib.Path("."))
+        with mock.patch.object(renders, "run", return_value='a warning\n{"images": [{"image": "a.exr"}]}\n'):
+            self.assertEqual(bench.by_mitsuba("scene.xml", "box", 4, [1]), ["a.exr"])
+
+
+class Floor(unittest.TestCase):
+    def test_counts_the_rays_of_the_stage_that_it_is_the_floor_of(self):
+        kinds = {"extension": 5, "shadow": 3, "offset": 2, "edge": 7}
+        self.assertEqual(profile.traced_rays({"rays": {kind: {"count": count} for kind, count in kinds.items()}}), 10)
+
+
 class RandomScenes(unittest.TestCase):
     def code(self, *answers):
         """The exit code where processes of scenes answer so, and whether the temporary folder is left."""
@@ -134,13 +188,29 @@ class RandomNoise(unittest.TestCase):
 
 
 class NothingToMeasure(unittest.TestCase):
+    def run_bench(self, name, *arguments):
+        return subprocess.run([sys.executable, ROOT / "bench" / "render" / name, *arguments], capture_output=True,
+                              text=True)
+
     def test_is_an_error_in_words(self):
         for command in (["lights.py"], ["error_calibration.py", "--variants", "pt"],
-                        ["instances.py", "--only", "bogus"], ["filters.py", "no-such-scene.xml"]):
-            result = subprocess.run([sys.executable, ROOT / "bench" / "render" / command[0], *command[1:]],
-                                    capture_output=True, text=True)
+                        ["instances.py", "--only", "bogus"], ["filters.py", "no-such-scene.xml"],
+                        ["error_calibration.py", "cornell-box", "--spp", "1"], ["precision.py", "--repeats", "1"],
+                        ["threads.py", "scene.xml:8x8", "--repeats", "0"], ["lights.py", "--lamps", "2", "--seeds", "0"],
+                        *([name, "--repeats", "0"] for name in ("gradient.py", "startup.py", "holes.py")),
+                        *([name, "--seeds", "0"] for name in ("filters.py", "convergence.py", "replicates.py"))):
+            result = self.run_bench(*command)
             self.assertEqual(result.returncode, 2, command)
             self.assertIn("error: ", result.stderr)
+
+    def test_without_a_reference_is_said(self):
+        scene = f"{ROOT / 'scenes' / 'cornell-box.xml'}:16x16"
+        for name in ("gradient.py", "precision.py", "replicates.py", "photons.py", "error_calibration.py"):
+            # The program is not asked for anything before.
+            result = self.run_bench(name, "cornell-box", scene, "--gradus", sys.executable)
+            self.assertEqual(result.returncode, 1, name)
+            self.assertIn("no reference of cornell-box 16x16", result.stderr)
+            self.assertEqual(result.stdout, "")
 
 
 class Tables(unittest.TestCase):
@@ -152,6 +222,18 @@ class Tables(unittest.TestCase):
         title, *rows = printed.getvalue().strip().splitlines()
         for row in rows:
             self.assertEqual(row.index("-1.00") + 5, title.index("slope") + 5)
+
+    def test_regret_counts_the_reconstruction_of_whatever_auto_picked(self):
+        seconds = {"pt": 1.0, "gpt": 2.0, "auto": 2.0}
+        error = {"pt": 1.0, "gpt": 0.25, "auto": 0.25}
+        self.assertEqual(gradient.regret_of("gpt", error, seconds, {"gpt": 1.0}), 1)
+        self.assertEqual(gradient.regret_of("gpm", error, seconds, {"gpt": 0.0, "gpm": 2.0}), 2)
+        with mock.patch.object(renders, "render") as rendered, \
+                mock.patch.object(renders, "reconstruction_seconds", return_value=3.0):
+            arguments = types.SimpleNamespace(gradus="gradus", spp=4)
+            self.assertEqual(gradient.reconstruction_seconds(arguments, None, "pt", "."), 0)
+            self.assertEqual(gradient.reconstruction_seconds(arguments, None, "gpm", "."), 3)
+            self.assertEqual([call.args[2] for call in rendered.call_args_list], ["gpm"])
 
     def test_the_gain_that_auto_expects_is_of_runs_that_know_it(self):
         self.assertEqual(gradient.median_gain([{"gain": None}, {"gain": 2}, {"gain": None}, {"gain": 4}]), 3)

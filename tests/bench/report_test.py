@@ -4,6 +4,7 @@
 import base64
 import html
 import json
+import os
 import pathlib
 import re
 import subprocess
@@ -16,6 +17,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "bench" / "charts"))
 import convergence as chart  # noqa: E402
 import kernels as kernels_chart  # noqa: E402
+import plotting  # noqa: E402
+from pythons import bench_python, find_python, has_modules  # noqa: E402
 import stages as stages_chart  # noqa: E402
 
 MACHINE = {"processor": "a processor", "processors": 2, "load_before": 0.1, "date": "2026-01-01", "commit": "abc",
@@ -94,6 +97,14 @@ def crops():
 
 
 PNG = base64.b64decode("iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNgAAAAAgABSK+kcQAAAABJRU5ErkJggg==")
+
+
+class Styles(unittest.TestCase):
+    def test_tell_methods_apart_that_are_unknown(self):
+        names = [*plotting.METHODS, *(f"gpt:weighted:{number}" for number in range(8))]
+        styles = plotting.method_styles(names)
+        self.assertEqual(list(styles), names)
+        self.assertEqual(len(set(styles.values())), len(names))
 
 
 class Headline(unittest.TestCase):
@@ -183,11 +194,56 @@ class DrawOnly(unittest.TestCase):
         self.assertIn("kernels.json holds nothing", page)
         self.assertEqual(page.count("<svg"), 1)
 
+    def test_takes_the_python_of_the_build_folder_that_is_named(self):
+        if has_modules(sys.executable, ["matplotlib"]):
+            self.skipTest("this Python has matplotlib and needs no other")
+        python = bench_python(self.folder / "other")
+        python.parent.mkdir(parents=True)
+        python.write_text('#!/bin/sh\n[ "$1" = -c ] || echo "drawn by the other"\n')
+        python.chmod(0o755)
+        command = [sys.executable, ROOT / "bench" / "report", "--draw-only", "--build", "other", "--folder", "."]
+        environment = {name: value for name, value in os.environ.items() if name != plotting.PYTHON_VARIABLE}
+        result = subprocess.run(command, capture_output=True, text=True, cwd=self.folder, env=environment)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("drawn by the other", result.stdout)
+
     def test_a_folder_that_is_not_there_is_an_error(self):
         command = [sys.executable, ROOT / "bench" / "report", "--draw-only", "--folder", self.folder / "none"]
         result = subprocess.run([str(part) for part in command], capture_output=True, text=True)
         self.assertNotEqual(result.returncode, 0)
         self.assertIn("no such folder", result.stdout + result.stderr)
+
+
+TITLES_OF_CROPS = """
+import sys
+sys.path.insert(0, sys.argv[1])
+import matplotlib
+matplotlib.use("Agg")
+from matplotlib import pyplot
+import numpy
+import crops
+row = {"scene": "box", "crop": "edges", "instead": {}, **{key: dict.fromkeys(crops.METHODS, 1)
+                                                          for key in ("samples", "relmse")},
+       "pictures": [numpy.zeros((crops.HEIGHT, crops.WIDTH, 3))] * (len(crops.METHODS) + 1)}
+for count in (1, 4):
+    figure = crops.draw(pyplot, [row] * count)
+    renderer = figure.canvas.get_renderer()
+    figure.draw(renderer)
+    limit = figure.bbox.y1
+    for axes in figure.axes[::len(crops.METHODS) + 1]:
+        assert axes.title.get_window_extent(renderer).y1 <= limit, "a title lies over what is above"
+        limit = axes.get_window_extent(renderer).y0
+"""
+
+
+class Crops(unittest.TestCase):
+    def test_titles_lie_between_the_pictures(self):
+        python = find_python(["matplotlib", "numpy"], plotting.PYTHON_VARIABLE, others=plotting.OTHER_PYTHONS)
+        if not python:
+            self.skipTest("no matplotlib")
+        result = subprocess.run([python, "-c", TITLES_OF_CROPS, ROOT / "bench" / "render"], capture_output=True,
+                                text=True)
+        self.assertEqual(result.returncode, 0, result.stderr)
 
 
 class Kernels(unittest.TestCase):
@@ -210,7 +266,7 @@ class PartsOfStages(unittest.TestCase):
                     "shifts": ["photon_shift", "photon_reconnect diffuse", "photon_arrive", "shift diffuse"],
                     "photons": ["photon_pairs list", "photon_evaluate diffuse", "pair_sum", "pair_difference_sum",
                                 "gather_add", "gather_bin", "travel", "photon_order begin"],
-                    "film": ["gradient_gather", "gradient_combine", "accumulate"]}
+                    "film": ["gradient_gather", "gradient_combine", "accumulate", "frame", "gradient_frame"]}
         for part, names in expected.items():
             for name in names:
                 self.assertEqual(stages_chart.part_of(name), part, name)

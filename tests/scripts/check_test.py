@@ -109,6 +109,35 @@ class Check(unittest.TestCase):
             self.assertEqual([title for title, outcome in summary.items() if outcome == "FAILED"], [part])
 
 
+class Usage(unittest.TestCase):
+    """Of scripts that begin with their usage: nothing is started, for no program is in the path but these."""
+
+    def run_script(self, folder, name, *arguments):
+        for program in ("bash", "sed", "dirname"):
+            if not (folder / program).exists():
+                (folder / program).symlink_to(shutil.which(program))
+        return subprocess.run([shutil.which("bash"), ROOT / "scripts" / name, *arguments], capture_output=True,
+                              text=True, env={"PATH": str(folder)}, cwd=folder)
+
+    def test_is_told_and_unknown_words_are_refused(self):
+        with tempfile.TemporaryDirectory() as name:
+            for script, unknown in (("build.sh", "--target"), ("fuzz.sh", "png"), ("install_dependencies.sh", "bench")):
+                told = self.run_script(pathlib.Path(name), script, "--help")
+                self.assertEqual((told.returncode, told.stderr), (0, ""), script)
+                self.assertIn(f"\n  scripts/{script} [", told.stdout)
+                self.assertNotIn("set -euo", told.stdout)
+                refused = self.run_script(pathlib.Path(name), script, unknown)
+                self.assertEqual((refused.returncode, refused.stdout), (2, ""), script)
+                self.assertEqual(refused.stderr, told.stdout)
+
+    def test_packages_are_listed_in_any_order_of_the_words(self):
+        with tempfile.TemporaryDirectory() as name:
+            one, other = (self.run_script(pathlib.Path(name), "install_dependencies.sh", *words).stdout
+                          for words in (("--bench", "--list"), ("--list", "--bench")))
+            self.assertIn("python3-venv", one)
+            self.assertEqual(one, other)
+
+
 class Scripts(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
