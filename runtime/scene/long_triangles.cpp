@@ -60,9 +60,11 @@ void begin_at_widest_corners(Scene &scene) {
         tbb::parallel_for(Range(0, mesh.triangles.size(), grain), [&](const Range &range) {
             for (std::size_t i = range.begin(); i < range.end(); ++i) {
                 auto &triangle = mesh.triangles[i];
-                if (const Edges edges(mesh, triangle); edges.slants_at_first())
-                    std::ranges::rotate(triangle, triangle.begin() +
-                                                      (std::ranges::max_element(edges.square) - edges.square.begin()));
+                const Edges edges(mesh, triangle);
+                if (!edges.slants_at_first())
+                    continue;
+                const auto widest = std::max_element(edges.square.begin(), edges.square.end());
+                std::rotate(triangle.begin(), triangle.begin() + (widest - edges.square.begin()), triangle.end());
             }
         });
     }

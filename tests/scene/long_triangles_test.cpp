@@ -6,10 +6,15 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <array>
+
+// After GoogleTest, which has template parameters of the names of its macros.
+#include "kernels/shared/scene_records.h"
 
 namespace gradus::testing {
 namespace {
+
+using namespace lib_float;
 
 using Corners = std::array<std::uint32_t, 3>;
 
