@@ -86,10 +86,9 @@ class RenderJob {
         // What will write it, while there is memory for it and nothing to lose.
         if (request_.outputs.png)
             picture_library();
-        Scene scene = load_requested_scene(
-            for_method(request_.scene, request_.method.method), services_,
-            [this](const std::string &warning) { progress_.message("gradus: warning: " + warning); }, &files_read_,
-            &phases_);
+        const auto warn = [this](const std::string &warning) { progress_.message("gradus: warning: " + warning); };
+        Scene scene = load_requested_scene(for_method(request_.scene, request_.method.method), services_, warn,
+                                           &files_read_, &phases_);
         check_distinct(output_list(request_.outputs), files_read_);
         check_counts(scene);
         warn_of_unread_options(request_.method.method);
@@ -98,9 +97,7 @@ class RenderJob {
         if (!is_limited_by_samples())
             scene.settings.samples_per_pixel =
                 request_.until_error > 0 ? ErrorWatch::most_samples : endless_samples_per_pixel;
-        own_scale_ = bring_to_own_frame(scene);
-        if (const std::string warning = warning_of_far_camera(scene); !warning.empty())
-            progress_.message("gradus: warning: " + warning);
+        own_scale_ = bring_to_own_frame(scene, warn);
         // A crop that is the whole is none.
         const bool is_cropped = image_size(scene.film) != std::array{scene.film.width, scene.film.height};
         crop_ = is_cropped ? fmt::format("{},{},{},{}", scene.film.crop_x, scene.film.crop_y, scene.film.crop_width,
@@ -130,7 +127,7 @@ class RenderJob {
         record_.prepare_seconds = seconds_since(start);
         record_.device = prepared_.description;
         if (!prepared_.warning.empty())
-            progress_.message("gradus: warning: " + prepared_.warning);
+            warn(prepared_.warning);
         for (const Phases::Time &time : phases_.times())
             record_.phase_seconds.emplace_back(time.name.key, time.seconds);
         statistics_ = prepared_.method->statistics();

@@ -3,7 +3,7 @@
 #
 #   scripts/build.sh [TARGET...]
 set -euo pipefail
-usage() { sed -n '2,/^set /{ /^set /d; s/^# \{0,1\}//p }' "$0"; }
+usage() { sed -n '2,/^$/s/^# \{0,1\}//p; /^set /q' "$0"; }
 case "${1:-}" in
 -h | --help) usage; exit 0 ;;
 -*) usage >&2; exit 2 ;;

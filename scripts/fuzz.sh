@@ -7,7 +7,7 @@
 # kept in build-fuzz/corpus and is where the next run begins. An input that breaks a reader ends it, and its path is
 # printed. Without clang nothing is done.
 set -euo pipefail
-usage() { sed -n '2,/^set /{ /^set /d; s/^# \{0,1\}//p }' "$0"; }
+usage() { sed -n '2,/^$/s/^# \{0,1\}//p; /^set /q' "$0"; }
 case "${1:-60}" in
 -h | --help) usage; exit 0 ;;
 *[!0-9]* | '') usage >&2; exit 2 ;;

@@ -7,7 +7,7 @@
 # --bench adds what bench/report takes. --list prints the packages, one a line, and installs nothing. Needs root or sudo
 # only where something is missing.
 set -euo pipefail
-usage() { sed -n '2,/^set /{ /^set /d; s/^# \{0,1\}//p }' "$0"; }
+usage() { sed -n '2,/^$/s/^# \{0,1\}//p; /^set /q' "$0"; }
 bench=no list=no
 for argument in "$@"; do
     case "$argument" in

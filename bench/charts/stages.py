@@ -12,8 +12,8 @@ PARTS = [
     ("shift", "shifts"), ("evaluate", "shifts"), ("weigh", "shifts"), ("advance", "shifts"), ("join", "shifts"),
     ("gradient_begin", "shifts"), ("gradient_connect", "shifts"), ("gradient escape", "shifts"),
     ("gradient emission", "shifts"),
-    ("frame", "film"), ("gradient_frame", "film"), ("accumulate", "film"), ("gradient_accumulate", "film"), ("gradient_combine", "film"),
-    ("gradient_gather", "film"), ("gradient_carry", "film"),
+    ("frame", "film"), ("gradient_frame", "film"), ("accumulate", "film"), ("gradient_accumulate", "film"),
+    ("gradient_combine", "film"), ("gradient_gather", "film"), ("gradient_carry", "film"),
 ]
 COLOURS = {
     "Embree alone (floor)": plotting.GREY,

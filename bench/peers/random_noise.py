@@ -13,15 +13,13 @@ import argparse
 import json
 import pathlib
 import statistics
-import subprocess
 import sys
 import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
-import mitsuba_setup  # noqa: E402
-from pythons import find_python  # noqa: E402
-from random_scenes import Maker, add_scene_options, answers  # noqa: E402
+from random_scenes import (add_scene_options, answers, images_by_gradus, images_by_mitsuba, made_scene,  # noqa: E402
+                           python_for_answers)
 
 SEEDS = 6
 OUTLIERS = 0.03  # of the pixels
@@ -38,7 +36,7 @@ def relative_variances(numpy, images):
 
 def noise_of(numpy, images):
     """The mean, and that without outliers; None without light or noise."""
-    images = numpy.stack(images).astype(float)
+    images = numpy.stack(list(images)).astype(float)
     if not images.mean() > 0:
         return None
     variances = relative_variances(numpy, images)
@@ -48,30 +46,15 @@ def noise_of(numpy, images):
 
 def compare_scene(arguments, number, folder):
     """By filter and method, the noise over Mitsuba's, with and without outliers."""
-    mitsuba = mitsuba_setup.start_mitsuba(arguments)
-    import numpy
-
-    mitsuba.set_log_level(mitsuba.LogLevel.Error)
-    folder.mkdir(parents=True, exist_ok=True)
-    text = Maker(number, folder, mitsuba).text()
+    mitsuba, numpy, text = made_scene(arguments, number, folder)
     found = {}
     for pixel_filter in arguments.filter:
         path = folder / f"{pixel_filter}.xml"
         path.write_text(text.replace('<rfilter type="box"/>', f'<rfilter type="{pixel_filter}"/>'), encoding="utf-8")
-        scene = mitsuba.load_file(str(path))
-        theirs = noise_of(numpy, [numpy.array(mitsuba.render(scene, spp=arguments.spp, seed=seed))[:, :, :3]
-                                  for seed in range(SEEDS)])
+        theirs = noise_of(numpy, images_by_mitsuba(mitsuba, numpy, path, arguments.spp, range(SEEDS)))
         for method in arguments.method:
-            images = []
-            for seed in range(1, SEEDS + 1):
-                image = folder / "image.exr"
-                command = [arguments.gradus, "render", str(path), "--method", method, "--spp", str(arguments.spp),
-                           "--seed", str(seed), "-o", str(image), "--quiet"]
-                done = subprocess.run(command, capture_output=True, text=True, check=False)
-                if done.returncode != 0:
-                    raise RuntimeError(f"gradus ended with {done.returncode}: {done.stderr.strip()[-300:]}")
-                images.append(numpy.array(mitsuba.Bitmap(str(image)))[:, :, :3])
-            ours = noise_of(numpy, images)
+            ours = noise_of(numpy, images_by_gradus(mitsuba, numpy, arguments, path, method, arguments.spp,
+                                                    range(1, SEEDS + 1)))
             found[f"{pixel_filter} {method}"] = [our / their for our, their in zip(ours, theirs)] \
                 if ours and theirs else None
     return found
@@ -103,12 +86,8 @@ def main():
     parser.add_argument("--filter", nargs="+", default=["box", "gaussian"])
     parser.add_argument("--spp", type=int, default=16)
     arguments = parser.parse_args()
-    if arguments.one:
-        print(json.dumps(compare_scene(arguments, arguments.first, pathlib.Path(arguments.one))))
-        return 0
-    python = find_python(["mitsuba"], mitsuba_setup.PYTHON_VARIABLE)
+    python = python_for_answers(arguments, compare_scene)
     if not python:
-        print(f"skipped: {mitsuba_setup.HOW_TO_GET}")
         return 0
     records = []
     with tempfile.TemporaryDirectory(prefix="gradus-noise-") as folder:

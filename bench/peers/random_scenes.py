@@ -13,8 +13,8 @@ third had no answer.
 Left out is what Mitsuba is known to do in another way (docs/scene-format.md): axes of rotation that are no unit
 vectors, blends with smooth parts or rough glass, masks within blends and maps, checkerboards as numbers, short paths
 through masks, lights without an area behind them, textured lamps other than rectangles and those that are flipped,
-closed lamps that shine inwards (a little of its light gets out). Nor are there environments beside instances, which end the process of
-its scalar variants.
+closed lamps that shine inwards (a little of its light gets out). Nor are there environments beside instances, which end
+the process of its scalar variants.
 """
 
 import argparse
@@ -311,23 +311,28 @@ def blocks(numpy, image):
     return numpy.concatenate([parts, image.mean(axis=(0, 1))])
 
 
-def by_mitsuba(mitsuba, numpy, path, spp, first_seed):
+def images_by_mitsuba(mitsuba, numpy, path, spp, seeds):
+    """Image after image, one of each seed."""
     scene = mitsuba.load_file(str(path))
-    return numpy.stack([blocks(numpy, numpy.array(mitsuba.render(scene, spp=spp, seed=seed))[:, :, :3])
-                        for seed in range(first_seed, first_seed + SEEDS)]).astype(float)
+    for seed in seeds:
+        yield numpy.array(mitsuba.render(scene, spp=spp, seed=seed))[:, :, :3]
 
 
-def by_gradus(mitsuba, numpy, arguments, path, method, spp, first_seed):
-    found = []
-    for seed in range(first_seed, first_seed + SEEDS):
-        image = path.parent / "image.exr"
+def images_by_gradus(mitsuba, numpy, arguments, path, method, spp, seeds):
+    """The same of ours."""
+    image = path.parent / "image.exr"
+    for seed in seeds:
         command = [arguments.gradus, "render", str(path), "--method", method, "--spp", str(spp), "--seed", str(seed),
                    "-o", str(image), "--quiet"]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         if done.returncode != 0:
             raise RuntimeError(f"gradus ended with {done.returncode}: {done.stderr.strip()[-500:]}")
-        found.append(blocks(numpy, numpy.array(mitsuba.Bitmap(str(image)))[:, :, :3]))
-    return numpy.stack(found).astype(float)
+        yield numpy.array(mitsuba.Bitmap(str(image)))[:, :, :3]
+
+
+def means(numpy, images):
+    """By image, blocks()."""
+    return numpy.stack([blocks(numpy, image) for image in images]).astype(float)
 
 
 def deviations(numpy, ours, theirs):
@@ -349,13 +354,16 @@ def has_paths_of_photons_alone(scene):
 
 def differs(mitsuba, numpy, arguments, path, method):
     """What of the image differs, in words; empty where nothing does."""
-    theirs = by_mitsuba(mitsuba, numpy, path, SPP, 1000)
-    first, _ = deviations(numpy, by_gradus(mitsuba, numpy, arguments, path, method, SPP, 1), theirs)
+    def compared(spp, our_seed, their_seed):
+        ours = images_by_gradus(mitsuba, numpy, arguments, path, method, spp, range(our_seed, our_seed + SEEDS))
+        theirs = images_by_mitsuba(mitsuba, numpy, path, spp, range(their_seed, their_seed + SEEDS))
+        return deviations(numpy, means(numpy, ours), means(numpy, theirs))
+
+    first, _ = compared(SPP, 1, 1000)
     suspects = numpy.abs(first) > SUSPECTED
     if not suspects.any():
         return ""
-    theirs = by_mitsuba(mitsuba, numpy, path, 4 * SPP, 2000)
-    again, relative = deviations(numpy, by_gradus(mitsuba, numpy, arguments, path, method, 4 * SPP, 101), theirs)
+    again, relative = compared(4 * SPP, 101, 2000)
     least = RADIUS_BIAS if method in PHOTON_METHODS else LEAST_DIFFERENCE
     worst = numpy.where(suspects & (again * first > 0) & (numpy.abs(relative) > least), numpy.abs(again), 0)
     if worst.max() < CONFIRMED:
@@ -365,15 +373,20 @@ def differs(mitsuba, numpy, arguments, path, method):
             f"{100 * relative[at]:+.2f} %; of the whole {again[-1]:+.1f}, {100 * relative[-1]:+.2f} %")
 
 
-def compare_scene(arguments, number, folder):
-    """What differs of scene `number`, in words, by method; None of one that cannot be compared there."""
+def made_scene(arguments, number, folder):
+    """Mitsuba and numpy, which only its Python needs to have, and the text of the scene; its files are in the folder."""
     mitsuba = mitsuba_setup.start_mitsuba(arguments)
     import numpy
 
     mitsuba.set_log_level(mitsuba.LogLevel.Error)
     folder.mkdir(parents=True, exist_ok=True)
+    return mitsuba, numpy, Maker(number, folder, mitsuba).text()
+
+
+def compare_scene(arguments, number, folder):
+    """What differs of scene `number`, in words, by method; None of one that cannot be compared there."""
+    mitsuba, numpy, text = made_scene(arguments, number, folder)
     path = folder / "scene.xml"
-    text = Maker(number, folder, mitsuba).text()
     path.write_text(text, encoding="utf-8")
     found = {}
     for method in arguments.method:
@@ -397,6 +410,18 @@ def add_scene_options(parser, scenes):
     parser.set_defaults(variant="scalar_rgb")
 
 
+def python_for_answers(arguments, compare):
+    """A Python that has Mitsuba. None where this process is to answer for one scene, which it has done then, or where
+    there is none, which is said."""
+    if arguments.one:
+        print(json.dumps(compare(arguments, arguments.first, pathlib.Path(arguments.one))))
+        return None
+    python = find_python(["mitsuba"], mitsuba_setup.PYTHON_VARIABLE)
+    if not python:
+        print(f"skipped: {mitsuba_setup.HOW_TO_GET}")
+    return python
+
+
 def answers(script, python, arguments, folder_of, options=()):
     """Scene after scene, its number and what the script says of it alone, in a process each: some scenes end Mitsuba's.
     Those without an answer are named and left out."""
@@ -415,12 +440,8 @@ def main():
     add_scene_options(parser, 20)
     parser.add_argument("--keep", help="folder of the scenes (default: a temporary one)")
     arguments = parser.parse_args()
-    if arguments.one:
-        print(json.dumps(compare_scene(arguments, arguments.first, pathlib.Path(arguments.one))))
-        return 0
-    python = find_python(["mitsuba"], mitsuba_setup.PYTHON_VARIABLE)
+    python = python_for_answers(arguments, compare_scene)
     if not python:
-        print(f"skipped: {mitsuba_setup.HOW_TO_GET}")
         return 0
     folder = pathlib.Path(arguments.keep or tempfile.mkdtemp(prefix="gradus-scenes-"))
     records, differing, compared = [], 0, 0

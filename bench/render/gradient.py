@@ -106,7 +106,8 @@ def main():
             seconds = {"pt": pt_seconds, "gpt": cost * pt_seconds, "auto": cost_auto * pt_seconds}
             regret = regret_of(pick, error, seconds, solving)
             print(f"{scene.name:<20} {cost:6.2f} {error['pt']:11.3e} {error['gpt']:11.3e} {gain:14.2f}"
-                  f" {gain / cost:11.2f} {'-' if process is None else f'{process:.2f}':>11} {pick:>5} {agreed}/{len(choices)}"
+                  f" {gain / cost:11.2f} {'-' if process is None else f'{process:.2f}':>11}"
+                  f" {pick:>5} {agreed}/{len(choices)}"
                   f" {'-' if expected is None else f'{expected:.2f}':>9} {regret:7.2f}", flush=True)
             results.append({"scene": scene.name, "cost": cost, "relmse": error, "equal_samples": gain,
                             "equal_time": gain / cost, "equal_process_time": process, "turns": turns,

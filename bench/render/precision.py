@@ -66,11 +66,11 @@ def main():
                     mean = statistics.mean(excess)
                     deviation = statistics.stdev(excess) / math.sqrt(len(excess))
                     speed = statistics.median(one[0] / other[0] for other, one in zip(turns[precision], single))
-                    print(f"{scene.name:<20} {method:<6} {error:13.3e} {precision:<8} {mean:+9.3f} +- {deviation:.3f} % "
-                          f"{speed:6.2f}", flush=True)
-                    results.append({"scene": scene.name, "method": method, "precision": precision, "relmse_single": error,
-                                    "difference_percent": mean, "standard_error_percent": deviation,
-                                    "speed_ratio": speed, "turns": turns})
+                    print(f"{scene.name:<20} {method:<6} {error:13.3e} {precision:<8} {mean:+9.3f} "
+                          f"+- {deviation:.3f} % {speed:6.2f}", flush=True)
+                    results.append({"scene": scene.name, "method": method, "precision": precision,
+                                    "relmse_single": error, "difference_percent": mean,
+                                    "standard_error_percent": deviation, "speed_ratio": speed, "turns": turns})
     if arguments.json:
         arguments.json.write_text(json.dumps(results, indent=2) + "\n")
 

@@ -8,9 +8,9 @@
 namespace gradus {
 
 /// bring_to_own_scale(), whose factor it returns, and bring_to_own_origin(): in that order, so that errors tell places
-/// as the file has them. Then begin_at_widest_corners().
-inline double bring_to_own_frame(Scene &scene) {
-    const double factor = bring_to_own_scale(scene);
+/// and warnings as the file has them. Then begin_at_widest_corners().
+inline double bring_to_own_frame(Scene &scene, const std::function<void(const std::string &)> &warn = {}) {
+    const double factor = bring_to_own_scale(scene, warn);
     bring_to_own_origin(scene);
     begin_at_widest_corners(scene);
     return factor;

@@ -27,12 +27,20 @@ constexpr double least_area = 4e-19;
 constexpr double least_share_of_edge = 1e-11;
 /// Past it differences of coordinates overflow.
 constexpr double largest_float_extent = 1e37;
-/// Of the camera's distance over the scene: from farther, all of it is one direction.
+/// Of the camera's place over the scene: from farther, all of it is one direction.
 constexpr double most_away = 1e15;
-/// The same: from farther, places on the scene are off by hundredths of it.
+/// Of its distance from the scene: from farther, places there are off by hundredths of it.
 constexpr double far_away = 1e5;
 
 void multiply(Vector3 &v, float factor) { v = {v.x * factor, v.y * factor, v.z * factor}; }
+
+/// From the box; 0 within it.
+double distance(const Bounds &box, const Double3 &point) {
+    Double3 outside;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        outside[axis] = std::max({box.lower[axis] - point[axis], point[axis] - box.upper[axis], 0.0});
+    return length(outside);
+}
 
 /// By mesh, what the areas of its triangles are times in the world: of a group's meshes by the two shortest axes of its
 /// smallest instance.
@@ -91,26 +99,7 @@ double scale_of(const Scene &scene, double extent) {
 
 } // namespace
 
-std::string warning_of_far_camera(const Scene &scene) {
-    const Bounds bounds = world_bounds(scene);
-    const double extent = bounds.extent();
-    if (!(extent > 0))
-        return "";
-    const Double3 eye = transform_point(scene.camera.to_world, {0, 0, 0});
-    double square = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double outside = std::max({bounds.lower[axis] - eye[axis], eye[axis] - bounds.upper[axis], 0.0});
-        square += outside * outside;
-    }
-    const double away = std::sqrt(square) / extent;
-    return away > far_away
-               ? fmt::format("the camera is {:.1g} times as far away as the scene is large: outlines are ragged "
-                             "in single precision; bring it nearer and widen its fov",
-                             away)
-               : "";
-}
-
-double bring_to_own_scale(Scene &scene) {
+double bring_to_own_scale(Scene &scene, const std::function<void(const std::string &)> &warn) {
     Bounds all;
     double least = INFINITY, most = 0;
     const Shape *smallest = nullptr, *largest = nullptr;
@@ -153,6 +142,10 @@ double bring_to_own_scale(Scene &scene) {
                     fmt::format("the camera is at {:.3g}, {:.3g}, {:.3g}, too far from a scene of {:.3g} "
                                 "for single precision: see its to_world",
                                 eye[0], eye[1], eye[2], extent));
+    if (const double away = distance(all, eye) / extent; warn && away > far_away)
+        warn(fmt::format("the camera is {:.1g} times as far away as the scene is large: outlines are ragged in single "
+                         "precision; bring it nearer and widen its fov",
+                         away));
     const double factor = scale_of(scene, extent);
     if (factor == 1)
         return 1;

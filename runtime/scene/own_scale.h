@@ -3,6 +3,7 @@
 
 #include "runtime/scene/scene.h"
 
+#include <functional>
 #include <string>
 
 namespace gradus {
@@ -14,11 +15,8 @@ namespace gradus {
 /// larger or smaller and have not been through this lose light without a word.
 ///
 /// Throws Error(ExitCode::scene) where a shape is a billion times smaller than the scene, or the scene is larger than
-/// floats are: then one shape or the other cannot be seen.
-double bring_to_own_scale(Scene &scene);
-
-/// What is to be said of a camera so far away that places on the scene are known worse than they are seen; empty where
-/// it is not.
-std::string warning_of_far_camera(const Scene &scene);
+/// floats are: then one shape or the other cannot be seen. `warn` is told of a camera so far away that places on the
+/// scene are known worse than they are seen.
+double bring_to_own_scale(Scene &scene, const std::function<void(const std::string &)> &warn = {});
 
 } // namespace gradus

@@ -75,10 +75,10 @@ EmbreeScene::EmbreeScene(const Scene &s, int threads, tbb::task_arena &arena, co
             return true;
         },
         &bytes_);
-    // Robust tests cost a tenth of tracing and more.
-    flags_ = has_long_triangles(s) ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE;
-    scene_ = new_scene();
     arena.execute([&] {
+        // Robust tests cost a tenth of tracing and more.
+        flags_ = has_long_triangles(s) ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE;
+        scene_ = new_scene();
         add_geometry(s, tables);
         rtcCommitScene(scene_.get());
     });

@@ -168,7 +168,8 @@ class DrawOnly(unittest.TestCase):
         self.assertIn(html.escape("box 8x8 4 spp, after 4 passes: error of the reconstruction 0.25 of the "
                                   "throughput's, of the gradients 0.50 of its differences'; 12% of the shifts fail."),
                       page)
-        self.assertIn("<td>gpm</td><td>depth 30, roulette from 5</td><td>2.5e+06</td><td>1.60</td><td>0.25</td><td>6.40</td>", page)
+        self.assertIn("<td>gpm</td><td>depth 30, roulette from 5</td><td>2.5e+06</td><td>1.60</td><td>0.25</td>"
+                      "<td>6.40</td>", page)
         self.assertIn("<td>sppm</td><td>depth 13, no roulette</td><td>2e+06</td><td></td><td>0.125</td><td></td>", page)
         self.assertIn("a processor, 2 processors; a device", page)
         self.assertIn("<td>gpt</td><td>-1.00</td><td>5.00</td>", page)

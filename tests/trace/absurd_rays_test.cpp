@@ -7,22 +7,17 @@
 #include <vector>
 
 #include "runtime/trace/embree.h"
-#include "runtime/trace/tracer.h"
 
-#include "kernels/shared/tables.h"
+#include "tests/trace/traced_rays.h"
 
 namespace gradus::testing {
 namespace {
 
 TEST(AbsurdRays, MeetNothingAndHarmNone) {
-    Scene scene;
-    scene.materials.resize(1);
     Mesh mesh;
     mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {0, 2, 0}};
     mesh.triangles = {{0, 1, 2}};
-    scene.meshes.push_back(mesh);
-    scene.shapes.emplace_back();
-    Tracer tracer(scene, 1);
+    Tracer tracer(scene_of(mesh), 1);
 
     const float infinite = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
     std::vector<std::array<float, 6>> rays;
@@ -32,20 +27,10 @@ TEST(AbsurdRays, MeetNothingAndHarmNone) {
             rays.push_back(rays.back());
             rays.back()[column] = absurd;
         }
-    std::array<std::vector<float>, 6> columns;
+    Columns columns;
     for (const std::array<float, 6> &ray : rays)
-        for (std::size_t column = 0; column < 6; ++column)
-            columns[column].push_back(ray[column]);
-    std::vector<std::uint32_t> primitive(rays.size(), ray_pending), open(rays.size(), 1);
-    RayColumns ray{};
-    ShadowColumns shadow{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        ray.origin[axis] = shadow.origin[axis] = columns[axis].data();
-        ray.direction[axis] = shadow.direction[axis] = columns[3 + axis].data();
-    }
-    ray.primitive = primitive.data();
-    shadow.open = open.data();
-    tracer.trace(ray, rays.size(), shadow, rays.size());
+        append(columns, ray);
+    const auto [primitive, open] = traced(tracer, columns);
     for (std::size_t i = 0; i < rays.size(); ++i) {
         EXPECT_EQ(primitive[i], i % 2 == 0 ? 0u : ray_escaped) << i;
         EXPECT_EQ(open[i], 0u) << i;

@@ -10,9 +10,8 @@
 #include <vector>
 
 #include "runtime/scene/own_frame.h"
-#include "runtime/trace/tracer.h"
 
-#include "kernels/shared/tables.h"
+#include "tests/trace/traced_rays.h"
 
 namespace gradus::testing {
 namespace {
@@ -39,14 +38,8 @@ Scene cubes(std::uint32_t n) {
             mesh.triangles.push_back({first + side[0], first + side[2], first + side[3]});
         }
     }
-    Scene scene;
-    scene.materials.resize(1);
-    scene.meshes.push_back(mesh);
-    scene.shapes.emplace_back();
-    return scene;
+    return scene_of(std::move(mesh));
 }
-
-using Columns = std::array<std::vector<float>, 6>; ///< origin and direction
 
 /// From anywhere to places on edges.
 Columns to_edges(const Mesh &mesh, float size) {
@@ -72,11 +65,7 @@ Columns to_edges(const Mesh &mesh, float size) {
 /// What each ray meets.
 std::vector<std::uint32_t> met(Tracer &tracer, const Columns &columns) {
     std::vector<std::uint32_t> primitives(columns[0].size(), ray_pending);
-    RayColumns ray{};
-    for (std::size_t k = 0; k < 3; ++k) {
-        ray.origin[k] = columns[k].data();
-        ray.direction[k] = columns[3 + k].data();
-    }
+    auto ray = segments_of<RayColumns>(columns);
     ray.primitive = primitives.data();
     tracer.trace(ray, primitives.size(), {}, 0);
     return primitives;
@@ -165,10 +154,7 @@ double leaking(const Scene &scene) {
 // Of a ball ten thousand radii away it is one in two thousand, so it is traced where the renderer has it.
 TEST(Edges, LetNextToNoRayThrough) {
     for (const float away : {0.0f, 1e4f}) {
-        Scene scene;
-        scene.materials.resize(1);
-        scene.meshes.push_back(closed_ball(100, {away, -away, away}));
-        scene.shapes.emplace_back();
+        Scene scene = scene_of(closed_ball(100, {away, -away, away}));
         const double there = leaking(scene);
         bring_to_own_origin(scene);
         const double here = leaking(scene);
@@ -195,11 +181,7 @@ Scene long_tube(float radius) {
         mesh.triangles.push_back({here, next, next + 1});
         mesh.triangles.push_back({here, next + 1, here + 1});
     }
-    Scene scene;
-    scene.materials.resize(1);
-    scene.meshes.push_back(mesh);
-    scene.shapes.emplace_back();
-    return scene;
+    return scene_of(std::move(mesh));
 }
 
 /// Rays from the axis of such a tube to places on its side, of which the first ones begin near its middle.

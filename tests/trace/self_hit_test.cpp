@@ -8,14 +8,13 @@
 #include <random>
 
 #include "runtime/scene/scene_tables.h"
-#include "runtime/trace/tracer.h"
 
 #define TRAIT_TRIANGLES 1
 #define TRAIT_SPHERES 1
 #include "kernels/lib/frame.h"
 #include "kernels/lib/light.h"
 #include "kernels/lib/scene_hit.h"
-#include "kernels/shared/tables.h"
+#include "tests/trace/traced_rays.h"
 
 namespace gradus::testing {
 namespace {
@@ -49,15 +48,11 @@ Scene parallelogram(Chance &chance, vec3 place, double narrowest) {
     const double shape = chance.uniform();
     const vec3 u = a, v = shape < 1 / 3. ? b : shape < 2 / 3. ? v3_scale(b, aspect) : v3_mad(a, aspect, b);
     const vec3 corner = v3_mad(v3_mad(place, -0.4f, u), -0.4f, v);
-    Scene scene;
-    scene.materials.resize(1);
     Mesh mesh;
     mesh.positions = {to_vector(corner), to_vector(v3_add(corner, u)), to_vector(v3_add(v3_add(corner, u), v)),
                       to_vector(v3_add(corner, v))};
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-    scene.meshes.push_back(mesh);
-    scene.shapes.emplace_back();
-    return scene;
+    return scene_of(std::move(mesh));
 }
 
 Scene ball(vec3 place) {

@@ -6,9 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "runtime/trace/tracer.h"
-
-#include "kernels/shared/tables.h"
+#include "tests/trace/traced_rays.h"
 
 namespace gradus::testing {
 namespace {
@@ -30,11 +28,7 @@ Scene squares(int axis, std::uint32_t count) {
         mesh.triangles.push_back({first, first + 1, first + 3});
         mesh.triangles.push_back({first, first + 3, first + 2});
     }
-    Scene scene;
-    scene.materials.resize(1);
-    scene.meshes.push_back(mesh);
-    scene.shapes.emplace_back();
-    return scene;
+    return scene_of(std::move(mesh));
 }
 
 // Packets are beams where a scene has few primitives. A beam has a side for each axis by which its rays come, and
@@ -47,7 +41,7 @@ TEST(TinyComponents, LoseNoRay) {
             std::mt19937 bits(1);
             std::uniform_real_distribution<float> uniform(0, 1);
             constexpr std::array<float, 6> sizes = {0, 1e-36f, 1e-24f, 3e-18f, 1e-10f, 0.1f};
-            std::array<std::vector<float>, 6> columns;
+            Columns columns;
             for (std::size_t i = 0; i < axis_rays; ++i) {
                 const bool from_above = i % 2 == 0;
                 std::array<float, 6> ray{};
@@ -57,19 +51,9 @@ TEST(TinyComponents, LoseNoRay) {
                 ray[3 + up] = from_above ? -1.0f : 1.0f;
                 for (const std::size_t side : {along, across})
                     ray[3 + side] = (bits() % 2 == 0 ? 1.0f : -1.0f) * sizes[bits() % sizes.size()];
-                for (std::size_t column = 0; column < 6; ++column)
-                    columns[column].push_back(ray[column]);
+                append(columns, ray);
             }
-            RayColumns ray{};
-            ShadowColumns shadow{};
-            for (std::size_t k = 0; k < 3; ++k) {
-                ray.origin[k] = shadow.origin[k] = columns[k].data();
-                ray.direction[k] = shadow.direction[k] = columns[3 + k].data();
-            }
-            std::vector<std::uint32_t> primitives(axis_rays, ray_pending), open(axis_rays, 1);
-            ray.primitive = primitives.data();
-            shadow.open = open.data();
-            tracer.trace(ray, axis_rays, shadow, axis_rays);
+            const auto [primitives, open] = traced(tracer, columns);
             std::size_t missed = 0, passed = 0;
             for (std::size_t i = 0; i < axis_rays; ++i) {
                 missed += primitives[i] >= ray_first_special;
